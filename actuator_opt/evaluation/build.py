@@ -1,7 +1,7 @@
 """Evaluation of a design with its requirements, checks and warnings; margins of many designs.
 
-Standard sizes of bore, rod, glands and housings are a remark, not a limit. Many designs evaluated
-at once get a single governing value per metric and limit.
+A deviation of bore, rod, glands or housings from standard sizes gives a remark; it is not a limit.
+If many designs are evaluated at once, each gets only the governing value of every metric and limit.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ from .wall_study import study as wall_study
 PLACES: tuple[Place, ...] = ("piston", "rod")
 
 NEAR = 0.02
-"""Relative difference of a housing's depth or length that is ignored."""
+"""Relative difference from a standard housing's depth or length below which no remark is made."""
 
 NO_ANSWER = "not computable for these dimensions"
 NOT_COMPUTED = "not computed for this design"
@@ -64,7 +64,7 @@ _SIZES, _GLANDS, _SECTIONS = "standard sizes", "standard glands", "ISO 3601-2 se
 
 
 def sizes(design: Design) -> Check:
-    """Whether bore and rod are ISO 3320 sizes; otherwise the nearest sizes."""
+    """State whether bore and rod are ISO 3320 sizes; if not, name the nearest sizes."""
     nonstandard = []
     dimensions: tuple[tuple[Literal["bore", "rod"], float], ...] = (
         ("bore", design.cylinder.bore),
@@ -81,7 +81,7 @@ def sizes(design: Design) -> Check:
 
 
 def glands(rings: Iterable[Ring]) -> Check:
-    """Whether every groove conforms to a standard; otherwise the differences."""
+    """State whether every groove conforms to a standard; if not, list the differences."""
     nonstandard = [text for ring in rings for text in _remarks(floats(ring, 0))]
     if nonstandard:
         return Check(
@@ -91,7 +91,7 @@ def glands(rings: Iterable[Ring]) -> Check:
 
 
 def _remarks(ring: Ring) -> Iterator[str]:
-    """Deviations of a groove from its standard."""
+    """List the deviations of a groove from its standard."""
     if ring.element.seal_type.o_ring_gland:
         yield from _o_ring(ring)
     elif any(housings(ring.element.type, place) for place in PLACES):
@@ -148,7 +148,7 @@ def _housing(ring: Ring) -> Iterator[str]:
 
 
 def names_of_materials(design: Design) -> list[str]:
-    """All materials of a design, without duplicates, in order of appearance."""
+    """Names of all materials of a design, without duplicates, in order of appearance."""
     names = [design.fluid.material]
     names += [ply.material for ply in design.barrel.layup]
     names += [ply.material for ply in design.rod.layup]
@@ -172,7 +172,7 @@ def prepare(
     materials: Library | Mapping[str, Material] | None = None,
     plugins: tuple[Plugin, ...] = (),
 ) -> PreparedDesign:
-    """A design with its materials and all its numbers, ready to evaluate.
+    """Combine a design with its materials and all its numerical values, ready to evaluate.
 
     Parameters
     ----------
@@ -201,7 +201,7 @@ def prepare(
 
 
 def spec_hash(subject: PreparedDesign) -> str:
-    """Hash of everything that determines the result: design, material data, version."""
+    """Hash of the inputs that determine the result: design, material data, program version."""
     design = subject.design.model_dump(mode="json")
     if not design["uncertainty"]:  # unset fields are left out: hashes of older designs stay valid
         del design["uncertainty"]
@@ -214,7 +214,7 @@ def spec_hash(subject: PreparedDesign) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-@np.errstate(all="ignore")  # values that are not finite are reported as such
+@np.errstate(all="ignore")  # values that are not finite are reported without numerical warnings
 def evaluate(subject: PreparedDesign) -> Evaluation:
     """Compute all metrics, requirements and checks of a design."""
     v = subject.values()
@@ -256,7 +256,7 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
 
 
 def _friction_parts(computed: MetricArrays, v: Values, case: str | None) -> dict[str, float]:
-    """Running friction of each seal in a case; parts without friction are left out."""
+    """Running friction of each seal in a load case; seals without friction are left out."""
     friction = {}
     for label, array in computed.friction_parts.items():
         values = dict(by_case(computed, "friction_running", array, v.cases))
@@ -310,7 +310,7 @@ def _metric(
 
 
 def _worst(rows: Iterable[LimitRow]) -> LimitRow | None:
-    """The row with the least margin; NaN counts as the least."""
+    """Return the limit row with the smallest margin; NaN counts as the smallest."""
     return min(
         rows,
         key=lambda row: -math.inf if math.isnan(row.margin[0]) else float(row.margin[0]),
@@ -417,7 +417,7 @@ def _against(check: Check) -> str:
 
 
 def _curve(run: ModelRun, v: Values, case: str | None) -> StrokeCurve:
-    """Stiffness over the stroke in the governing case."""
+    """Calculate stiffness over the stroke in the governing load case."""
     stroke = float(np.squeeze(run.geometry.stroke))
     index = v.cases.index(case) if case in v.cases else 0
     weakest = of_case(run.weakest, index)
@@ -438,9 +438,9 @@ def _curve(run: ModelRun, v: Values, case: str | None) -> StrokeCurve:
 class Many:
     """Results of many designs, arrays (designs,).
 
-    `metrics` are the governing values, NaN if missing; `margin` is the least margin of all limits,
-    including the check list, and `missed` the index of its limit in `limits`. `read` are the PATHs
-    that models and limits have read.
+    `metrics` are the governing values, NaN if missing. `margin` is the smallest margin of all
+    limits, including the check list; `missed` is the index in `limits` of the limit with this
+    margin. `read` are the PATHs that models and limits have read.
     """
 
     metrics: dict[str, Array]
@@ -463,7 +463,7 @@ def evaluate_many(
     count: int,
     wanted: Container[str] | None = None,
 ) -> Many:
-    """Metrics and limits of designs that differ in some numbers.
+    """Calculate metrics and margins of designs that differ only in the numbers in `varied`.
 
     Parameters
     ----------
@@ -482,7 +482,7 @@ def evaluate_many(
     limits = limits_of(subject)
     margin, missed = np.full(count, np.inf), np.zeros(count, dtype=np.int32)
     for number, value in _margins(limits, computed, v, count):
-        worse = ~(value >= margin)  # NaN counts as the worst
+        worse = ~(value >= margin)  # NaN counts as the smallest margin
         margin = np.where(worse, np.where(np.isnan(value), -np.inf, value), margin)
         missed[worse] = number
     return Many(metrics, margin, missed, limits, frozenset(v.read))
@@ -490,9 +490,10 @@ def evaluate_many(
 
 @np.errstate(all="ignore")
 def margins_of(subject: PreparedDesign, varied: Mapping[str, Array], count: int) -> Array:
-    """Margins of all limits of such designs, (limits, designs), in the order of `limits_of`.
+    """Margins of all limits for designs that differ in `varied`, (limits, designs).
 
-    Infinity if a limit does not apply, NaN if its value is not finite.
+    The limits are in the order of `limits_of`. A margin is infinite if the limit does not apply,
+    and NaN if the limited value is not finite.
     """
     v = subject.values(varied)
     limits = limits_of(subject)
@@ -505,9 +506,10 @@ def margins_of(subject: PreparedDesign, varied: Mapping[str, Array], count: int)
 def margins_many(
     subject: PreparedDesign, varied: Mapping[str, Array], count: int
 ) -> dict[str, Array]:
-    """Margins of all limits (designs,) of designs that differ in some numbers, by name.
+    """Margins (designs,) by name of limit, for designs that differ only in the numbers in `varied`.
 
-    Infinity if a limit does not apply; minus infinity if its value is unknown.
+    A margin is infinite if the limit does not apply, and minus infinity if the limited value is
+    unknown.
     """
     margins = margins_of(subject, varied, count)
     return {
@@ -519,14 +521,14 @@ def margins_many(
 def _margins(
     limits: Sequence[MetricLimit], computed: MetricArrays, v: Values, count: int
 ) -> Iterator[tuple[int, Array]]:
-    """Index of a limit, with its margins (designs,) in one case at one place."""
+    """Yield the index of a limit with its margins (designs,), for each load case and location."""
     for number, limit in enumerate(limits):
         for row in rows_of(limit, computed, v):
             yield number, np.broadcast_to(row.margin, (count,))
 
 
 def limits_of(subject: PreparedDesign) -> tuple[MetricLimit, ...]:
-    """Requirements and checks of a feasible design."""
+    """All limits that a feasible design must meet: requirements, checks and geometry."""
     limits = all_limits(subject.design, subject.plugins)
     return tuple(limit for limit in limits if limit.origin != "advice")
 
@@ -534,6 +536,6 @@ def limits_of(subject: PreparedDesign) -> tuple[MetricLimit, ...]:
 def _governing(
     name: str, computed: MetricArrays, v: Values, subject: PreparedDesign, count: int
 ) -> Array:
-    """Governing value of every design (count,); infinity (unlimited) does not count as a value."""
+    """Governing value of a metric for every design (count,); NaN where it is infinite."""
     value = governing(name, computed, v, subject)
     return np.broadcast_to(np.where(np.isfinite(value), value, np.nan), (count,))

@@ -1,4 +1,4 @@
-"""Hydraulic circuit of the chambers in an evaluation: lines, throttles, valve, line ends."""
+"""Hydraulic circuit of the chambers: lines, throttles, valve, boundary conditions of the lines."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CHAMBERS: tuple[Chamber, Chamber] = ("a", "b")
 
 @dataclass(frozen=True, slots=True)
 class ChamberLines:
-    """The lines of one chamber, lumped; compliances of oil and wall in m^3/Pa."""
+    """Lumped properties of one chamber's lines; compliances of oil and pipe walls in m^3/Pa."""
 
     volume: Array = 0.0
     pipes: Array = 0.0
@@ -31,12 +31,12 @@ class ChamberLines:
     resistance: Array = 0.0
     inertance: Array = 0.0
     far: Array = 0.0
-    """Compliance at the far node of the dynamic model: half of every line (pi element), or, with a
-    throttle, the whole of the lines beyond it."""
+    """Compliance at the line node away from the chamber, in the dynamic model. It is half of every
+    line (pi element), or all lines beyond the throttle if there is one."""
 
 
 def wall_compliance(v: Values, line: Line, at: str) -> Array:
-    """Volume change of a line wall per pressure."""
+    """Expansion of the volume of a line per pressure, from its wall alone."""
     if line.rigid:
         return 0.0
     material = f"materials.{line.material}."
@@ -50,7 +50,7 @@ def wall_compliance(v: Values, line: Line, at: str) -> Array:
 
 
 def branches(v: Values, design: Design, state: LoadState) -> dict[Chamber, ChamberLines]:
-    """Lines of chambers a and b, with the oil in motion."""
+    """Lumped lines of chambers A and B."""
     throttled = design.ports.throttle is not None
     modulus = {"a": state.bulk_modulus_a, "b": state.bulk_modulus_b}
     viscosity = {"a": state.dynamic_viscosity_a, "b": state.dynamic_viscosity_b}
@@ -86,7 +86,7 @@ class Ways(NamedTuple):
     retracting: Array
 
     def toward(self, extending: Array) -> Array:
-        """Value for a direction; `extending` is True, False or an array of them."""
+        """Return the value for a direction; `extending` is True, False or an array of booleans."""
         return where(extending, self.extending, self.retracting)
 
 
@@ -94,34 +94,34 @@ class LinearValve(NamedTuple):
     """The valve linearised at the spool position that holds the load."""
 
     gains: dict[Chamber, Ways]
-    """Flow gains K_q into the lines, for spool directions A+ and B- [m^3/s/V]."""
+    """Flow gains K_q into the lines [m^3/s/V], by spool direction."""
     conductances: dict[Chamber, Ways]
-    """Flow-pressure coefficients K_c [m^3/s/Pa]; empty without leakage: a closed end."""
+    """Flow-pressure coefficients K_c [m^3/s/Pa]; empty if the valve does not leak."""
 
     def held(self, chamber: Chamber) -> LineEnd:
-        """The valve as line end of a chamber while holding the load."""
+        """Boundary condition that the valve sets for a chamber's line while it holds the load."""
         ways = self.conductances.get(chamber)
         return LineEnd((maximum(*ways),)) if ways else line_ends.CLOSED
 
     def driving(self, chamber: Chamber, extending: Array) -> LineEnd:
-        """The valve as line end of a chamber while driving."""
+        """Boundary condition that the valve sets for a chamber's line while it drives the load."""
         ways = self.conductances.get(chamber)
         return LineEnd((ways.toward(extending),)) if ways else line_ends.CLOSED
 
 
 class Edges(NamedTuple):
-    """Flow coefficients of the valve edges [m^3/s/sqrt(Pa)]."""
+    """Flow coefficients of the valve's metering edges [m^3/s/sqrt(Pa)]."""
 
     rated: Array
-    """Fully open, at the viscosity of the oil."""
+    """Coefficient of a fully open edge, at the viscosity of the oil."""
     supply: Array
-    """Centred, edges P-A and P-B."""
+    """Coefficient of the supply edges P-A and P-B with the spool centred."""
     tank: Array
-    """Centred, edges A-T and B-T."""
+    """Coefficient of the return edges A-T and B-T with the spool centred."""
 
 
 def valve_edges(v: Values, design: Design, state: LoadState) -> Edges:
-    """Valve edges of the design in every load case."""
+    """Flow coefficients of the design's valve edges in every load case."""
     assert design.valve is not None
     at = "valve."
     rated = valve.edge_coefficient(flow=v[at + "rated_flow"], pressure_drop=v[at + "rated_drop"])
@@ -141,7 +141,7 @@ def valve_edges(v: Values, design: Design, state: LoadState) -> Edges:
 
 
 def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) -> LinearValve | None:
-    """Valve at holding pressures, with the spool supplying its own leakage and the piston's."""
+    """Linearise the valve at the holding pressures, where it supplies the leakage."""
     if design.valve is None:
         return None
     edges = valve_edges(v, design, state)
@@ -174,7 +174,7 @@ def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) ->
 def throttle_conductances(
     v: Values, design: Design, state: LoadState, geometry: Geometry
 ) -> dict[Chamber, Ways]:
-    """Conductance of the one-way valves at the flow of the case's speed, by piston direction."""
+    """Conductance of the throttles by piston direction, at the flow for each load case's speed."""
     if design.ports.throttle is None:
         return {}
     at = "ports.throttle."
@@ -188,7 +188,7 @@ def throttle_conductances(
     }
 
     def conductance(flow: Array) -> Array:
-        """Conductance at a flow out of the chamber."""
+        """Conductance for a given flow out of the chamber."""
         drop = one_way_valve.one_way_pressure_drop(flow=flow, **common)
         return one_way_valve.one_way_conductance(pressure_difference=drop, **common)
 
@@ -206,7 +206,7 @@ def line_end(
     accumulators: tuple[LineEnd, ...],
     chamber: Chamber,
 ) -> LineEnd:
-    """End of a chamber's line while the load excites the actuator."""
+    """Boundary condition at the end of a chamber's line while the load excites the actuator."""
     ends = list(accumulators)
     kind = design.ports.end
     if kind == "valve" and holding is not None:
@@ -229,7 +229,7 @@ def line_end(
 def accumulator_ends(
     v: Values, design: Design, state: LoadState, chamber: Chamber
 ) -> tuple[LineEnd, ...]:
-    """All accumulators on the line of a chamber."""
+    """Boundary conditions set by all accumulators on the line of a chamber."""
     ends = []
     for i, entry in enumerate(design.ports.accumulators):
         if entry.chamber != chamber:

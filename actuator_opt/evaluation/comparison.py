@@ -1,7 +1,7 @@
-"""Comparison of designs: different inputs, and the parts that explain the differences.
+"""Comparison of designs: inputs that differ, and the parts that explain the different results.
 
-Three questions with additive parts: lighter (mass of parts), stiffer (compliances at the weakest
-position), smoother (running friction of seals).
+The comparison answers which design is lighter, stiffer and smoother. It splits each answer into
+contributions that add up: mass of parts, compliances at the weakest position, friction of seals.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ from .result import Evaluation
 Value: TypeAlias = float | bool | str | Fraction | None
 Name: TypeAlias = Literal["lighter", "stiffer", "smoother"]
 SAME = 1e-9
-"""Relative difference up to which two numbers count as equal: a choice, above rounding."""
+"""Relative difference up to which two numbers count as equal. Our choice, above rounding errors."""
 _IDLE = ("name", "notes")
 """Keys of a design without effect on the result."""
 _DUTY = ("supply", "load", "load_cases", "fluid", "environment", "linkage")
-"""Keys of a design that state duties."""
+"""Keys of a design that state its duty: supply, load and environment."""
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """A differing input: SI numbers, words, or None if a design has no such input.
+    """An input that differs, with one value per design: a number (SI), a word, or None if absent.
 
     A block that only some designs have is a single change with the value "given".
     """
@@ -47,11 +47,11 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """Which design is better in a respect, and the parts that explain it.
+    """Which design is better by a metric, and the contributions of parts that explain it.
 
-    `values` are those of the metric (SI), `parts` the additive contributions: mass in kg,
-    compliance in m/N, friction in N; `best` and `other` are indices of the compared designs, None
-    if no design is better.
+    `values` are the values of the metric (SI), one per design. `parts` are contributions that add
+    up: mass in kg, compliance in m/N, friction in N. `best` and `other` are the indices of the two
+    designs whose parts are compared; both are None if no design is better.
     """
 
     name: Name
@@ -63,7 +63,7 @@ class Question:
 
     @property
     def steps(self) -> tuple[tuple[str, float], ...]:
-        """Contribution of each part (SI) from the other design to the best, largest first."""
+        """Change of each part's contribution (SI) from `other` to `best`, largest first."""
         if self.best is None or self.other is None:
             return ()
         rows = [(part, x[self.best] - x[self.other]) for part, x in self.parts.items()]
@@ -71,7 +71,7 @@ class Question:
 
     @property
     def leaders(self) -> tuple[int, ...]:
-        """Indices of the best design and of equal designs; empty without a best design."""
+        """Indices of the best design and of designs equal to it; empty without a best design."""
         best = None if self.best is None else self.values[self.best]
         if best is None:
             return ()
@@ -83,7 +83,7 @@ class Question:
 class DesignState:
     """Whether a compared design is an optimum.
 
-    `status` is that of its optimisation; None if it was only evaluated.
+    `status` is the status of the optimisation; None if the design was only evaluated.
     """
 
     status: str | None = None
@@ -116,9 +116,9 @@ class Comparison(Displayed):
 
     @property
     def unlike(self) -> Mapping[str, tuple[Sense | None, ...]]:
-        """Metrics governed by the smallest value in one design and by the largest in another.
+        """Metrics governed by their smallest value in one design and by their largest in another.
 
-        The designs limit or optimise them in opposite senses.
+        This happens where the designs limit or optimise a metric in opposite senses.
         """
         names = dict.fromkeys(name for e in self.evaluations for name in e.metrics)
         by_metric = {name: _senses(name, self.evaluations) for name in names}
@@ -126,18 +126,18 @@ class Comparison(Displayed):
 
     @property
     def duties_differ(self) -> tuple[str, ...]:
-        """PATHs of differing duties."""
+        """PATHs of the duty inputs that differ between the designs."""
         roots = ((c.path, c.path.partition(".")[0].partition("[")[0]) for c in self.changes)
         return tuple(path for path, root in roots if root in _DUTY)
 
     def limits(self) -> Iterator[tuple[str, str, tuple[Any, ...]]]:
-        """Name, sense and rows of every requirement; None for designs without it."""
+        """Name, sense and results (one per design, None if it lacks it) of every requirement."""
         known = [{(r.name, r.sense): r for r in e.requirements} for e in self.evaluations]
         for key in dict.fromkeys(key for rows in known for key in rows):
             yield *key, tuple(rows.get(key) for rows in known)
 
     def metrics(self) -> Iterator[tuple[str, Quantity, tuple[float | None, ...]]]:
-        """All metrics with a value in any design."""
+        """Names of all metrics that have a value in at least one design."""
         names = dict.fromkeys(name for e in self.evaluations for name in e.metrics)
         for name in names:
             rows = [e.metrics.get(name) for e in self.evaluations]
@@ -237,7 +237,7 @@ def compare(
 
 
 def weakest(evaluation: Evaluation) -> dict[str, float]:
-    """Compliance (m/N) of every part at the stroke position of least stiffness."""
+    """Compliance [m/N] of every part, at the stroke position of least stiffness."""
     curve = evaluation.curve
     stiffness = np.asarray(curve.stiffness, dtype=float)
     if not np.isfinite(stiffness).any():
@@ -253,7 +253,7 @@ def _union(parts: Sequence[Mapping[str, float]]) -> dict[str, tuple[float, ...]]
 
 
 def _senses(metric: str, evaluations: Sequence[Evaluation]) -> tuple[Sense | None, ...]:
-    """Sense in which several values govern each design; None if there is a single value."""
+    """Whether the smallest or largest value governs each design; None if it has only one value."""
     rows = [e.metrics.get(metric) for e in evaluations]
     return tuple(None if row is None or row.value is None else row.sense for row in rows)
 
@@ -261,7 +261,7 @@ def _senses(metric: str, evaluations: Sequence[Evaluation]) -> tuple[Sense | Non
 def _question(
     name: Name, metric: str, evaluations: Sequence[Evaluation], parts: dict[str, tuple[float, ...]]
 ) -> Question:
-    """The best design compared with the first, or the first with the next best."""
+    """Compare the best design with the first, or the first with the second best if it is best."""
     values = tuple(e.metrics[metric].value for e in evaluations)
     sign = -1.0 if name == "stiffer" else 1.0
     known = [(sign * v, k) for k, v in enumerate(values) if v is not None and math.isfinite(v)]
@@ -283,7 +283,7 @@ _MISSING = _Missing()
 
 
 def _tree(design: Design) -> dict[str, Any]:
-    """A design without ineffective inputs and search starts; load cases by name."""
+    """Inputs that affect the result, without starting points of the search; load cases by name."""
     tree = {key: value for key, value in to_tree(design).items() if key not in _IDLE}
     tree["variables"] = {
         path: {key: value for key, value in variable.items() if key != "start"}
@@ -301,7 +301,7 @@ class _Named(dict[str, Any]):
 
 
 def _differences(nodes: Sequence[Any], path: str) -> Iterator[tuple[str, tuple[Any, ...]]]:
-    """PATH and values of all differences; whole blocks if missing in some trees."""
+    """Yield PATH and values of all differences; a block that is missing in some counts once."""
     if all(_same(node, nodes[0]) for node in nodes):
         return
     if all(isinstance(node, dict) for node in nodes):
@@ -328,7 +328,7 @@ def _same(a: Any, b: Any) -> bool:
 
 
 def _value(node: Any) -> Value:
-    """A leaf unchanged; a block as a word."""
+    """Return a plain value unchanged, and the word "given" for a block."""
     if node is _MISSING or node == {} or node == []:
         return None
     if isinstance(node, dict):
@@ -343,7 +343,7 @@ def _value(node: Any) -> Value:
 def _quantity(
     path: str, values: Sequence[Any], evaluations: Sequence[Evaluation]
 ) -> Quantity | None:
-    """Quantity of the numbers at a PATH, from the first design that has a number there."""
+    """Quantity (dimension and unit) at a PATH, from the first design with a number there."""
     for value, evaluation in zip(values, evaluations, strict=True):
         if isinstance(value, (int, float)) and not isinstance(value, bool):
             try:

@@ -1,4 +1,4 @@
-"""Life and service in an evaluation: pressure cycles, end stop, temperature, trapped oil."""
+"""Life and service of an actuator: pressure cycles, end stop, temperature, trapped oil."""
 
 from __future__ import annotations
 
@@ -33,7 +33,11 @@ def compute(
     net: Array,
     out: MetricArrays,
 ) -> None:
-    """All life and service metrics; `net` is the force of every case, `stop` that into a stop."""
+    """Compute all life and service metrics.
+
+    `net` is the net force in every load case, `stop` the net force when the piston runs into a
+    stop.
+    """
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
     _endurance(v, stock, design, wall, section, loaded_joint, supply, push, pull, out)
@@ -57,7 +61,7 @@ def _endurance(
     pull: Array,
     out: MetricArrays,
 ) -> None:
-    """Pressure-cycle life of metal parts: wall layers, rod (push/pull), thread roots."""
+    """Compute the pressure-cycle life of metal wall layers, rod (push/pull) and thread roots."""
     cycles = wall.cycles | rod_strength.cycles(design, section, supply, push, pull)
     loads = [(place, c.material, c.span, c.mean) for place, c in cycles.items()]
     if design.rod.thread is not None:
@@ -111,9 +115,9 @@ def _end_stop(
     net: Array,
     out: MetricArrays,
 ) -> None:
-    """Energy and peak pressure when the piston hits its stop at the speed of the case.
+    """Compute energy and peak pressure when the piston hits its stop at the speed of the load case.
 
-    The load of the case still acts; the remaining force drives the piston into the stop.
+    The load still acts; the net force of pressure and load drives the piston into the stop.
     """
     if design.cylinder.end_stop == "external":
         for name in ("end_stop_energy", "end_stop_pressure", "end_stop_factor"):
@@ -148,7 +152,7 @@ def _trapped(
     supply: Array,
     out: MetricArrays,
 ) -> None:
-    """Pressure of oil that warms between blocked ports."""
+    """Compute the pressure of oil that warms up between blocked ports."""
     environment = design.environment
     rise = None if environment is None else environment.trapped_rise
     oil = design.fluid.material
@@ -173,7 +177,7 @@ def _trapped(
 
 
 def _layers(stock: MaterialValues, wall: Wall, out: MetricArrays) -> None:
-    """Metrics of a multi-layer wall only: liner and fibres, cold and in service."""
+    """Compute metrics that only a multi-layer wall has: liner and fibres, cold and in service."""
     ranges, strains = {}, {}
     for place, cycle in wall.cycles.items():
         strength = stock.allowable(cycle.material, "yield_strength", "ultimate_strength")
@@ -205,7 +209,7 @@ def _layers(stock: MaterialValues, wall: Wall, out: MetricArrays) -> None:
 
 
 def _service(v: Values, stock: MaterialValues, design: Design, out: MetricArrays) -> None:
-    """Margin of the temperature range to the limits of every material."""
+    """Compute the margins between the temperature range and the limits of every material."""
     if design.environment is None:
         out.skip("temperature_margin", "no temperature range stated: add environment")
         return
@@ -222,9 +226,10 @@ def _service(v: Values, stock: MaterialValues, design: Design, out: MetricArrays
 def _clearance(
     v: Values, stock: MaterialValues, design: Design, g: Geometry, wall: Wall, out: MetricArrays
 ) -> None:
-    """Radial clearance of piston in barrel and rod in head, coldest and hottest.
+    """Compute the radial clearance of piston and rod at the coldest and hottest temperature.
 
-    c + r (alpha_outside - alpha_inside) dT from the assembly temperature.
+    Clearance: c + r (alpha_outside - alpha_inside) dT, with the clearance c at assembly, radius r,
+    expansion coefficients alpha of the outer and inner part, and dT from the assembly temperature.
     """
     if design.environment is None:
         out.skip("clearance_min", "no temperature range stated: add environment")

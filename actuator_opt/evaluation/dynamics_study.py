@@ -1,6 +1,6 @@
 """Dynamics along the stroke and over frequency: modes, Bode data, transmission-line stiffness.
 
-SI units; for the governing load case and place only.
+SI units. Only the governing load case and stroke position are studied.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from .values import Values, of_case, plain
 
 
 def _end(end: LineEnd, frequencies: Array, index: int) -> Array:
-    """Admittance of a line end; infinite at constant pressure."""
+    """Admittance at the end of a line; infinite at constant pressure."""
     case_end = LineEnd(
         tuple(of_case(c, index) for c in end.numerator),
         tuple(of_case(c, index) for c in end.denominator),
@@ -43,7 +43,7 @@ def port_admittance(
     index: int,
     frequencies: Array,
 ) -> Array:
-    """Flow into everything behind a chamber port per pressure, complex, over frequency."""
+    """Complex admittance at a chamber port, by frequency: flow into the lines per pressure."""
     modulus = of_case(state.bulk_modulus_a if chamber == "a" else state.bulk_modulus_b, index)
     viscosity = state.dynamic_viscosity_a if chamber == "a" else state.dynamic_viscosity_b
     density = of_case(state.density, index)
@@ -101,10 +101,11 @@ def dynamic_stiffness(
     position: float,
     frequencies: Array,
 ) -> Array:
-    """Complex dynamic stiffness at a position, with transmission lines.
+    """Complex dynamic stiffness at a position, with the lines as transmission lines.
 
-    k_p = k_s + B s + s a^T M^-1 a, with M from chambers and port admittances; the rod compliance is
-    in series, with the mass behind it.
+    k_p = k_s + B s + s a^T M^-1 a, with the seal stiffness k_s, damping B, piston areas a, and the
+    matrix M of chamber compliances and port admittances. The compliance of the rod is in series
+    with k_p; the mass is at its far end.
     """
     s = 2j * pi * frequencies
     budget = motion.springs
@@ -133,14 +134,14 @@ def dynamic_stiffness(
 
 
 FREQUENCIES = np.geomspace(0.1, 1000.0, 121)
-"""Frequencies of the responses (Hz), supplemented around every resonance."""
+"""Frequencies of the responses [Hz]; more are added around every resonance."""
 AROUND = np.array([-8.0, -3.0, -1.0, 0.0, 1.0, 3.0, 8.0])
-"""Half-widths of a resonance with extra points, so that none falls between two points."""
+"""Extra frequencies at a resonance, in half-widths from its peak, so that no peak is missed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pole:
-    """A pole of the held actuator: frequency [Hz] and damping ratio; above 1 it is overdamped."""
+    """A pole of the held actuator: frequency [Hz] and damping ratio (above 1: overdamped)."""
 
     frequency: float
     damping_ratio: float
@@ -148,39 +149,39 @@ class Pole:
 
 @dataclass(frozen=True, slots=True)
 class ShakenCase:
-    """A load case with excitation, at its place of least dynamic stiffness."""
+    """A load case with excitation, at the stroke position where its dynamic stiffness is least."""
 
     name: str
     frequency: float
-    """Frequency [Hz]."""
+    """Excitation frequency [Hz]."""
     place: str
     stiffness: float
     """Dynamic stiffness [N/m]."""
     phase: float
-    """Phase lead of the force [rad]."""
+    """Phase lead of the force over the displacement [rad]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """Dynamic stiffness [N/m] and phase lead of the force [rad] over frequency."""
+    """Dynamic stiffness [N/m] and phase lead of the force [rad] over frequency, at one position."""
 
     place: str
     position: float
     magnitude: Array
     phase: Array
     static: float
-    """Stiffness with closed ports at this place."""
+    """Static stiffness with closed ports at this position [N/m]."""
 
 
 @dataclass(frozen=True, slots=True)
 class LoopStudy:
-    """The position loop in one case at one place; arrays over the frequencies of the study."""
+    """The position loop in a load case at a position; arrays over the frequencies of the study."""
 
     case: str
     place: str
     gain: float
     tuned: bool
-    """Whether the gain is the default (half the ultimate gain) and not stated in the design."""
+    """Whether the design states no gain, so that the default, half the ultimate gain, applies."""
     ultimate_gain: float
     ultimate_frequency: float
     gain_margin: float
@@ -188,47 +189,49 @@ class LoopStudy:
     crossover: float | None
     bandwidth: float | None
     governs: tuple[str, ...]
-    """Metrics with their least value here: gain_margin, phase_margin, bandwidth."""
+    """Metrics whose least value occurs here: gain_margin, phase_margin, bandwidth."""
     open_magnitude: Array
     open_phase: Array
-    """Phase [rad], decreasing from -pi/2 without jumps."""
+    """Phase of the open loop [rad], decreasing from -pi/2 without jumps."""
     closed_magnitude: Array
 
 
 @dataclass(frozen=True, slots=True)
 class DynamicsStudy:
-    """Linear dynamics of a design in the case of least stiffness."""
+    """Linear dynamics of a design in the load case with the least stiffness."""
 
     case: str
     mass: float
     end: str
-    """End of the lines: closed, valve, constant_pressure, reducing_valve."""
+    """Termination of the lines: closed, valve, constant_pressure, reducing_valve."""
     position: Array
-    """Position [m] from the cap end; the next three are arrays over it."""
+    """Positions along the stroke [m], from the cap end. The next three fields are arrays over
+    them."""
     closed_frequency: Array
     """Frequency [Hz] with closed ports."""
     frequency: Array
-    """Frequency [Hz] with lines ended as in `end`."""
+    """Frequency [Hz] with the lines connected to `end`."""
     damping_ratio: Array
     friction_share: float
     """Contribution of friction and oil shear to the damping ratio at the weakest position."""
     conductance_share: float
     """Contribution of leakage and line ends to the damping ratio at the weakest position."""
     poles: tuple[Pole, ...]
-    """All poles at the weakest position, slowest first."""
+    """All poles at the weakest position, lowest frequency first."""
     frequencies: Array
     response_case: str
-    """Case of the responses: of least dynamic stiffness, or `case` without excitation."""
+    """Load case of the responses: that with the least dynamic stiffness, or `case` if none is
+    excited."""
     responses: tuple[Response, ...]
-    """At the cap end, the weakest position and the rod end."""
+    """Responses at the cap end, the weakest position and the rod end."""
     distributed: Array | None
-    """Magnitude at the weakest position with transmission lines; None without lines."""
+    """Dynamic stiffness at the weakest position with transmission lines; None without lines."""
     shaken: tuple[ShakenCase, ...]
-    """Load cases with excitation, each at its worst place."""
+    """Load cases with excitation, each at its worst stroke position."""
     position_loop: LoopStudy | None
-    """At the least gain margin; None without a valve."""
+    """Position loop with the least gain margin; None without a valve."""
     other_loops: tuple[LoopStudy, ...] = ()
-    """At the least phase margin and bandwidth, if elsewhere."""
+    """Position loops with the least phase margin and the least bandwidth, if not the same."""
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
@@ -238,7 +241,7 @@ class DynamicsStudy:
 def study(
     subject: PreparedDesign, v: Values, run: ModelRun, case: str | None
 ) -> DynamicsStudy | None:
-    """Dynamics of a design in the case of least stiffness."""
+    """Study the dynamics of a design in the load case with the least stiffness."""
     motion = run.motion
     index = v.cases.index(case) if case in v.cases else 0
     stroke = float(np.squeeze(run.geometry.stroke))
@@ -297,12 +300,12 @@ def study(
 
 
 def _damping_ratio(motion: Motion, there: Array, index: int) -> float:
-    """Damping ratio of one case at a position."""
+    """Damping ratio of one load case at a stroke position."""
     return of_case(motion.mode(motion.model(there), there).damping_ratio, index)
 
 
 def _loops(run: ModelRun, design: Design) -> list[_Loop]:
-    """All loops that govern a margin or the bandwidth, with the governed metrics."""
+    """Position loops that govern a stability margin or the bandwidth, and the governed metrics."""
     rows: dict[tuple[int, str], tuple[str, ...]] = {}
     for metric in ("gain_margin", "phase_margin", "bandwidth"):
         row = _worst(run, metric, design)
@@ -312,7 +315,7 @@ def _loops(run: ModelRun, design: Design) -> list[_Loop]:
 
 
 def _shaken(design: Design, run: ModelRun) -> tuple[ShakenCase, ...]:
-    """All load cases with excitation at their place of least dynamic stiffness."""
+    """All load cases with excitation, each at the position of its least dynamic stiffness."""
     shaken = []
     for i, case in enumerate(design.load_cases):
         if case.frequency is None:
@@ -333,7 +336,7 @@ def _distributed(
 
 
 def _row(value: Array, index: int, along: Array) -> Array:
-    """The row of a case in an array (cases, points)."""
+    """The values of one load case from an array (cases, points)."""
     array = np.broadcast_to(np.atleast_2d(value), (np.shape(np.atleast_2d(value))[0], along.size))
     return array[min(index, array.shape[0] - 1)]
 
@@ -350,7 +353,7 @@ def _poles(model: linear.LinearActuator, index: int) -> tuple[Pole, ...]:
 
 
 def _worst(run: ModelRun, metric: str, design: Design) -> tuple[int, str] | None:
-    """Case and place of a metric's least value; None if it was not computed."""
+    """Load case and location of a metric's least value; None if it was not computed."""
     shaken = [case.frequency is not None for case in design.load_cases]
     rows = [
         (float(value[i, 0]), i, place)
@@ -365,7 +368,7 @@ def _worst(run: ModelRun, metric: str, design: Design) -> tuple[int, str] | None
 def _frequencies(polynomials: list[tuple[Polynomial, int]]) -> Array:
     """`FREQUENCIES` and points around every resonance and anti-resonance of these polynomials.
 
-    Each polynomial has its load case.
+    `polynomials` pairs each polynomial with the index of its load case.
     """
     groups = [FREQUENCIES]
     for polynomial, index in polynomials:
@@ -414,7 +417,7 @@ def _response(
 
 @dataclass(frozen=True, slots=True)
 class _Loop:
-    """The open loop in one case at one place."""
+    """The open position loop in one load case at one position."""
 
     index: int
     place: str
@@ -424,7 +427,7 @@ class _Loop:
 
     @classmethod
     def of(cls, run: ModelRun, index: int, place: str, governs: tuple[str, ...]) -> _Loop:
-        """The loop of the place in the metrics' rows."""
+        """Build the loop for a location (direction, position) as the metrics name it."""
         direction, _, where = place.partition(", ")
         position = np.asarray(run.places[where])
         position_open_loop = run.motion.position_loop(
@@ -446,7 +449,7 @@ class _Loop:
 def _loop(
     subject: PreparedDesign, v: Values, run: ModelRun, at: _Loop, frequencies: Array
 ) -> LoopStudy:
-    """Frequency response of a loop, with its figures from the metrics."""
+    """Frequency response of a position loop, with its margins and bandwidth from the metrics."""
 
     def value_of(metric: str) -> float:
         return of_case(run.computed.metrics[metric][at.place], at.index)

@@ -1,6 +1,6 @@
-"""The oil film under a moving seal, or under two in a row: solution at an operating point.
+"""The oil film under a moving seal, or under two seals in series: solution at an operating point.
 
-Two elements with a film share the oil: at the pressure between them both have the same flow
+Two seals in series pass the same flow. This condition determines the pressure between them
 ([Huang2017] eq. 17).
 """
 
@@ -33,14 +33,16 @@ from ..models.rough_surface import composite_roughness
 from .rings import Place, Ring, seal_contact, static_profile
 
 NODES = 121
-"""Nodes along the contact: within 0.3 % of a finer mesh."""
+"""Number of nodes along the contact. Results are within 0.3 % of those on a finer mesh."""
 
 HIGHEST, AT_LEAST = 1.5, 10e6
-"""Upper bound of the interseal pressure in the search: over the sealed pressure, or absolute [Pa].
-At low pressure the outer seal can hold many times the sealed pressure."""
+"""Upper bound of the interseal pressure in the search: the larger of this multiple of the sealed
+pressure and this absolute pressure [Pa]. At low sealed pressure, the outer seal can hold many
+times the sealed pressure."""
 
 LEAST_SQUEEZE = 0.02
-"""Least squeeze in film solutions: below it the contact is lost, and the squeeze metric fails."""
+"""Smallest squeeze for which a film is solved; smaller values are raised to it. They mean that the
+contact is lost, and the check on squeeze fails anyway."""
 
 _NOT_OF_FILM = frozenset(
     {
@@ -63,35 +65,35 @@ _NOT_OF_FILM = frozenset(
         "viscous_friction",
     }
 )
-"""Numbers of a ring without effect on its film, or stated once per row for both rings."""
+"""Inputs of a ring that do not affect its film, or that both rings of a pair share."""
 
 SHARED = ("speed", "viscosity", "viscosity_coefficient")
-"""Inputs common to both rings of a pair, besides the pressures."""
+"""Inputs common to both rings of a pair, in addition to the pressures."""
 
 
 Stroke = Literal["drive", "return"]
 
 
 def films_asked(design: Design) -> bool:
-    """Whether any element uses a film."""
+    """Whether any seal of the design uses an oil film for its friction."""
     seals = design.seals
     return bool(seals.piston.friction_law.film or seals.rod.friction_law.film)
 
 
 def on_stroke(rings: Sequence[Ring], stroke: Stroke) -> tuple[Ring, ...]:
-    """The rings on a stroke: the return stroke has its own pressure."""
+    """The rings with the sealed pressure of a stroke; the return stroke has its own."""
     if stroke == "drive":
         return tuple(rings)
     return tuple(ring.at(pressure=ring["return_pressure"]) for ring in rings)
 
 
 def of_place(rings: Sequence[Ring], place: Place) -> tuple[Ring, ...]:
-    """Rings of a place with a film, from the sealed side outwards."""
+    """Rings with an oil film on the piston or rod, from the sealed side outwards."""
     return tuple(r for r in rings if r.name == place and r.element.friction_law.film)
 
 
 def floats(ring: Ring, case: int, sample: int = 0) -> Ring:
-    """Numbers of a ring for one case and one design."""
+    """Plain numbers of a ring for one load case and one design."""
 
     def number(value: Array) -> float:
         array = np.atleast_2d(np.asarray(value, dtype=float))
@@ -103,16 +105,16 @@ def floats(ring: Ring, case: int, sample: int = 0) -> Ring:
 
 @dataclass(frozen=True, slots=True)
 class FilmRow:
-    """One or two rings of floats that share the oil, from the sealed side outwards.
+    """One or two rings in series, with plain numbers, ordered from the sealed side outwards.
 
-    `outward`: the counterface moves to the outer side.
+    `outward` states whether the counterface moves towards the outer side.
     """
 
     rings: tuple[Ring, ...]
     outward: bool
 
     def inputs(self) -> dict[str, Array]:
-        """Inputs of the films, with absolute pressures and limited squeeze."""
+        """Inputs of the film solver, with absolute pressures and at least `LEAST_SQUEEZE`."""
         first, last = self.rings[0], self.rings[-1]
         outer = last["outer_pressure"] + ATMOSPHERIC_PRESSURE
         inputs = {
@@ -128,7 +130,7 @@ class FilmRow:
         return inputs
 
     def at(self, point: Mapping[str, Array]) -> FilmRow:
-        """The row at a point of `inputs`; each ring then has the full pressure difference."""
+        """The row with other values of `inputs`; each ring has the full pressure difference."""
         shared = {name: point[name] for name in SHARED if name in point}
         shared["outer_pressure"] = point["outer"] - ATMOSPHERIC_PRESSURE
         shared["pressure"] = point["sealed"] - point["outer"]
@@ -142,7 +144,7 @@ class FilmRow:
         )
 
     def between(self, pressure: Array) -> tuple[Ring, ...]:
-        """The rings with their shares of the pressure, for an absolute interseal pressure."""
+        """The rings, each with its share of the pressure at an absolute interseal pressure."""
         if len(self.rings) == 1:
             return self.rings
         first, second = self.rings
@@ -154,7 +156,7 @@ class FilmRow:
         )
 
     def frictions(self, values: Array) -> tuple[Array, ...]:
-        """Friction of every ring, N, from the values of their films."""
+        """Friction of every ring [N], from drag and load of its film."""
         return tuple(
             np.pi * ring["diameter"] * (film.drag + ring["asperity_friction"] * film.load)
             for ring, film in zip(self.rings, ring_films(values), strict=True)
@@ -166,7 +168,7 @@ class FilmRow:
 
 
 def contact(ring: Ring, *, outward: bool, nodes: int = NODES) -> Contact:
-    """Film-solver input of a ring; any number may carry a complex step."""
+    """Film-solver input of a ring; any number may have a complex step, for derivatives."""
     outer = ring["outer_pressure"] + ATMOSPHERIC_PRESSURE
     width, static = static_profile(ring, nodes)
     return Contact(
@@ -216,17 +218,17 @@ class RingFilm(NamedTuple):
 
 
 def ring_films(values: Array) -> tuple[RingFilm, ...]:
-    """Parts of `Solved.values` by ring; flow and interseal pressure follow them."""
+    """Split `Solved.values` by ring; flow and interseal pressure are the last two values."""
     return tuple(RingFilm(*values[i : i + 3]) for i in range(0, len(values) - 2, 3))
 
 
 @dataclass(frozen=True, slots=True)
 class Solved:
-    """The films of a row, or the reason for a failure.
+    """Solved films of one ring or of two in series, or the reason for a failure.
 
     Parameters
     ----------
-    row : row as solved
+    row : the rings as solved
     films : one film per ring; empty after a failure
     why : reason for a failure
     pair : for two rings, the interseal pressure and the flow mismatch
@@ -244,18 +246,18 @@ class Solved:
 
     @property
     def values(self) -> np.ndarray:
-        """Drag, load [N/m] and mean film [m] of every ring; flow, interseal pressure."""
+        """Drag and load [N/m] and mean film [m] of every ring, then flow and interseal pressure."""
         sign = 1.0 if self.row.outward else -1.0
         parts = [[sign * f.viscous_drag, f.contact_load, f.mean_film] for f in self.films]
         return np.array([*np.ravel(parts), self.films[0].flow, self.between])
 
     def friction(self) -> float:
-        """Friction of all rings, N."""
+        """Total friction of the rings [N]."""
         return float(sum(self.row.frictions(self.values)))
 
 
 def solve(row: FilmRow, last: Solved | None = None) -> Solved:
-    """Films of a row, starting from the films of a nearby row."""
+    """Solve the films of one or two rings, starting from the films of a nearby operating point."""
     if len(row.rings) == 1:
         if opened := _opened(row.rings[0]):
             return Solved(row, (), opened)
@@ -271,7 +273,7 @@ def solve(row: FilmRow, last: Solved | None = None) -> Solved:
 
 
 def _opened(ring: Ring) -> str:
-    """Why the sealed pressure opens the contact of a ring; empty if it does not."""
+    """Reason why the sealed pressure opens the contact of a ring; empty if it does not."""
     pressure = ring["pressure"]
     if seal_contact(ring.at(pressure=abs(pressure))).excess > 0:
         return ""
@@ -306,7 +308,7 @@ def _tandem(row: FilmRow, start: Tandem | None) -> Tandem:
 
 
 def slopes(solved: Solved, names: Sequence[str]) -> dict[str, np.ndarray]:
-    """Derivatives of `Solved.values` by the logarithm of inputs, exact."""
+    """Exact derivatives of `Solved.values` by the logarithms of the named inputs."""
     row = solved.row
     point = row.inputs()
     stepped = [
@@ -321,7 +323,7 @@ def slopes(solved: Solved, names: Sequence[str]) -> dict[str, np.ndarray]:
     ]
     interseal = np.zeros(len(names))
     if solved.pair is not None and solved.pair.cavitation == 0:
-        # flows stay equal: d between = -(d surplus)/(d surplus/d between), per ln between
+        # equal flows: d(interseal pressure) = -d(surplus)/(d(surplus)/d(interseal pressure))
         surplus = by_film[0][:, 2] - by_film[1][:, 2]
         interseal = -surplus[:-1] / surplus[-1]
         by_film = [rows[:-1] + np.outer(interseal, rows[-1]) for rows in by_film]
@@ -337,7 +339,7 @@ def slopes(solved: Solved, names: Sequence[str]) -> dict[str, np.ndarray]:
 
 
 def _as_starved(contact: Contact, solved: Contact) -> Contact:
-    """A contact with the same oil shortage at its ends as in the solution."""
+    """A contact whose ends are starved of oil to the same degree as in the solution."""
     return replace(
         contact,
         sealed_cavitation=solved.sealed_cavitation,

@@ -1,8 +1,9 @@
-"""Film tables of a design: one per place with a film, load case and stroke.
+"""Film tables of a design: one for each load case and stroke of piston and rod seals with a film.
 
-Each table is a surrogate of solved films. Its axes are the inputs that the design variables change
-most; other inputs enter to first order, by the exact slopes of the films. The tables are made once
-per design and bounds of its variables, so a single evaluation and the optimiser use the same film.
+Each table is a surrogate model, interpolated from solved films. Its axes are the inputs with the
+largest effect on the film within the bounds of the design variables. All other inputs enter to
+first order, by the exact derivatives of the films. The tables are made once for a design with the
+bounds of its variables, so a single evaluation and the optimiser use the same film.
 """
 
 from __future__ import annotations
@@ -24,25 +25,26 @@ from .rings import Place, Ring
 from .values import Values, of_case
 
 SAMPLES = 64
-"""Samples within the bounds of the variables that define the box of the tables."""
+"""Number of samples within the bounds of the variables; they define the range of the tables."""
 POINTS = 6
-"""Nodes of a surrogate along each axis."""
+"""Number of nodes of a surrogate along each axis."""
 MOST_AXES = 2
-"""Most axes of a surrogate: a further axis would need `POINTS` times as many films."""
+"""Largest number of axes of a surrogate; each further axis needs `POINTS` times as many films."""
 SPEEDS, SPEED_ROOM = 3, 1.25
-"""Nodes and relative range of the speed axis, which every surrogate has so that the slope by speed
-depends on all other inputs. The middle node is the speed of the case."""
+"""Number of nodes and relative range of the speed axis. Every surrogate has this axis, so that the
+derivative by speed depends on all other inputs. The middle node is the speed of the load case."""
 CHECKS = 4
-"""Points of the box at which a surrogate is compared with solved films."""
+"""Number of points within the range at which a surrogate is compared with solved films."""
 MISSED = 0.005
-"""Largest first-order error, over the load, at the ends of an input that is not an axis."""
+"""Largest first-order error, relative to the load, for an input that needs no axis. The error is
+taken at the ends of the input's range."""
 Key = tuple[Place, int, Stroke]
-"""Place, load case and stroke of a table."""
+"""Location (piston or rod), load case and stroke of a table."""
 
 
 @dataclass(frozen=True, slots=True)
 class Running:
-    """Film of a ring in motion per case, over the whole circumference.
+    """Film of a moving ring in every load case; forces and flow are for the whole circumference.
 
     Parameters
     ----------
@@ -65,19 +67,19 @@ class Running:
 
 @dataclass(frozen=True, slots=True)
 class FilmTable:
-    """Surrogate of a row's films in a case, and its error."""
+    """Surrogate of the films of one ring, or two in series, in a load case; with its error."""
 
     surrogate: Surrogate
     row: FilmRow
     errors: Mapping[str, float]
-    """Largest relative differences of friction, flow and film thickness from films solved at the
-    design and in the box (flow: over its largest value)."""
+    """Largest relative errors of friction, flow and film thickness, from films solved at the design
+    and within the range. The error of the flow is relative to its largest value."""
 
     flow: float = 0.0
     """Flow of the film at the design itself, per circumference [m^2/s]."""
 
     def running(self, rings: Sequence[Ring]) -> tuple[Running, ...]:
-        """Films for the numbers of the rings, as arrays (designs,) or floats."""
+        """Interpolate the films for rings whose numbers are arrays (designs,) or floats."""
         inputs = FilmRow(tuple(rings), self.row.outward).inputs()
         values = self.surrogate(inputs)
         slopes = self.surrogate(inputs, slope="speed") / inputs["speed"]
@@ -101,13 +103,13 @@ class FilmTable:
 
 
 class _Walker:
-    """Films at a sequence of nearby points, each starting from the previous film."""
+    """Solve films at a sequence of nearby points, each starting from the previous film."""
 
     def __init__(self, row: FilmRow) -> None:
         self.row = row
         self.last: Solved | None = None
         self.names: list[str] = []
-        """Inputs with any effect on the films, known after the first point."""
+        """Inputs that affect the films, known after the first point."""
 
     def solve(self, point: Mapping[str, Array]) -> Solved:
         solved = solve(self.row.at(point), self.last)
@@ -115,7 +117,7 @@ class _Walker:
         return solved
 
     def __call__(self, point: dict[str, float]) -> Interpolation:
-        """Values of the films with their slopes."""
+        """Values of the films with their derivatives."""
         solved = self.solve(point)
         if solved.why:
             return Interpolation(np.zeros(1), {}, why=solved.why)
@@ -125,12 +127,12 @@ class _Walker:
 
 
 def table(row: FilmRow, samples: Sequence[FilmRow]) -> FilmTable:
-    """Surrogate of a row over the box that other rows span.
+    """Build the surrogate for a row of rings, over the range of inputs that the sample rows span.
 
     Raises
     ------
     Unsolvable
-        no film solution at the row itself, or at too many points of the box
+        no film solution for the row itself, or at too many points of the range
     """
     walker = _Walker(row)
     base = {name: float(value) for name, value in row.inputs().items() if value > 0}
@@ -162,7 +164,7 @@ def _axes(
     others: Sequence[Mapping[str, Array]],
     at_design: Interpolation,
 ) -> tuple[SurrogateAxis, ...]:
-    """The speed, and the inputs with the largest first-order errors."""
+    """Choose the axes: the speed, and the inputs with the largest first-order errors."""
     spans = {
         name: (min(values), max(values))
         for name, value in base.items()
@@ -185,7 +187,7 @@ def _axes(
 def _missed(
     walker: _Walker, base: Mapping[str, float], at_design: Interpolation, name: str, end: float
 ) -> float:
-    """First-order error of drag and load at the end of an input's range, over the load."""
+    """First-order error of drag and load at one end of an input's range, relative to the load."""
     solved = walker.solve({**base, name: end})
     if solved.why:
         return 1.0
@@ -229,10 +231,11 @@ def _errors(
 
 
 def _outward(place: Place, push: bool) -> dict[Stroke, bool]:
-    """Strokes that need a film, and whether the counterface then moves outwards.
+    """Strokes that need a film, with whether the counterface moves outwards on each.
 
-    The piston moves away from the driven chamber, which it seals: the bore moves inwards past its
-    seal in both directions. The rod seal also needs the return stroke, which draws oil back.
+    The piston always moves away from the pressurised chamber. So, in both directions, the bore
+    moves inwards past the piston seal, towards the sealed oil. The rod seal also needs the return
+    stroke, which draws oil back.
     """
     return {"drive": False} if place == "piston" else {"drive": push, "return": not push}
 
@@ -245,8 +248,8 @@ def tables(
     Parameters
     ----------
     design : the design
-    values : its numbers, some replaced by arrays (`PreparedDesign.values`)
-    rings_of : function that returns its sealing rings for such numbers
+    values : function that returns its numbers, some replaced by arrays (`PreparedDesign.values`)
+    rings_of : function that returns the sealing rings for these numbers
     """
     rings = rings_of(values())
     sample_rings: tuple[Ring, ...] = ()
@@ -270,12 +273,12 @@ def tables(
 
 @lru_cache(maxsize=64)
 def _table(inputs: bytes) -> FilmTable:
-    """`table` of pickled inputs, cached: equal films of a report or comparison are solved once."""
+    """Call `table` with pickled inputs and cache the result: equal films are solved only once."""
     return table(*pickle.loads(inputs))
 
 
 def unsolved(design: Design, rings: tuple[Ring, ...]) -> dict[Key, FilmTable]:
-    """Tables of all films of a design without solutions: they return NaN."""
+    """Empty tables for all films of a design: they return NaN."""
     film_tables = {}
     for key, row in _rows(design, rings):
         inputs = {name: float(value) for name, value in row.inputs().items()}
@@ -285,7 +288,7 @@ def unsolved(design: Design, rings: tuple[Ring, ...]) -> dict[Key, FilmTable]:
 
 
 def _rows(design: Design, rings: tuple[Ring, ...]) -> Iterator[tuple[Key, FilmRow]]:
-    """Rows of rings for all films of a design, by table."""
+    """For each film table of a design, the row of rings that it describes."""
     places: tuple[Place, ...] = ("piston", "rod")
     for place in places:
         place_rings = of_place(rings, place)
@@ -302,7 +305,7 @@ def _finite(row: FilmRow) -> bool:
 
 
 def _spread(design: Design) -> dict[str, np.ndarray]:
-    """Samples within the bounds of the variables: even in each, mixed with a fixed seed."""
+    """Sample the variables: evenly spaced within the bounds of each, shuffled with a fixed seed."""
     mixed = np.random.default_rng(0)
     return {
         path: np.linspace(bounds.lower, bounds.upper, SAMPLES)[mixed.permutation(SAMPLES)]
@@ -313,9 +316,9 @@ def _spread(design: Design) -> dict[str, np.ndarray]:
 def _with_corners(
     design: Design, spread: dict[str, np.ndarray], rings: Sequence[Ring]
 ) -> dict[str, np.ndarray]:
-    """The samples, and the corners at which a number of a ring should be extreme.
+    """Add to the samples those corners of the bounds at which an input of a ring should be extreme.
 
-    The corner follows from the signs of its correlation with every variable.
+    The corner follows from the signs of the input's correlation with every variable.
     """
     paths = list(spread)
     varied = np.array([spread[path] - np.mean(spread[path]) for path in paths])
@@ -340,9 +343,9 @@ def _with_corners(
 def running(
     tables: Mapping[Key, FilmTable], rings: Sequence[Ring], stroke: Stroke, cases: int
 ) -> tuple[Running, ...]:
-    """Films of a place's rings in every case, (cases, designs); 0 for a case at rest.
+    """Films of the piston's or rod's rings in every load case, (cases, designs); 0 at rest.
 
-    Empty if no case has a film on this stroke.
+    Empty if no load case has a film on this stroke.
     """
     film_rings = rings and of_place(rings, rings[0].name)
     case_tables = [
@@ -371,7 +374,7 @@ def _stacked(films: Sequence[Running | None]) -> Running:
 
 
 def _row(ring: Ring, case: int) -> Ring:
-    """Numbers of a ring in one case, floats or (designs,)."""
+    """Inputs of a ring in one load case, floats or arrays (designs,)."""
 
     def row(value: Array) -> Array:
         array = np.asarray(value)

@@ -23,7 +23,7 @@ from .values import Values
 
 
 class Numbers:
-    """Numbers of `retention` by key, from the numbers of an evaluation."""
+    """Values of the block `retention` by key, from the values of an evaluation."""
 
     def __init__(self, v: Values) -> None:
         self._v = v
@@ -40,7 +40,7 @@ class Numbers:
 
 
 class RetentionNumbers:
-    """Numbers of `retention` by key, as stated in a design."""
+    """Values of the block `retention` by key, as stated in the design file."""
 
     def __init__(self, section: Retention) -> None:
         self._section = section
@@ -60,7 +60,7 @@ class RetentionNumbers:
 
 
 def joint_of(design: Design) -> Joint | None:
-    """The joint of a design; None without retention."""
+    """The joint of a design; None if it has no block `retention`."""
     return None if design.retention is None else JOINTS[design.retention.type]
 
 
@@ -80,7 +80,7 @@ def end_of(
     barrel_length: Array,
     plate: Array,
 ) -> End:
-    """The end of a design's barrel; `thicknesses` are those of its layers."""
+    """Describe an end of the barrel; `thicknesses` are the thicknesses of the barrel's layers."""
     layers = zip(design.barrel.layup, thicknesses, strict=True)
     return End(
         sizes=sizes,
@@ -95,7 +95,7 @@ def end_of(
 
 
 class GroovePart(NamedTuple):
-    """A ring in a groove: material, free section [m^2], depth of its centre under the face [m]."""
+    """A ring in a groove: material, free section [m^2], depth of its centre below the face [m]."""
 
     material: str
     area: Array
@@ -104,7 +104,7 @@ class GroovePart(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Groove:
-    """A radial groove: owner, free section, gland depth at nominal squeeze, width, count."""
+    """A radial groove: its part, gland depth at nominal squeeze, width, and number of grooves."""
 
     place: str
     path: str
@@ -146,7 +146,7 @@ def _element_groove(v: Values, place: str, path: str, element: SealElement) -> G
 
 
 def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[Groove, ...]:
-    """All grooves of a place, from the pressure side outwards: guide, elements, wiper."""
+    """All grooves in piston or head, from the pressure side outwards: guides, seals, wiper."""
     seal: Seal = getattr(design.seals, name)
     at = f"seals.{name}."
     place_grooves = []
@@ -227,7 +227,7 @@ class Geometry:
     head_clearance: Array
     plate: Array
     fit: EndDimensions
-    """Dimensions from the joint of caps and head, the same at both ends."""
+    """Dimensions that the joint sets for caps and head; they are the same at both ends."""
     has_skirts: bool
     barrel_length: Array
     eye_offset: Array
@@ -304,7 +304,7 @@ def derive(v: Values, design: Design) -> Geometry:
 
 
 def end_at(design: Design, sizes: JointSizes, g: Geometry) -> End:
-    """The end of the barrel as input of its joint."""
+    """Describe the end of the barrel, as input for the functions of its joint."""
     return end_of(
         design,
         sizes,
@@ -317,7 +317,7 @@ def end_at(design: Design, sizes: JointSizes, g: Geometry) -> End:
 
 
 def lands(geometry: Geometry, thread_radius: Array) -> dict[str, Array]:
-    """Walls that must stay positive: each is a constraint of the optimiser."""
+    """Wall thicknesses that must stay positive; each is a constraint of the optimiser."""
     g = geometry
     piston_length, piston_count, piston_depth = groove_totals(g.piston_grooves)
     head_length, head_count, head_depth = groove_totals(g.rod_grooves)
@@ -341,10 +341,11 @@ def lands(geometry: Geometry, thread_radius: Array) -> dict[str, Array]:
 def manufacture_margins(
     v: Values, design: Design, materials: Mapping[str, Material]
 ) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Margins to the process limits, by layer of barrel and rod.
+    """Margins to the manufacturing limits of plies, by layer of barrel and rod.
 
-    Winding angle minus the smallest feasible angle [rad], and layer thickness over the smallest
-    feasible thickness, minus one. A layer at exactly 0 deg is laid along the mandrel, not wound.
+    The margins are winding angle minus smallest feasible angle [rad], and the ratio of layer
+    thickness to smallest feasible thickness, minus one. A layer at exactly 0 deg is laid along the
+    mandrel, not wound, so it has no smallest angle.
     """
     angle_margins: dict[str, Array] = {}
     thickness_margins: dict[str, Array] = {}

@@ -1,8 +1,8 @@
 """All metrics of one or many designs from one run of the models, and their governing values.
 
-The governing value of a metric, over load cases and places, is defined here only: tables, JSON,
-sweeps, fronts, the optimiser and reports show this value. Oil damping, leakage, flow and line
-losses are computed here.
+Only this module defines the governing value of a metric over load cases and locations. Tables,
+JSON, sweeps, fronts, the optimiser and reports all show this value. The module also computes oil
+damping, leakage, flow and line losses.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ from .values import Values
 def compute_damping(
     geometry: Geometry, state: LoadState, friction: Friction, out: MetricArrays
 ) -> Array:
-    """Oil damping (pipe form and annular gaps); returns the total incremental damping."""
+    """Compute oil damping (pipe form and annular gaps); return the total with that of the seals."""
     g = geometry
     viscosity = 0.5 * (state.dynamic_viscosity_a + state.dynamic_viscosity_b)
     pipe = damping.pipe_flow(dynamic_viscosity=viscosity, length=g.stroke)
@@ -83,11 +83,11 @@ def compute_leakage(
     film: Running | None,
     out: MetricArrays,
 ) -> Array:
-    """Leakage across the moving piston; returns its conductance.
+    """Compute the leakage across the moving piston; return its conductance.
 
-    Sum of the stated conductance, the oil film of the seal, and the gap of a piston without seals,
-    widened by bore growth. The flow of a film is taken at the speed of the case; a film that draws
-    oil back to the driven side counts as tight.
+    The conductance is the sum of the stated conductance, the oil film of the seal, and the gap of a
+    piston without seals, widened by bore growth. The flow of a film is taken at the speed of the
+    load case; a film that draws oil back to the driven side counts as tight.
     """
     path = "piston.leakage_conductance"
     conductance = v[path]
@@ -130,7 +130,7 @@ LINE_METRICS = (
 def compute_flow(
     v: Values, design: Design, geometry: Geometry, state: LoadState, out: MetricArrays
 ) -> None:
-    """Flow, port and line velocities and pressure drop."""
+    """Compute flow, velocities in ports and lines, and pressure drop."""
     flow = {
         "a": forces.chamber_flow(area=geometry.area_a, speed=state.speed),
         "b": forces.chamber_flow(area=geometry.area_b, speed=state.speed),
@@ -153,7 +153,7 @@ def compute_flow(
 def _compute_lines(
     v: Values, design: Design, state: LoadState, flow: dict[str, Array], out: MetricArrays
 ) -> None:
-    """Velocity, pressure drop, hammer and resonance of the lines, by flow of their chamber."""
+    """Compute velocity, pressure drop, hammer and resonance of the lines."""
     velocity, drop, hammer = {}, {}, {}
     lengths: dict[str, Array] = {}
     times: dict[str, Array] = {}  # travel time of a wave through the lines of a chamber
@@ -200,25 +200,25 @@ def _compute_lines(
 
 
 STROKES: tuple[film.Stroke, ...] = ("drive", "return")
-"""The stroke of the case, and the return stroke."""
+"""The stroke in the direction of the load case, and the return stroke."""
 
 
 @dataclass(frozen=True, slots=True)
 class PreparedDesign:
-    """A design with its materials and all its numbers by PATH (including those of materials)."""
+    """A design with its materials, and all numerical values of both by PATH."""
 
     design: Design
     materials: dict[str, Material]
     numbers: Mapping[str, float]
     factors: Mapping[tuple[str, str, bool], float]
-    """Knock-downs of every strength, by (material, property, at the coldest)."""
+    """Knock-down factor of every strength, by (material, property, whether at the coldest)."""
     plugins: tuple[Plugin, ...] = ()
     reserves: Mapping[str, float] = field(default_factory=dict)
-    """Extra margin that a robust search requires, by name of the limit."""
+    """Extra margin that a robust optimisation requires, by name of the limit."""
     aims: Mapping[str, Sense] = field(default_factory=dict)
-    """Objectives of a front, with the better sense of each; empty: as in the design."""
+    """Objectives of a front, each minimised or maximised; empty: the objective of the design."""
     lenient: bool = False
-    """Whether a raising user metric gives NaN with the reason, instead of a fault: in a search."""
+    """Whether an exception in a user metric gives NaN with the reason, without stopping the run."""
     constants: dict[str, dict[str, Array]] = field(default_factory=dict, compare=False)
     """Ply constants by material, cached."""
     films: dict[Key, FilmTable] = field(default_factory=dict, compare=False)
@@ -235,7 +235,7 @@ class PreparedDesign:
         return tuple(case.name for case in self.design.load_cases)
 
     def values(self, varied: Mapping[str, Array] | None = None) -> Values:
-        """The numbers to evaluate, some replaced by arrays."""
+        """The numbers to evaluate; those in `varied` are replaced by arrays."""
         return Values(self.numbers, self.cases, varied)
 
     def touch(self, values: Values) -> None:
@@ -245,7 +245,7 @@ class PreparedDesign:
 
 @dataclass(frozen=True, slots=True)
 class ModelRun:
-    """Results of all models, with the intermediate results that an Evaluation reports."""
+    """Results of all models, with intermediate results for the report."""
 
     computed: MetricArrays
     geometry: Geometry
@@ -260,13 +260,13 @@ class ModelRun:
     weakest: Array
     """Position of least stiffness."""
     places: dict[str, Array]
-    """Positions of dynamic results, by name."""
+    """Stroke positions at which dynamic results are computed, by name."""
     mass_parts: dict[str, Array]
 
 
 @dataclass(frozen=True, slots=True)
 class Base:
-    """Base of the evaluation: dimensions, load cases, wall, seals."""
+    """Results that all later models need: dimensions, load cases, wall, seals."""
 
     stock: MaterialValues
     geometry: Geometry
@@ -277,7 +277,10 @@ class Base:
 
 @dataclass(frozen=True, slots=True)
 class Implicit:
-    """Models without a closed formula in the dimensions; a lower bound passes its own instead."""
+    """Models that are no closed formula of the dimensions.
+
+    For a lower bound on a design space, the caller passes bounds in their place.
+    """
 
     wall: Callable[[Values, Design, MaterialValues, Geometry, LoadState], Wall] = (
         barrel_module.compute
@@ -289,7 +292,7 @@ IMPLICIT = Implicit()
 
 
 def base(subject: PreparedDesign, v: Values, implicit: Implicit = IMPLICIT) -> Base:
-    """Dimensions, state, wall and seals of the designs in `v`."""
+    """Compute dimensions, state, wall and seals of the designs in `v`."""
     design = subject.design
     stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
     g = geometry_module.derive(v, design)
@@ -301,7 +304,7 @@ def base(subject: PreparedDesign, v: Values, implicit: Implicit = IMPLICIT) -> B
 
 @dataclass(frozen=True, slots=True)
 class Statics:
-    """All results that do not depend on the softest position, and the moving mass."""
+    """All results that do not depend on the position of least stiffness, and the moving mass."""
 
     base: Base
     rod: RodSection
@@ -314,14 +317,14 @@ class Statics:
     """Mass that moves with the rod, including the load."""
     beam: Beam
     damping: Array
-    """Damping of the oil and the seals, incremental."""
+    """Incremental damping of oil and seals."""
     leakage: Array
 
 
 def statics(
     subject: PreparedDesign, v: Values, out: MetricArrays, implicit: Implicit = IMPLICIT
 ) -> Statics:
-    """All metrics without a search along the stroke, stored in `out`."""
+    """Compute all metrics that need no search along the stroke, and store them in `out`."""
     design = subject.design
     basis = base(subject, v, implicit)
     stock, g, case_state = basis.stock, basis.geometry, basis.state
@@ -380,9 +383,9 @@ def statics(
 
 
 def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = None) -> ModelRun:
-    """All metrics of the designs in `v`; invalid designs give NaN.
+    """Compute all metrics of the designs in `v`; invalid designs give NaN.
 
-    With `wanted`, other costly metrics may be left out.
+    With `wanted`, costly metrics that are not in it may be left out.
     """
     design = subject.design
     with np.errstate(all="ignore"):
@@ -431,7 +434,7 @@ def _at_stops(
     parts: dict[str, Array],
     out: MetricArrays,
 ) -> None:
-    """Stiffness and frequency with the load of a joint at either stop, one row each."""
+    """Compute stiffness and frequency with the load at either stop of a linkage, one entry each."""
     s = basis.state
     differing = joint.open_cases(v, design, s.positions)
     if not differing.any():
@@ -452,9 +455,9 @@ def _at_stops(
 
 @np.errstate(all="ignore")
 def without_films(subject: PreparedDesign) -> PreparedDesign:
-    """A subject without solved oil films: NaN wherever a film matters.
+    """Copy a design without solving its oil films; results that need a film are NaN.
 
-    The metrics and the numbers they read are the same with and without films.
+    Which metrics exist, and which numbers they read, does not depend on the films.
     """
     if not film.films_asked(subject.design):
         return subject
@@ -463,7 +466,7 @@ def without_films(subject: PreparedDesign) -> PreparedDesign:
 
 
 def _films(subject: PreparedDesign) -> dict[Key, FilmTable]:
-    """Tables of the oil films, made on first use."""
+    """Film tables of the design, made on first use."""
     design = subject.design
     if not film.films_asked(design):
         return {}
@@ -474,7 +477,7 @@ def _films(subject: PreparedDesign) -> dict[Key, FilmTable]:
 
 
 def _manufacture(v: Values, subject: PreparedDesign, out: MetricArrays) -> None:
-    """Margins to the limits of ply manufacture."""
+    """Compute the margins to the manufacturing limits of plies."""
     angles, spare = geometry_module.manufacture_margins(v, subject.design, subject.materials)
     for name, values, limit in (
         ("winding_margin", angles, "smallest angle"),
@@ -510,7 +513,7 @@ def _forces(g: Geometry, s: LoadState, friction: Friction, out: MetricArrays) ->
 
 
 def worst_of(aim: Sense) -> Sense:
-    """Worst value of a metric: the largest if minimised ("min"), the smallest if maximised.
+    """Worst value of an objective: the largest if it is minimised ("min"), else the smallest.
 
     >>> worst_of("min")
     'max'
@@ -519,12 +522,12 @@ def worst_of(aim: Sense) -> Sense:
 
 
 def sense_of(metric: str, subject: PreparedDesign) -> Sense | None:
-    """Whether the smallest ("min") or the largest value of a metric governs a design.
+    """Whether the smallest ("min") or the largest ("max") value of a metric governs a design.
 
-    1. The worst value of an objective governs: the largest where it is minimised.
-    2. A metric with a required limit is governed in the sense of that limit. With limits on both
-       sides the sense is None: the value with the smaller margin governs.
-    3. Any other metric is governed by its worst value according to `metrics.METRICS`.
+    1. For an objective, the worst value governs: the largest if it is minimised.
+    2. For a metric with a requirement, the value nearest to the limit governs. With a lower and an
+       upper limit the result is None: the value with the smaller margin governs.
+    3. For any other metric, the worst value according to `metrics.METRICS` governs.
     """
     objective = subject.design.objective
     aims = subject.aims or dict.fromkeys(objective.metrics, objective.aim)
@@ -541,7 +544,7 @@ def sense_of(metric: str, subject: PreparedDesign) -> Sense | None:
 def extreme(
     computed: MetricArrays, metric: str, cases: tuple[str, ...], sense: Sense
 ) -> Array | None:
-    """The smallest or largest value over load cases and places (designs,), SI.
+    """The smallest or largest value over load cases and locations (designs,), SI.
 
     NaN if any value is missing, None if the metric is not computed.
     """

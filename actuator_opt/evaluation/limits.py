@@ -1,8 +1,8 @@
 """Limits of a design: its requirements, the forces of its load cases, and the check list.
 
 The check list contains the usual professional checks of an actuator. Each line has a limit with its
-source, unless only the user can set it. A requirement on the same metric and sense replaces the
-limit; `waivers` remove a line, and the report prints their reason.
+source, unless only the user can set the limit. A requirement on the same metric in the same sense
+replaces the limit. `waivers` remove a line, and the report prints the reason for each waiver.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from .values import Values
 class MetricLimit:
     """A limit of a metric: a number of the design (`path`) or a constant.
 
-    For a load case with a joint torque, `path` is the torque and `lever` the PATH of its lever arm.
+    For a load case with a joint torque, `path` is the PATH of the torque, `lever` that of the arm.
     """
 
     name: str
@@ -41,10 +41,10 @@ class MetricLimit:
     source: str = ""
     lever: str | None = None
     places: tuple[str, ...] | None = None
-    """Places of the metric that it applies to; None for all."""
+    """Locations (such as a seal or stroke position) at which the limit applies; None: all."""
 
     def value(self, v: Values) -> Array:
-        """The limit in SI (an array if a parameter study varies it)."""
+        """The limit in SI, an array if it is varied."""
         if self.path is None:
             return self.constant
         return v[self.path] if self.lever is None else v[self.path] / v[self.lever]
@@ -52,11 +52,11 @@ class MetricLimit:
 
 ENDS = ("retracted", "extended")
 OWN_PLACE = "position of the case"
-"""Places of a joint torque: both stops, and the stated position of a load case."""
+"""Positions at which a joint torque is limited: both stops, and a load case's stated position."""
 
 
 def requirement_limits(design: Design) -> list[MetricLimit]:
-    """Limits in the file: `requirements`, and the force or torque of every load case."""
+    """Limits in the design file: `requirements`, and force or torque of every load case."""
     limits = []
     for metric, limit in design.requirements.items():
         for sense in ("min", "max"):
@@ -69,7 +69,7 @@ def requirement_limits(design: Design) -> list[MetricLimit]:
 
 
 def _case_limit(case: LoadCase) -> MetricLimit:
-    """The force of a load case, or its torque if it acts through the linkage."""
+    """Limit from the force of a load case, or from its torque if it acts through the linkage."""
     at = f"load_cases[{case.name}]"
     if case.through_linkage:
         at_position = case.angle is not None or case.position != "worst"
@@ -156,9 +156,9 @@ def all_limits(design: Design, plugins: Iterable[Plugin] = ()) -> list[MetricLim
 
 
 def margin(value: Array, limit: Array, sense: Sense) -> Array:
-    """Relative margin, ≥ 0 if the limit is met: (value − limit)/|limit|, negated for `max`.
+    """Relative margin (value − limit)/|limit|, negative of this for `max`; ≥ 0 if the limit is met.
 
-    For a limit of zero it is ± the value itself.
+    For a limit of zero the margin is the value itself, with opposite sign for `max`.
     """
     scale = where(real(limit) == 0, 1.0 + 0 * limit, absolute(limit))
     difference = (value - limit) / scale
@@ -167,16 +167,16 @@ def margin(value: Array, limit: Array, sense: Sense) -> Array:
 
 ALL_CASES = "all"
 UNLIMITED = 1e300
-"""Replaces an infinite value (unloaded part) in margins, which must be finite."""
+"""Value that replaces infinity (an unloaded part) in margins, which must be finite."""
 
 
 @dataclass(slots=True)
 class MetricArrays:
-    """Results of a kernel: metric → place → array, and reasons for missing metrics.
+    """Results of an evaluation: metric → location → array, and reasons for missing metrics.
 
-    Arrays are floats, (designs,), (cases, 1) or (cases, designs). A place is a ply, a seal or a
-    part; "" if the metric has a single place. `applies` marks the cases of a metric, `applies_at`
-    those of a place.
+    Values are floats or arrays (designs,), (cases, 1) or (cases, designs). A location is a ply, a
+    seal, a part or a stroke position; "" if the metric has only one. `applies` marks the load cases
+    to which a metric applies, `applies_at` those to which it applies at one location.
     """
 
     metrics: dict[str, dict[str, Array]] = field(default_factory=dict)
@@ -184,10 +184,10 @@ class MetricArrays:
     applies: dict[str, Array] = field(default_factory=dict)
     applies_at: dict[tuple[str, str], Array] = field(default_factory=dict)
     friction_parts: dict[str, Array] = field(default_factory=dict)
-    """Running friction of each seal; the parts sum to `friction_running`."""
+    """Running friction of each seal; the sum is `friction_running`."""
 
     def put(self, name: str, value: Array | dict[str, Array], cases: Array = None) -> None:
-        """Record a metric: an array, or an array per place; `cases` marks where it applies.
+        """Record a metric: an array, or one per location; `cases` marks where it applies.
 
         Raises
         ------
@@ -206,7 +206,7 @@ class MetricArrays:
 
 @dataclass(frozen=True, slots=True)
 class LimitRow:
-    """A limit in one case at one place: `value`, `limit` and `margin` are (designs,)."""
+    """A limit in one load case at one location: `value`, `limit` and `margin` are (designs,)."""
 
     limit_of: MetricLimit
     case: str
@@ -215,11 +215,11 @@ class LimitRow:
     limit: Array
     margin: Array
     case_index: int | None = None
-    """Row index in the computed array, if it has a row per load case."""
+    """Index of the load case in the computed array, if the array has an entry per load case."""
 
     @property
     def label(self) -> str:
-        """Name with case and place, unique among the rows of a design."""
+        """Name of the limit with load case and location; unique within a design."""
         where = ", ".join(p for p in (self.case if self.case != ALL_CASES else "", self.place) if p)
         return f"{self.limit_of.name} ({where})" if where else self.limit_of.name
 
@@ -227,7 +227,7 @@ class LimitRow:
 def by_case(
     computed: MetricArrays, metric: str, array: Array, cases: tuple[str, ...], place: str = ""
 ) -> Iterator[tuple[str, Array]]:
-    """Split a computed array into (case name, (designs,) array) where the metric applies."""
+    """Split an array into (name of load case, array (designs,)), for the load cases that apply."""
     array = np.asarray(array)
     if array.ndim < 2:
         yield ALL_CASES, np.atleast_1d(array)
@@ -239,7 +239,7 @@ def by_case(
 
 
 def rows_of(limit: MetricLimit, computed: MetricArrays, v: Values) -> Iterator[LimitRow]:
-    """All rows of a limit; none if the metric was not computed."""
+    """Yield a limit for every load case and location; nothing if its metric was not computed."""
     bound = limit.value(v)
     for place, array in computed.metrics.get(limit.metric, {}).items():
         if limit.places is not None and place not in limit.places:
@@ -261,7 +261,7 @@ def rows_of(limit: MetricLimit, computed: MetricArrays, v: Values) -> Iterator[L
 
 
 def extremes(design: Design, numbers: Mapping[str, float]) -> tuple[float, float]:
-    """Lowest and highest temperature of oil, load cases and environment, K."""
+    """Lowest and highest temperature of oil, load cases and environment [K]."""
     temperatures = [numbers["fluid.temperature"]]
     temperatures += [c.temperature for c in design.load_cases if c.temperature is not None]
     if design.environment is not None:
@@ -276,10 +276,12 @@ def allowances(
     temperatures: tuple[float, float],
     wet: bool,
 ) -> dict[tuple[str, str, bool], float]:
-    """Remaining share of every strength after temperature, moisture, basis and process.
+    """Share of every strength that remains after knock-downs.
 
-    Keys are (material, property, cold) for the lowest and the highest of `temperatures`; `numbers`
-    (by PATH) may override the knock-downs of the library.
+    The knock-downs are for temperature, moisture, statistical basis of the data, and process.
+
+    The keys are (material, property, cold), with `cold` True for the lowest and False for the
+    highest of `temperatures`. `numbers` (by PATH) may override the knock-downs of the library.
     """
     factors = {}
     for name, material in materials.items():
@@ -297,7 +299,7 @@ def allowances(
 
 
 class MaterialValues:
-    """Materials of a design: their properties (possibly varied) and their allowables."""
+    """Materials of a design: their properties, which may be varied, and their allowables."""
 
     def __init__(
         self,
@@ -316,7 +318,7 @@ class MaterialValues:
         return self.materials[name]
 
     def kind(self, name: str) -> str:
-        """Kind of a material: metal, ply, polymer, adhesive, fluid or seal."""
+        """Kind of the material: metal, ply, polymer, adhesive, fluid or seal."""
         return self.materials[name].kind
 
     def names(self) -> list[str]:
@@ -324,11 +326,11 @@ class MaterialValues:
         return list(self.materials)
 
     def numbers(self, name: str) -> dict[str, Array]:
-        """All stated properties of a material, SI."""
+        """All stated properties of the material, SI."""
         return {key: self._v[f"materials.{name}.{key}"] for key in self.materials[name].numbers}
 
     def ply_constants(self, name: str) -> dict[str, Array]:
-        """Elastic constants and expansions of a material as a ply; cached if fixed."""
+        """Elastic constants and thermal expansions of a material as a ply; cached unless varied."""
         prefix = f"materials.{name}."
         if any(path.startswith(prefix) for path in self._v.varied):
             return ply_constants(self.numbers(name))
@@ -338,7 +340,7 @@ class MaterialValues:
         return self._constants[name]
 
     def get(self, name: str, *properties: str, default: Array = None) -> Array:
-        """The first stated property of several; `default` if none is stated."""
+        """The first of several properties that the material states; `default` if it states none."""
         for key in properties:
             if key in self.materials[name].numbers:
                 return self._v[f"materials.{name}.{key}"]
@@ -347,7 +349,8 @@ class MaterialValues:
     def allowable(self, name: str, *properties: str, cold: bool = False) -> Array:
         """A strength after all applicable knock-downs; None if not stated.
 
-        The temperature is the highest of oil, load cases and environment, or the lowest.
+        The knock-downs are for the highest temperature of oil, load cases and environment; with
+        `cold`, for the lowest.
         """
         for key in properties:
             if key in self.materials[name].numbers:

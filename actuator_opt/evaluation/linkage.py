@@ -1,7 +1,8 @@
 """The driven joint of a linkage: lever arms, angles, torque, inertia.
 
-Between the dead points the lever arm rises to a maximum and falls, so over the stroke it is least
-at a stop. Each stop has its own row: the optimiser sees no kink.
+Between the dead points the lever arm rises to a maximum and then falls. So over the stroke it is
+shortest at one of the stops. Each stop has its own result, so the optimiser meets no kink where
+the shorter arm changes from one stop to the other.
 """
 
 from __future__ import annotations
@@ -69,7 +70,8 @@ class DrivenJoint:
     def largest(self) -> Array:
         """Largest lever arm over the stroke: the shorter radius, at a right angle to the actuator.
 
-        There l^2 = |a^2 - r^2|; if that length is out of reach, it is at a stop.
+        There the pin-to-pin length is sqrt(|a^2 - r^2|), with base radius a and crank radius r. If
+        the actuator cannot reach this length, the lever arm is largest at a stop.
         """
         square = absolute(self.base_radius * self.base_radius - self.crank_radius**2)
         return self.lever_arm(clip(sqrt(square) - self.closed, 0.0, self.stroke))
@@ -77,16 +79,16 @@ class DrivenJoint:
 
 @dataclass(frozen=True, slots=True)
 class Demand:
-    """Force and mass that the load requires: a number, or (cases, designs)."""
+    """Force, speed and mass that the load requires: floats, or arrays (cases, designs)."""
 
     force: Array
     speed: Array
     mass: Array
-    """Mass of the load at the rod, including the inertia of a joint."""
+    """Mass of the load at the rod, including the inertia of a joint, reflected by the lever arm."""
 
 
 def derive(v: Values, design: Design, g: Geometry) -> DrivenJoint | None:
-    """The joint of a design; None without a linkage."""
+    """Derive the driven joint of a design; None without a linkage."""
     if design.linkage is None:
         return None
     return DrivenJoint(
@@ -99,9 +101,9 @@ def derive(v: Values, design: Design, g: Geometry) -> DrivenJoint | None:
 
 
 def arms(joint: DrivenJoint, positions: Sequence[Array | None]) -> dict[str, Array]:
-    """Lever arm of every case (cases, designs) at both stops and at its largest.
+    """Lever arm in every load case (cases, designs), at both stops and where it is largest.
 
-    A case with a stated position has the lever arm of that position.
+    A load case with a stated position has the lever arm at that position.
     """
     placed = [None if x is None else joint.lever_arm(x) for x in positions]
     everywhere = joint.ends | {LARGEST: joint.largest}
@@ -112,7 +114,7 @@ def arms(joint: DrivenJoint, positions: Sequence[Array | None]) -> dict[str, Arr
 
 
 def demand(v: Values, design: Design, lever_arm: Array = None) -> Demand:
-    """Demand of every load case, with `lever_arm` (cases, designs); None without a joint."""
+    """Force, speed and mass that every load case demands, with `lever_arm` (cases, designs)."""
     forces, speeds = [], []
     for i, case in enumerate(design.load_cases):
         at = f"load_cases[{case.name}]."
@@ -139,7 +141,11 @@ def demand(v: Values, design: Design, lever_arm: Array = None) -> Demand:
 def demands(
     v: Values, design: Design, joint: DrivenJoint | None, positions: Sequence[Array | None]
 ) -> dict[str, Demand]:
-    """Demand of every load case: worst, where its force is largest, and at both stops."""
+    """Force, speed and mass that every load case demands, at several positions of the joint.
+
+    `WORST` combines the largest force with the largest speed, `WORKING` has the largest force and
+    its speed; the others are both stops.
+    """
     if joint is None:
         case_demand = demand(v, design)
         return {WORST: case_demand, WORKING: case_demand}
@@ -151,7 +157,7 @@ def demands(
 
 
 def at_stop(demands: dict[str, Demand], push: Array) -> Demand:
-    """Demand of every load case at the stop in its direction."""
+    """Force, speed and mass that every load case demands at the stop towards which it moves."""
     if ENDS[0] not in demands:
         return demands[WORST]
     retracted, extended = (demands[end] for end in ENDS)
@@ -163,7 +169,7 @@ def at_stop(demands: dict[str, Demand], push: Array) -> Demand:
 
 
 def open_cases(v: Values, design: Design, positions: Sequence[Array | None]) -> np.ndarray:
-    """Cases whose force or mass differs between the stops."""
+    """Load cases whose force or mass differs between the stops."""
     if design.linkage is None:
         return np.array([False])
     heavy = "load.inertia" in v.varied or design.load.inertia > 0
@@ -182,7 +188,7 @@ def compute(
     net: Array,
     out: MetricArrays,
 ) -> None:
-    """Torque and range of the joint; `net` is the delivered force of every case."""
+    """Compute torque and range of the joint; `net` is the force delivered in every load case."""
     if joint is None:
         for name in METRICS:
             out.skip(name, "no linkage stated: add linkage")
@@ -214,7 +220,7 @@ def compute(
 
 
 def _dead_points(joint: DrivenJoint) -> dict[str, Array]:
-    """Length between a stop and the dead point behind it."""
+    """Lengths between each stop and the dead point beyond it."""
     base, crank = joint.base_radius, joint.crank_radius
     return {
         ENDS[0]: joint.closed - absolute(base - crank),
@@ -223,7 +229,7 @@ def _dead_points(joint: DrivenJoint) -> dict[str, Array]:
 
 
 def warnings(design: Design, joint: DrivenJoint | None) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) for properties taken at a single place of the stroke."""
+    """(metric, sentence) for each metric that is calculated at a single position of the stroke."""
     if joint is None or not design.load.inertia > 0:
         return
     ends = {end: float(np.min(real(arm))) for end, arm in joint.ends.items()}

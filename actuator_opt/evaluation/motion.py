@@ -1,8 +1,8 @@
-"""Linear dynamics in an evaluation: modes, dynamic stiffness and the position loop.
+"""Linear dynamics of the actuator: modes, dynamic stiffness and the position loop.
 
-All use one model (`models.linear`). Every result is computed at several places of the stroke and,
-for the loop, in both spool directions. Each has its own row, so the optimiser needs no smooth
-maximum.
+All three use one model (`models.linear`). Results are computed at several stroke positions; those
+of the position loop also for both spool directions. Each is a separate entry, so the optimiser
+limits each by itself and needs no smooth maximum.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from .state import LoadState
 from .values import Values
 
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
-"""Places of the dynamic results on the stroke, besides the weakest position."""
+"""Positions of the dynamic results, as shares of the stroke; the weakest position is added."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,18 +50,18 @@ class Motion:
     throttles: dict[Chamber, Ways]
     """Conductance of the throttles at their operating point [m^3/s/Pa]; empty without throttles."""
     push: Array
-    """Cases with extending piston: sets the throttle direction under load excitation."""
+    """Load cases with an extending piston; sets the throttle direction under load excitation."""
     held: dict[Chamber, LineEnd]
-    """Ends of the lines under load excitation, including accumulators."""
+    """Boundary conditions of the lines under load excitation, including accumulators."""
     accumulators: dict[Chamber, tuple[LineEnd, ...]]
     """Accumulators at the ports."""
     valve: LinearValve | None
     spool: tuple[Array, Array] | None
 
     def model(self, position: Array, *, extending: Array | None = None) -> LinearActuator:
-        """Linear model at a position: under load excitation, or driven by the valve.
+        """Linear model at a position: excited by the load or, with `extending`, valve-driven.
 
-        `extending` is True, False, or an array of them.
+        `extending` is True, False, or an array of booleans; None: load excitation.
         """
         s = self.springs
         near = s.total().at(position, s.geometry.stroke)
@@ -99,7 +99,7 @@ class Motion:
         )
 
     def position_loop(self, position: Array, *, extending: Array) -> loop.PositionOpenLoop:
-        """Open position loop at unit gain."""
+        """Open position loop with a gain of 1."""
         assert self.spool is not None
         frequency, damping = self.spool
         return loop.open_loop(
@@ -109,13 +109,13 @@ class Motion:
         )
 
     def closed_frequency(self, position: Array) -> Array:
-        """Natural frequency with closed ports, per chamber for every topology [Hz]."""
+        """Natural frequency with closed ports [Hz]; both chambers count, for every topology."""
         return dynamics.natural_frequency(
             stiffness=self.springs.per_chamber_stiffness(position), mass=self.mass
         )
 
     def mode(self, model: LinearActuator, position: Array) -> loop.Mode:
-        """Mode of the load on the held actuator."""
+        """Mode of the load on the actuator that holds it."""
         return loop.load_mode(model=model, near=self.closed_frequency(position))
 
 
@@ -151,7 +151,7 @@ def derive(
 
 
 def _places(stroke: Array, weakest: Array) -> tuple[list[str], Array]:
-    """Names and positions (places, cases, designs) of dynamic results."""
+    """Names of the positions of dynamic results, and the positions (names, cases, designs)."""
     names = [f"{100 * share:.0f} % of the stroke" for share in SHARES] + ["weakest position"]
     positions = [share * stroke for share in SHARES] + [weakest]
     shape = np.broadcast_shapes(*(np.shape(p) for p in positions), (1, 1))
@@ -165,9 +165,10 @@ def compute(
     wanted: Container[str] | None,
     out: MetricArrays,
 ) -> dict[str, Array]:
-    """Damping ratio, dynamic stiffness and position loop; returns the places.
+    """Compute damping ratio, dynamic stiffness and position loop; return the stroke positions used.
 
-    Poles, limits and margins are costly: only those in `wanted` are computed (None: all).
+    Poles, ultimate gains and stability margins are costly: only those in `wanted` are computed
+    (None: all).
     """
     weakest = weakest_per_chamber(motion.springs)
     names, positions = _places(motion.springs.geometry.stroke, weakest)
@@ -185,7 +186,7 @@ def compute(
 
 
 def _by_place(names: list[str], value: Array, positions: Array) -> dict[str, Array]:
-    """A value at every place; constant if it does not depend on the place."""
+    """Split a value by stroke position; a single entry if it does not depend on the position."""
     shape = np.broadcast_shapes(np.shape(value), positions.shape)
     return dict(zip(names, np.broadcast_to(value, shape), strict=True))
 
@@ -222,7 +223,7 @@ def _position_loop(
     wanted: Container[str] | None,
     out: MetricArrays,
 ) -> None:
-    """Margins and bandwidth at every place, in both spool directions."""
+    """Compute stability margins and bandwidth at every position, in both spool directions."""
     directions = np.array([True, False]).reshape(-1, 1, 1, 1)
     position_open_loop = motion.position_loop(positions, extending=directions)
     limit = loop.ultimate_gain(loop=position_open_loop)
@@ -252,23 +253,24 @@ def _position_loop(
 
 
 LEAST_GAIN = 1e-3
-"""Gain limit of a loop that is unstable at any gain (V/m): no tracking, but finite figures."""
+"""Gain assumed for a loop that is unstable at any gain [V/m]: too low for tracking, but its results
+are finite."""
 
 
 def _least(values: Array) -> Array:
-    """Least value over directions, places and cases, by real part: (designs,)."""
+    """Least value over directions, positions and load cases, by real part: (designs,)."""
     flat = values.reshape(-1, values.shape[-1])
     best = np.argmin(real(flat), axis=0)[None]
     return np.take_along_axis(flat, best, axis=0)[0]
 
 
 LEAST_DAMPING = 0.005
-"""Damping ratio below which a loop counts as poorly damped (choice)."""
+"""Damping ratio below which a loop counts as poorly damped (our choice)."""
 NEAR_RESONANCE = 0.8
-"""Bandwidth over natural frequency of the load that counts as close to it (choice)."""
+"""Ratio of bandwidth to natural frequency above which the loop is near resonance (our choice)."""
 LONGEST = 0.1
-"""Largest line length of a chamber over wavelength for a lumped element (choice: 3 % error of the
-admittance of a closed line, 7 % at constant end pressure)."""
+"""Largest length of a chamber's lines, in wavelengths, for which a lumped element is valid. Our
+choice: the admittance of a closed line is in error by 3 %, at constant end pressure by 7 %."""
 
 
 def warnings(
@@ -302,7 +304,7 @@ def _weakest_gain(motion: Motion) -> Array:
 
 
 def _loop(v: Values, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, str]]:
-    """The position loop is unstable, poorly damped, beyond its resonance, or without drive."""
+    """Warn of a position loop that is unstable, poorly damped, near resonance or without drive."""
     damped = min(float(np.min(np.real(x))) for x in out.metrics["damping_ratio"].values())
     if 0 <= damped < LEAST_DAMPING:
         yield (
@@ -347,7 +349,7 @@ def _loop(v: Values, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, s
 def _ports(
     v: Values, design: Design, motion: Motion, state: LoadState
 ) -> Iterable[tuple[str, str]]:
-    """Line ends with less effect than expected."""
+    """Warn of valves and accumulators at the lines with less effect than expected."""
     if design.valve is not None and design.ports.end == "closed":
         for metric in ("damping_ratio", "dynamic_stiffness"):
             yield (
@@ -374,7 +376,7 @@ def _ports(
 
 
 def _lines(design: Design, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, str]]:
-    """Lines too long for a lumped element at the frequencies of interest."""
+    """Warn of lines that are too long for a lumped element at the frequencies of interest."""
     frequencies = {f"load case {case.name}": case.frequency or 0.0 for case in design.load_cases}
     if motion.spool is not None:
         frequencies["the valve's spool"] = float(np.max(np.real(motion.spool[0])))

@@ -1,9 +1,11 @@
-"""Half-sections of all parts, retracted, for the drawing; volumes equal those of the mass model.
+"""Half-sections of all parts of the retracted actuator, for the drawing.
 
-Many designs are drawn from a few templates. Every point of `outlines` is a sum of dimensions, as
-long as no part appears, vanishes or changes its form. A template contains these sums, determined by
-varying each dimension. Each design is drawn from a template that reproduces its outlines, or is not
-drawn.
+The volumes of the sections equal those of the mass model.
+
+Many designs are drawn from a few templates. Every coordinate in `outlines` is a weighted sum of
+dimensions, as long as no part appears, vanishes or changes its form. A template contains these
+sums, determined by varying each dimension. A design is drawn from a template that reproduces its
+outlines; if no template does, the design is not drawn.
 """
 
 from __future__ import annotations
@@ -35,7 +37,7 @@ _Kind: TypeAlias = Literal["metal", "composite", "polymer", "seal", "oil"]
 def _grooves(
     start: float, length: float, grooves: Sequence[Groove]
 ) -> Iterator[tuple[Groove, float, float]]:
-    """Axial intervals of all grooves in order, evenly spaced over a part."""
+    """Axial start and end of all grooves, in order and evenly spaced over the length of a part."""
     used, count, _ = groove_totals(grooves)
     land = (length - float(used)) / (round(float(count)) + 1)
     x = start + land
@@ -57,7 +59,7 @@ def _grooved(
 ) -> Polygon:
     """A ring with rectangular grooves cut from outside or inside.
 
-    Groove depth is the gland depth, from the counterface.
+    The gland depth is measured from the counterface.
     """
     surface = outer if outside else inner
     edge = [(x0, surface)]
@@ -71,7 +73,7 @@ def _grooved(
 
 
 def _eye(centre: float, pin: float, side: int) -> list[Polygon]:
-    """Half of an eye seen from the side: lug of radius `pin` around the pin hole, with its neck."""
+    """Half of an eye in side view: a lug of radius `pin` around the pin hole, and its neck."""
     angles = [pi * k / 24 for k in range(25)]
     rim = [(centre + pin * cos(a), pin * sin(a)) for a in angles]
     hole = [(centre + pin / 2 * cos(a), pin / 2 * sin(a)) for a in reversed(angles)]
@@ -130,7 +132,7 @@ def _barrel(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
 
 
 def _turned_down(shape: Polygon, radius: float, length: float) -> Polygon:
-    """A ring turned down at both ends, under the skirts."""
+    """A ring turned down at both ends, where the skirts of the caps fit over it."""
     (x0, r0), _, (x1, r1), _ = shape
     left, right = x0 + length, x1 - length
     ends = ((x1, radius), (right, radius), (right, r1), (left, r1), (left, radius), (x0, radius))
@@ -138,7 +140,7 @@ def _turned_down(shape: Polygon, radius: float, length: float) -> Polygon:
 
 
 def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
-    """Caps with the additions of their joint, and further parts of the joint."""
+    """Caps, with the shapes that the joint adds to them, and further parts of the joint."""
     plate, radius = float(g.plate), float(g.fit.plate_radius)
     caps = [
         rectangle(at.face, at.start, 0.0, radius),
@@ -203,7 +205,7 @@ def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
 def _rings(
     start: float, length: float, grooves: Sequence[Groove], counterface: float, side: int
 ) -> Iterator[_Part]:
-    """Parts in every groove: round rings as wide as their section, other rings fill the groove."""
+    """Parts in every groove. A round ring is as wide as its section; others fill the groove."""
     shapes: dict[tuple[str, str], list[Polygon]] = {}
     for groove, left, right in _grooves(start, length, grooves):
         middle, half = (left + right) / 2, min(float(groove.ring_width), right - left) / 2
@@ -243,7 +245,7 @@ def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tup
 
 
 def lengths(design: Design, g: Geometry) -> dict[str, float]:
-    """Dimensions in the drawing, m."""
+    """Dimensions that the drawing states [m]."""
     values = {
         "bore": g.bore,
         "rod": g.rod_diameter,
@@ -266,7 +268,7 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
 
 
 def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
-    """Details of the joint that the section does not show; `lengths` of the same design."""
+    """Sentences on details of the joint that the section does not show."""
     joint = joint_of(design)
     if joint is None or design.retention is None:
         return []
@@ -283,15 +285,15 @@ def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
 
 
 MOST = 24
-"""Most templates of a prepared design."""
+"""Largest number of templates for a prepared design."""
 
 
 SAME = 1e-7
-"""Largest error of a point of a template (m)."""
+"""Largest error of a coordinate drawn from a template [m]."""
 
 
 STEP = 1e-4
-"""Step of a dimension to determine its effect (m)."""
+"""Change of a dimension that determines its effect on the coordinates [m]."""
 
 
 LENGTHS = ("bore", "rod", "stroke", "closed_length")
@@ -306,10 +308,10 @@ _Change: TypeAlias = Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class Template:
-    """Outlines of a design, and their slopes by the dimensions.
+    """Outlines of a design, and the derivatives of their coordinates by the dimensions.
 
-    `numbers` (m) are x and r of every point in order, then `LENGTHS`; `slopes` is
-    (numbers, dimensions), `origin` the dimensions of its design.
+    `numbers` [m] are x and r of every point in order, then `LENGTHS`. `slopes` are their
+    derivatives (numbers, dimensions), and `origin` the dimensions of the template's design.
     """
 
     outlines: tuple[Outline, ...]
@@ -318,14 +320,14 @@ class Template:
     origin: Array
 
     def at(self, dimensions: Array) -> Array:
-        """The numbers (numbers, designs) at dimensions (dimensions, designs)."""
+        """Coordinates and lengths (numbers, designs) for other dimensions (dimensions, designs)."""
         numbers: Array = self.numbers[:, None] + self.slopes @ (dimensions - self.origin[:, None])
         return numbers
 
 
 @dataclass(frozen=True)
 class Shapes:
-    """Sections of many designs: dimensions (dimensions, designs), and a template each.
+    """Sections of many designs: their dimensions (dimensions, designs), and a template for each.
 
     `which` is the index of the template, -1 if no template reproduces the outlines.
     """
@@ -341,14 +343,14 @@ def shapes(
     count: int,
     hidden: tuple[str, ...] = (),
 ) -> Shapes:
-    """Sections of designs that differ in some numbers.
+    """Draw the sections of designs that differ only in the numbers in `varied`.
 
     Parameters
     ----------
     subject : the design
     varied : arrays (designs,) by PATH, SI
     count : number of designs
-    hidden : omitted parts
+    hidden : names of parts that are not drawn
     """
     geometry = geometry_module.derive(subject.values(varied), subject.design)
     dimensions = np.stack([np.broadcast_to(leaf, (count,)) for leaf in _leaves(geometry)])
@@ -391,7 +393,7 @@ def same_dimensions(
 
 @dataclass(frozen=True)
 class _Parts:
-    """One design of many: the outlines at its dimensions."""
+    """One of many designs, with the outlines at its dimensions."""
 
     subject: PreparedDesign
     geometry: Geometry
@@ -399,7 +401,7 @@ class _Parts:
     hidden: tuple[str, ...]
 
     def drawn(self, moved: int | None = None) -> tuple[tuple[Outline, ...], Array]:
-        """Outlines and their numbers, with one dimension varied slightly."""
+        """Outlines and their coordinates, with the dimensions shifted slightly."""
         values = self.dimensions.astype(float)
         if moved is not None:
             values[moved] += STEP
@@ -424,12 +426,12 @@ def _template(parts: _Parts, drawn: tuple[tuple[Outline, ...], Array], moving: A
 
 
 def _form(outlines: tuple[Outline, ...]) -> list[object]:
-    """Structure of outlines that differ only in dimensions."""
+    """Parts, materials and point counts, which are equal if outlines differ only in dimensions."""
     return [(o.part, o.material, o.kind, [len(p) for p in o.polygons]) for o in outlines]
 
 
 def _leaves(geometry: Geometry) -> list[Array]:
-    """All numbers of the dimensions, in a fixed order."""
+    """All dimensions as a list of numbers, in a fixed order."""
     leaves: list[Array] = []
 
     def keep(value: Array) -> Array:
@@ -441,7 +443,7 @@ def _leaves(geometry: Geometry) -> list[Array]:
 
 
 def _changed(geometry: Geometry, change: _Change) -> Geometry:
-    """The dimensions with every number replaced."""
+    """Copy the dimensions, with `change` applied to every number."""
     values: dict[str, Any] = {}
     for field in fields(Geometry):
         value = getattr(geometry, field.name)

@@ -1,7 +1,7 @@
-"""Layers of a laminated wall or rod as model inputs, with strengths after knock-downs.
+"""Layers of a laminated wall or rod, as inputs of models; strengths are after knock-downs.
 
-Residual stresses matter at both ends of the temperature range: cold, with the largest cooling from
-cure, and hot, where the matrix is weakest. Each `Climate` has the allowables of its temperature.
+Residual stresses matter at both ends of the temperature range. In the cold, cooling from cure is
+largest; in the heat, the matrix is weakest. Each `Climate` has the allowables of its temperature.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ STRENGTHS = (
 
 @dataclass(frozen=True, slots=True)
 class Climate:
-    """Temperature change from the stress-free state, K, with its allowables."""
+    """A service extreme: temperature change from the stress-free state [K], and allowables."""
 
     name: str
     change: Array
@@ -43,7 +43,7 @@ class Climate:
 
 @dataclass(frozen=True, slots=True)
 class Layer:
-    """A layer with its properties; `strengths` and `yields` per climate, None if unknown."""
+    """A layer with its properties; `strengths` and `yields` are per climate, None if unknown."""
 
     label: str
     name: str
@@ -56,16 +56,16 @@ class Layer:
     strengths: tuple[PlyStrength, ...]
     yields: tuple[Array, ...]
     fatigue: Array = None
-    """Fibre stress amplitude endured for the stated cycles; None if unknown."""
+    """Fibre stress amplitude endured for the stated number of cycles; None if unknown."""
 
     @property
     def strength(self) -> PlyStrength | None:
-        """Ply strengths at the weakest matrix: the last climate is the hottest."""
+        """Ply strengths in the hottest climate (the last), where the matrix is weakest."""
         return self.strengths[-1] if self.strengths else None
 
     @property
     def yield_strength(self) -> Array:
-        """Yield strength at the hottest; None for a ply."""
+        """Yield strength at the hottest temperature; None for a ply."""
         return self.yields[-1] if self.yields else None
 
     @property
@@ -89,7 +89,7 @@ class Layer:
         )
 
     def as_wall(self, climate: int | None = None) -> WallLayer:
-        """The layer as input of the burst models, in one or all climates, (climates, 1, 1)."""
+        """The layer as input of the burst models, for a climate or for all (climates, 1, 1)."""
         c, (first, second) = self.constants, self.expansions or (0.0, 0.0)
         return WallLayer(
             expansion_1=first,
@@ -116,7 +116,7 @@ def stress_of(parts: Iterable[Array]) -> Stress:
 
 
 def _of_climate(values: Sequence[Any], climate: int | None, combine: Callable[..., Any]) -> Any:
-    """The value of a climate; without a climate all values or the only value; None if missing."""
+    """The value in a climate, or the combined values of all climates; None if missing."""
     if not values:
         return None
     if climate is not None:
@@ -125,12 +125,12 @@ def _of_climate(values: Sequence[Any], climate: int | None, combine: Callable[..
 
 
 def _axis(values: Sequence[Array]) -> Array:
-    """One value per climate on an axis before load paths and designs."""
+    """Put one value per climate on an axis before those of load paths and designs."""
     return np.stack(np.broadcast_arrays(*[np.atleast_1d(value) for value in values]))[:, None, :]
 
 
 def _of_all(strengths: Sequence[PlyStrength]) -> PlyStrength:
-    """Ply strengths of all climates."""
+    """Combine the ply strengths of all climates in arrays."""
 
     def of_climates(name: str) -> Array:
         return _axis([getattr(strength, name) for strength in strengths])
@@ -147,7 +147,7 @@ def _of_all(strengths: Sequence[PlyStrength]) -> PlyStrength:
 
 
 def climates(v: Values, design: Design) -> tuple[Climate, ...]:
-    """Coldest and hottest state with cure stresses; only the hottest, without them, by default."""
+    """Coldest and hottest climate with cure stresses; by default only the hottest, without them."""
     environment = design.environment
     if environment is None or environment.cure_temperature is None:
         return (Climate("", 0.0, cold=False),)
@@ -166,7 +166,7 @@ def layers(
     states: Sequence[Climate],
     missing: list[str],
 ) -> list[Layer]:
-    """Layers of a wall; `at` is the PATH of its lay-up; `missing` collects unknown strengths."""
+    """Layers of the wall with the lay-up at PATH `at`; unknown strengths are added to `missing`."""
     wall_layers = []
     for i, ply in enumerate(layup):
         name = ply.material
@@ -212,14 +212,14 @@ def layers(
 
 
 def _solid(constants: dict[str, Array]) -> Solid:
-    """3-D stiffness of a material's elastic constants."""
+    """Three-dimensional stiffness from a material's elastic constants."""
     keys = ("youngs_modulus_1", "youngs_modulus_2", "youngs_modulus_3", "poissons_ratio_12",
             "poissons_ratio_13", "poissons_ratio_23", "shear_modulus_12")  # fmt: skip
     return solid_stiffness(**{key: constants[key] for key in keys})
 
 
 def worst(values: Array, axes: tuple[int, ...]) -> Array:
-    """The largest by real part over some axes, with the derivative branch of each design."""
+    """Largest value by real part over some axes; its complex part keeps the derivative."""
     other_axes = [i for i in range(values.ndim) if i not in axes]
     flattened = np.transpose(values, (*axes, *other_axes)).reshape(
         -1, *(values.shape[i] for i in other_axes)
@@ -231,7 +231,7 @@ def worst(values: Array, axes: tuple[int, ...]) -> Array:
 
 
 def grouped(modes: Mapping[str, Array]) -> dict[str, Array]:
-    """Utilisations of mutually exclusive modes merged: both fibre modes as "fibre"."""
+    """Merge utilisations of modes that exclude each other: both fibre modes become "fibre"."""
     groups: dict[str, Array] = {}
     for mode, utilisation in modes.items():
         group = mode.partition(" ")[0]
@@ -245,9 +245,10 @@ def utilisations(
     stress: Stress,
     residual: Stress | None,
 ) -> dict[str, Array]:
-    """1/SR of every mode by one criterion; stresses are (faces, plies, climates, ...).
+    """Utilisation 1/SR (SR: strength ratio) by failure mode of one criterion.
 
-    Strengths of each ply and climate are on those axes; batch axes follow.
+    Stresses are (faces, plies, climates, ...), with batch axes last. The strengths of each ply and
+    climate are on the same axes.
     """
     extra = stress[0].ndim - 3
 
@@ -280,7 +281,7 @@ def utilisations(
 
 
 def _strengths(plies: Sequence[Layer], name: str, extra: int) -> Array:
-    """A strength of every ply and climate, (plies, climates, ...)."""
+    """One strength for every ply and climate, (plies, climates, ...)."""
     rows = [
         np.stack(
             np.broadcast_arrays(

@@ -29,11 +29,11 @@ from .values import Values
 
 _MARK = "_actuator_opt_plugin"
 _LONGEST = 300
-"""Most characters of an exception that a line shows."""
+"""Largest number of characters of an exception's text that a line shows."""
 
 
 class View:
-    """Inputs of a user metric: numbers by PATH, metrics by name; SI."""
+    """Inputs of a user metric in SI: numbers of the design by PATH, built-in metrics by name."""
 
     def __init__(
         self,
@@ -44,7 +44,7 @@ class View:
         self._values = values
         self._metrics = metrics
         self._design = design
-        """Index and number of designs, for a single design; None for all at once."""
+        """Index and number of designs if only one design is shown; None for all at once."""
 
     def __getitem__(self, path: str) -> Array:
         """The number at a PATH (``cylinder.bore``), a float or an array of designs."""
@@ -53,7 +53,7 @@ class View:
         return self._for_design(self._values[path])
 
     def metric(self, name: str) -> Array:
-        """A computed metric; its worst value over places."""
+        """A computed metric; the worst value if it has several locations."""
         if name not in self._metrics:
             raise KeyError(f"no metric {name}")
         places = list(self._metrics[name].values())
@@ -65,7 +65,7 @@ class View:
         return self._for_design(worst)
 
     def _for_design(self, value: Array) -> Array:
-        """A value for all designs, or for a single design: a number, or a number per case."""
+        """A value for all designs; for a single design a number, or one number per load case."""
         shape = np.shape(value)
         if self._design is None or not shape:
             return value
@@ -76,7 +76,7 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Plugin:
-    """A user metric; with a `sense` it is also a constraint against zero."""
+    """A user metric; with a `sense`, it is also a constraint with the limit zero."""
 
     name: str
     quantity: Quantity
@@ -93,14 +93,15 @@ class Plugin:
     ) -> PluginValue:
         """The metric of every design; NaN with a reason if the function raised.
 
-        A function that raises for many designs at once is called for each design alone. One failing
-        design then does not affect others, and functions without array support work. Printed text
-        of the function goes to standard error, as standard output is for data.
+        A function that raises an exception for many designs at once is called for each design
+        separately. So one failing design does not affect the others, and functions without array
+        support work. Text that the function prints goes to standard error, because standard output
+        is for data.
 
         Raises
         ------
         PluginError
-            If it raised for every design and is not `lenient`, or returned no number.
+            The function raised for every design and `lenient` is False, or it returned no number.
         """
         count = _designs(values)
         with contextlib.redirect_stdout(sys.stderr):
@@ -150,24 +151,24 @@ class Plugin:
 
 
 def with_own(plugins: Iterable[Plugin]) -> dict[str, Quantity]:
-    """All metrics by name: built-in metrics, and those of the user."""
+    """All metrics by name: built-in metrics and user metrics."""
     return {**METRICS, **{plugin.name: plugin.quantity for plugin in plugins}}
 
 
 @dataclass(frozen=True, slots=True)
 class PluginValue:
-    """Result of a user function, and its exceptions by design."""
+    """Result of a user function, and the exceptions that it raised, by index of the design."""
 
     value: Array
     raised: str = ""
 
 
 class PluginError(InputError):
-    """A user function raised."""
+    """A user function raised an exception."""
 
 
 def _line(error: BaseException, file: str) -> tuple[str, int | None]:
-    """The last line of user code that an exception passed."""
+    """Location of an exception: the last line of the user's file in its traceback."""
     frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename != __file__]
     user_frames = [f for f in frames if file and Path(f.filename).resolve() == Path(file).resolve()]
     last = (user_frames or frames)[-1] if frames else None
@@ -175,11 +176,11 @@ def _line(error: BaseException, file: str) -> tuple[str, int | None]:
 
 
 def _one_line(error: BaseException) -> str:
-    """An exception in one line."""
+    """Text of an exception in one line."""
     detail = error.args[0] if isinstance(error, KeyError) and error.args else error
     try:
         words = str(detail)
-    except Exception:  # its own text raises an exception
+    except Exception:  # the text itself raises an exception
         words = ""
     return shown(" ".join(f"{type(error).__name__}: {words}".split()).removesuffix(":"), _LONGEST)
 
@@ -193,17 +194,17 @@ def _fault(plugin: Plugin, error: BaseException) -> PluginError:
 
 
 def _designs(values: Values) -> int:
-    """Number of simultaneously evaluated designs."""
+    """Number of designs that are evaluated at once."""
     return int(np.broadcast_shapes((1,), *[np.shape(v) for v in values.varied.values()])[-1])
 
 
 def _complex(values: Values) -> bool:
-    """Whether complex numbers carry derivatives."""
+    """Whether complex steps, which carry derivatives, are among the values."""
     return any(np.iscomplexobj(value) for value in values.varied.values())
 
 
 def _checked(plugin: Plugin, returned: object, values: Values, designs: int) -> Array:
-    """The result of a user function, checked for a number per design (and case)."""
+    """Check that a user function returned a number per design (and load case); return the array."""
     try:
         array = np.asarray(returned)
     except KeyboardInterrupt:
@@ -241,8 +242,8 @@ def metric(
     unit_name : display unit; default the SI unit
     label : name in tables and reports
 
-    The largest value over load cases governs, unless a requirement or the objective states
-    otherwise.
+    The largest value over load cases governs, unless a requirement or the objective makes the
+    smallest govern.
     """
     if not isinstance(name, str):
         raise InputError('a metric needs a name: write @metric("my_metric") above the function')
@@ -284,7 +285,7 @@ def constraint(
 
 
 def collect(*functions: Callable[[View], Array]) -> tuple[Plugin, ...]:
-    """Plugins that `metric` or `constraint` declared on functions of a script."""
+    """Return the plugins of functions that a script declared with `metric` or `constraint`."""
     plugins = []
     for function in functions:
         plugin = getattr(function, _MARK, None)
@@ -296,7 +297,7 @@ def collect(*functions: Callable[[View], Array]) -> tuple[Plugin, ...]:
 
 
 def _marked(values: Iterable[object]) -> list[Plugin]:
-    """Plugins among the values of a module; values that raise on access are skipped."""
+    """Plugins among the values of a module; skip values that raise an exception on access."""
     plugins = []
     for value in values:
         with contextlib.suppress(Exception):
@@ -307,7 +308,7 @@ def _marked(values: Iterable[object]) -> list[Plugin]:
 
 
 def load(path: str | Path) -> tuple[Plugin, ...]:
-    """Plugins of a Python file."""
+    """Load the plugins that a Python file declares."""
     path = Path(path)
     try:
         is_file = path.is_file()

@@ -1,8 +1,8 @@
-"""Implausible values: errors of unit or decimal point that no limit would reveal.
+"""Implausible values: slips of unit or decimal point that no limit would reveal.
 
-A table of ratios with their usual range. Every limit is a choice, wider than in catalogues; a value
-beyond it gives a warning, never a fault. Only dimensions are used, no models, so that `check` can
-include these warnings.
+A table of ratios with their usual range. Every range is our choice, wider than in catalogues. A
+value outside it gives a warning, never a fault. The ratios need only dimensions and no models, so
+the command `check` can give these warnings too.
 """
 
 from __future__ import annotations
@@ -29,8 +29,9 @@ Ratio = Callable[[Values, Design, Geometry], Array | None]
 class Proportion:
     """A ratio with a usual range in sensible designs.
 
-    `path` is the value to check, `meaning` the words after the number, `source` the reason for the
-    range; `ratio` returns one or several numbers, or None if not applicable.
+    `path` is the PATH of the value to check. `meaning` are the words that follow the number in the
+    warning, and `source` is the reason for the range. `ratio` returns one or several numbers, or
+    None if the ratio does not apply.
     """
 
     path: str
@@ -41,7 +42,7 @@ class Proportion:
     ratio: Ratio
 
     def beyond(self, number: float) -> str | None:
-        """Warning about a number; None if within the range."""
+        """Warning about a number outside the usual range; None if it is within."""
         if self.least <= number <= self.most:
             return None
         low, high = _plain(self.least), _plain(self.most)
@@ -57,7 +58,7 @@ class Proportion:
 
 
 def _plain(number: float) -> str:
-    """Three digits, without an exponent up to a million.
+    """Format a number with three digits, without an exponent up to a million.
 
     >>> _plain(2187.3), _plain(0.016), _plain(1.2345e9)
     ('2190', '0.016', '1.23e+09')
@@ -74,7 +75,7 @@ def _dead(chamber: str) -> Ratio:
 
 
 def _stated(path: str, over: Callable[[Geometry], Array]) -> Ratio:
-    """An optional value of the file, over a dimension."""
+    """Ratio of an optional value of the design file to a dimension; None if not stated."""
 
     def ratio(v: Values, design: Design, g: Geometry) -> Array | None:
         value = v.get(path, None)

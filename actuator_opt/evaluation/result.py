@@ -1,8 +1,9 @@
-"""The Evaluation: all metrics of a design with its requirements, for printing and export.
+"""The `Evaluation`: all metrics and requirements of a design, for printing and export.
 
-It also states the reserve of a design: limits met without reserve, and the expected yield. An
-optimum lies on its limits and meets them at nominal dimensions; many actuators built to it violate
-a limit.
+It also states the reserve of a design: which limits are met without reserve, and what share of
+the actuators built to it is expected to meet all requirements. An optimum lies on some of its
+limits. It meets them at nominal dimensions, but with tolerances many of the actuators built to it
+miss a limit.
 """
 
 from __future__ import annotations
@@ -21,12 +22,13 @@ from .dynamics_study import DynamicsStudy
 from .wall_study import WallStudy
 
 NO_RESERVE = 1e-3
-"""Margin below which a met limit has no reserve. A choice: the width of a single tolerance, IT7 of
-20 mm is 21 um or 0.1 % (ISO 286-1). Optima end within 1e-6 of a limit."""
+"""Margin below which a limit is met without reserve. Our choice: the width of a single tolerance.
+IT7 at 20 mm is 21 um, or 0.1 % (ISO 286-1). An optimum on a limit has a margin below 1e-6."""
 NO_ROOM = 1e-6
-"""The same for a limit of 0, whose margin is the distance itself in SI: the tolerance of `met`."""
+"""As `NO_RESERVE`, for a limit of 0, whose margin is the value itself in SI. Equal to the tolerance
+within which a limit counts as met."""
 MOST_NAMED = 5
-"""Most limits without reserve that a sentence names."""
+"""Largest number of limits without reserve that a sentence names."""
 
 
 def without_reserve(margin: float | None, limit: float | None) -> bool:
@@ -56,8 +58,8 @@ class YieldEstimate:
     value, lower, upper : share and its exact 95 % bounds; None if not estimated
     draws : number of independent samples
     with_checks : share that also meets every check; None if the design itself misses a check
-    worst, worst_fails : requirement that fails most, and its share of failures
-    why : reason for a missing estimate
+    worst, worst_fails : requirement that fails most often, and the share of samples that fail it
+    why : reason why there is no estimate
     """
 
     value: float | None = None
@@ -70,7 +72,7 @@ class YieldEstimate:
     why: str = ""
 
     def to_dict(self) -> dict[str, Any] | None:
-        """The "yield" of the JSON's "reserve"; None if not estimated."""
+        """JSON entry `reserve.yield`; None if not estimated."""
         if self.value is None:
             return None
         worst = None
@@ -83,7 +85,7 @@ class YieldEstimate:
 
     @property
     def sentence(self) -> str:
-        """The estimate, or the reason why it is missing."""
+        """The estimate in a sentence, or the reason why it is missing."""
         if self.value is None or self.lower is None or self.upper is None:
             return f"Yield not estimated ({self.why}): `actuator-opt uncertainty` computes it."
         shown = f"{_percent(self.lower)} to {_percent(self.upper)} %, {self.draws} samples"
@@ -103,7 +105,7 @@ UNKNOWN = YieldEstimate(why="an evaluation does not sample")
 
 
 def sentences(names: Sequence[str], estimate: YieldEstimate, *, movable: bool) -> tuple[str, ...]:
-    """Limits without reserve by name, the yield, and remedies.
+    """Sentences with the limits without reserve, the yield, and remedies.
 
     Parameters
     ----------
@@ -126,7 +128,7 @@ def sentences(names: Sequence[str], estimate: YieldEstimate, *, movable: bool) -
 
 
 def _percent(share: float) -> str:
-    """A share in per cent, with a decimal near 0 and 100.
+    """Format a share in per cent, with a decimal near 0 and 100.
 
     >>> _percent(0.026), _percent(0.436), _percent(0.9967), _percent(1.0), _percent(0.0)
     ('2.6', '44', '99.7', '100', '0')
@@ -137,15 +139,16 @@ def _percent(share: float) -> str:
 
 
 State: TypeAlias = Literal["met", "no_reserve", "missed", "not_checked"]
-"""State of a limit: `no_reserve` is met, but without margin."""
+"""State of a limit; `no_reserve`: met, but with a margin below `NO_RESERVE`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Metric:
-    """A metric at its governing case (and place: a ply, a seal, a part).
+    """A metric at its governing load case and location (a ply, a seal, a part).
 
-    `value` is SI, or None with the reason in `why`; `by_case` has the worst value of every case.
-    `sense` is the smallest ("min") or largest of several values; None if all are equal.
+    `value` is in SI, or None with the reason in `why`. `by_case` has the worst value of every load
+    case. `sense` states whether the smallest ("min") or the largest ("max") value governs; None if
+    all values are equal.
     """
 
     name: str
@@ -169,7 +172,7 @@ class Metric:
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """A limit with its value and margin = (value − limit)/|limit|, negated for `max`."""
+    """A limit with its value and margin (value − limit)/|limit|, with opposite sign for `max`."""
 
     name: str
     metric: str
@@ -185,7 +188,7 @@ class Requirement:
 
     @property
     def state(self) -> State:
-        """Whether it is met, and with reserve (`NO_RESERVE`)."""
+        """Whether the requirement is met, and whether with reserve (`NO_RESERVE`)."""
         if not self.met:
             return "missed"
         return "no_reserve" if without_reserve(self.margin, self.limit) else "met"
@@ -193,7 +196,7 @@ class Requirement:
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """A line of the check list: met, missed, or not checked with the reason."""
+    """A line of the check list: met, missed, or not checked for a stated reason."""
 
     name: str
     status: Literal["met", "missed", "not_checked"]
@@ -210,7 +213,7 @@ class Check:
 
     @property
     def state(self) -> State:
-        """Its status, and whether it is met with reserve (`NO_RESERVE`)."""
+        """Status of the check, and whether it is met with reserve (`NO_RESERVE`)."""
         if self.status != "met":
             return self.status
         return "no_reserve" if without_reserve(self.margin, self.limit) else "met"
@@ -218,7 +221,7 @@ class Check:
 
 @dataclass(frozen=True, slots=True)
 class ModelUse:
-    """Use of a model: source of its equation, valid range, place of use."""
+    """Use of a model: source of its equation, valid range, and the metrics that use it."""
 
     name: str
     equation: str
@@ -230,7 +233,7 @@ class ModelUse:
 
 @dataclass(frozen=True, slots=True)
 class Unverified:
-    """A library value of this design that nobody has checked against its primary source."""
+    """A library value of the design that nobody has checked against its primary source."""
 
     material: str
     property: str
@@ -241,7 +244,7 @@ class Unverified:
 
 @dataclass(frozen=True, slots=True)
 class StrokeCurve:
-    """Stiffness over the stroke in the governing case; arrays over `position` (m, from cap end).
+    """Stiffness over the stroke in the governing case; arrays over `position` [m] from the cap end.
 
     `stiffness` is the total (N/m); `contributions` maps a part (oil, barrel, lines, rod, mount)
     to its compliance (m/N), so that the contributions add up to 1/stiffness.
@@ -264,7 +267,7 @@ class StrokeCurve:
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """Half-section of a part: closed polygons of (axial position, radius) in m, retracted."""
+    """Half-section of a part, retracted: closed polygons of (axial position, radius) [m]."""
 
     part: str
     material: str
@@ -289,17 +292,17 @@ class Evaluation(Displayed):
     unverified: tuple[Unverified, ...]
     models: tuple[ModelUse, ...]
     mass_parts: Mapping[str, float]
-    """Mass per part in kg, dry, in assembly order; sums to `mass`; oil is `metrics["mass_oil"]`."""
+    """Dry mass per part [kg] in assembly order; the sum is `mass`. Oil: `metrics["mass_oil"]`."""
     curve: StrokeCurve
     outlines: tuple[Outline, ...]
     lengths: Mapping[str, float]
     """Dimensions for the drawing (m): bore, rod, barrel outer diameter, stroke, closed length…"""
     wall: WallStudy | None = None
-    """The barrel through its thickness; None with the wall model of the paper."""
+    """Stresses through the thickness of the barrel; None with the published wall model."""
     dynamics: DynamicsStudy | None = None
     """Modes along the stroke, dynamic stiffness over frequency, and the position loop."""
     friction_parts: Mapping[str, float] = field(default_factory=dict)
-    """Running friction of each seal (N) in its governing case; wipers and guides together."""
+    """Running friction [N] of each seal in the governing case; wipers and guides are one entry."""
     yield_estimate: YieldEstimate = UNKNOWN
     """Share of the actuators built to the design that meet every requirement, if estimated."""
 
@@ -330,7 +333,7 @@ class Evaluation(Displayed):
 
     @property
     def counts(self) -> dict[str, int]:
-        """Number of unverified library values, and of metrics and models out of range."""
+        """Count unverified library values, and metrics and models outside their valid range."""
         return {
             "unverified": len(self.unverified),
             "extrapolated": len(self.extrapolated),
@@ -339,7 +342,7 @@ class Evaluation(Displayed):
 
     @property
     def reserve_sentences(self) -> tuple[str, ...]:
-        """Limits without reserve and the yield; empty if a requirement is missed."""
+        """Sentences on limits without reserve and the yield; empty if a requirement is missed."""
         if not self.met or not self.requirements:
             return ()
         movable = bool(self.design.variables)
@@ -347,7 +350,7 @@ class Evaluation(Displayed):
 
     @property
     def tally(self) -> str:
-        """Number of requirements met and, if all are met, any missed check."""
+        """Number of requirements met and, if all are met, the missed checks."""
         total, met = len(self.requirements), sum(row.met for row in self.requirements)
         missed = [check.name for check in self.checks if check.status == "missed"]
         more = f" and {len(missed) - 1} more" if len(missed) > 1 else ""

@@ -1,7 +1,7 @@
-"""Sealing rings of an evaluation: numbers with pressure and bore growth, contact, gland checks.
+"""Sealing rings in an evaluation: sizes under pressure and bore growth, contact, gland checks.
 
-The contact is that of the seal type, or as stated in the design. Gland checks are squeeze, fill and
-extrusion gap with tolerances, growth and temperature.
+The contact follows from the model of the seal type, unless the design states it. Gland checks
+cover squeeze, fill and extrusion gap, with tolerances, bore growth and temperature.
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ Place = Literal["piston", "rod"]
 class Ring:
     """A sealing element with its numbers by name; arrays broadcast to (cases, designs).
 
-    `numbers`: those of the design file, and `diameter`, `youngs_modulus` of the squeezed part,
-    `pressure` (sealed difference), `outer_pressure` (gauge), `squeeze_left` (nominal squeeze minus
-    the loss by bore growth). With an oil film: `speed`, `viscosity`, `return_pressure` (p_B on the
-    return stroke) and the roughness of the face.
+    `numbers` has the values of the design file, and in addition `diameter`, `youngs_modulus` of the
+    squeezed part, `pressure` (sealed difference), `outer_pressure` (gauge) and `squeeze_left`
+    (nominal squeeze minus the loss by bore growth). For an oil film it also has `speed`,
+    `viscosity`, `return_pressure` (p_B on the return stroke) and the roughness of the face.
     """
 
     name: Place
@@ -47,7 +47,7 @@ class Ring:
     groove: Groove
     numbers: Mapping[str, Array]
     viscosity_law: str = "none"
-    """Viscosity law of its oil over pressure."""
+    """Name of the law for the viscosity of the oil over pressure."""
 
     def __getitem__(self, name: str) -> Array:
         return self.numbers[name]
@@ -60,16 +60,16 @@ class Ring:
 
     @property
     def label(self) -> str:
-        """Name in results."""
+        """Name of the ring in results."""
         return self.groove.place
 
     def at(self, **numbers: Array) -> Ring:
-        """The same ring with other numbers."""
+        """The same ring with some numbers replaced."""
         return replace(self, numbers={**self.numbers, **numbers})
 
 
 def places(g: Geometry) -> tuple[tuple[Place, tuple[Groove, ...], Array], ...]:
-    """Grooves and counterface diameter of piston and rod."""
+    """Yield grooves and counterface diameter of the piston seals and of the rod seals."""
     return ("piston", g.piston_grooves, g.bore), ("rod", g.rod_grooves, g.rod_diameter)
 
 
@@ -78,7 +78,7 @@ HARDNESS_TEMPERATURE = 296.15
 
 
 def hardness_modulus(v: Values, compound: str, law: str) -> Array:
-    """Young's modulus of a compound from its hardness, at measuring temperature."""
+    """Young's modulus of a compound from its hardness, at `HARDNESS_TEMPERATURE`."""
     at = f"materials.{compound}."
     modulus = elastomer.MODULUS_LAWS[law].modulus(hardness=v[f"{at}hardness"])
     factor = f"{at}hardness_modulus_factor"
@@ -86,7 +86,7 @@ def hardness_modulus(v: Values, compound: str, law: str) -> Array:
 
 
 def face_modulus(v: Values, compound: str, law: str, temperature: Array) -> Array:
-    """Young's modulus of a compound's sliding face at a temperature: stated, else by hardness."""
+    """Young's modulus of a sliding face at a temperature; from hardness if not stated."""
     at = f"materials.{compound}."
     stated = f"{at}youngs_modulus"
     modulus = v[stated] if stated in v else hardness_modulus(v, compound, law)
@@ -108,10 +108,10 @@ def rings(
     state: LoadState,
     growth: Array,
 ) -> tuple[Ring, ...]:
-    """All sealing elements; the first of a place carries the pressure.
+    """All sealing rings; on piston and rod, the first ring seals the pressure.
 
-    The piston seal has the pressure difference, the rod seal p_B. `growth` is the far-field bore
-    growth.
+    The piston seal is under the pressure difference of the chambers, the rod seal under p_B.
+    `growth` is the growth of the bore far from the seal.
     """
     across: dict[str, tuple[Array, Array]] = {
         "piston": (
@@ -155,13 +155,13 @@ def rings(
 
 
 _OWN = ("friction_coefficient", "breakaway_ratio", "stribeck_speed")
-"""Numbers that default to those of the compound."""
+"""Values of a seal that default to those of its compound."""
 
 
 def _numbers(
     v: Values, element: SealElement, groove: Groove, diameter: Array, temperature: Array
 ) -> dict[str, Array]:
-    """Inputs of the contact of an element."""
+    """Inputs for the contact of a sealing ring."""
     at, compound, kind = groove.path, f"materials.{element.compound}.", element.seal_type
     law = element.friction_law
     face = face_modulus(v, element.compound, element.hardness_model, temperature)
@@ -205,22 +205,22 @@ def seal_contact(ring: Ring) -> SealContact:
 
 
 def static_profile(ring: Ring, nodes: int) -> tuple[Array, Array]:
-    """Width [m] and static contact pressure [Pa gauge] at uniform nodes, for a ring of floats."""
+    """Contact width [m] and static contact pressure [Pa gauge] at uniform nodes; plain floats."""
     position = np.linspace(0.0, 1.0, nodes)
     pressure, outer = ring["pressure"], ring["outer_pressure"]
     if real(pressure) >= 0:
         contact = seal_contact(ring)
         return contact.profile_width, outer + contact.profile(position)
-    contact = seal_contact(ring.at(pressure=-pressure))  # sealed from the other side
+    contact = seal_contact(ring.at(pressure=-pressure))  # pressure acts from the other side
     return contact.profile_width, outer + pressure + contact.profile(1 - position)
 
 
 ROOM = 293.15
-"""Default assembly temperature, K."""
+"""Default assembly temperature [K]."""
 
 
 EXTRUSION_TABLE = "sealanddesign"
-"""Table of gaps by hardness and pressure for compounds without their own limits."""
+"""Table of extrusion gaps by hardness and pressure, for compounds that state no gap limits."""
 
 
 def gland_metrics(
@@ -232,11 +232,11 @@ def gland_metrics(
     ring: Ring,
     growth: Array,
 ) -> dict[str, Array]:
-    """Gland metrics of a ring; `growth` is the largest bore growth over it.
+    """Gland metrics of a ring; `growth` is the largest growth of the bore at the ring.
 
-    Squeeze and fill are for worst tolerances, hot and cold, with rod and bore concentric as in
-    gland tables. Side load displaces the rod: the gap on one side is then larger by the clearance
-    (and the squeeze smaller, as the seal sheet shows).
+    Squeeze and fill are for the worst tolerances, hot and cold, with rod and bore concentric as in
+    gland tables. The extrusion gap allows for side load, which moves the rod aside: on one side the
+    gap is then larger by the clearance. The smaller squeeze there is shown in the seal report.
     """
     clearance, aside = clearances(geometry, state, ring)
     cold, hot = (
@@ -258,7 +258,7 @@ def gland_metrics(
 
 
 def _fill(ring: Ring) -> Array:
-    """Largest fill of an O-ring's groove at assembly, with the shallowest groove."""
+    """Largest fill of an O-ring's groove at assembly, which occurs in the shallowest groove."""
     back_up_width = sum(piece.area for piece in ring.groove.pieces[1:]) / ring["gland_depth"]
     return gland.gland_fill(
         section=gland.stretched_section(
@@ -270,15 +270,15 @@ def _fill(ring: Ring) -> Array:
 
 
 def clearances(geometry: Geometry, state: LoadState, ring: Ring) -> tuple[Array, Array]:
-    """Radial clearance behind a ring, and the displacement by side load, by case."""
+    """Radial clearance behind a ring, and radial shift of rod or piston by side load, by case."""
     clearance = geometry.piston_clearance if ring.name == "piston" else geometry.head_clearance
     return clearance, where(real(state.side_load) > 0, 1.0, 0.0) * clearance
 
 
 def squeezes(ring: Ring, *, growth: Array, aside: Array, ratio: Array) -> tuple[Array, Array]:
-    """Least squeeze of a ring, with growth and stretch, and largest squeeze, without.
+    """Least squeeze of a ring, with bore growth and stretch, and largest squeeze without them.
 
-    `ratio` is ring over groove volume; `aside` the eccentricity of rod or piston.
+    `ratio` is the result of `volume_ratio`; `aside` is the eccentricity of rod or piston.
     """
     section = ring["section"]
     stretched = gland.stretched_section(section=section, stretch=ring["stretch"])
@@ -299,7 +299,7 @@ def squeezes(ring: Ring, *, growth: Array, aside: Array, ratio: Array) -> tuple[
 def volume_ratio(
     v: Values, design: Design, stock: MaterialValues, ring: Ring, temperature: Array
 ) -> Array:
-    """Ring over groove volume at a temperature, relative to assembly; 1 if unknown."""
+    """Ratio of ring to groove volume at a temperature, relative to assembly; 1 if unknown."""
     expansion = stock.get(ring.element.compound, "volume_expansion")
     part = design.piston if ring.name == "piston" else design.head
     housing = stock.get(part.material, "thermal_expansion")
@@ -314,7 +314,7 @@ def volume_ratio(
 
 
 def _extrusion(v: Values, stock: MaterialValues, ring: Ring, gap: Array) -> Array:
-    """Allowable gap of the seal or its back-up ring at supply pressure, over the gap."""
+    """Ratio of allowable to actual gap of the seal or its back-up ring at supply pressure."""
     pressure, element = v["supply.pressure"], ring.element
     if stock.material(element.compound).properties.get("extrusion_gap_max") is None:
         hardness = v[f"materials.{element.compound}.hardness"]
@@ -336,7 +336,7 @@ def _extrusion(v: Values, stock: MaterialValues, ring: Ring, gap: Array) -> Arra
 
 
 def _stated_end(material: Material) -> float:
-    """Highest pressure for which a material states a gap limit; 0 if none."""
+    """Highest pressure for which a material states a gap limit; 0 if it states none."""
     limit = material.properties.get("extrusion_gap_max")
     if limit is None:
         return 0.0
@@ -344,7 +344,7 @@ def _stated_end(material: Material) -> float:
 
 
 def _stated(stock: MaterialValues, name: str, pressure: Array) -> Array:
-    """A material's own gap limit at a pressure; 0 if none."""
+    """Gap limit that a material states for a pressure; 0 if it states none."""
     limit = stock.material(name).properties.get("extrusion_gap_max")
     if limit is None:
         return 0.0

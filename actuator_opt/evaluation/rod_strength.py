@@ -1,8 +1,8 @@
-"""Strength of the rod in an evaluation: yield, plies and metal layers, buckling, bending.
+"""Strength of the rod: yield, strength of plies and metal layers, buckling, bending.
 
-Push and pull are the largest forces of the supply. The actuator is a slender beam: the push
-amplifies the moment of side load and own weight towards the critical load (`Beam.under`). The rod
-inside chamber B is under its pressure while pulling.
+Push and pull are the largest forces that supply pressure can cause. The actuator is a slender
+beam: a push amplifies the moment of side load and own weight, the more the closer it is to the
+critical load (`Beam.under`). In a pull, the rod inside chamber B is under chamber pressure.
 """
 
 from __future__ import annotations
@@ -33,22 +33,22 @@ GRAVITY = 9.80665
 """Standard gravity, m/s^2 (3rd CGPM, 1901)."""
 
 NEAR = 0.75
-"""Share of the critical load beyond which a moment grows along its tangent. A choice: designs far
-beyond buckling, which the buckling check rejects, then have finite results."""
+"""Share of the critical load above which the amplified moment continues along its tangent. Our
+choice: designs far beyond buckling, which the buckling check rejects, then have finite results."""
 
 LEAST = 1e-6
-"""Least length outside the head (m), to avoid a pole for a rod of zero length."""
+"""Least rod length outside the head [m], to avoid a division by zero."""
 
 
 @dataclass(frozen=True, slots=True)
 class Beam:
-    """Critical load [N] and largest moment in the rod without push [N m], by case."""
+    """Critical load [N], and largest bending moment in the rod without push [N m], by load case."""
 
     critical: Array
     moment: Array
 
     def under(self, push: Array) -> Array:
-        """The moment under a push [N]; beyond `NEAR` of the critical load along its tangent."""
+        """Moment amplified by a push [N]; above `NEAR` of the critical load, along the tangent."""
         share = push / self.critical
         near = minimum(share, NEAR)
         amplified = column.amplified_moment(
@@ -58,13 +58,14 @@ class Beam:
 
 
 def lengths(g: Geometry, state: LoadState) -> tuple[Array, Array]:
-    """Lengths of the cylinder, and of the rod outside it, from eye to eye."""
+    """Lengths of the cylinder and of the rod outside it; together, the distance from eye to eye."""
     cylinder = g.eye_offset + 2 * g.plate + g.barrel_length
     return cylinder, maximum(state.reach + g.rod_extension + g.eye_offset, LEAST)
 
 
 CriticalLoad: TypeAlias = Callable[[Design, Wall, RodSection, tuple[Array, Array]], Array]
-"""Critical load of a design from wall, rod and the lengths of cylinder and exposed rod."""
+"""Function for the critical load of a design, from wall, rod and lengths of cylinder and exposed
+rod."""
 
 
 def derive(
@@ -78,7 +79,7 @@ def derive(
     *,
     critical_load: CriticalLoad,
 ) -> Beam:
-    """Column and beam at the position of every case, with the actuator horizontal (a choice)."""
+    """Critical load and moment in every load case, with the actuator horizontal (our choice)."""
     segments = lengths(g, state)
     weight_moment = _weight(v, design, g, state, rod, parts, segments)
     return Beam(
@@ -90,7 +91,7 @@ def derive(
 def critical_load(
     design: Design, wall: Wall, rod: RodSection, lengths: tuple[Array, Array]
 ) -> Array:
-    """Critical load of barrel and rod, or of the rod alone if mounted at the head; with shear."""
+    """Critical load, with shear, of barrel and rod, or of the rod alone if mounted at the head."""
     mount = design.cylinder.mount
     if mount.startswith("head"):
         factor = FIXED_PINNED if mount == "head_flange" else 1.0
@@ -127,10 +128,11 @@ def _weight(
     parts: Mapping[str, Array],
     lengths: tuple[Array, Array],
 ) -> Array:
-    """Largest moment of the own weight in the rod.
+    """Largest bending moment in the rod by the actuator's own weight.
 
-    Pinned at both eyes for every cap mount (a fixed cap is stronger). Mounted at the head, the rod
-    spans to its eye: w L^2/8, pinned or fixed there; on trunnions the barrel overhangs behind.
+    For every cap mount the actuator is pinned at both eyes; a fixed cap would be stronger. Mounted
+    at the head, the rod spans from the head to its eye: the moment is w L^2/8, with weight per
+    length w and span L, pinned or fixed at the head. On trunnions the barrel overhangs behind.
     """
     outside = rod.mass_per_length * (state.reach + g.rod_extension)
     inside = sum(parts.values()) - parts["clevises"] - outside
@@ -160,7 +162,7 @@ def yields(
     section: RodSection,
     beam: Beam,
 ) -> dict[str, Array]:
-    """Yield over working stress of a single-metal rod, at the pressure of every case."""
+    """Yield over working stress of a rod of one metal, at the pressure of every load case."""
     if section.layers:
         return {}
     strength = stock.allowable(design.rod.material, "yield_strength", "strength_1_compression")
@@ -182,7 +184,7 @@ def compute(
     pull: Array,
     out: MetricArrays,
 ) -> None:
-    """Strength of the layers, and of the wall against local buckling."""
+    """Compute the strength of the layers, and of the wall against local buckling."""
     push_moment = beam.under(push)
     _layers(design, section, (push_moment, beam.moment), supply, push, pull, out)
     if not section.hollow:
@@ -208,7 +210,7 @@ def _layers(
     pull: Array,
     out: MetricArrays,
 ) -> None:
-    """Strength ratio of every layer, mode and direction, on both sides of the bent rod."""
+    """Compute strength ratios by layer, mode and direction, on both sides of the bent rod."""
     if not section.layers:
         out.skip("rod_factor", "the rod is a single metal: see yield_factor")
         return
@@ -239,13 +241,14 @@ def _layers(
 
 
 DIRECTIONS = {"push": slice(0, 2), "pull": slice(2, 6)}
-"""Sides of the bent rod in either direction; pulling with and without outside pressure."""
+"""Indices of the stress states, on both sides of the bent rod: two in a push, four in a pull (with
+and without outside pressure)."""
 
 
 def _factors(
     design: Design, section: RodSection, forces: Array, pressures: Array
 ) -> dict[str, Array]:
-    """Factors of all layers; forces and outside pressures are (sides, cases, designs)."""
+    """Strength ratios of all layers; forces and outside pressures are (sides, cases, designs)."""
     factors: dict[str, Array] = {}
     brittle = [i for i, layer in enumerate(section.layers) if layer.strengths]
     if brittle:
@@ -271,7 +274,7 @@ def _factors(
 
 
 def _rows(section: RodSection, label: str, utilisation: Array) -> dict[str, Array]:
-    """A factor for each climate and direction of (faces, climates, sides, cases, designs)."""
+    """Strength ratios by climate and direction; `utilisation` is their inverse."""
     rows = {}
     for direction, sides in DIRECTIONS.items():
         multiple = load_multiplier(plies.worst(utilisation[:, :, sides], (0, 2)))
@@ -284,10 +287,10 @@ def _rows(section: RodSection, label: str, utilisation: Array) -> dict[str, Arra
 def cycles(
     design: Design, section: RodSection, supply: Array, push: Array, pull: Array
 ) -> dict[str, Cycle]:
-    """Stress of the rod's metals between push and pull; a compressive mean gives no credit.
+    """Pulsating stress of the rod's metals; a compressive mean counts as zero.
 
-    The stress of a metal layer includes its cure stress and, while pulling, the pressure of chamber
-    B; its mean is the equivalent stress of the pull minus half the range.
+    The stress of a metal layer includes its cure stress and, in a pull, the pressure of chamber B.
+    The mean is the equivalent stress of the pull minus half the range.
     """
     if not section.layers:
         size = {"outer_diameter": section.outer_diameter, "inner_diameter": section.inner_diameter}
@@ -318,19 +321,19 @@ def cycles(
 
 
 def _unit_load(section: RodSection, rows: list[int], load: int) -> list[Array]:
-    """Ply stresses of these layers per unit load, (faces, layers, 1, 1, 1, designs)."""
+    """Ply stresses of the layers in `rows` per unit load, (faces, layers, 1, 1, 1, designs)."""
     assert section.unit is not None
     return [part[:, rows][:, :, load][:, :, None, None, None] for part in section.unit]
 
 
 def _load(section: RodSection, rows: list[int], forces: Array, pressures: Array) -> Stress:
-    """Stresses of the load, (faces, layers, 1, sides, cases, designs)."""
+    """Stresses under force and pressure, (faces, layers, 1, sides, cases, designs)."""
     units = (_unit_load(section, rows, load) for load in (FORCE, OUTSIDE))
     return plies.stress_of([f * forces + p * pressures for f, p in zip(*units, strict=True)])
 
 
 def _residual(section: RodSection, rows: list[int]) -> Stress | None:
-    """Cure stresses, (faces, layers, climates, 1, 1, designs)."""
+    """Cure stresses of the layers in `rows`, (faces, layers, climates, 1, 1, designs)."""
     if not section.cured:
         return None
     change = np.stack(

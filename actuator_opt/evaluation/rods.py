@@ -1,6 +1,6 @@
-"""Section of the rod, a bar of one metal or a layered tube, and the bonds of its metal fittings.
+"""Section of the rod (a bar of one metal, or a layered tube), and the bonds of its metal fittings.
 
-Only this module distinguishes the two; all later code works with a `RodSection`.
+Only this module distinguishes bar and tube; all later code works with a `RodSection`.
 """
 
 from __future__ import annotations
@@ -41,9 +41,11 @@ OUTSIDE, FORCE, WARMTH = range(3)
 class RodSection:
     """Section of the rod, (designs,).
 
-    EA [N], EI [N m^2], kappa G A [N] and kg/m; `shell_modulus` and `shell_ratio` are those of an
-    isotropic wall with the same buckling load; `expansion` is axial [1/K], None if not stated. A
-    layered rod also has `unit`, its ply stresses per unit load, (faces, layers, loads, designs).
+    The section has axial stiffness EA [N], bending stiffness EI [N m^2], shear stiffness kappa G A
+    [N] and mass per length [kg/m]. `shell_modulus` and `shell_ratio` are Young's modulus and
+    Poisson's ratio of an isotropic wall with the same local buckling load. `expansion` is axial
+    [1/K], None if not stated. A layered rod also has `unit`, its ply stresses per unit load,
+    (faces, layers, loads, designs).
     """
 
     outer_diameter: Array
@@ -69,33 +71,33 @@ class RodSection:
 
     @property
     def middle(self) -> Array:
-        """Mid-radius of the wall."""
+        """Mid-radius of a hollow rod's wall."""
         return (self.outer_diameter + self.inner_diameter) / 4
 
     @property
     def cured(self) -> bool:
-        """Whether its layers have residual stresses from cure."""
+        """Whether the layers have residual stresses from cure."""
         return any(np.any(real(state.change)) for state in self.climates)
 
     @property
     def place(self) -> str:
-        """Name of the section model, if it is not a plain bar."""
+        """Name of the model for the section; empty for a plain bar."""
         return "layered tube" if self.layers else ""
 
 
 def end_material(design: Design) -> str:
-    """The metal with the rod's threads."""
+    """The metal that the rod's threads are cut into."""
     fitting = design.rod.fitting
     return (fitting.material if fitting is not None else None) or design.rod.material
 
 
 def derive(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> RodSection:
-    """Section of a design's rod."""
+    """Derive the section of a design's rod."""
     return _tube(v, design, stock, g) if design.rod.layup else _bar(v, design, stock, g)
 
 
 def _bar(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> RodSection:
-    """A bar or tube of a single material."""
+    """Section of a bar or tube of a single material."""
     name = design.rod.material
     modulus = stock.get(name, "youngs_modulus", "youngs_modulus_1")
     ratio = stock.get(name, "poissons_ratio", "poissons_ratio_12")
@@ -121,7 +123,7 @@ def _bar(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> RodSe
 
 
 def _tube(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> RodSection:
-    """The exact layered tube."""
+    """Section of a laminated rod, by the exact layered tube."""
     missing: list[str] = []
     states = plies.climates(v, design)
     layers = plies.layers(v, stock, design.rod.layup, "rod.layup", states, missing)
@@ -170,7 +172,7 @@ def _tube(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> RodS
 
 
 def _unit(tube: LayeredTube, state: TubeState) -> Stress:
-    """Ply stresses at the faces; for a twisting tube those of both plies of its pairs."""
+    """Ply stresses at the faces; if the tube twists, those of both plies in each +/- pair."""
     plus = ply_stresses_at_faces(tube=tube, state=state)
     if not tube.twisting:
         return plus
@@ -179,7 +181,7 @@ def _unit(tube: LayeredTube, state: TubeState) -> Stress:
 
 
 def _shell(tube: LayeredTube, layers: Sequence[Layer]) -> tuple[Array, Array]:
-    """Modulus and Poisson's ratio of the isotropic wall that buckles like the layers."""
+    """Young's modulus and Poisson's ratio of an isotropic wall that buckles at the same load."""
     zz, zt, zr, tt, tr, rr, *_, ss = tube.wall
     sheet = [zz - zr * zr / rr, zt - zr * tr / rr, tt - tr * tr / rr]
     thicknesses = [layer.thickness for layer in layers]
@@ -202,7 +204,7 @@ def _shell(tube: LayeredTube, layers: Sequence[Layer]) -> tuple[Array, Array]:
 
 
 def _mass(v: Values, design: Design, g: Geometry) -> Array:
-    """Mass per length of the layers."""
+    """Mass per length of the layers [kg/m]."""
     total: Array = 0.0
     bore = g.rod_inner_diameter
     for ply, thickness in zip(design.rod.layup, g.rod_thicknesses, strict=True):
@@ -217,7 +219,7 @@ def _mass(v: Values, design: Design, g: Geometry) -> Array:
 
 
 def fittings(v: Values, stock: MaterialValues, design: Design, rod: RodSection) -> Overlap | str:
-    """End fittings in a laminated rod, or a reason why the rod has none."""
+    """Bonds of the end fittings in a laminated rod, or a reason why the rod has none."""
     fitting = design.rod.fitting
     if fitting is None:
         return "the rod has no bonded fittings"
@@ -235,14 +237,14 @@ def fittings(v: Values, stock: MaterialValues, design: Design, rod: RodSection) 
 
 
 def fitting_hole(v: Values, design: Design, rod: RodSection) -> Array:
-    """Inner diameter of a fitting: zero for a plug or a sleeve that fills the bore."""
+    """Inner diameter of a fitting; zero for a plug, and for a sleeve as thick as the bore."""
     if design.rod.fitting is None or design.rod.fitting.wall is None:
         return 0.0 * rod.inner_diameter
     return maximum(rod.inner_diameter - 2 * v["rod.fitting.wall"], 0.0)
 
 
 def fitting_area(v: Values, design: Design, rod: RodSection) -> Array:
-    """Cross-section of a fitting in the overlap."""
+    """Cross-section area of a fitting in the bonded overlap."""
     return section_area(
         outer_diameter=rod.inner_diameter, inner_diameter=fitting_hole(v, design, rod)
     )
@@ -251,9 +253,10 @@ def fitting_area(v: Values, design: Design, rod: RodSection) -> Array:
 def thermal(
     v: Values, design: Design, bonds: Mapping[str, Thermal | str], out: MetricArrays
 ) -> None:
-    """Strength over edge shear without load, from joining to the coldest and the hottest.
+    """Compute bond strength over edge shear by temperature alone, at the coldest and the hottest.
 
-    `bonds` are overlaps by place, or the reason why a place has none.
+    `bonds` are bonded overlaps by location; a string is the reason why a location has none. The
+    temperature change counts from joining.
     """
     metric = "bond_thermal_factor"
     if design.environment is None:

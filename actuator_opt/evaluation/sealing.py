@@ -41,7 +41,7 @@ def compute(
     films: Films,
     out: MetricArrays,
 ) -> Friction:
-    """Gland, contact and friction metrics of all seals; returns the friction of the cylinder."""
+    """Compute gland, contact and friction metrics of all seals; return the total friction."""
     full_growth = SEAL_STEP * wall.growth
     by_metric: dict[str, dict[str, Array]] = {}
     total = Friction()
@@ -89,13 +89,13 @@ def compute(
 
 
 Films = Mapping[str, Running]
-"""Films of all rings with a film, by label."""
+"""Oil films by label of the ring; rings without a film are left out."""
 
 
 def films_of(
     tables: Mapping[Key, FilmTable], rings: tuple[Ring, ...], stroke: Stroke, cases: int
 ) -> dict[str, Running]:
-    """Films of all rings on a stroke."""
+    """Oil films of all rings on a stroke."""
     places: tuple[Place, ...] = ("piston", "rod")
     films: dict[str, Running] = {}
     for place in places:
@@ -108,7 +108,7 @@ def films_of(
 def compute_film(
     geometry: Geometry, state: LoadState, drive: Films, return_: Films, out: MetricArrays
 ) -> None:
-    """Results of both strokes: oil left outside, interseal pressure.
+    """Compute results that need both strokes: oil left outside, interseal pressure.
 
     The oil left outside per double stroke is the oil dragged out minus the oil drawn back.
     """
@@ -131,7 +131,7 @@ def compute_film(
 
 
 def _row_load(ring: Ring, contact: SealContact) -> Array:
-    """Line load of a whole row: one ring carries the pressure, the others only their squeeze."""
+    """Line load of all rings in series: the first seals the pressure, the others are squeezed."""
     count = ring["count"]
     if isinstance(count, float) and count == 1.0:
         return contact.line_load
@@ -140,7 +140,7 @@ def _row_load(ring: Ring, contact: SealContact) -> Array:
 
 
 def _at_interseal_pressure(ring: Ring, films: Films) -> Ring:
-    """The ring with its share of the pressure, if a pair has an interseal pressure."""
+    """The ring with its share of the pressure, if it is one of two with an interseal pressure."""
     film = films.get(ring.label)
     if film is None:
         return ring
@@ -170,7 +170,7 @@ def _wipers_and_guides(v: Values, design: Design, geometry: Geometry, state: Loa
 
 
 class WiperFriction(NamedTuple):
-    """A wiper at its place: PATH of its block, coefficient, Coulomb friction [N]."""
+    """A wiper: where it is, PATH of its block, friction coefficient, Coulomb friction [N]."""
 
     path: str
     coefficient: Array
@@ -180,7 +180,7 @@ class WiperFriction(NamedTuple):
 def wipers(
     v: Values, design: Design, geometry: Geometry, state: LoadState
 ) -> tuple[WiperFriction, ...]:
-    """Friction of all wipers: the lip of a U-cup without pressure."""
+    """Friction of all wipers, each modelled as the lip of a U-cup without pressure."""
     all_wipers = []
     for name, grooves, diameter in places(geometry):
         wiper = getattr(design.seals, name).wiper
@@ -214,9 +214,9 @@ def _wiper(
 
 
 SHARES = (0.25, 0.5, 0.75, 1.0)
-"""Sealed pressures over supply pressure of the profiles, in addition to zero."""
+"""Sealed pressures of the contact profiles as shares of supply pressure, in addition to zero."""
 POINTS = 81
-"""Points of a profile, an even selection from the finite-element nodes."""
+"""Number of points of a contact profile, evenly selected from the finite-element nodes."""
 
 
 def room(ring: Ring) -> float:
@@ -226,22 +226,22 @@ def room(ring: Ring) -> float:
 
 
 def closed_form(ring: Ring) -> SealContact:
-    """Contact of the ring by the closed form, at its pressure and mounted squeeze.
+    """Contact of the ring by the formula of its type, at its pressure and mounted squeeze.
 
-    The finite elements include neither bore growth nor stated profiles.
+    For comparison with finite elements: like these, it ignores bore growth and stated profiles.
     """
     bare = replace(ring, element=ring.element.model_copy(update={"contact": ()}))
     return seal_contact(bare.at(squeeze_left=ring["squeeze"], pressure=abs(ring["pressure"])))
 
 
 def contacts(ring: Ring, supply: float) -> tuple[MountedContact, ...]:
-    """Finite elements of a ring of floats, mounted and at fractions of the supply pressure.
+    """Solve a ring by finite elements: mounted, and at `SHARES` of the supply pressure.
 
-    Back-up rings are as rigid as the groove.
+    Back-up rings count as rigid, like the groove.
 
     Parameters
     ----------
-    ring : ring of a type with finite elements
+    ring : ring with plain floats, of a type with finite elements
     supply : highest sealed pressure [Pa]
 
     Raises
@@ -272,7 +272,7 @@ def contacts(ring: Ring, supply: float) -> tuple[MountedContact, ...]:
 
 
 def profiles(mounted_contacts: Iterable[MountedContact]) -> tuple[ContactProfile, ...]:
-    """The contacts in the form of a design file."""
+    """Contact profiles in the form that a design file has."""
     return tuple(
         _profile(
             mounted_contact.pressure, mounted_contact.positions, mounted_contact.contact_pressure
@@ -282,7 +282,7 @@ def profiles(mounted_contacts: Iterable[MountedContact]) -> tuple[ContactProfile
 
 
 def _profile(pressure: float, positions: np.ndarray, stresses: np.ndarray) -> ContactProfile:
-    """A profile with fewer points, rounded to 10 nm and 10 Pa; it ends at the outer pressure."""
+    """Contact profile with fewer points, rounded to 10 nm and 10 Pa; its end has outer pressure."""
     offsets = positions - positions[0]
     indices = np.unique(
         np.linspace(0, len(offsets) - 1, min(POINTS, len(offsets))).round().astype(int)

@@ -1,4 +1,4 @@
-"""The stiffness budget: all compliances between load and ground, along the stroke."""
+"""The stiffness budget: all compliances between load and ground, over the stroke."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from .values import Values
 
 
 class Give(NamedTuple):
-    """A cause of compliance along the piston position x.
+    """Compliance from one cause (such as oil or barrel wall) as a function of piston position x.
 
-    Chamber A: a0 + a1 x, chamber B: b0 + b1 (s - x); c0 + c1 x is the coupling: volume of one
-    chamber per pressure in the other.
+    The compliance of chamber A is a0 + a1 x, that of chamber B is b0 + b1 (s - x), with stroke s.
+    The coupling c0 + c1 x is the volume change of one chamber per pressure in the other.
     """
 
     a0: Array = 0.0
@@ -36,7 +36,7 @@ class Give(NamedTuple):
     c1: Array = 0.0
 
     def at(self, position: Array, stroke: Array) -> Compliances:
-        """Compliances of both chambers at a position."""
+        """Compliances of both chambers at a piston position."""
         return Compliances(
             self.a0 + self.a1 * position,
             self.b0 + self.b1 * (stroke - position),
@@ -53,7 +53,7 @@ class Compliances(NamedTuple):
 
 
 OIL = ("oil A", "oil B", "oil in lines")
-"""Causes of compliance that are oil, not walls."""
+"""Names of the compliances due to oil, not walls."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,29 +61,30 @@ class Springs:
     """All compliances between load and ground."""
 
     chambers: dict[str, Give]
-    """By cause: oil of A, of B and in the lines, barrel, its stretch, walls of pipes and hoses."""
+    """Compliances by cause: oil in A, in B and in the lines, barrel wall, axial stretch of the
+    barrel, walls of pipes and hoses."""
     seals: Array | None
-    """Stiffness of sticking seals, parallel to the oil; None if they slide."""
+    """Stiffness of seals that stick, in parallel with the oil; None if they slide."""
     chain: dict[str, Array]
-    """Stiffnesses in series with the chambers: rod, mount, load cell."""
+    """Stiffnesses in series with the chambers, such as rod, mount and load cell."""
     geometry: Geometry
     topology: str
     pressure: Array
-    """Pressure difference across the piston, used by a published form only."""
+    """Pressure difference across the piston, which only a published formula uses."""
     rod_place: str = ""
 
     @property
     def oil(self) -> tuple[str, ...]:
-        """The causes that are oil."""
+        """Names of the compliances that are due to oil."""
         return tuple(cause for cause in OIL if cause in self.chambers)
 
     def total(self, causes: Iterable[str] | None = None) -> Give:
-        """Total compliance of some or all causes."""
+        """Total compliance of the named causes; default: of all."""
         chosen = [self.chambers[cause] for cause in (causes or self.chambers)]
         return Give(*(sum(part[1:], start=part[0]) for part in zip(*chosen, strict=True)))
 
     def hydraulic(self, position: Array, causes: Iterable[str] | None = None) -> Array:
-        """Stiffness of the closed chambers at a position, from some causes only."""
+        """Stiffness of the closed chambers at a position, from the named causes only."""
         g = self.geometry
         a, b, ab = self.total(causes).at(position, g.stroke)
         return stiffness.hydraulic_stiffness(
@@ -97,9 +98,10 @@ class Springs:
     def compliances(self, position: Array) -> dict[str, Array]:
         """Compliance by part at a position (m/N); the sum is 1/stiffness.
 
-        Per chamber, the share of each part is its strain energy under a unit force: p^T C_part p
-        with the chamber pressures p of that force, and k x^2 for the seals; independent of the
-        order of the parts.
+        The contribution of each part is twice its strain energy under a unit force. For a part of
+        the chambers it is p^T C_part p, with the chamber pressures p and the part's compliance
+        matrix C_part; for the seals it is k x^2, with stiffness k and displacement x. So the result
+        does not depend on the order of the parts.
         """
         if self.topology != "per_chamber":
             parts = self._published(position)
@@ -110,7 +112,7 @@ class Springs:
     def _by_energy(self, position: Array) -> dict[str, Array]:
         g = self.geometry
         a, b, ab = self.total().at(position, g.stroke)
-        det = a * b - ab * ab  # 0 if a chamber is empty: rigid, so never a divisor
+        det = a * b - ab * ab  # 0 if a chamber is empty (rigid); never divided by
         swing_a, swing_b = g.area_a * b + g.area_b * ab, -(g.area_a * ab + g.area_b * a)
         seals = 0.0 if self.seals is None else self.seals
         whole = g.area_a * swing_a - g.area_b * swing_b + seals * det
@@ -129,12 +131,12 @@ class Springs:
         return parts
 
     def _published(self, position: Array) -> dict[str, Array]:
-        """Totals of each kind in series, as in the published sources."""
+        """Compliances with the total of each kind in series, as in the published sources."""
         g = self.geometry
         square_a, square_b = g.area_a * g.area_a, g.area_b * g.area_b
 
         def in_series(a: Array, b: Array) -> Array:
-            """Compliance of two parallel springs; an empty chamber is rigid."""
+            """Compliance of the springs of both chambers in parallel; an empty chamber is rigid."""
             return a * b / (a + b)
 
         def side_a(cause: str) -> Array:
@@ -167,17 +169,18 @@ class Springs:
         return 1 / sum(self.compliances(position).values())
 
     def per_chamber_stiffness(self, position: Array) -> Array:
-        """Axial stiffness at a position, per chamber for every topology."""
+        """Axial stiffness at a position, with a separate spring per chamber, for every topology."""
         return 1 / (sum(self._by_energy(position).values()) + self.series_compliance())
 
 
 def _stretch(design: Design, g: Geometry, wall: Wall, extra: Array) -> Give:
-    """Axial stretch of the barrel under the pressure of the chamber that loads it.
+    """Compliance by axial stretch of the barrel, under the pressure of the chamber that loads it.
 
-    Cap-mounted, N = p_B A_B over the whole length: the head moves by e_N L N + e_p (x p_A +
-    y p_B), and N narrows both chambers by e_p N per length; e_p is the strain per pressure, y the
-    wetted length of chamber B: the rest of the stroke and the extra length of the barrel (`extra`).
-    Head-mounted, the same with p_A A_A. Tie rods carry their share of N.
+    With a cap mount, the axial force is N = p_B A_B over the whole length L. The head moves by
+    e_N L N + e_p (x p_A + y p_B), and N narrows both chambers by e_p N per length. Here e_N is the
+    axial strain per axial force, e_p that per pressure, x the piston position, and y the wetted
+    length of chamber B: the rest of the stroke and the extra length of the barrel (`extra`). With
+    a head mount, N = p_A A_A. Tie rods carry their share of N.
     """
     shortening = wall.swelling.shortening * wall.path.share
     cap = design.cylinder.mount.startswith("cap")
@@ -199,7 +202,7 @@ def springs(
     breakaway: Array,
     branches: dict[Chamber, ChamberLines],
 ) -> Springs:
-    """Compliance of chambers, lines, rod, mount, seals and load cell.
+    """Derive the compliances of chambers, lines, rod, mount, seals and load cell.
 
     `breakaway` is the force at which the seals break away [N].
     """
@@ -247,14 +250,14 @@ def springs(
 
 
 def weakest(s: Springs) -> Array:
-    """Position of least stiffness in every case."""
+    """Position of least stiffness in every load case."""
     if s.topology != "per_chamber":
         return _softest(s.stiffness, s.geometry.stroke)
     return weakest_per_chamber(s)
 
 
 def weakest_per_chamber(s: Springs) -> Array:
-    """Position of least stiffness of the chambers themselves, for every topology."""
+    """Position of least stiffness, with a separate spring per chamber, for every topology."""
     give = s.total()
     return stiffness.weakest_position(
         area_a=s.geometry.area_a,
@@ -270,9 +273,10 @@ def weakest_per_chamber(s: Springs) -> Array:
 
 
 def _softest(curve: Callable[[Array], Array], stroke: Array) -> Array:
-    """Position of least stiffness by grid refinement.
+    """Find the position of least stiffness by grid refinement.
 
-    Uses real parts only: at a minimum the derivative by position does not affect the stiffness.
+    Only real parts are used: at a minimum, a small change of position does not affect the
+    stiffness, so derivatives need no change of position.
     """
     length = np.asarray(real(stroke))
     middle, reach = 0.5 * length, 0.5 * length
@@ -288,7 +292,7 @@ def _softest(curve: Callable[[Array], Array], stroke: Array) -> Array:
 
 
 def compute(s: Springs, moving_mass: Array, out: MetricArrays) -> Array:
-    """Stiffness and frequency metrics; returns the position of least stiffness."""
+    """Compute stiffness and frequency metrics; return the position of least stiffness."""
     position = weakest(s)
     parts = s.compliances(position)
     total = 1 / sum(parts.values())
@@ -305,7 +309,7 @@ def compute(s: Springs, moving_mass: Array, out: MetricArrays) -> Array:
 
 
 def warnings(s: Springs) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) for effects that the stiffness excludes or assumes."""
+    """(metric, sentence) for effects that the stiffness neglects or assumes."""
     if s.topology != "per_chamber":
         for metric in ("stiffness_min", "natural_frequency"):
             yield (

@@ -1,8 +1,9 @@
-"""State of all load cases: pressures, force, speed, temperature, and the oil at each.
+"""State of all load cases: pressures, force, speed, temperature, and oil properties there.
 
-Oil properties are bulk modulus, viscosity, density and vapour pressure, with their range: boiling,
-laws over pressure, temperatures. Pressures are gauge. Without a stated law the library entry
-decides. All are properties of the pure liquid, except `bulk_modulus`, which includes entrained air.
+Oil properties are bulk modulus, viscosity, density and vapour pressure. The module also warns
+outside their range: boiling, pressures beyond the laws, temperatures beyond the data. Pressures
+are gauge. If the design states no law, that of the library entry applies. All are properties of
+the pure liquid, except `bulk_modulus`, which includes entrained air.
 """
 
 from __future__ import annotations
@@ -31,12 +32,12 @@ Law: TypeAlias = Callable[..., Array]
 
 
 def alone(material: Material, **choices: object) -> tuple[Values, FluidSection, MaterialValues]:
-    """Inputs of the functions below for a library oil without a design.
+    """Inputs of the oil functions in this module, for a library oil without a design.
 
     Parameters
     ----------
     material : the oil
-    choices : other keys of the section `fluid`, SI
+    choices : values for other keys of the block `fluid`, SI
     """
     section = FluidSection.model_validate({"material": material.name, **choices})
     numbers = {f"materials.{material.name}.{key}": x for key, x in material.numbers.items()}
@@ -58,7 +59,7 @@ def pure_bulk_modulus(
 
 
 def _properties(stock: MaterialValues, name: str) -> Callable[[str], Array]:
-    """Properties of an oil by their name."""
+    """Properties of an oil by name."""
     return lambda key: stock.get(name, key)
 
 
@@ -81,7 +82,7 @@ def oil_density(
     temperature: Array,
     pressure: Array | None = None,
 ) -> Array:
-    """Density at a temperature and a pressure (None: zero), by the law of the bulk modulus."""
+    """Density at a temperature and a pressure (None: zero), consistent with the bulk modulus."""
     name = section.material
     rho = stock.get(name, "density")
     expansion = stock.get(name, "volume_expansion")
@@ -102,7 +103,7 @@ def oil_density(
 def kinematic_viscosity(
     v: Values, section: FluidSection, stock: MaterialValues, temperature: Array
 ) -> Array:
-    """Kinematic viscosity at zero gauge pressure, from the oil's table, scaled by its value."""
+    """Kinematic viscosity at zero gauge pressure, from the oil's table scaled to its viscosity."""
     oil = stock.material(section.material)
     points = oil.viscosity_points
     stated = oil.numbers["kinematic_viscosity"]
@@ -155,7 +156,7 @@ def under_pressure(
 
 
 def vapour_pressure(stock: MaterialValues, name: str, temperature: Array) -> Array | None:
-    """Vapour pressure (absolute) at a temperature; None if the library has none."""
+    """Vapour pressure (absolute) at a temperature; None if the library states none."""
     stated = stock.get(name, "vapour_pressure")
     if stated is None:
         return None
@@ -170,7 +171,7 @@ def vapour_pressure(stock: MaterialValues, name: str, temperature: Array) -> Arr
 
 
 def laws(section: FluidSection, oil: Material) -> Iterable[tuple[Law, str]]:
-    """(function, quantity) of all laws of the oil over pressure in an evaluation."""
+    """(function, quantity) of every law over pressure that an evaluation uses for the oil."""
     modulus = BULK_MODULUS_LAWS[bulk_modulus_law(section.bulk_modulus_law, oil.numbers)]
     if modulus.model is not None:
         yield modulus.model, "bulk modulus"
@@ -182,24 +183,25 @@ def laws(section: FluidSection, oil: Material) -> Iterable[tuple[Law, str]]:
 
 @dataclass(frozen=True, slots=True)
 class LoadState:
-    """Quantities of the load cases, (cases, 1) or (cases, designs); pressures are gauge.
+    """Quantities of the load cases, (cases, 1) or (cases, designs). Pressures are gauge.
 
-    Moving: driven chamber at the case pressure (default: supply), the other at return pressure.
-    Holding: a critical-centre servo valve closes the ports against the force [Merritt1967].
+    While the piston moves, the driven chamber is at the pressure of the load case (default: supply)
+    and the other chamber at return pressure. While the load is held, a critical-centre servo valve
+    closes the ports against the force [Merritt1967].
     """
 
     push: np.ndarray
     joint: DrivenJoint | None
     positions: tuple[Array | None, ...]
-    """Piston position of every case; None for the worst."""
+    """Piston position of every load case; None: the worst position."""
     reach: Array
-    """Piston position for column and side load: stated, or the full stroke (worst)."""
+    """Piston position for buckling and side load: stated, or the full stroke (worst)."""
     demands: dict[str, Demand]
-    """Demands of the load: worst, where its force is largest, and at both stops of a joint."""
+    """Force, speed and mass that the load demands, by position (`linkage.demands`)."""
     force: Array
-    """Worst demand: for a linkage without stated position at the least lever arm."""
+    """Force at the worst position: at the shortest lever arm of a linkage, unless stated."""
     speed: Array
-    """Worst force: for a joint without stated position at the largest lever arm."""
+    """Speed at the worst position: at the largest lever arm of a linkage, unless stated."""
     side_load: Array
     temperature: Array
     driven_pressure: Array
@@ -210,21 +212,22 @@ class LoadState:
     kinematic_viscosity: Array
     density: Array
     dynamic_viscosity: Array
-    """Viscosities and density at the case temperature and zero gauge pressure."""
+    """The two viscosities and the density are at the temperature of the load case and zero gauge
+    pressure."""
     dynamic_viscosity_a: Array
     dynamic_viscosity_b: Array
-    """Viscosities at the pressures of the moving chambers."""
+    """The viscosities in chambers A and B are at the chamber pressures while moving."""
     bulk_modulus_a: Array
     bulk_modulus_b: Array
 
 
 def overhang(g: Geometry, state: LoadState) -> Array:
-    """Distance of the rod eye from the middle of the head bearing, at the position of the case."""
+    """Distance of the rod eye from the middle of the head bearing, in every load case."""
     return state.reach + g.rod_extension + g.eye_offset + (g.head_length + g.plate) / 2
 
 
 def side_reactions(g: Geometry, state: LoadState) -> dict[str, Array]:
-    """Side forces on rod and piston guides."""
+    """Side forces on the guides of rod and piston."""
     head, piston = retention.guide_forces(
         side_force=state.side_load, overhang=overhang(g, state), span=g.bearing_span
     )
@@ -234,7 +237,7 @@ def side_reactions(g: Geometry, state: LoadState) -> dict[str, Array]:
 def _positions(
     v: Values, design: Design, geometry: Geometry, joint: DrivenJoint | None
 ) -> tuple[Array | None, ...]:
-    """Piston position of every case, from its joint angle or stated; None for the worst."""
+    """Piston position of every load case, as stated or from its joint angle; None: the worst."""
     rows: list[Array | None] = []
     for case in design.load_cases:
         at = f"load_cases[{case.name}]"
@@ -250,14 +253,14 @@ def _positions(
 
 
 def _reach(geometry: Geometry, positions: Sequence[Array | None]) -> Array:
-    """Position of every case; a single number if all are ``worst``, which is full extension."""
+    """Position of every load case; ``worst`` is full extension, one number if all are ``worst``."""
     if all(position is None for position in positions):
         return geometry.stroke
     return stacked([geometry.stroke if x is None else x for x in positions])
 
 
 def _stated(v: Values, design: Design, field: str, otherwise: Array) -> Array:
-    """A held pressure of every case: stated, or `otherwise`."""
+    """One of the holding pressures of every load case: stated, or `otherwise`."""
     stated = np.array([[getattr(case, field) is not None] for case in design.load_cases])
     return where(stated, v.case(field, 0.0), otherwise) if stated.any() else otherwise
 
@@ -265,7 +268,7 @@ def _stated(v: Values, design: Design, field: str, otherwise: Array) -> Array:
 def _holding(
     v: Values, design: Design, geometry: Geometry, push: Array, force: Array
 ) -> tuple[Array, Array]:
-    """Pressures that hold the force, unless the case states them."""
+    """Chamber pressures that hold the force, unless the load case states them."""
     holding_a, holding_b = stiffness.holding_pressures(
         force=where(push, force, -force),
         supply_pressure=v["supply.pressure"],
@@ -282,7 +285,7 @@ def _holding(
 def holding(
     v: Values, design: Design, stock: MaterialValues, geometry: Geometry, s: LoadState, end: str
 ) -> LoadState:
-    """The state with the demand of the load at one stop of a joint, holding."""
+    """Copy the state, with the load of a joint held at one of its stops."""
     force = s.demands[end].force
     holding_a, holding_b = _holding(v, design, geometry, s.push, force)
     return replace(
@@ -338,7 +341,7 @@ def derive(v: Values, design: Design, stock: MaterialValues, geometry: Geometry)
 def compute(
     section: FluidSection, stock: MaterialValues, state: LoadState, out: MetricArrays
 ) -> None:
-    """Margin of the chambers to boiling of the oil, in every case."""
+    """Compute the pressure margin of the chambers to boiling of the oil, in every load case."""
     limit = vapour_pressure(stock, section.material, state.temperature)
     if limit is None:
         why = f"{section.material} has no vapour_pressure: add it under materials"
@@ -378,7 +381,7 @@ def warnings(
 def _temperatures(
     oil: Material, cases: Sequence[str], state: LoadState
 ) -> Iterable[tuple[str, str]]:
-    """Load cases outside the temperatures and viscosities of the oil's data or service range."""
+    """Warn of temperatures or viscosities outside the oil's data or service range."""
     low = oil.numbers.get("temperature_min", -np.inf)
     high = oil.numbers.get("temperature_max", np.inf)
     for case, temperature, viscosity in zip(

@@ -1,7 +1,8 @@
-"""Static strength in an evaluation: wall, rod, column, thread, retention, caps, pins, guides.
+"""Static strength of wall, rod, column, thread, retention, caps, pins and guides.
 
-Loads are the largest forces of the supply: p A_A pushing (stall, column), p A_B pulling (rod
-tension), and the end-stop force through barrel and retention.
+Loads are the largest forces that the supply pressure p can cause: p A_A pushing (stall, column),
+p A_B pulling (rod tension), and the end-stop force through barrel and retention. A_A and A_B are
+the piston areas of the chambers.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from .state import LoadState, side_reactions
 from .values import Values
 
 HOLE = 2.0
-"""Stress at the edge of a small central hole over that of the solid plate [Timoshenko1959]."""
+"""Factor by which a small central hole raises the stress in a plate [Timoshenko1959]."""
 NO_RETENTION = "no retention stated: add retention"
 
 
@@ -42,7 +43,7 @@ class LoadedJoint:
 def joint_under_load(
     v: Values, design: Design, stock: MaterialValues, g: Geometry, wall: Wall
 ) -> LoadedJoint | None:
-    """The joint of a design under the largest force; None without retention."""
+    """The joint of a design under its largest separating force; None without `retention`."""
     joint = joint_of(design)
     if joint is None:
         return None
@@ -70,7 +71,7 @@ def compute(
     loaded_joint: LoadedJoint | None,
     out: MetricArrays,
 ) -> None:
-    """All strength metrics."""
+    """Compute all metrics of static strength."""
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
     yields, bursts = wall.yield_pressure, wall.burst_pressure
@@ -110,9 +111,9 @@ def _pressure_factors(
     bursts: Mapping[str, Array],
     out: MetricArrays,
 ) -> None:
-    """Strength of the barrel over working and proof pressure, including its thread.
+    """Compute the strength of the barrel, with its thread, over working and proof pressure.
 
-    `yields` and `bursts` are pressures by place.
+    `yields` and `bursts` are the pressures at yield and burst by location.
     """
     proof = v["supply.proof_ratio"] * supply
     liner = {place: p / supply for place, p in wall.yield_pressure.items()}
@@ -167,7 +168,7 @@ def _rod_end(
 
 
 def _retention(joint_strength: Strength | str, out: MetricArrays) -> None:
-    """Retention of caps and head: elastic limit and breaking load over the largest axial force."""
+    """Compute elastic limit and breaking load of the joint over the largest axial force."""
     if isinstance(joint_strength, str):
         out.skip("retention_factor", joint_strength)
         out.skip("retention_burst_factor", joint_strength)
@@ -177,7 +178,7 @@ def _retention(joint_strength: Strength | str, out: MetricArrays) -> None:
 
 
 def joint_metrics(loaded_joint: LoadedJoint | None, out: MetricArrays) -> None:
-    """Metrics of the joint; metrics of other joints get a reason."""
+    """Compute the metrics of the joint; give a reason why those of other joints are missing."""
     metrics = {} if loaded_joint is None else loaded_joint.joint.own(loaded_joint.loaded)
     for joint in JOINTS.values():
         for name, absent in joint.metrics.items():
@@ -188,7 +189,7 @@ def joint_metrics(loaded_joint: LoadedJoint | None, out: MetricArrays) -> None:
 
 
 def _fittings(stock: MaterialValues, bond: Overlap | str, push: Array, out: MetricArrays) -> None:
-    """Bond of the rod fittings under the push, which exceeds any pull."""
+    """Compute the strength of the rod fittings' bonds under the push, which exceeds any pull."""
     if isinstance(bond, str):
         out.skip("fitting_factor", bond)
     else:
@@ -198,10 +199,11 @@ def _fittings(stock: MaterialValues, bond: Overlap | str, push: Array, out: Metr
 def _caps(
     stock: MaterialValues, design: Design, g: Geometry, supply: Array, out: MetricArrays
 ) -> None:
-    """Bending of the end plates; plate and plug of the head bend as one turned part.
+    """Compute bending of the end plates; plate and plug of the head bend as one turned part.
 
-    The joint supports the cap while the piston is at the far end. On a clevis, the neck carries the
-    push, with pressure bending the plate around it, and the pull, which enters at the skirt.
+    While the piston is at the far end, the joint supports the cap. On a clevis, the neck carries
+    the push, and the pressure bends the plate around it. The neck also carries the pull, which
+    enters the plate at the skirt.
     """
     name = design.caps.material
     strength = stock.allowable(name, "yield_strength")
@@ -250,7 +252,7 @@ def _pins(v: Values, stock: MaterialValues, design: Design, push: Array, out: Me
 
 
 def _guided(grooves: Sequence[Groove], length: Array) -> Array:
-    """Length that carries side load: guide rings, else the part without its grooves."""
+    """Length that carries side load: guide rings, else the part minus its grooves."""
     for groove in grooves:
         if groove.role == "guide":
             return groove.count * groove.width

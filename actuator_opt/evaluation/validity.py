@@ -1,4 +1,4 @@
-"""Validity of a result: exceeded ranges, unverified data, and the model of each number."""
+"""Validity of a result: exceeded ranges, unverified data, and the models behind the metrics."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from .values import Values
 
 @dataclass(frozen=True, slots=True)
 class ModelDocumentation:
-    """A model function with the contents of its docstring."""
+    """A model function, with the source and valid range that its docstring states."""
 
     name: str
     summary: str
@@ -47,7 +47,7 @@ _REFERENCES = re.compile(r"References\n\s*-+\n(.*?)(?:\n\s*\n|\Z)", re.DOTALL)
 
 @cache
 def describe(function: Callable[..., object]) -> ModelDocumentation:
-    """Name, first sentence, source and valid range of a model function."""
+    """Read the name, first sentence, source and valid range of a model function."""
     doc = function.__doc__ or ""
     valid = _VALID.search(doc)
     reference = _REFERENCES.search(doc)
@@ -66,7 +66,7 @@ def describe(function: Callable[..., object]) -> ModelDocumentation:
 
 @cache
 def function_of(name: str) -> Callable[..., object]:
-    """Model function of a name in the table of metrics, ``"forces.push_force"``."""
+    """Model function that the table of metrics names, such as ``"forces.push_force"``."""
     module, _, function = name.partition(".")
     model: Callable[..., object] = getattr(import_module(f"{formulas.__name__}.{module}"), function)
     return model
@@ -75,12 +75,12 @@ def function_of(name: str) -> Callable[..., object]:
 def model_of(
     metric: str, *, wall: str, criterion: str = "max_stress", place: str | None = None
 ) -> ModelDocumentation | None:
-    """Model of a metric at its governing place; None for plain geometry and inputs.
+    """Model of a metric at its governing location; None for plain geometry and inputs.
 
-    `wall` is the barrel's model, `criterion` that of its plies.
+    `wall` is the model of the barrel, `criterion` the failure criterion of its plies.
     """
     row = ROWS.get(metric)
-    if row is None:  # a metric of the user
+    if row is None:  # a user metric
         return None
     name = row.by_wall.get(wall) or row.model  # type: ignore[call-overload]
     for pattern, other in row.at.items():
@@ -92,7 +92,7 @@ def model_of(
 
 
 FILM_ERROR = 0.02
-"""Relative error of a film surrogate from which a warning is given."""
+"""Relative error of a film surrogate above which a warning is given."""
 _SURROGATES = {
     "friction": "friction_running",
     "flow": "rod_leakage",
@@ -101,7 +101,7 @@ _SURROGATES = {
 
 
 def seal_warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) of all warnings about the seals."""
+    """(metric, sentence) for every warning about the seals."""
     for ring in run.rings:
         yield from _contact(subject, ring)
         yield from _limits(subject, run, ring, float(v["supply.pressure"]))
@@ -112,7 +112,7 @@ def seal_warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable
 
 
 def _contact(subject: PreparedDesign, ring: Ring) -> Iterable[tuple[str, str]]:
-    """Laws out of range, a compound that the fluid attacks, or a lost contact."""
+    """Warn of contact laws out of range, a compound that the fluid attacks, and a lost contact."""
     liquid, compound = subject.design.fluid.material, ring.element.compound
     if not ring.element.contact:
         for text in ring.element.seal_type.warnings(ring.sizes):
@@ -139,7 +139,7 @@ def _contact(subject: PreparedDesign, ring: Ring) -> Iterable[tuple[str, str]]:
 
 
 def _leak_at_rest(subject: PreparedDesign) -> Iterable[tuple[str, str]]:
-    """The averaged film of a rod seal also leaks on the instroke."""
+    """Warn of a rod seal whose film would leak even at rest."""
     if any(
         place == "rod" and not table.row.outward and table.flow > 0
         for (place, _, _), table in subject.films.items()
@@ -152,7 +152,7 @@ def _leak_at_rest(subject: PreparedDesign) -> Iterable[tuple[str, str]]:
 
 
 def _film(name: str, table: FilmTable) -> Iterable[tuple[str, str]]:
-    """A surrogate with a large error, beyond its box, or with points without solution."""
+    """Warn of a film surrogate with a large error, outside its range, or with unsolved points."""
     for quantity, metric in _SURROGATES.items():
         if table.errors[quantity] > FILM_ERROR:
             error = 100 * table.errors[quantity]
@@ -174,7 +174,7 @@ def _film(name: str, table: FilmTable) -> Iterable[tuple[str, str]]:
 def _limits(
     subject: PreparedDesign, run: ModelRun, ring: Ring, supply: float
 ) -> Iterable[tuple[str, str]]:
-    """Pressure and speed beyond the limits of the compound, extrusion beyond its data."""
+    """Warn of pressure, speed and extrusion beyond the limits or data of the compound."""
     compound = subject.materials[ring.element.compound]
     limits = compound.numbers
     fastest = float(np.max(np.real(run.state.speed)))
@@ -202,7 +202,7 @@ def _limits(
 def seal_models(
     rings: Iterable[Ring], subject: PreparedDesign, texts: Iterable[str]
 ) -> Iterable[ModelUse]:
-    """Models of all sealing rings; `texts` are the texts of the warnings."""
+    """Models of all sealing rings; `texts` are the sentences of the warnings."""
     texts = tuple(texts)
     for ring in rings:
         doubted = any(text.startswith(ring.label) for text in texts)
@@ -220,7 +220,7 @@ def seal_models(
 
 
 def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:
-    """Contact model of a ring, with its O-ring law if it has one."""
+    """Contact model of a ring, with the name of its O-ring law if it has one."""
     element = ring.element
     at = f"squeeze {100 * element.squeeze:.4g} %"
     if element.contact:
@@ -250,7 +250,7 @@ def _use(function: Callable[..., object], used_at: str, *, doubted: bool) -> Mod
 
 
 LONGEST_LIFE = 1e9
-"""Cycles up to which stress-life curves have data [Shigley2011]."""
+"""Number of cycles up to which stress-life curves have data [Shigley2011]."""
 
 
 def kind_of(subject: PreparedDesign) -> str:
@@ -259,7 +259,7 @@ def kind_of(subject: PreparedDesign) -> str:
 
 
 def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) for each model or value outside its range."""
+    """(metric, sentence) for each model or value used outside its valid range."""
     g = run.geometry
     thin = float(np.max(run.wall.thin_ratio))
     if kind_of(subject) == "thin_laminate" and thin > laminate.THIN_WALL_LIMIT:
@@ -312,7 +312,7 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
 
 
 def _measured(subject: PreparedDesign, v: Values) -> Iterable[tuple[str, str]]:
-    """Values outside the bounds of their test record."""
+    """Warn of values outside the bounds of the test record that they come from."""
     for path, bounds in subject.design.measured.items():
         value = float(np.real(np.squeeze(v[path]))) if path in v else None
         if value is not None and not bounds.lower <= value <= bounds.upper:
@@ -325,7 +325,7 @@ def _measured(subject: PreparedDesign, v: Values) -> Iterable[tuple[str, str]]:
 
 
 def _wall_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str, str]]:
-    """Effects that the wall model leaves out."""
+    """Warn of effects that the wall model leaves out."""
     laminated = kind_of(subject) in LAMINATES
     environment = subject.design.environment
     if laminated and (environment is None or environment.cure_temperature is None):
@@ -357,7 +357,7 @@ def _wall_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str
 
 
 def _rod_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str, str]]:
-    """Effects that the strength of the rod leaves out."""
+    """Warn of effects that the strength calculation of the rod leaves out."""
     rod = run.rod
     if rod.layers and not rod.cured:
         why = "no cure temperature stated"
@@ -378,7 +378,7 @@ def _rod_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str,
 
 
 def _bond_warnings(run: ModelRun) -> Iterable[tuple[str, str]]:
-    """The bond with the highest combined shear of force and temperature, if above its strength."""
+    """Warn of a bond whose shear from force and temperature together exceeds its strength."""
     metrics = run.computed.metrics
     sums = {}
     for place, metric in (("caps", "retention_factor"), ("rod fittings", "fitting_factor")):
@@ -405,10 +405,11 @@ def models(
     outside: set[str],
     texts: Iterable[str],
 ) -> Iterable[ModelUse]:
-    """All models of computed metrics, with their values.
+    """All models behind the computed metrics, with the names of these metrics.
 
-    A model is extrapolated if used outside its own range; a metric that only inherits such a value
-    is marked in its own row, not here. `texts` are the texts of the warnings.
+    A model is extrapolated if it is used outside its own valid range. A metric that only inherits
+    an extrapolated value is marked at the metric, not at its model. `texts` are the sentences of
+    the warnings.
     """
     texts = tuple(texts)
     wall, criterion = kind_of(subject), subject.design.barrel.criterion

@@ -1,7 +1,7 @@
-"""Numbers of an evaluated design: fixed numbers as floats, varied numbers as arrays.
+"""Numerical values of an evaluated design: fixed values as floats, varied values as arrays.
 
-Arrays of varied numbers are (designs,); numbers of load cases are (cases, 1) or (cases, designs),
-so all results of a kernel broadcast to (cases, designs). Every PATH that is read is recorded: a
+Varied values are arrays (designs,). Values of load cases are (cases, 1) or (cases, designs), so
+that all results broadcast to (cases, designs). Every PATH that is read is recorded, because a
 variable that no model reads is a fault of the design file.
 """
 
@@ -18,7 +18,7 @@ from ..base.numeric import Array, namespace
 
 
 class Values:
-    """Numbers by PATH, in SI."""
+    """Numerical values by PATH, in SI."""
 
     def __init__(
         self,
@@ -45,7 +45,7 @@ class Values:
         return self[path] if path in self else default  # noqa: SIM401 (self[path] records the read)
 
     def case(self, field: str, default: Array = None) -> Array:
-        """A field of all load cases, (cases, 1) or (cases, designs)."""
+        """The value of a field in every load case, (cases, 1) or (cases, designs)."""
         if field not in self._case_cache:
             self._case_cache[field] = stacked(
                 [self.get(f"load_cases[{name}].{field}", default) for name in self.cases]
@@ -54,7 +54,7 @@ class Values:
 
 
 def stacked(rows: Sequence[Array]) -> Array:
-    """A number per load case, floats or arrays (designs,), as (cases, 1) or (cases, designs)."""
+    """Stack one float or array (designs,) per load case to (cases, 1) or (cases, designs)."""
     if all(isinstance(row, float) for row in rows):
         return np.array(rows)[:, None]
     if len(rows) == 1 and namespace(rows[0]) is not np:  # a traced value is a scalar
@@ -63,13 +63,13 @@ def stacked(rows: Sequence[Array]) -> Array:
 
 
 def of_case(value: Array, index: int) -> float:
-    """The number of a case from an array (cases, 1), (1, 1) or a float."""
+    """The value of a load case, from a float or an array (cases, 1) or (1, 1)."""
     array = np.atleast_2d(np.asarray(value))
     return float(array[min(index, array.shape[0] - 1), 0])
 
 
 def plain(value: Any) -> Any:
-    """Data classes, arrays and sequences as plain data for JSON; None for values not finite."""
+    """Convert data classes, arrays and sequences to JSON data; values not finite become None."""
     if is_dataclass(value):
         return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, Mapping):

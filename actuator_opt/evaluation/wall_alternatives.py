@@ -1,6 +1,7 @@
-"""Alternatives to the barrel wall: other thicknesses, thin-wall theory, or metal.
+"""Alternatives to the barrel wall: other thicknesses, thin-wall theory, metal.
 
-Also the decay of bore growth beside the pressure step under the piston seal. Floats only.
+The module also computes how bore growth decays beside the pressure step under the piston seal. All
+values are plain floats.
 """
 
 from __future__ import annotations
@@ -24,18 +25,20 @@ from .plies import Layer
 from .values import Values
 
 METALS = ("steel_e355", "al_7075_t6")
-"""Metal barrels to compare with every wall: the usual honed steel tube, the usual light alloy."""
+"""Metals with which every wall is compared: those of the usual honed steel tube and of the usual
+light-alloy tube."""
 FACTORS = (0.8, 1.25)
-"""Bore growths, over the actual growth, for which a thickness is computed."""
+"""Bore growths for which a thickness is computed, as multiples of the actual growth."""
 LARGEST = 2.0
-"""Largest thickness tried, in bore radii."""
+"""Largest thickness that is tried, in bore radii."""
 
 
 @dataclass(frozen=True, slots=True)
 class Thickness:
     """Thickness [m] of a layer that changes the bore growth [m] by `factor`.
 
-    `mass_per_length` [kg/m] is that of the whole wall; both None if no thickness suffices.
+    `mass_per_length` [kg/m] is the mass of the whole wall. Thickness and mass are None if no
+    thickness gives this growth.
     """
 
     factor: float
@@ -46,7 +49,7 @@ class Thickness:
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """A wall quantity (SI) by the exact tube and by the thin laminate; None if unlimited."""
+    """A quantity of the wall (SI) by the exact tube and by the thin laminate; None if unlimited."""
 
     name: str
     exact: float | None
@@ -57,9 +60,9 @@ class Difference:
 class Settling:
     """Decay of bore growth beside the pressure step under the piston seal.
 
-    `decay_length` is 1/beta [m], `radius_ratio` mid-radius over thickness (thin shells above about
-    5), `at_seal` the share of the far growth at the step, `shares` at distances into the pressure
-    [m].
+    `decay_length` is 1/beta [m]. `radius_ratio` is mid-radius over thickness; shells are thin above
+    about 5. `at_seal` is the growth at the step as a share of the growth far from it, and `shares`
+    are those shares at several distances [m] into the pressurised length.
     """
 
     decay_length: float
@@ -70,11 +73,12 @@ class Settling:
 
 @dataclass(frozen=True, slots=True)
 class MetalTube:
-    """A barrel with the same bore and pressure; without a material, that of the design.
+    """A metal barrel for the design's bore and pressure, or the design's wall (no `material`).
 
-    `for_growth` and `for_burst` are the walls [m] required by either, None if impossible or not
-    required; `thickness` is the larger. Growth [m] is at supply pressure without axial force,
-    burst and yield pressures [Pa] are those of the worse axial force, mass is per length [kg/m].
+    `for_growth` and `for_burst` are the wall thicknesses [m] that bore growth and burst pressure
+    require; None if no thickness suffices or none is required. `thickness` is the larger of both.
+    Growth [m] is at supply pressure without axial force. Burst and yield pressures [Pa] are for the
+    worse axial force. Mass is per length [kg/m].
     """
 
     material: str
@@ -88,12 +92,12 @@ class MetalTube:
 
 
 def single(value: Array) -> float:
-    """The only number of a single design's array."""
+    """Return the only number in the array of a single design."""
     return float(np.squeeze(np.real(value)))
 
 
 def least(pressures: Mapping[str, Array]) -> tuple[float | None, str]:
-    """The smallest finite pressure, and its place; None if there is none."""
+    """The smallest finite pressure and its location; None if no pressure is finite."""
     values = {place: single(value) for place, value in pressures.items()}
     usable = {place: value for place, value in values.items() if isfinite(value)}
     if not usable:
@@ -103,7 +107,7 @@ def least(pressures: Mapping[str, Array]) -> tuple[float | None, str]:
 
 
 def governing_force(wall: Wall) -> float:
-    """Axial force [N] at the largest bore growth: that of a load case, or zero."""
+    """Axial force [N] with the largest bore growth: the force of a load case, or zero."""
     pushed = np.atleast_1d(np.squeeze(np.real(wall.swelling.growth_by_force * wall.path.cases)))
     worst = int(np.argmax(pushed))
     force = np.atleast_1d(np.squeeze(np.real(wall.path.cases)))
@@ -111,7 +115,7 @@ def governing_force(wall: Wall) -> float:
 
 
 def mass_per_length(layers: Sequence[Layer], densities: Sequence[float], inner: float) -> float:
-    """Mass of the wall per length [kg/m]."""
+    """Mass per length of the wall [kg/m]."""
     total = 0.0
     for layer, density in zip(layers, densities, strict=True):
         outer = inner + float(layer.thickness)
@@ -121,7 +125,7 @@ def mass_per_length(layers: Sequence[Layer], densities: Sequence[float], inner: 
 
 
 def main_layer(layers: Sequence[Layer], inner_radius: float) -> int:
-    """The layer with the largest hoop force; a ply before a liner."""
+    """Index of the layer with the largest hoop force; plies take precedence over a liner."""
     tube = layered_tube(layers=[layer.as_tube() for layer in layers], inner_radius=inner_radius)
     carried = tube.wall[3] * (tube.outer - tube.inner)
     plies = [i for i, layer in enumerate(layers) if not layer.isotropic] or range(len(layers))
@@ -137,7 +141,7 @@ def thicknesses(
     force: float,
     index: int,
 ) -> tuple[Thickness, ...]:
-    """Thickness of layer `index` for bore growths around the actual growth, by the exact tube."""
+    """Thickness of layer `index` for each bore growth of `FACTORS`, by the exact tube."""
     inner = float(g.inner_radius)
     wall = [layer.as_tube() for layer in layers]
     tube = layered_tube(layers=wall, inner_radius=inner)
@@ -155,7 +159,7 @@ def thicknesses(
                 axial_force_per_pressure=force / pressure,
                 largest_thickness=LARGEST * inner,
             )
-        except ValueError:  # a growth is out of reach: find which
+        except ValueError:  # at least one growth is out of reach: find which
             return (
                 [x for factor in factors for x in solve([factor])] if len(factors) > 1 else [None]
             )
@@ -176,7 +180,7 @@ def thicknesses(
 def differences(
     subject: PreparedDesign, v: Values, stock: MaterialValues, run: ModelRun, *, exact: bool
 ) -> tuple[Difference, ...]:
-    """The wall by both laminate theories; `exact` states which theory the design uses."""
+    """Compare the wall by both laminate theories; `exact`: the design uses the exact tube."""
     other = laminated.compute(v, subject.design, stock, run.geometry, run.state, exact=not exact)
     pair = (run.wall, other) if exact else (other, run.wall)
     growths = [float(np.max(np.real(wall.growth))) for wall in pair]
@@ -189,7 +193,7 @@ def differences(
 
 
 def settling(layers: Sequence[Layer], g: Geometry) -> Settling:
-    """Decay length of the wall as a thin shell, and its growth beside the step."""
+    """Decay length of the wall as a thin shell, and its growth beside the pressure step."""
     stiffnesses = []
     for layer in layers:
         c = layer.constants
@@ -231,10 +235,11 @@ def metal_tubes(
     densities: Sequence[float],
     run: ModelRun,
 ) -> tuple[MetalTube, ...]:
-    """The wall of the design, and the thinnest barrel of each of `METALS` for the same duty.
+    """The wall of the design, and the thinnest barrel for the same duty from each of `METALS`.
 
-    The duty is its bore growth without axial force, and the required burst pressure for every load
-    path (its own burst pressure if lower, or if the burst check is waived).
+    The duty is the bore growth of the design's wall without axial force, and the required burst
+    pressure for every load path. The burst pressure of the design's wall replaces the required
+    pressure if it is lower, or if the burst check is waived.
     """
     wall, inner, pressure = run.wall, float(run.geometry.inner_radius), v["supply.pressure"]
     burst = least(wall.burst_pressure)[0]
@@ -294,7 +299,7 @@ def metal_tube(
     burst_pressure: float | None,
     axial_forces_per_pressure: Sequence[float],
 ) -> MetalTube:
-    """The thinnest tube of a metal for a bore strain (no axial force) and a burst pressure."""
+    """The thinnest tube of a metal for a bore strain (without axial force) and a burst pressure."""
     inner, density = inner_radius, stock.get(name, "density")
     elastic = {
         "youngs_modulus": stock.get(name, "youngs_modulus"),
@@ -302,7 +307,7 @@ def metal_tube(
     }
     strength = stock.allowable(name, "yield_strength")
     ultimate = stock.allowable(name, "ultimate_strength")
-    if strength is None or ultimate is None:  # a user entry of that name
+    if strength is None or ultimate is None:  # a user material with this name
         return MetalTube(name, None, None)
     strengths = {"yield_strength": strength, "ultimate_strength": ultimate}
     ratios = [force / (pi * inner * inner) for force in axial_forces_per_pressure]
@@ -317,7 +322,7 @@ def metal_tube(
         wall_ratio = barrel.wall_ratio_for_strain(
             strain=strain, pressure=pressure, closed=False, **elastic
         )
-    except ValueError:  # no wall of this metal is stiff enough
+    except ValueError:  # no wall of this metal is stiff enough, however thick
         return MetalTube(name, None, for_burst)
     for_growth = float(inner * (wall_ratio - 1))
     thickness = max(for_growth, for_burst or 0.0)

@@ -1,8 +1,9 @@
-"""The barrel wall through its thickness, for a design review.
+"""Study of the barrel wall through its thickness, for a design review.
 
-Layers with their allowables, stresses at eleven points of every layer, strength ratios by every
-criterion, the failure sequence to burst, and alternative walls (`wall_alternatives`). Stresses are
-those of the exact tube, even if the design uses another model. For a single design; floats only.
+The study covers layers with their allowables, stresses at eleven points of every layer, strength
+ratios by every criterion, the failure sequence to burst, and alternative walls
+(`wall_alternatives`). Stresses are those of the exact tube, even if the design uses another model.
+It takes a single design; all values are plain floats.
 """
 
 from __future__ import annotations
@@ -50,14 +51,14 @@ from .wall_alternatives import (
 )
 
 YIELD = "yield"
-"""Criterion of metal layers: von Mises."""
+"""Name of the criterion for metal layers: yield by von Mises."""
 
 
 @dataclass(frozen=True, slots=True)
 class LayerRow:
-    """A layer; `strengths` are after knock-downs at the hottest, `factors` the remaining share.
+    """A layer; `strengths` are at the hottest after knock-downs, `factors` the share that remains.
 
-    `angle` in rad from the tube axis; lengths in m, moduli and strengths in Pa.
+    `angle` is measured from the tube axis [rad]. Lengths are in m, moduli and strengths in Pa.
     """
 
     material: str
@@ -74,10 +75,11 @@ class LayerRow:
 
 @dataclass(frozen=True, slots=True)
 class WallProfile:
-    """Stresses [Pa] through the wall under one load, each (layers, points) from the bore.
+    """Stresses [Pa] through the wall under one load, each (layers, points), starting at the bore.
 
-    `used` is 1/SR by the criterion of the design (metals: yield), including the cure stress of the
-    worst climate; NaN if unknown, None at rest.
+    `used` is the utilisation 1/SR (SR: strength ratio) by the criterion of the design; for metals,
+    by yield. It includes the cure stress of the worst climate. It is NaN if unknown, and None for a
+    wall without pressure.
     """
 
     name: str
@@ -103,9 +105,10 @@ class Ratio:
 
 @dataclass(frozen=True, slots=True)
 class Shares:
-    """Stress over strength through the wall, (layers, points), under its most severe load.
+    """Stress over strength through the wall, (layers, points), under each layer's most severe load.
 
-    Signed along the fibre, across it and in shear; for metals von Mises over yield. NaN elsewhere.
+    For plies, the ratios along the fibre, across it and in shear have a sign; for metals, the ratio
+    is von Mises stress over yield strength. Ratios that do not apply to a layer are NaN.
     """
 
     path: str
@@ -118,7 +121,7 @@ class Shares:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A failure before burst: layer (0 at the bore), mode, pressure [Pa]."""
+    """A failure before burst: layer (0 at the bore), failure mode, pressure [Pa]."""
 
     layer: int
     mode: str
@@ -127,9 +130,10 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Ladder:
-    """Pressures [Pa] from working to burst, None if unknown; places as in the metrics.
+    """Pressures [Pa] from working to burst, None if unknown; locations are named as in the metrics.
 
-    `steps` belong to the load path with the lowest burst, by maximum stress.
+    `steps` are the failures on the load path with the lowest burst pressure, by the maximum-stress
+    criterion.
     """
 
     working: float
@@ -146,14 +150,14 @@ class Ladder:
 
 @dataclass(frozen=True, slots=True)
 class WallStudy:
-    """The complete study; `radius` is (layers, points) [m], `criterion` that of the design."""
+    """The complete study; `radius` is (layers, points) [m], `criterion` the design's criterion."""
 
     layers: tuple[LayerRow, ...]
     criterion: str
     radius: Array
     profiles: tuple[WallProfile, ...]
     rest: tuple[WallProfile, ...]
-    """Cure stress and clamp without pressure, by climate; empty without such stresses."""
+    """Stresses without pressure, from cure and clamping, by climate; empty if there are none."""
     ratios: tuple[Ratio, ...]
     shares: Shares | None
     ladder: Ladder
@@ -178,7 +182,7 @@ class WallStudy:
 
 
 PARTS = 10
-"""Equal sublayers of every layer; their faces are the points of a profile."""
+"""Number of equal sublayers of every layer; their faces are the points of a profile."""
 
 _MODULI = ("youngs_modulus_1", "youngs_modulus_2", "shear_modulus_12", "poissons_ratio_12")
 _STRENGTHS = {
@@ -190,7 +194,7 @@ _STRENGTHS = {
 
 @dataclass(frozen=True, slots=True)
 class _StressField:
-    """Stresses (layers, points, loads): for every load path, then every climate at rest."""
+    """Stresses (layers, points, loads): every load path, then every climate without pressure."""
 
     paths: tuple[str, ...]
     climates: tuple[Climate, ...]
@@ -199,14 +203,14 @@ class _StressField:
     ply: tuple[Array, ...]
 
     def load(self, rows: Sequence[int]) -> Stress:
-        """Stress of these layers by pressure and axial force, (points, layers, 1, paths, 1)."""
+        """Stress of layers `rows` by pressure and axial force, (points, layers, 1, paths, 1)."""
         return stress_of(
             part[rows, :, : len(self.paths)].transpose(1, 0, 2)[:, :, None, :, None]
             for part in self.ply
         )
 
     def rest(self, rows: Sequence[int]) -> Stress | None:
-        """Stress of these layers without pressure, (points, layers, climates, 1, 1); None: none."""
+        """Stress of layers `rows` without pressure, (points, layers, climates, 1, 1), if any."""
         stresses = [part[rows, :, len(self.paths) :] for part in self.ply]
         if not any(np.any(part) for part in stresses):
             return None
@@ -215,7 +219,7 @@ class _StressField:
 
 @dataclass(frozen=True, slots=True)
 class _Utilisation:
-    """1/SR of these layers by one criterion, (modes, points, layers, climates, paths)."""
+    """Utilisation 1/SR of layers by one criterion, (modes, points, layers, climates, paths)."""
 
     criterion: str
     layers: tuple[int, ...]
@@ -224,7 +228,7 @@ class _Utilisation:
 
 
 def study(subject: PreparedDesign, v: Values, run: ModelRun) -> WallStudy | None:
-    """The wall of an evaluated design; None with the barrel model of the paper.
+    """Study the wall of an evaluated design; None with the published barrel model.
 
     Parameters
     ----------
@@ -296,13 +300,13 @@ def _layer_rows(
 
 
 def _sublayers(layers: Sequence[Layer]) -> list[TubeLayer]:
-    """Equal parts of every layer, which do not change the tube."""
+    """Split every layer into equal sublayers, which does not change the tube."""
     whole = [layer.as_tube() for layer in layers for _ in range(PARTS)]
     return [replace(part, thickness=part.thickness / PARTS) for part in whole]
 
 
 def _points(values: Array) -> Array:
-    """Values at both faces of all sublayers, (2, sublayers, ...), as (layers, points, ...)."""
+    """Rearrange values at sublayer faces, (2, sublayers, ...), to (layers, points, ...)."""
     shaped = values.reshape(2, -1, PARTS, *values.shape[2:])
     return np.concatenate([shaped[0], shaped[1][:, -1:]], axis=1)
 
@@ -310,7 +314,7 @@ def _points(values: Array) -> Array:
 def _stress_field(
     layers: Sequence[Layer], climates: tuple[Climate, ...], pressure: float, g: Geometry, wall: Wall
 ) -> _StressField:
-    """Stresses of all loads at all points; residual stresses of autofrettage in every climate."""
+    """Stresses under all loads at all points; all climates have the same stress of autofrettage."""
     tube = layered_tube(layers=_sublayers(layers), inner_radius=float(g.inner_radius))
     pulls = [pressure * single(area) for area in wall.path.per_pressure.values()]
     clamp = single(wall.path.held)
@@ -338,11 +342,12 @@ def _stress_field(
 def _residual_stresses(
     layers: Sequence[Layer], autofrettage: Autofrettage, radius: Array
 ) -> list[Array]:
-    """Residual stresses z, t, r and 1, 2, 3, 12 of autofrettage at all points.
+    """Residual stresses of autofrettage at all points, in tube axes z, t, r and ply axes.
 
-    The wrap is elastic under the pressure and the axial force from the liner. In the
-    liner sigma_t - sigma_r is Y out to c and Y c^2/r^2 beyond, less the elastic part ~ 1/r^2;
-    sigma_r follows from equilibrium, sigma_z - nu (sigma_r + sigma_t) is constant.
+    The wrap is elastic under the pressure and the axial force from the liner. In the liner,
+    sigma_t - sigma_r is the yield strength Y up to the plastic radius c and Y c^2/r^2 beyond, minus
+    an elastic part proportional to 1/r^2. sigma_r follows from equilibrium, and
+    sigma_z - nu (sigma_r + sigma_t) is constant.
     """
     liner, ratio = layers[0], float(layers[0].constants["poissons_ratio_12"])
     strength, edge = float(liner.yield_strength), single(autofrettage.plastic_radius)
@@ -378,7 +383,7 @@ def _residual_stresses(
 
 
 def _utilisations(layers: Sequence[Layer], field: _StressField) -> list[_Utilisation]:
-    """1/SR of all plies by every criterion, of each metal by yield."""
+    """Utilisation 1/SR of all plies by every criterion, and of all metals by yield."""
     brittle = [i for i, layer in enumerate(layers) if layer.strengths]
     utilisations = []
     if brittle:
@@ -399,7 +404,7 @@ def _utilisations(layers: Sequence[Layer], field: _StressField) -> list[_Utilisa
 
 
 def _ratios(utilisation: _Utilisation, field: _StressField) -> list[Ratio]:
-    """The worst mode, point, climate and load path of every layer."""
+    """For every layer, the strength ratio at its worst mode, point, climate and load path."""
     rows = []
     for k, layer in enumerate(utilisation.layers):
         values = utilisation.values[:, :, k]
@@ -423,7 +428,7 @@ def _ratios(utilisation: _Utilisation, field: _StressField) -> list[Ratio]:
 
 
 def _profiles(field: _StressField, utilisations: Sequence[_Utilisation]) -> tuple[WallProfile, ...]:
-    """Stresses of every load path, with their utilisation of the strength."""
+    """Stresses under every load path, with their utilisation of the strength."""
     profiles = []
     for p, path in enumerate(field.paths):
         share = np.full(field.radius.shape, np.nan)
@@ -435,7 +440,7 @@ def _profiles(field: _StressField, utilisations: Sequence[_Utilisation]) -> tupl
 
 
 def _at_rest(field: _StressField) -> tuple[WallProfile, ...]:
-    """Stresses of every climate without pressure."""
+    """Stresses in every climate without pressure."""
     profiles = []
     noise = 1e-6 * max(np.max(np.abs(part[..., : len(field.paths)])) for part in field.tube)
     for s, climate in enumerate(field.climates, len(field.paths)):
@@ -446,7 +451,7 @@ def _at_rest(field: _StressField) -> tuple[WallProfile, ...]:
 
 
 def _shares(layers: Sequence[Layer], field: _StressField, ratios: Sequence[Ratio]) -> Shares | None:
-    """Stress over strength for the load path and climate of the least strength ratio."""
+    """Stress over strength, for the load path and climate with the least strength ratio."""
     loaded = [row for row in ratios if row.ratio is not None]
     if not loaded:
         return None
@@ -481,7 +486,7 @@ def _ladder(
     *,
     exact: bool,
 ) -> Ladder:
-    """The pressure levels of the metrics, and the failure sequence of the weakest load path."""
+    """Pressures from working to burst, and the failure sequence on the weakest load path."""
     wall, g = run.wall, run.geometry
     yields, yield_place = least(wall.yield_pressure)
     first, first_place = least(wall.first_ply_pressure)

@@ -1,4 +1,4 @@
-"""Mass of every part in an evaluation, each by a formula that can be checked by hand."""
+"""Mass of every part, each by a formula that can be checked by hand."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def _piston(v: Values, design: Design, g: Geometry) -> Array:
 
 
 def _plate(density: Array, g: Geometry, hole: Array) -> Array:
-    """One end plate."""
+    """Mass of one end plate."""
     return mass.tube_mass(
         density=density, inner_diameter=hole, outer_diameter=2 * g.fit.plate_radius, length=g.plate
     )
@@ -77,7 +77,7 @@ def _seals(v: Values, g: Geometry) -> Array:
 
 
 def _rod_ends(v: Values, design: Design, rod: RodSection) -> Array:
-    """Stud and plugs of a hollow rod, each one thread diameter long, and its bonded fittings.
+    """Mass of a hollow rod's stud and plugs, each one thread diameter long, and bonded fittings.
 
     A plug closes each end; a fitting is itself a plug, or a sleeve around a plug.
     """
@@ -101,7 +101,7 @@ def _rod_ends(v: Values, design: Design, rod: RodSection) -> Array:
 def parts(
     v: Values, design: Design, stock: MaterialValues, geometry: Geometry, rod: RodSection
 ) -> dict[str, Array]:
-    """Mass of every dry part, kg."""
+    """Mass of every part without oil [kg]."""
     g = geometry
     caps = v[f"materials.{design.caps.material}.density"]
     clevises: Array = 0.0
@@ -131,7 +131,7 @@ def parts(
 
 
 def oil(v: Values, design: Design, geometry: Geometry, position: Array = 0.0) -> Array:
-    """Mass of the oil with the piston at a distance from the cap end, without lines."""
+    """Mass of the oil in the chambers, with the piston at a distance from the cap end."""
     g = geometry
     volume = (
         v["cylinder.dead_volume_a"]

@@ -1,4 +1,4 @@
-"""Contact pressures from wall forces, and the profile on the sliding face."""
+"""Contact pressures from wall forces, and the pressure profile on the sliding face."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .result import MountedContact, contact_end, stress_field
 from .section import Assembly
 
 HOLDING = 0.05
-"""Share of the fluid pressure by which contact pressure may fall below it and still seal."""
+"""Share by which contact pressure may fall below the fluid pressure while a node still seals."""
 
 
 def boundary_nodes(section: Assembly, body: int) -> Integers:
@@ -21,14 +21,14 @@ def boundary_nodes(section: Assembly, body: int) -> Integers:
 
 
 def middle_node(section: Assembly, nodes: int) -> int:
-    """Node at the centre of a round section, which is the first body."""
+    """Node at the centre of the round section, which must be the first body."""
     places = section.nodes[:nodes]
     middle = (places.min(axis=0) + places.max(axis=0)) / 2
     return int(np.argmin(np.sum((places - middle) ** 2, axis=1)))
 
 
 def level_pair(section: Assembly, nodes: int, middle: float) -> tuple[int, int]:
-    """Two inner nodes of a round section, left and right of its centre at the same height."""
+    """Two inner nodes of the round section, left and right of its centre at the same height."""
     places = section.nodes[:nodes]
     centre = float(places[:, 0].min() + places[:, 0].max()) / 2
     on_line = np.flatnonzero(np.abs(places[:, 1] - middle) < 1e-9)
@@ -43,7 +43,7 @@ def level_pair(section: Assembly, nodes: int, middle: float) -> tuple[int, int]:
 
 
 def wall_pressing(section: Assembly, state: ElementState) -> Floats:
-    """Force of walls above and below on every node."""
+    """Force on every node by the walls above and below."""
     force = state.reaction.reshape(-1, 2)[:, 1]
     lower = state.at_lower.reshape(-1, 2)[:, 1]
     return np.asarray(np.where(lower, force, -force))
@@ -52,25 +52,26 @@ def wall_pressing(section: Assembly, state: ElementState) -> Floats:
 def barriers(
     section: Assembly, state: ElementState, places: Floats, pressing: Floats, pressure: float
 ) -> Floats:
-    """Contact pressure at every node from its force and the fluid behind it."""
+    """Contact pressure at every node, from the contact force and the fluid pressure."""
     length = np.abs(equilibrium.shares(section, places)[:, 0]) * section.radii(places)
     total = pressing / np.maximum(length, 1e-12) + state.wet * pressure
     return np.asarray(np.where(pressing != 0, total, 0.0))
 
 
 def both_ways(boundary: Integers, start: int) -> tuple[Integers, Integers]:
-    """A boundary from one of its nodes, anticlockwise and clockwise."""
+    """A closed boundary as two chains from one of its nodes: anticlockwise and clockwise."""
     return np.roll(boundary, -start), np.roll(boundary[::-1], start + 1)
 
 
 def wetted(
     chain: Integers, barrier: Floats, state: ElementState, pressure: float
 ) -> tuple[Integers, int | None]:
-    """Nodes of a chain that the fluid reaches, and the index of the first node at the outer wall.
+    """Which nodes of a chain the fluid reaches, and the index of the first node at the outer wall.
 
     The fluid advances to the first node whose contact pressure exceeds the fluid pressure. This
-    node seals until its pressure falls below by `HOLDING`: the mesh resolves the front to one
-    node, and without this hysteresis two states may alternate.
+    node seals until its contact pressure is below the fluid pressure by the share `HOLDING`. The
+    mesh resolves the fluid front only to one node; without this hysteresis, two states may
+    alternate.
 
     Parameters
     ----------
@@ -96,7 +97,7 @@ def profile_on_face(
     pressure: float,
     force: Floats,
 ) -> tuple[float, Floats, Floats, float]:
-    """Start, positions, contact pressures and load of the dry contact on the sliding face.
+    """Start, node positions, contact pressures and load of the dry contact on the sliding face.
 
     Parameters
     ----------
@@ -142,7 +143,7 @@ def mounted_contact(
     *,
     wall: float = 0.0,
 ) -> MountedContact:
-    """Contact on the sliding face, with dimensions.
+    """Contact on the sliding face, converted from units of length and modulus to SI.
 
     Parameters
     ----------

@@ -1,17 +1,18 @@
 """Equilibrium of bodies in contact with walls, with each other and with a fluid: Newton's method.
 
-Walls bound displacements, so contact needs no penalty. A wall parallel to an axis bounds one
-component of every boundary node. A node at its bound stays there as long as the wall pushes it; the
-force is the reaction of the wall.
+A wall is a bound on displacements, so contact needs no penalty stiffness. A wall parallel to an
+axis bounds one displacement component of every boundary node. A node at its bound stays there as
+long as the wall pushes it. The contact force is the reaction of the wall.
 
 The fluid reaches all boundary nodes from the sealed side up to the first node whose contact
-pressure exceeds the fluid pressure. It is a follower load. Simpson's rule on every three-node edge
-is exact for a uniform pressure: the resultant on an arc is pressure times the distance of its ends.
+pressure exceeds the fluid pressure. Its pressure is a follower load. Simpson's rule on every
+three-node edge is exact for a uniform pressure: the resultant on an arc is the pressure times the
+distance between the ends of the arc.
 
-Contact of two bodies has no friction: nodes of the upper body rest on the surface of the lower one.
-The gap is measured along direction 2, g = y_node - y_surface(x_node); the force is normal to the
-surface. Its slope is made continuous from edge to edge, since a node that slides over the corner
-between two edges would otherwise oscillate.
+Contact of two bodies has no friction: nodes of the upper body rest on the surface of the lower
+body. The gap is measured along direction 2, g = y_node - y_surface(x_node); the force is normal to
+the surface. The slope of the surface is made continuous from edge to edge. Otherwise a node that
+slides over the corner between two edges would oscillate.
 """
 
 from __future__ import annotations
@@ -32,18 +33,18 @@ from .result import MountedContact, SealSolution
 from .section import Assembly
 
 SLOPES = np.array([[-1.5, 2.0, -0.5], [-0.5, 0.0, 0.5], [0.5, -2.0, 1.5]])
-"""d(position)/d(xi) at the three nodes of an edge from their positions, xi from -1 to 1."""
+"""Matrix from positions of an edge's three nodes to d(position)/d(xi) there, xi from -1 to 1."""
 
 SIMPSON = np.array([1.0, 4.0, 1.0]) / 3
 
 
 def tangents(edges: Integers, places: Floats) -> Floats:
-    """Directed lengths of every node's share of its edges, edges x 3 nodes x 2 [m]."""
+    """Tangent vectors of the boundary edges, weighted for each node, edges x 3 nodes x 2 [m]."""
     return np.asarray(SIMPSON[:, None] * (SLOPES @ places[edges]))
 
 
 def shares(section: Assembly, places: Floats) -> Floats:
-    """Directed length of each node's share of the boundary, nodes x 2 [m]."""
+    """Tangent vector of the part of the boundary that belongs to each node, nodes x 2 [m]."""
     total = np.zeros_like(places)
     for edges in section.edges:
         np.add.at(total, edges, tangents(edges, places))
@@ -51,7 +52,7 @@ def shares(section: Assembly, places: Floats) -> Floats:
 
 
 def load(section: Assembly, places: Floats, pressure: Floats) -> tuple[Floats, Floats]:
-    """Nodal forces of a fluid, and minus their derivative for every edge.
+    """Nodal forces of a fluid, and their negative derivative for every edge.
 
     Parameters
     ----------
@@ -88,13 +89,13 @@ Booleans = npt.NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True)
 class PairContribution:
-    """Contribution of a pair to Newton's equations.
+    """Contribution of a contact pair to the equations of Newton's method.
 
     Parameters
     ----------
-    gaps : derivative of the touching nodes' gaps by all unknowns
-    directions : unit forces of the touching nodes on all unknowns
-    stiffness : derivative of the forces at their current size
+    gaps : derivative by all unknowns of the gaps at the touching nodes
+    directions : forces on all unknowns by a unit contact force at each touching node
+    stiffness : derivative of the contact forces by all unknowns, for their current size
     """
 
     gaps: csc_matrix
@@ -104,7 +105,7 @@ class PairContribution:
 
 @dataclass(frozen=True, slots=True)
 class _SurfacePoints:
-    """The surface under every upper node: three nodes, shape functions, slope."""
+    """Point of the lower surface under every upper node: three nodes, shape functions, slope."""
 
     nodes: Integers
     inside: Booleans
@@ -115,7 +116,9 @@ class _SurfacePoints:
 
 
 class ContactPair:
-    """Upper nodes and lower edges; the edges run towards decreasing x, as on an upper surface.
+    """Two bodies that may touch: nodes of the upper body, and edges of the lower body.
+
+    The edges run towards decreasing x, as the upper surface of a body does anticlockwise.
 
     Parameters
     ----------
@@ -127,7 +130,7 @@ class ContactPair:
         self.upper, self.edges = upper, edges
 
     def _locate(self, places: Floats) -> tuple[Integers, Floats, Booleans]:
-        """Edge under every node, local coordinate from -1 to 1, and whether an edge exists."""
+        """Edge under every upper node, local coordinate (-1 to 1), and whether there is an edge."""
         x = places[self.upper, 0]
         ends = places[self.edges, 0]
         low, high = ends[:, 2], ends[:, 0]
@@ -165,7 +168,7 @@ class ContactPair:
     def update(
         self, touching: Booleans, force: Floats, places: Floats, pull: float
     ) -> tuple[Booleans, Floats]:
-        """Touching nodes and their forces; nodes under tension separate."""
+        """Update the touching nodes and their forces; nodes under tension separate."""
         gap = self.gap(places)
         touches = np.where(touching, force > -pull, gap < -1e-10) & np.isfinite(gap)
         return touches, np.where(touches, force, 0.0)
@@ -191,7 +194,7 @@ class ContactPair:
     def rows(
         self, places: Floats, touching: Booleans, force: Floats, unknowns: int
     ) -> PairContribution:
-        """Gaps, directions and stiffness of the touching nodes."""
+        """Gaps, force directions and stiffness of the touching nodes."""
         chosen = np.flatnonzero(touching)
         under = self._surface_points(places)
         nodes, shape = under.nodes[chosen], under.shape[chosen]
@@ -240,12 +243,12 @@ SMALLEST_MOVE = 1e-7
 FREE = "the bodies can move freely"
 MOST_ITERATIONS = 40
 PATIENCE, STICKING = 15, 5e-4
-"""After this many iterations a node with so small a tension may stay in contact: the contact end
-lies between two nodes, and holding or releasing the last node may both be wrong."""
+"""After `PATIENCE` iterations, a node with a tension below `STICKING` may stay in contact. If the
+contact ends between two nodes, neither holding nor releasing the last node may be right."""
 LONGEST_MOVE = 0.1
 """Largest displacement of an iteration; the section is 1."""
 FLATTEST = 0.2
-"""Smallest J after an iteration, relative to the previous J."""
+"""Smallest volume ratio J after an iteration, relative to the previous J."""
 
 
 @dataclass(slots=True)
@@ -257,20 +260,20 @@ class DisplacementBounds:
 
     @classmethod
     def none(cls, section: Assembly) -> DisplacementBounds:
-        """No walls."""
+        """Bounds without walls."""
         size = section.displacements
         return cls(np.full(size, -np.inf), np.full(size, np.inf))
 
 
 @dataclass(slots=True)
 class ElementState:
-    """Unknowns, contacts and fluid: a complete state to continue from.
+    """Unknowns, contacts and wet nodes: a complete state from which a solution can continue.
 
     Parameters
     ----------
     values : displacements and multipliers
-    at_lower, at_upper : displacements at their bound
-    touching : nodes of the pair's upper body in contact
+    at_lower, at_upper : which displacements are at their bound
+    touching : which nodes of the pair's upper body are in contact
     pair_force : force of the pair at each of these nodes
     wet : share of the fluid pressure at every node, 0 to 1
     reaction : wall force on every displacement
@@ -301,9 +304,9 @@ class ElementState:
 
 
 WetPart = Callable[["ElementState", Floats, float], Floats]
-"""Share of the pressure at every node, from state, node places and pressure."""
+"""Function for the share of the pressure at every node, from state, node positions and pressure."""
 FIRST_STEP, SHORTEST_STEP, GROWTH = 0.1, 1e-3, 1.5
-"""Steps of pressure over modulus: initial, smallest, and growth after a success."""
+"""Load steps, as pressure over modulus: initial, smallest; and growth factor after a success."""
 
 
 @dataclass(slots=True)
@@ -345,11 +348,11 @@ class ElementProblem:
 
 
 class NotConverged(Exception):
-    """Newton's method failed in a load step; the text states the reason."""
+    """Newton's method failed in a load step; the text of the exception states the reason."""
 
 
 def _update_walls(problem: ElementProblem, state: ElementState, force: Floats, pull: float) -> bool:
-    """Hold nodes that pass a bound, release nodes under tension; whether anything changed."""
+    """Hold nodes that pass a bound, release nodes under tension; return whether any changed."""
     bounds, displacements = problem.bounds, state.values[: problem.section.displacements]
     fixed = bounds.lower == bounds.upper
     slack = 1e-10
@@ -362,7 +365,7 @@ def _update_walls(problem: ElementProblem, state: ElementState, force: Floats, p
 
 @dataclass(slots=True)
 class _Links:
-    """Constraints with a force each: touching nodes of the pair, then the level pair."""
+    """Constraints, each with a force: touching nodes of the contact pair, then the level pair."""
 
     gap: Floats
     rows: csc_matrix
@@ -400,7 +403,7 @@ def _step(
     stiffness: csc_matrix,
     links: _Links,
 ) -> tuple[Floats, Floats, float]:
-    """Newton step of the unknowns and the constraint forces, and the largest previous error."""
+    """Newton step of unknowns and constraint forces, and the largest error before the step."""
     section, bounds = problem.section, problem.bounds
     fixed = np.zeros(section.unknowns, dtype=bool)
     fixed[: section.displacements] = state.at_lower | state.at_upper
@@ -430,7 +433,7 @@ def _step(
 
 
 def _damped(problem: ElementProblem, state: ElementState, move: Floats) -> float:
-    """Share of a step that limits displacement and inverts no element."""
+    """Share of a step that respects the largest displacement and inverts no element."""
     section = problem.section
     longest = float(np.max(np.abs(move[: section.displacements])))
     share = min(1.0, LONGEST_MOVE / max(longest, 1e-300))
@@ -444,7 +447,7 @@ def _damped(problem: ElementProblem, state: ElementState, move: Floats) -> float
 
 @np.errstate(all="ignore")  # a trial that inverts elements is rejected by its residual
 def solve(problem: ElementProblem, start: ElementState, pressure: float) -> ElementState:
-    """Equilibrium under a fluid pressure and walls, from a neighbouring state.
+    """Find the equilibrium under a fluid pressure and walls, starting from a nearby state.
 
     Raises
     ------
@@ -493,7 +496,7 @@ def solve(problem: ElementProblem, start: ElementState, pressure: float) -> Elem
 def raise_pressure(
     problem: ElementProblem, state: ElementState, current: float, target: float
 ) -> ElementState:
-    """Equilibrium at a higher pressure, with adaptive load steps.
+    """Find the equilibrium at a higher pressure, with adaptive load steps.
 
     Raises
     ------
@@ -533,7 +536,7 @@ def check_inputs(
     elements_around: int,
     *further: tuple[bool, str, str],
 ) -> None:
-    """Check all inputs; a one-line error for an invalid input.
+    """Check all inputs; raise a one-line error for an invalid input.
 
     Parameters
     ----------
@@ -567,15 +570,15 @@ def check_inputs(
 
 
 class ElementSeal(Protocol):
-    """A seal that can be mounted, moved to the outer groove wall, and evaluated."""
+    """Interface of a seal that can be mounted, moved to the outer groove wall, and evaluated."""
 
     problem: ElementProblem
 
     def mount(self, squeeze: float, groove_width: float) -> ElementState:
-        """Equilibrium in the groove without pressure."""
+        """Find the equilibrium in the groove without pressure."""
 
     def release(self, state: ElementState) -> ElementState:
-        """The seal against the outer side wall, without other constraints."""
+        """Move the seal against the outer side wall, and remove all other constraints."""
 
     def contact(
         self, state: ElementState, pressure: float, length: float, modulus: float

@@ -1,8 +1,8 @@
 """Mooney-Rivlin rubber and plastics, with five components of the deformation gradient.
 
-The order of components is 11, 12, 21, 22, 33: component 33 is one in plane strain, the hoop
-stretch in axisymmetry. Direction 1 is axial, 2 radial. The finite-element library is imported on
-first use, so the program works without it.
+The order of components is 11, 12, 21, 22, 33. Component 33 is 1 in plane strain, and the hoop
+stretch in axisymmetry. Direction 1 is axial, direction 2 radial. The finite-element library is
+imported on first use, so the rest of the program works without it.
 """
 
 from __future__ import annotations
@@ -26,8 +26,9 @@ _COLUMNS = np.array([j for _, j in COMPONENTS])
 class MooneyRivlin:
     """Strain energy c10 (I1 - 3) + c01 (I2 - 3) - 2 (c10 + 2 c01) ln J + q (J - 1) - q^2/(2 L).
 
-    The multiplier q enforces the volume; L is the stiffness against volume change (Lame's first
-    constant at small strain), infinite for an incompressible body.
+    I1 and I2 are the invariants of the deformation, and J is the volume ratio. The multiplier q
+    enforces the volume. L is the stiffness against volume change (Lame's first constant at small
+    strain), infinite for an incompressible body.
 
     Parameters
     ----------
@@ -68,12 +69,12 @@ class MooneyRivlin:
         return shear * (3 * self.volume_stiffness + 2 * shear) / (self.volume_stiffness + shear)
 
     def over(self, stress: float) -> MooneyRivlin:
-        """The same body in units of a stress [Pa]."""
+        """The same material, with its constants in units of a stress [Pa]."""
         return MooneyRivlin(self.c10 / stress, self.c01 / stress, self.volume_stiffness / stress)
 
 
 def full(components: Floats) -> Floats:
-    """3 x 3 tensors of the five components on the last axis."""
+    """3 x 3 tensors from the five components on the last axis."""
     tensor = np.zeros((*components.shape[:-1], 3, 3))
     tensor[..., _ROWS, _COLUMNS] = components
     return tensor
@@ -148,7 +149,7 @@ def von_mises(gradient: Floats, multiplier: Floats, c10: Floats, c01: Floats) ->
 
 
 def finite_element_library() -> Any:
-    """The module ``skfem``; a one-line error if the extra is not installed.
+    """Import the module ``skfem``; raise a one-line error if the extra is not installed.
 
     Raises
     ------

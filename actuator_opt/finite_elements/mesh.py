@@ -48,7 +48,7 @@ class Mesh:
 
 
 def _in_order(edges: Integers) -> Integers:
-    """Boundary edges in sequence, from any order."""
+    """Sort boundary edges so that each starts where the previous edge ends."""
     following = {int(edge[0]): edge for edge in edges}
     ordered = [edges[0]]
     while len(ordered) < len(edges):
@@ -57,7 +57,7 @@ def _in_order(edges: Integers) -> Integers:
 
 
 def _boundary(triangles: Integers) -> Integers:
-    """Boundary edges (corner, middle, corner), anticlockwise as the elements are."""
+    """Boundary edges (corner, middle, corner), anticlockwise like the elements."""
     sides = np.concatenate(
         [triangles[:, [0, 3, 1]], triangles[:, [1, 4, 2]], triangles[:, [2, 5, 0]]]
     )
@@ -67,7 +67,7 @@ def _boundary(triangles: Integers) -> Integers:
 
 
 def meshed(points: Floats, triangles: Integers, radius: float | None = None) -> Mesh:
-    """A body from corner points and triangles.
+    """Mesh a body from corner points and triangles.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def meshed(points: Floats, triangles: Integers, radius: float | None = None) -> 
         curved = library.MeshTri2(nodes.T.copy(), straight.t.copy(), sort_t=False)
     basis = library.Basis(curved, library.ElementTriP2(), intorder=ORDER)
     corner = library.Basis(curved, library.ElementTriP1(), intorder=ORDER)
-    if not np.array_equal(basis.element_dofs.T, numbered):  # the numbering must be unchanged
+    if not np.array_equal(basis.element_dofs.T, numbered):  # the library must keep the numbering
         raise AssertionError("nodes were renumbered")
     shape = [np.asarray(basis.basis[k][0]) for k in range(6)]
     return Mesh(
@@ -107,7 +107,7 @@ def meshed(points: Floats, triangles: Integers, radius: float | None = None) -> 
 
 
 def disc(*, diameter: float, around: int) -> Mesh:
-    """A round section about the origin, fine at its edge and coarser inside.
+    """Mesh a round section about the origin, finely at its edge and more coarsely inside.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ class SlideRing:
 
 
 def _rounded(distance: Floats, angle: float, radius: float) -> Floats:
-    """Height above a flat that turns up by an angle at distance 0, through a tangent arc."""
+    """Height above a flat face that bends up by an angle at distance 0, through a tangent arc."""
     reach = radius * math.tan(angle / 2)
     arc = radius - np.sqrt(np.maximum(radius**2 - np.clip(distance + reach, 0, radius) ** 2, 0))
     along = math.tan(angle) * distance
@@ -183,7 +183,7 @@ def _rounded(distance: Floats, angle: float, radius: float) -> Floats:
 
 
 def _graded(start: float, end: float, fine: float, coarse: float, growth: float) -> Floats:
-    """Positions from start (fine spacing) to end, with growing spacing up to a coarse limit."""
+    """Positions from start to end; the spacing grows from fine to at most coarse."""
     places, step, length = [0.0], fine, abs(end - start)
     while places[-1] < length:
         places.append(places[-1] + step)

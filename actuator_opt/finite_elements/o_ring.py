@@ -33,11 +33,11 @@ from .result import MountedContact, SealSolution
 from .section import Assembly, MeshedBody
 
 MOST_FILL = 0.98
-"""Largest fill of the groove by an incompressible section: corners stay open."""
+"""Largest fill of the groove by an incompressible section, whose corners stay open."""
 
 
 class RoundRing:
-    """The problem of a ring, in units of its section and modulus.
+    """A round ring as a finite-element problem, in units of its section and modulus.
 
     Parameters
     ----------
@@ -76,9 +76,10 @@ class RoundRing:
         return wet
 
     def mount(self, squeeze: float, groove_width: float) -> ElementState:
-        """Lower the groove bottom and outer wall onto the ring; without friction, in any order.
+        """Lower the groove bottom and the side walls onto the ring.
 
-        The centre of the ring keeps its axial position.
+        Without friction, their order does not matter. The centre of the ring keeps its axial
+        position.
         """
         bounds, centre = self.problem.bounds, 2 * self.centre
         state = self.problem.start()
@@ -90,7 +91,7 @@ class RoundRing:
         return self._add_groove_walls(state, groove_width)
 
     def _add_groove_walls(self, state: ElementState, groove_width: float) -> ElementState:
-        """Walls of the groove; a narrow groove squeezes the ring between them."""
+        """Add the side walls of the groove; a narrow groove squeezes the ring between them."""
         bounds, place = self.problem.bounds, self.section.places(state.values)
         bounds.lower[2 * self.centre], bounds.upper[2 * self.centre] = -np.inf, np.inf
         state.at_lower[2 * self.centre] = state.at_upper[2 * self.centre] = False
@@ -105,7 +106,7 @@ class RoundRing:
         return state
 
     def release(self, state: ElementState) -> ElementState:
-        """The ring already touches the outer wall."""
+        """Return the state unchanged, because the ring already touches the outer wall."""
         return state
 
     def contact(

@@ -1,4 +1,4 @@
-"""Results of a finite-element solution: contact pressures on the sliding face, and stress."""
+"""Results of a finite-element solution: contact pressures on the sliding face, and stresses."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class StressField:
     nodes : positions of the corners, n x 2: axial, and away from the sliding face [m]
     triangles : three corners of every element
     von_mises : mean of every element [Pa]
-    body : number of the body of every element, 0 the rubber ring
+    body : index of the body that every element belongs to; 0 is the rubber ring
     """
 
     nodes: Floats
@@ -62,11 +62,11 @@ class MountedContact:
 
 @dataclass(frozen=True, slots=True)
 class SealSolution:
-    """A seal mounted and then pressurised.
+    """Results for a seal that is mounted and then pressurised.
 
     Parameters
     ----------
-    contacts : one per reached pressure, the mounted seal first
+    contacts : first that of the mounted seal, then one per pressure that was reached
     failure : reason for a pressure that was not reached; None if all were reached
     steps, iterations : load steps, and Newton iterations of all of them
     residual : largest unbalanced force, relative to modulus times section
@@ -80,7 +80,7 @@ class SealSolution:
 
 
 def stress_field(section: Assembly, values: Floats, length: float, modulus: float) -> StressField:
-    """Deformed mesh and stress of a solution in units of a length and a modulus."""
+    """Deformed mesh and stress [SI] from a solution in units of a length and a modulus."""
     gradient, multiplier = section.gradient(values)
     stress = material.von_mises(gradient, multiplier, section.c10, section.c01)
     mean = np.sum(stress * section.weights, axis=1) / np.sum(section.weights, axis=1)
@@ -95,9 +95,10 @@ def stress_field(section: Assembly, values: Floats, length: float, modulus: floa
 
 
 def contact_end(held: float, gaps: Floats, places: Floats) -> float:
-    """End of a contact between its last closed and its first open node.
+    """Position of a contact's end, between its last closed and its first open node.
 
-    Beside a smooth contact the gap grows as distance^(3/2); its first two open nodes give the end.
+    Beside a smooth contact, the gap grows as distance^(3/2). The gaps at the first two open nodes
+    therefore determine where the contact ends.
 
     Parameters
     ----------

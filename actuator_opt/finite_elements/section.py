@@ -1,4 +1,4 @@
-"""Sections of rings in finite elements: bodies, their assembly and their stress."""
+"""Cross-sections of rings in finite elements: bodies, their assembly and their stress."""
 
 from __future__ import annotations
 
@@ -30,12 +30,14 @@ class MeshedBody:
 
 
 class Assembly:
-    """All bodies with a common vector of unknowns: displacements 2 i, 2 i + 1 of node i, then q.
+    """All bodies with one vector of unknowns.
+
+    Unknowns 2 i and 2 i + 1 are the displacements of node i; the multipliers q follow.
 
     Parameters
     ----------
     bodies : meshes with their materials
-    sliding_radius : radius at zero of direction 2 [m]; None: plane strain
+    sliding_radius : radius of the sliding face, where direction 2 is zero [m]; None: plane strain
     outward : 1 if direction 2 points away from the axis (rod), -1 towards it (bore)
     """
 
@@ -77,7 +79,7 @@ class Assembly:
         self._pattern()
 
     def _shape(self, bodies: Sequence[MeshedBody]) -> None:
-        """Derivative of the five components by the twelve displacements; weights."""
+        """Derivative of the five components by the twelve displacements; integration weights."""
         gradients = np.concatenate([b.mesh.gradients for b in bodies])
         self.weights: Floats = np.concatenate([b.mesh.weights for b in bodies])
         values = bodies[0].mesh.values
@@ -95,7 +97,7 @@ class Assembly:
         self.flat_shape: Floats = self.shape.reshape(count, points * 5, 12)
 
     def _pattern(self) -> None:
-        """Positions of all element and edge entries in a sparse matrix."""
+        """Positions of the element and edge entries in the sparse stiffness matrix."""
         displacement_dofs = (2 * self.triangles[:, :, None] + np.arange(2)).reshape(
             len(self.triangles), 12
         )
@@ -127,7 +129,7 @@ class Assembly:
         return float(np.min(material.inverse_transpose(gradient)[1]))
 
     def internal(self, state: Floats) -> Floats:
-        """Internal forces, and volume errors in the rows of the multiplier."""
+        """Residual vector: internal forces, then volume errors for the multipliers."""
         gradient, multiplier = self.gradient(state)
         nominal = material.stress(gradient, multiplier, self.c10, self.c01)
         _, volume = material.inverse_transpose(gradient)
@@ -165,7 +167,7 @@ class Assembly:
         )
 
     def radii(self, places: Floats) -> Floats:
-        """Circumference at every node over that of the sliding face; 1 in plane strain."""
+        """Ratio of circumference at every node to that of the sliding face; 1 in plane strain."""
         if self.sliding_radius is None:
             return np.ones(len(places))
         return np.asarray(1 + self.outward * places[:, 1] / self.sliding_radius)

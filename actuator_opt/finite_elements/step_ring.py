@@ -34,16 +34,16 @@ from .result import MountedContact, SealSolution
 from .section import Assembly, MeshedBody
 
 COARSE = 0.12
-"""Largest element size of the slide ring, over the section of the rubber ring."""
+"""Largest element size of the slide ring, relative to the section of the rubber ring."""
 RAMP = 0.03
-"""Length of the pressure transition on the back of the slide ring, over the rubber's section:
-its node spacing."""
+"""Length over which the pressure on the back of the slide ring falls at the fluid front, relative
+to the rubber's section. It equals the spacing of the nodes there."""
 SHIFT_STEP = 0.05
-"""Axial displacement of the rubber ring per load step, over its section."""
+"""Axial displacement of the rubber ring per load step, relative to its section."""
 
 
 class StepRing:
-    """The problem of both rings, in units of the rubber's section and modulus.
+    """Both rings as a finite-element problem, in units of the rubber's section and modulus.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ class StepRing:
         self.back_wet: Floats = np.zeros(len(nodes))
 
     def wet_part(self, state: ElementState, places: Floats, pressure: float) -> Floats:
-        """The fluid passes left of both rings, and between them up to their contact."""
+        """The fluid comes from the left of both rings and goes between them up to their contact."""
         pressing = wall_pressing(self.section, state)
         pressing[self.round] += state.pair_force
         barrier = barriers(self.section, state, places, pressing, pressure)
@@ -124,8 +124,8 @@ class StepRing:
     def _wet_back(self, places: Floats, front: float) -> Floats:
         """Share of the pressure on the back of the slide ring, up to the front between the rings.
 
-        It is kept while the front stays at its node: following the motion of the nodes would make
-        a tilting ring oscillate.
+        The share is kept while the front stays at the same node. If it followed the motion of the
+        nodes, a tilting ring would oscillate.
         """
         _, back = both_ways(self.flat, self.sealed_end)
         x = places[back, 0]
@@ -177,7 +177,7 @@ class StepRing:
     def contact(
         self, state: ElementState, pressure: float, length: float, modulus: float
     ) -> MountedContact:
-        """Contact on the rod, with dimensions."""
+        """Contact on the rod, converted from units of length and modulus to SI."""
         return mounted_contact(self.section, state, self.flat, pressure, length, modulus)
 
 

@@ -13,7 +13,7 @@ from .law import Friction, MovingFilm
 
 
 def _friction(seal: SealSizes, contact: SealContact, film: MovingFilm | None) -> Friction:
-    """Friction on an oil film; at rest the oil is squeezed out and the contact is dry."""
+    """Friction on an oil film; at rest the oil is squeezed out, so the contact is dry."""
     asperity_friction = seal["asperity_friction"]
     dry = friction.seal_friction(
         line_load=contact.line_load,

@@ -1,4 +1,4 @@
-"""Interface of a friction law: names, properties, dry friction over speed, oil film."""
+"""Interface of a friction law: names, properties, dry friction as a function of speed, oil film."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..seals.seal_type import SealSizes
 
 @dataclass(frozen=True, slots=True)
 class Friction:
-    """Friction per case, N; `slope` is dF/dv at the speed of the case, N·s/m."""
+    """Friction in every load case [N]; `slope` is dF/dv at the speed of the load case [N·s/m]."""
 
     running: Array = 0.0
     breakaway: Array = 0.0
@@ -52,22 +52,23 @@ class MovingFilm(Protocol):
 class FrictionLaw:
     """A friction law; every field must be stated.
 
-    Every seal has `friction_coefficient`, `breakaway_ratio` and `stribeck_speed` (stated, else from
-    its compound) and `viscous_friction`, a term proportional to speed that every law except a film
-    adds. `count` is the number of seals in a row.
+    Every seal has `friction_coefficient`, `breakaway_ratio` and `stribeck_speed`, as stated or from
+    its compound. It also has `viscous_friction`, a term proportional to speed that every law adds
+    except a film law. `count` is the number of seals in series.
 
     Parameters
     ----------
     name : name in a design file
     help : meaning of the name
-    compound : further properties of the compound that it uses
+    compound : further properties of the compound that the law uses
     coefficient : Coulomb friction coefficient of a contact [-]
     breakaway : breakaway friction, from Coulomb friction [N]
     level : friction without its viscous part, from Coulomb friction [N] and speed [m/s], which
         broadcast
     slope : derivative of `level` by speed [N s/m], of the same shape
-    film : friction on an oil film, whose argument is None if the film was not solved; None: the
-        law needs no film. A law with a film also states dry friction, for records and simulations
+    film : function for friction on an oil film; its film argument is None if the film was not
+        solved. None: the law needs no film. A law with a film also states dry friction, for test
+        records and simulations
     """
 
     name: str
@@ -82,7 +83,7 @@ class FrictionLaw:
     def friction(
         self, seal: SealSizes, contact: SealContact, load: Array, speed: Array
     ) -> Friction:
-        """Dry friction of a row of seals: sliding if the case moves, else Coulomb friction.
+        """Dry friction of seals in series: sliding in a moving load case, else Coulomb friction.
 
         Parameters
         ----------

@@ -1,7 +1,7 @@
 """Joints of the barrel ends: one module each, listed in `kinds.JOINTS`.
 
-This package lies below `design`: the design file and the evaluation read the same `Joint`. Its
-functions do not know the design; their arguments are sizes, material properties and forces, as an
-`End` and a `Loaded` end. A joint is complete in its module: a new joint is a module with
-`JOINT = Joint(...)` and a line in `kinds`.
+The design file and the evaluation both read a `Joint`, so this package imports neither. The
+functions of a joint do not receive the design. Their arguments are an `End` and a `Loaded` end,
+which contain sizes, material properties and forces. Everything about a joint is in its module: to
+add a joint, write a module with `JOINT = Joint(...)` and a line in `kinds`.
 """

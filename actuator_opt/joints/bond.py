@@ -31,7 +31,7 @@ def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
 
 
 def _overlap(loaded: Loaded) -> Overlap | str:
-    """The bonded overlap of skirt and barrel, or why it cannot be assessed."""
+    """The bonded overlap of skirt and barrel, or the reason why it cannot be assessed."""
     end, materials = loaded.end, loaded.materials
     if end.material is None:
         return "a bond needs an adhesive: add retention.material"
@@ -62,7 +62,7 @@ def _strength(loaded: Loaded) -> Strength | str:
 
 
 def _envelope(loaded: Loaded, burst: Mapping[str, Array]) -> dict[str, Array]:
-    """Bond factors with either wall alone, which coincide if both are equally stiff."""
+    """Upper bounds of the bond factor from either wall alone; equal for equally stiff walls."""
     overlap = _overlap(loaded)
     if isinstance(overlap, str):
         return {}

@@ -1,6 +1,6 @@
-"""Interface of a joint of the barrel ends: everything that the program requires of it.
+"""Interface that every joint of the barrel ends implements.
 
-Lengths in m, forces in N, stresses in Pa; numbers are floats or arrays (designs,).
+Lengths are in m, forces in N and stresses in Pa. Values are floats or arrays (designs,).
 """
 
 from __future__ import annotations
@@ -15,17 +15,18 @@ from ..base.numeric import Array
 from ..base.quantities import Quantity
 
 LEAST_METAL = 1e-3
-"""Least wall beside or under a groove or thread, least rod wall, bore of a laminated rod, and gap
-between rod and bore (m): a choice for turned parts in this size range."""
+"""Least dimension of a turned part [m]. It applies to walls beside or under a groove or thread, the
+wall of a rod, the bore of a laminated rod, and the gap between rod and bore. Our choice for this
+size range."""
 
 NOT_BONDED = "the caps are not bonded"
 
 ROUNDING = 1e-5
-"""Relative tolerance for an optimum on its limit."""
+"""Relative tolerance within which an optimum on its limit still meets it."""
 
 
 class JointSizes(Protocol):
-    """Numbers of the joint by key, such as `thread.pitch`, in SI."""
+    """Values of the block `retention` by key, such as `thread.pitch`, in SI."""
 
     def __contains__(self, key: object) -> bool: ...
 
@@ -40,7 +41,7 @@ class MaterialProperties(Protocol):
     """Material properties by material name, in SI."""
 
     def kind(self, name: str) -> str:
-        """Kind of a material: metal, ply, polymer, adhesive."""
+        """Kind of a material: metal, ply, polymer or adhesive."""
         ...
 
     def get(self, name: str, *properties: str, default: Array = None) -> Array:
@@ -48,23 +49,23 @@ class MaterialProperties(Protocol):
         ...
 
     def allowable(self, name: str, *properties: str, cold: bool = False) -> Array:
-        """A strength after its knock-downs, hottest or coldest; None if not stated."""
+        """A strength after knock-downs, at the hottest or (`cold`) coldest; None if not stated."""
         ...
 
 
 class StatedValues(Protocol):
-    """A design file during fault checks: values by place, None if unusable."""
+    """A design file during the check for faults: values by path in the file, None if unusable."""
 
     def has(self, *loc: str | int) -> bool:
         """Whether the file states a value here."""
         ...
 
     def number(self, *loc: str | int) -> float | None:
-        """The SI number at a place, or its default."""
+        """The number at a path in the file (SI), or its default."""
         ...
 
     def text(self, *loc: str | int) -> str | None:
-        """The text at a place."""
+        """The text at a path in the file."""
         ...
 
     def items(self, *loc: str | int) -> Sequence[Any]:
@@ -73,7 +74,7 @@ class StatedValues(Protocol):
 
 
 class KnownMaterials(Protocol):
-    """Data of the materials that a design file names."""
+    """Material data for the materials that a design file names."""
 
     def kind(self, name: str) -> str | None:
         """Kind of a material; None if the name is unknown."""
@@ -87,8 +88,8 @@ class KnownMaterials(Protocol):
 class JointField(NamedTuple):
     """A key of `retention` that a joint uses.
 
-    `missing` and `remedy` are the fault of a file without a required key; both empty: optional. A
-    key that no other joint has states its `quantity` and `help`.
+    For a required key, `missing` and `remedy` are the messages for a file without it; for an
+    optional key both are empty. A key that no other joint has states its `quantity` and `help`.
     """
 
     key: str
@@ -99,7 +100,7 @@ class JointField(NamedTuple):
 
 
 class FactorBasis(NamedTuple):
-    """Basis of a safety factor: the `measure`, and the parts that it applies `of`."""
+    """Basis of a safety factor: which `measure` of strength is used, and `of` which parts."""
 
     measure: str
     of: str = ""
@@ -125,10 +126,10 @@ class BarrelLayer(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class End:
-    """An end of the barrel with its joint.
+    """An end of the barrel with its joint, before loading.
 
-    `material` is that of the joint, `cap` that of the cap; `layers` are those of the barrel, from
-    the bore outwards.
+    `material` is the material of the joint, `cap` the material of the cap. `layers` are the layers
+    of the barrel, from the bore outwards.
     """
 
     sizes: JointSizes
@@ -141,15 +142,15 @@ class End:
     plate: Array
     """Thickness of the end plate."""
     cache: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
-    """Intermediate results of a joint that it uses again, by its own key."""
+    """Intermediate results that a joint uses again, by keys that it chooses."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EndDimensions:
-    """Dimensions that the joint gives cap and barrel, and all that the drawing uses.
+    """Dimensions of cap and barrel that the joint determines, for mass model and drawing.
 
-    A skirt has `length`, `wall` and an inner `radius`, to which a larger barrel is turned down.
-    `own` are further dimensions for the outline of the joint.
+    A skirt has `length`, `wall` and an inner `radius`; a larger barrel is turned down to this
+    radius. `own` are further dimensions that the outline of the joint needs.
     """
 
     plate_radius: Array
@@ -160,9 +161,9 @@ class EndDimensions:
 
 
 class EndSpan(NamedTuple):
-    """Position of an end in the drawing [m]: barrel face, direction into the barrel (1 or -1).
+    """Position of an end in the drawing [m]: face of the barrel, direction into it (1 or -1).
 
-    `outside` and `opposite` are the outer faces of this end plate and of the other.
+    `outside` is the outer face of this end plate, `opposite` that of the plate at the other end.
     """
 
     face: float
@@ -171,7 +172,7 @@ class EndSpan(NamedTuple):
     opposite: float
 
     def over(self, length: float, low: float, high: float) -> Polygon:
-        """A rectangle over the barrel's first `length`, between two radii."""
+        """A rectangle over the last `length` of the barrel at this end, between two radii."""
         start, stop = sorted((self.face, self.face + self.inwards * length))
         return rectangle(start, stop, low, high)
 
@@ -198,7 +199,8 @@ class DrawnPart(NamedTuple):
 class Clamp:
     """Parts that clamp the barrel between both ends, such as tie rods.
 
-    Total preload and largest total force at supply pressure [N]; preload over its loss at proof.
+    The values are total preload and largest total force at supply pressure [N], and the ratio of
+    preload to the part of it that proof pressure takes away.
     """
 
     preload: Array
@@ -208,11 +210,11 @@ class Clamp:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loaded:
-    """An end under load.
+    """An end of the barrel under load.
 
-    `force` is the largest separating force [N]; `paths` the axial forces in the barrel wall per
-    pressure [m^2] by load path; `line_stiffness` the axial E t of the wall [N/m]; `expansion` its
-    axial thermal expansion [1/K], None if unknown.
+    `force` is the largest separating force [N]. `paths` are the axial forces in the barrel wall per
+    pressure [m^2], by load path. `line_stiffness` is the axial E t of the wall [N/m], and
+    `expansion` its axial thermal expansion [1/K], None if unknown.
     """
 
     end: End
@@ -234,25 +236,25 @@ class Pulsed(NamedTuple):
 
 
 class Life(NamedTuple):
-    """Cycles to failure, and strength over stress amplitude."""
+    """Fatigue of a part: cycles to failure, and strength over stress amplitude."""
 
     cycles: Array
     factor: Array
 
 
 Thermal = Callable[[Array, bool], Array]
-"""Strength over load under temperature change [K] alone, at the coldest (True) or the hottest."""
+"""Function for strength over load by a temperature change [K] alone; True: at the coldest."""
 
 
 class Fatigue(NamedTuple):
-    """Pulsating stresses, assessed by metal data, and places with their own fatigue strength."""
+    """Pulsating stresses, assessed by metal data, and locations with their own fatigue strength."""
 
     pulsed: tuple[Pulsed, ...] = ()
     lives: Mapping[str, Life] = {}
 
 
 class WallPressures(NamedTuple):
-    """Pressures at which the barrel yields and bursts at the joint, by place [Pa]."""
+    """Pressures at which the barrel yields and bursts at the joint, by location [Pa]."""
 
     yields: Mapping[str, Array] = {}
     bursts: Mapping[str, Array] = {}
@@ -260,10 +262,10 @@ class WallPressures(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Strength:
-    """Strength over load of an end, by place.
+    """Strength over load of an end, by location.
 
-    `working` are elastic limits and `burst` breaking loads over the largest force; `thermal` is
-    strength over load by temperature, or why it is unknown.
+    `working` are elastic limits and `burst` are breaking loads, both over the largest force.
+    `thermal` gives strength over load by temperature alone, or the reason why it is unknown.
     """
 
     working: Mapping[str, Array]
@@ -275,55 +277,55 @@ class Strength:
 class Joint:
     """A joint of the barrel ends.
 
-    Every joint must state the fields without default; if not applicable as empty, `nothing` or
-    None. Data of an end count once for each end.
+    Every joint must state the fields without default; a field that does not apply is empty,
+    `nothing` or None. Masses and forces are for one end; both ends are equal.
     """
 
     name: str
     help: str
     noun: str
-    """Noun in messages: `a bond`, or a plural."""
+    """Noun for the joint in messages: `a bond`, or a plural such as `tie rods`."""
     fields: tuple[JointField, ...]
-    """Keys of `retention` that it uses; any other key is a fault."""
+    """Keys of `retention` that the joint uses; any other key is a fault."""
     kinds: tuple[str, ...]
     """Allowed kinds of `retention.material`; empty: no material."""
     without: Mapping[str, tuple[str, str]]
-    """Specific fault and remedy of an unused key, in place of the general text."""
+    """Fault and remedy for some keys that the joint does not use, in place of the general text."""
     faults: Callable[[StatedValues], Iterable[Fault]]
-    """Faults of the values of a file."""
+    """Function that yields faults among the values of a design file."""
     material_faults: Callable[[StatedValues, KnownMaterials], Iterable[Fault]]
-    """Faults that depend on the material library."""
+    """Function that yields faults that depend on the material library."""
     skirts: bool
     """Whether the caps have skirts over the outside of the barrel."""
     fit: Callable[[End], EndDimensions]
     stiffness: Callable[[End, MaterialProperties], Array] | None
-    """Axial stiffness of the clamp of the barrel between both ends [N/m]; None: no clamp."""
+    """Axial stiffness of the parts that clamp the barrel [N/m]; None if none do."""
     mass: Callable[[End, MaterialProperties], Mapping[str, Array]]
     """Mass [kg] of the joint at one end, by part: barrel, caps or fastening."""
     outline: Callable[[End, EndDimensions, EndSpan], Iterable[DrawnPart]]
-    """Its parts in the half-section at one end."""
+    """Parts of the joint in the half-section at one end."""
     notes: Callable[[End], Iterable[str]]
-    """Sentences on details that the section does not show."""
+    """Sentences on details that the drawing does not show."""
     strength: Callable[[Loaded], Strength | str]
-    """Strength of an end, or why it cannot be assessed."""
+    """Strength of an end, or the reason why it cannot be assessed."""
     yields: Callable[[Loaded], Mapping[str, Array]]
-    """Further elastic limits over working stress, by place."""
+    """Further elastic limits over working stress, by location."""
     wall: Callable[[Loaded], WallPressures]
     """Strength of the barrel itself at the joint."""
     fatigue: Callable[[Loaded], Fatigue]
     own: Callable[[Loaded], Mapping[str, Array]]
-    """Names of its own metrics: the keys of `metrics`."""
+    """Values of the metrics that only this joint has; `metrics` lists their names."""
     envelope: Callable[[Loaded, Mapping[str, Array]], Mapping[str, Array]] | None
-    """Upper bound of `Strength.working` from `burst` if the former is not convex; None: unused."""
+    """Upper bound of `Strength.working`, from `burst`, if the working factor is not convex."""
     metrics: Mapping[str, str]
-    """Its own metrics, with the reason why other joints lack them; all joints give the factors."""
+    """Metrics that only this joint has, with the reason why other joints lack them."""
     judged: tuple[FactorBasis, FactorBasis]
-    """Basis of the working and the burst factor."""
+    """Bases of the working factor and of the burst factor."""
     models: Mapping[tuple[str, str], str]
-    """Main model of a metric at a place, such as `rod.section_area`."""
+    """Main model, such as `rod.section_area`, by metric and location."""
     usual: tuple[Usual, ...]
     warnings: Callable[[Loaded, Mapping[str, Quantity]], Iterable[tuple[str, str]]]
-    """Metric and sentence for each doubt; the argument has every metric by name."""
+    """(metric, sentence) for each doubt; the second argument has the quantities of all metrics."""
 
     @property
     def plural(self) -> bool:
@@ -332,17 +334,17 @@ class Joint:
 
 
 def nothing(*_: object) -> Iterator[Any]:
-    """An empty function of a joint."""
+    """Do nothing: for functions that do not apply to a joint."""
     return iter(())
 
 
 def check(joints: Iterable[Joint]) -> None:
-    """Refuse joints that claim the same metric, place of a model or key.
+    """Refuse joints that declare the same metric, the same location of a model, or the same key.
 
     Raises
     ------
     ValueError
-        duplicate claim, with both joints
+        two joints declare the same; the text names both
     """
     seen: dict[object, str] = {}
     for joint in joints:
@@ -354,19 +356,19 @@ def check(joints: Iterable[Joint]) -> None:
 
 
 def chosen(stated: StatedValues, path: str) -> bool:
-    """Whether a file lists this value among its choices."""
+    """Whether the file gives several choices for this value."""
     return stated.has("choices", path)
 
 
 def judged_later(stated: StatedValues, varied: Iterable[str]) -> bool:
-    """Whether choices vary these sizes (PATHs) in every combination, as the search keeps limits."""
+    """Whether choices vary all of these sizes (PATHs). The search then checks every combination."""
     paths = tuple(varied)
     free = any(stated.has("variables", path) for path in paths)
     return free and any(chosen(stated, path) for path in (*paths, "retention.type"))
 
 
 def models_at(joints: Iterable[Joint], metric: str) -> dict[str, str]:
-    """Main models of a metric by place, for all joints."""
+    """Main models of a metric by location, for all joints."""
     return {
         place: model
         for joint in joints
@@ -376,7 +378,7 @@ def models_at(joints: Iterable[Joint], metric: str) -> dict[str, str]:
 
 
 def judged_on(joints: Iterable[Joint], index: int) -> str:
-    """Basis of the working (0) or burst factor (1) of all joints, in words."""
+    """Basis of the working factor (index 0) or burst factor (1) for all joints, in words."""
     groups: dict[str, list[str]] = {}
     for joint in joints:
         judged = joint.judged[index]
@@ -388,7 +390,7 @@ def judged_on(joints: Iterable[Joint], index: int) -> str:
 
 
 def _alternatives(parts: Sequence[str]) -> str:
-    """Parts as alternatives; lists among them are separated by commas.
+    """Join parts with "or"; a comma precedes it if a part is itself a list.
 
     >>> _alternatives(["threads", "tie rods"]), _alternatives(["threads and skirt", "tie rods"])
     ('threads or tie rods', 'threads and skirt, or of tie rods')

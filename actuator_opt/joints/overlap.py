@@ -1,8 +1,8 @@
-"""Bonded overlaps: caps on the barrel, metal fittings in a laminated rod; skirts of the caps.
+"""Bonded overlaps of caps on the barrel and of metal fittings in a laminated rod; skirts of caps.
 
-Shear at both edges of the overlap under force, and without force at the coldest and the hottest.
-They are not added: their elastic sum is too high for an adhesive that yields before it breaks.
-Bond and thread share the skirts.
+Shear at both edges of the overlap is calculated under force alone, and by temperature alone at
+the coldest and the hottest. The two are not added: their elastic sum is too high for an adhesive
+that yields before it breaks. Bonded and screwed joints share the code of the skirts.
 """
 
 from __future__ import annotations
@@ -22,8 +22,9 @@ from .joint import DrawnPart, End, EndDimensions, EndSpan, Loaded, MaterialPrope
 class Overlap:
     """A bonded overlap of a metal part with a tube.
 
-    `tube` and `metal` are axial E t at the bond's diameter [N/m]; `mismatch` is the metal's
-    expansion minus the tube's [1/K], None if unknown; `names` are tube and metal part.
+    `tube` and `metal` are the axial E t of both walls at the bond's diameter [N/m]. `mismatch` is
+    the thermal expansion of the metal minus that of the tube [1/K], None if unknown. `names` are
+    the names of tube and metal part.
     """
 
     adhesive: str
@@ -62,7 +63,7 @@ class Overlap:
         return factors
 
     def least_peak_ratio(self, materials: MaterialProperties, stiffness: Array) -> Array:
-        """Lower bound of peak over mean shear, from the stiffness of either wall."""
+        """Lower bound of the ratio of peak to mean shear, from the stiffness of one wall alone."""
         return lap_joint.least_bond_peak_ratio(
             membrane_stiffness=stiffness, **self._adhesive(materials)
         )
@@ -73,7 +74,7 @@ class Overlap:
         return strength * (pi * self.diameter * self.length) / force
 
     def thermal_factor(self, materials: MaterialProperties, warming: Array, cold: bool) -> Array:
-        """Strength over edge shear without load, from joining temperature to a temperature."""
+        """Strength over edge shear without load, after a change from the joining temperature."""
         stress = lap_joint.bond_thermal_shear(
             strain_difference=self.mismatch * warming,
             membrane_stiffness_1=self.tube,
@@ -84,7 +85,7 @@ class Overlap:
         return load_multiplier(absolute(stress) / strength)
 
     def thermal(self, materials: MaterialProperties) -> Thermal | str:
-        """`thermal_factor` of these materials, or why it is unknown."""
+        """`thermal_factor` with the materials filled in, or the reason why it is unknown."""
         if self.mismatch is None:
             return f"thermal expansion of the {' or of the '.join(self.names)} is not known"
         return partial(self.thermal_factor, materials)
@@ -97,7 +98,7 @@ def mismatch(materials: MaterialProperties, metal: str, tube: Array) -> Array:
 
 
 def fit(end: End, radius: Array) -> EndDimensions:
-    """A skirt with this inner radius over the end of the barrel."""
+    """Dimensions of a skirt with this inner radius over the end of the barrel."""
     wall = end.sizes["wall"]
     return EndDimensions(
         plate_radius=radius + wall, radius=radius, length=end.sizes["length"], wall=wall
@@ -112,14 +113,14 @@ def weight(end: End, materials: MaterialProperties, radius: Array) -> Array:
 
 
 def outline(end: End, fit: EndDimensions, span: EndSpan) -> Iterator[DrawnPart]:
-    """The skirt at one end."""
+    """Outline of the skirt at one end."""
     length, inner = float(fit.length), float(fit.radius)
     if length > 0:
         yield DrawnPart("caps", end.cap, span.over(length, inner, inner + float(fit.wall)))
 
 
 def yields(loaded: Loaded) -> dict[str, Array]:
-    """Yield over stress of the skirt under the force of the end."""
+    """Yield over stress of the skirt under the separating force."""
     end = loaded.end
     strength = loaded.materials.allowable(end.cap, "yield_strength")
     if strength is None:

@@ -1,9 +1,9 @@
 """Skirts of the caps screwed over the barrel: threads of barrel and skirts, and their walls.
 
-The thread is cut into the outermost layer of the barrel, which is turned down to
-`thread.diameter` if that is smaller. It is assumed to carry the whole force. Oil pressure acts
-under it up to the ends of the barrel, and inner layers are assumed to carry none of it. A thread
-must be cut into metal and leave metal under it: other files are refused.
+The thread is cut into the outermost layer of the barrel. If `thread.diameter` is smaller than this
+layer, the layer is turned down to it. This layer is assumed to carry the whole axial force. Oil
+pressure acts on it up to the ends of the barrel, and inner layers are assumed to carry no pressure.
+A thread must be cut into metal and leave metal under it; otherwise the design file is refused.
 """
 
 from __future__ import annotations
@@ -43,21 +43,21 @@ from .joint import (
 )
 
 NEEDED = ("yield_strength", "ultimate_strength")
-"""Properties of a metal that the assessment of its thread needs."""
+"""Material properties that a threaded metal needs."""
 
 OTHERWISE = "bond the caps (type: bond), or clamp them (type: tie_rods)"
 
 LANDS = ("geometry_barrel_thread", "geometry_skirt_thread")
 CREST = "geometry_thread_crest"
-"""Metrics of the metal left under both roots, and of the flank overlap."""
+"""Names of the metrics for the metal left under both thread roots, and for the flank overlap."""
 
 HARD = 830e6
-"""Least tensile strength of a hard metal [Pa] (a choice, for the grades of
-[Shigley2011] table 8-16)."""
+"""Tensile strength from which a metal counts as hard [Pa]. Our choice, to separate the grades of
+[Shigley2011] table 8-16."""
 
 CUT, CUT_HARD = 3.0, 3.8
-"""Fatigue notch factors of a cut thread root: [Shigley2011] table 8-16 has 2.8 for soft steel and
-3.8 for hard steel; 3 below `HARD` is also used for other metals, which have no table."""
+"""Fatigue notch factors of a cut thread root, below `HARD` and above. [Shigley2011] table 8-16 has
+2.8 for soft steel and 3.8 for hard steel. Metals outside the table also have 3 below `HARD`."""
 
 
 # --- faults of the file ---------------------------------------------------------------------
@@ -65,7 +65,7 @@ CUT, CUT_HARD = 3.0, 3.8
 
 @dataclass(frozen=True, slots=True)
 class _Stated:
-    """Outside of the barrel, thickness of its outermost layer, thread and skirt [m]."""
+    """Stated sizes [m]: outside of the barrel, thickness of its outermost layer, thread, skirt."""
 
     outside: float
     layer: float
@@ -79,12 +79,12 @@ def _text(length: float) -> str:
 
 
 def _layer(view: StatedValues) -> tuple[str, str, int]:
-    """Place of the outermost layer of the barrel."""
+    """Path in the file of the barrel's outermost layer."""
     return ("barrel", "layup", len(view.items("barrel", "layup")) - 1)
 
 
 def _stated(view: StatedValues) -> _Stated | None:
-    """Sizes of the joint; None if a size is missing or faulty."""
+    """Read the sizes of the joint; None if a size is missing or faulty."""
     count = len(view.items("barrel", "layup"))
     layers = [view.number("barrel", "layup", index, "thickness") for index in range(count)]
     thicknesses = [layer for layer in layers if layer is not None]
@@ -98,7 +98,7 @@ def _stated(view: StatedValues) -> _Stated | None:
 
 
 def _faults(view: StatedValues) -> Iterator[Fault]:
-    """The thread fits the outside of the barrel, and its turns engage."""
+    """Faults of a thread that does not fit the barrel, or whose turns do not engage."""
     pitch, length = view.number("retention", "thread", "pitch"), view.number("retention", "length")
     if pitch is not None and length is not None and length < (1 + thread.RUN_OUT) * pitch:
         yield Fault(
@@ -127,7 +127,7 @@ def _faults(view: StatedValues) -> Iterator[Fault]:
 
 
 def _material_faults(view: StatedValues, materials: KnownMaterials) -> Iterator[Fault]:
-    """Both threads are cut into a metal with known strengths, and leave enough metal."""
+    """Faults of threads that are not in a metal of known strength, or leave too little of it."""
     sizes, layer = _stated(view), _layer(view)
     caps = "caps" if view.has("caps") else "piston"  # the default material of the caps
     if _metal(view, materials, (*layer, "material")) and sizes is not None:
@@ -152,7 +152,7 @@ def _metal(view: StatedValues, materials: KnownMaterials, loc: tuple[str | int, 
 def _cut_faults(
     view: StatedValues, materials: KnownMaterials, loc: tuple[str | int, ...], part: str, path: str
 ) -> Iterator[Fault]:
-    """A thread in a material that is no metal or has no strengths; `path` is that of the part."""
+    """Faults of a thread in a material (at `path`) that is no metal or has no strengths."""
     name = view.text(*loc)
     kind = None if name is None else materials.kind(name)
     if name is None or kind is None:
@@ -178,7 +178,7 @@ def _cut_faults(
 
 
 def _layer_faults(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
-    """Too little metal under the thread, in its layer."""
+    """Faults of a layer with too little metal under its thread."""
     root = thread.root_diameter(diameter=min(sizes.diameter, sizes.outside), pitch=sizes.pitch)
     remaining = sizes.layer - (sizes.outside - root) / 2
     layer = _layer(view)
@@ -195,7 +195,7 @@ def _layer_faults(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
 
 
 def _skirt_wall_faults(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
-    """Too little metal around the thread of the skirts."""
+    """Faults of skirts with too little metal around their thread."""
     if sizes.wall < LEAST_METAL * (1 - ROUNDING) and not judged_later(view, ["retention.wall"]):
         yield Fault(
             ("retention", "wall"),
@@ -220,7 +220,7 @@ def _size_paths(view: StatedValues) -> Iterator[str]:
 
 
 def _radius(end: End) -> Array:
-    """Radius of the barrel under the skirt, turned down if needed."""
+    """Outer radius of the barrel under the skirt, after turning down."""
     if "thread.diameter" in end.sizes:
         return minimum(end.sizes["thread.diameter"] / 2, end.outer_radius)
     return end.outer_radius
@@ -231,7 +231,7 @@ def _fit(end: End) -> EndDimensions:
 
 
 def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
-    """The skirt, minus the ring that is turned off the barrel."""
+    """Mass of the skirt, and, as a negative mass, of the ring turned off the barrel."""
     radius = _radius(end)
     caps = {"caps": overlap.weight(end, materials, radius)}
     if radius is end.outer_radius:
@@ -260,23 +260,23 @@ class EndThread:
     diameter: Array
     root_diameter: Array
     skirt_wall: Array
-    """Wall of the skirt around the thread."""
+    """Wall thickness of the skirt around the thread."""
     engagement: Array
     male_area: Array
     female_area: Array
     flank_area: Array
     barrel_section: Array
-    """Section of the threaded layer under the thread root."""
+    """Cross-section area of the threaded layer under the thread root."""
     skirt_section: Array
     layer_radius: Array
     """Inner radius of the threaded layer."""
     overlap: Array
-    """Flank overlap over that of full crests."""
+    """Flank overlap of the thread, as a share of that with full crests."""
     bore_radius: Array
 
 
 def derive(end: End) -> EndThread:
-    """The thread of an end, derived once."""
+    """Derive the thread of an end; later calls return the cached result."""
     if "thread" not in end.cache:
         end.cache["thread"] = _derived(end)
     end_thread: EndThread = end.cache["thread"]
@@ -319,7 +319,7 @@ def _strengths(materials: MaterialProperties, name: str) -> tuple[Array, Array]:
 
 
 def _assessed(loaded: Loaded) -> EndThread | str:
-    """The thread of an end, or why it has no factor; assessed once."""
+    """The thread of an end, or the reason why it has no safety factor; cached."""
     cache = loaded.end.cache
     if "assessed" not in cache:
         cache["assessed"] = _assessment(loaded)
@@ -355,7 +355,7 @@ def _yields(loaded: Loaded) -> dict[str, Array]:
 
 
 def _lands(loaded: Loaded) -> dict[str, Array]:
-    """Metal left under either root, and flank overlap: limits that every search keeps."""
+    """Metal left under either root, and flank overlap: every optimisation keeps their limits."""
     end_thread = derive(loaded.end)
     walls = (end_thread.root_diameter / 2 - end_thread.layer_radius, end_thread.skirt_wall)
     return dict(zip(LANDS, walls, strict=True)) | {CREST: end_thread.overlap}
@@ -364,7 +364,7 @@ def _lands(loaded: Loaded) -> dict[str, Array]:
 def _working(
     materials: MaterialProperties, end_thread: EndThread, force: Array
 ) -> dict[str, Array]:
-    """Elastic limit over stress: shear of both threads, and flank pressure."""
+    """Elastic limit over stress, for shear of both threads and for flank pressure."""
     male, female = (_strengths(materials, name)[0] for name in (end_thread.male, end_thread.female))
     return {
         "barrel thread": male / sqrt(3) * end_thread.male_area / force,
@@ -374,7 +374,7 @@ def _working(
 
 
 def _burst(materials: MaterialProperties, end_thread: EndThread, force: Array) -> dict[str, Array]:
-    """Ultimate strength over force: both threads, and the skirt, which they tear and spread."""
+    """Breaking load over force, for both threads and for the skirt, which they pull and spread."""
     male, female = (_strengths(materials, name)[1] for name in (end_thread.male, end_thread.female))
     ratio = female * end_thread.female_area / (male * end_thread.male_area)
     of_male, of_female = thread.stripping_reductions(strength_ratio=ratio)
@@ -392,12 +392,13 @@ def _burst(materials: MaterialProperties, end_thread: EndThread, force: Array) -
 def _wall(loaded: Loaded) -> WallPressures:
     """Pressures at which the barrel yields and bursts under its thread, by load path.
 
-    The layer carries the axial forces alone. Its inner radius r_l has the pressure p r_i/r_l that
-    inner layers without hoop stress would transmit.
+    The threaded layer carries the axial forces alone. The pressure at its inner radius r_l is
+    p r_i/r_l, with bore radius r_i: inner layers without hoop stress would transmit this pressure.
 
-    Yield ignores the skirt. At burst both are plastic, and the skirt adds its own burst pressure
-    p_s: the turns carry no hoop stress and transmit it as p_s d/d_3 (balance of forces; the skirt
-    is assumed without axial force, which would lower p_s).
+    Yield ignores the skirt. At burst, layer and skirt are both plastic, and the skirt adds its own
+    burst pressure p_s. The turns of the thread carry no hoop stress. By balance of forces, they
+    transmit p_s to the layer as p_s d/d_3, with outer diameter d and root diameter d_3. The skirt
+    is assumed to be free of axial force, which would lower p_s.
     """
     end_thread, materials = _assessed(loaded), loaded.materials
     if isinstance(end_thread, str):
@@ -432,7 +433,7 @@ def _wall(loaded: Loaded) -> WallPressures:
 
 
 def _fatigue(loaded: Loaded) -> Fatigue:
-    """Axial stress at either root under pulsating force; the notch raises only the range."""
+    """Axial stress at either root under pulsating force; the notch raises only its range."""
     end_thread = _assessed(loaded)
     if isinstance(end_thread, str):
         return Fatigue()
@@ -448,7 +449,7 @@ def _fatigue(loaded: Loaded) -> Fatigue:
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
-    """A thread that leaves too little metal: a search may start there, but cannot end there."""
+    """Warn of a thread that leaves too little metal; an optimisation may not end there."""
     lands = _lands(loaded)
     for name in LANDS:
         least = float(np.min(np.real(lands[name])))

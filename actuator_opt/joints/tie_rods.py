@@ -32,18 +32,18 @@ from .joint import (
 
 
 def _fit(end: End) -> EndDimensions:
-    """End plates wider than the barrel by two rod diameters."""
+    """Dimensions of the end plates, which are wider than the barrel by two rod diameters."""
     radius = end.outer_radius
     return EndDimensions(plate_radius=radius + 2 * end.sizes["thread.diameter"], radius=radius)
 
 
 def _length(end: End) -> Array:
-    """Length from plate to plate."""
+    """Length of the rods from plate to plate."""
     return end.barrel_length + 2 * end.plate
 
 
 def _stiffness(end: End, materials: MaterialProperties) -> Array:
-    """Stiffness of all rods: n E (pi d^2/4)/L."""
+    """Axial stiffness of all n rods of diameter d and length L: n E (pi d^2/4)/L."""
     assert end.material is not None
     modulus = materials.get(end.material, "youngs_modulus")
     diameter = end.sizes["thread.diameter"]
@@ -51,7 +51,7 @@ def _stiffness(end: End, materials: MaterialProperties) -> Array:
 
 
 def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
-    """Half of the rods, for each end."""
+    """Mass of half of the rods, counted at each end."""
     assert end.material is not None
     rods = mass.tie_rod_mass(
         density=materials.get(end.material, "density"),
@@ -63,7 +63,7 @@ def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
 
 
 def _outline(end: End, fit: EndDimensions, span: EndSpan) -> Iterator[DrawnPart]:
-    """One rod in the plane of the section, between the outer faces of both plates."""
+    """Outline of one rod in the plane of the section, between the outer faces of both plates."""
     if span.inwards < 0 or end.material is None:
         return
     low, size = float(fit.radius), (float(fit.plate_radius) - float(fit.radius)) / 2
@@ -76,7 +76,7 @@ def _notes(end: End) -> Iterator[str]:
 
 
 def _stress(end: End, force: Array) -> Array:
-    """Tension in the threads under the force of all rods."""
+    """Tensile stress in the threads under the total force of all rods."""
     return retention.tie_rod_stress(
         force=force,
         count=end.sizes["count"],

@@ -1,4 +1,4 @@
-"""Elastohydrodynamic lubrication of reciprocating seals: films, tandem seals, back-up rings.
+"""Elastohydrodynamic lubrication of reciprocating seals: oil films, tandem seals, back-up rings.
 
 NumPy only. Pressures are absolute; forces are per circumference unless stated otherwise.
 """

@@ -1,8 +1,8 @@
-"""The lubricated film under a seal: solution at a speed, with drag, flow, profiles and slopes.
+"""The oil film under a seal: solution at a speed, with drag, flow, profiles and derivatives.
 
-The static contact pressure of the seal is an input. At speed 0 the film is the limit of a leaking
-seal at rest: no flow by motion, and all friction is at the asperities. `sensitivities` gives exact
-derivatives by the inputs, from the implicit-function theorem.
+The static contact pressure of the seal is an input. At speed 0, the film is that of a leaking seal
+at rest: motion drags no oil along, and all friction is at the asperities. `sensitivities` gives
+exact derivatives by the inputs, from the implicit-function theorem.
 """
 
 from __future__ import annotations
@@ -35,17 +35,17 @@ from .newton import (
 from .reynolds import Contact, ReynoldsProblem, Vector, fault, flux
 
 LEAST_CONTACT = 1e-12
-"""Static pressure over asperity stiffness below which the surfaces count as barely touching."""
+"""Ratio of static pressure to asperity stiffness below which surfaces count as barely touching."""
 SLOWEST = 1e-4
-"""Initial speed of the continuation of a cold start, m/s."""
+"""First speed of a continuation to the wanted speed, if no start from rest converges [m/s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Film:
     """A solved film, or the reason for a failure.
 
-    Forces are per circumference. `flow` is the mass flow over the density at zero pressure,
-    positive towards the outer side. The numbers of a film that did not converge are unusable.
+    Forces are per circumference. `flow` is the mass flow divided by the density at zero pressure,
+    positive towards the outer side. The values of a film that did not converge are meaningless.
     """
 
     contact: Contact
@@ -55,14 +55,14 @@ class Film:
     viscous_drag: float  # [N/m], positive against a positive speed
     contact_load: float  # int p_c dx [N/m]
     flow: float  # [m^2/s]
-    mean_film: float  # h over the width [m]
+    mean_film: float  # mean of h over the width [m]
     load_residual: float
     mass_residual: float
     iterations: int
 
     @property
     def x(self) -> Vector:
-        """Nodes from the sealed side [m]."""
+        """Distances of the nodes from the sealed side [m]."""
         return np.linspace(0.0, self.contact.width, len(self.contact.static_pressure))
 
     @property
@@ -78,7 +78,7 @@ class Film:
 
     @property
     def film(self) -> Vector:
-        """Distance of the mean planes h [m]."""
+        """Film thickness h, the distance between the mean planes of both surfaces [m]."""
         return self.contact.surface.roughness * self.state.film
 
     @property
@@ -89,7 +89,11 @@ class Film:
 
     @property
     def rigid_shift(self) -> float:
-        """C of the film equation h = h_s + C - (1 - nu^2)/(pi E) int d ln (x - s)^2 ds [m]."""
+        """Rigid shift C of the seal [m].
+
+        The film equation is h = h_s + C - (1 - nu^2)/(pi E) int d ln (x - s)^2 ds, with the static
+        gap h_s and the change d of the total pressure against the static contact.
+        """
         return float(self.contact.surface.roughness * self.state.shift)
 
 
@@ -100,7 +104,7 @@ def pressure_scale(contact: Contact) -> float:
 
 
 def scaled(contact: Contact, scales: Contact | None = None) -> tuple[ReynoldsProblem, Bed]:
-    """Scaled equations of a contact; `scales` sets fixed scales, for complex steps."""
+    """Scaled equations of a contact; `scales` keeps given scales, as complex steps need."""
     base = scales or contact
     pressure = pressure_scale(base)
     film = float(base.surface.roughness)
@@ -168,7 +172,7 @@ def _slope(values: Vector) -> Vector:
 
 
 def _at_rest(contact: Contact, bed: Bed) -> FilmState:
-    """Initial guess: linear pressure, and a film whose asperities carry the remaining load."""
+    """Initial guess: linear oil pressure, and a film whose asperities carry the remaining load."""
     nodes = len(contact.static_pressure)
     straight = np.linspace(bed.sealed, bed.outer, nodes)
     pressure = np.minimum(straight, np.maximum(0.9 * bed.static_pressure, 0.0))
@@ -180,13 +184,13 @@ def _at_rest(contact: Contact, bed: Bed) -> FilmState:
 
 
 def _starved(cavitation: Vector, contact: Contact) -> Vector:
-    """Cavitated fractions with the given values at the ends."""
+    """Set the cavitated fractions at both ends to those of the contact."""
     ends = [contact.sealed_cavitation], [contact.outer_cavitation]
     return np.concatenate([ends[0], cavitation[1:-1], ends[1]])
 
 
 def _rescaled(start: Film, contact: Contact) -> FilmState:
-    """State of another film in the scales of this contact."""
+    """Convert the state of another film to the scales of this contact."""
     pressure = (start.pressure - contact.cavitation_pressure) / pressure_scale(contact)
     ratio = start.contact.surface.roughness / contact.surface.roughness
     state = start.state
@@ -199,7 +203,7 @@ def _solved(contact: Contact, state: FilmState) -> NewtonResult:
 
 
 def _cold(contact: Contact) -> NewtonResult:
-    """Solution from rest directly, or else by continuation in speed."""
+    """Solve a film without initial state: directly from rest, or else by continuation in speed."""
     _, bed = scaled(contact)
     rest = _at_rest(contact, bed)
     outcome = _solved(contact, rest)
@@ -266,8 +270,8 @@ def sensitivities(film: Film, stepped: Sequence[Contact]) -> Vector:
     """Derivatives of viscous drag, contact load, flow and mean film, one row per direction.
 
     Each direction is the contact of the film with a complex step on any number, such as
-    ``width * (1 + 1j * STEP)``. The change of the state is -J^-1 times the step of the residual at
-    the solved state; one factorisation serves all directions.
+    ``width * (1 + 1j * STEP)``. The state changes by -J^-1 times the change of the residual at the
+    solved state, with the Jacobian J. One factorisation serves all directions.
 
     Parameters
     ----------
@@ -296,7 +300,7 @@ def sensitivities(film: Film, stepped: Sequence[Contact]) -> Vector:
 
 
 def _imaginary(newton_residual: NewtonResidual) -> NewtonResidual:
-    """Derivatives of residuals along a step."""
+    """Derivatives of the residuals along a complex step."""
     flow, complementarity, film = (
         np.imag(part) / STEP
         for part in (newton_residual.flow, newton_residual.complementarity, newton_residual.film)
@@ -311,7 +315,7 @@ def _imaginary(newton_residual: NewtonResidual) -> NewtonResidual:
 
 
 def _moved(state: FilmState, change: FilmState) -> FilmState:
-    """A state with its change as a complex step."""
+    """Add the change of a state as a complex step."""
     return FilmState(
         state.pressure + 1j * STEP * change.pressure,
         state.cavitation + 1j * STEP * change.cavitation,

@@ -1,4 +1,4 @@
-"""Newton's method for a film: pressure, cavitated fraction, film and rigid shift together.
+"""Newton's method for a film, with pressure, cavitated fraction, film and rigid shift at once.
 
 The unknowns are pressure p, cavitated fraction theta and film h per node, and the rigid shift C of
 the seal. In scaled form the equations are
@@ -8,9 +8,10 @@ the seal. In scaled form the equations are
     h = h_s + C + K d, d = p + p_c(h) - p_sc,
     sum of weights times d = 0.
 
-The linear step is solved for the change g of d: then dh = dC + K g, dp = g - p_c' dh, and theta
-follows locally where the film is full. This leaves a dense system with about one row per node, and
-one more per cavitated node.
+Here h_s is the static gap, p_c the contact pressure of the asperities, p_sc the static contact
+pressure, and K the compliance matrix of the seal. The linear step is solved for the change g of d:
+then dh = dC + K g and dp = g - p_c' dh, and theta follows locally where the film is full. This
+leaves a dense system with about one equation per node, and one more per cavitated node.
 """
 
 from __future__ import annotations
@@ -31,19 +32,19 @@ TOLERANCE = 1e-9
 """Largest scaled residual of a converged film."""
 MOST_ITERATIONS = 60
 _GROWTH, _LEAST_GROWTH = 8.0, 1.02
-"""Initial and smallest step factor of a continuation."""
+"""Initial and smallest factor between successive values of a continuation."""
 _CLOSED, _PRESSURE_STEP = 0.5, 0.6
-"""Largest relative decrease of a film in one step; largest change of a scaled pressure."""
+"""Largest relative decrease of the film, and largest change of a scaled pressure, in one step."""
 
 
 @dataclass(frozen=True, slots=True)
 class Bed:
-    """Support of the film: the elastic seal on asperities, in scaled form.
+    """Elastic seal and asperities, which support the film, in scaled form.
 
-    The static pressure is the load to balance; `compliance` is
-    (1 - nu^2) L p_scale/(pi E film_scale),
-    `stiffness` the asperity stiffness over the pressure scale (0 for smooth surfaces) and
-    `roughness_ratio` sigma over the film scale.
+    Oil and asperities must balance the static pressure. `compliance` is
+    (1 - nu^2) L p_scale/(pi E film_scale), with contact width L. `stiffness` is the asperity
+    stiffness over the pressure scale (0 for smooth surfaces). `roughness_ratio` is the roughness
+    sigma over the film scale.
     """
 
     rest_film: Vector
@@ -53,7 +54,7 @@ class Bed:
     roughness_ratio: Array
     sealed: Array
     outer: Array
-    held: bool = False  # the film is fixed: no rigid shift, no load balance
+    held: bool = False  # the gap is fixed: no rigid shift, no load balance
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +69,7 @@ class FilmState:
 
 @dataclass(frozen=True, slots=True)
 class NewtonResidual:
-    """Scaled residuals: flow (inner nodes), complementarity, film, load, and the two ends."""
+    """Scaled residuals: flow at inner nodes, complementarity, film, load, pressure at both ends."""
 
     flow: Vector
     complementarity: Vector
@@ -90,9 +91,10 @@ class NewtonResult:
 
 @lru_cache(maxsize=16)
 def kernel(nodes: int) -> Vector:
-    """Film per unit pressure, -int ln(x - s)^2 ds over each node's cell on a unit width.
+    """Film per unit pressure on a node: -int ln(x - s)^2 ds over its cell, for unit width.
 
-    Another width only adds a constant times the integral of d, which the load balance sets to zero.
+    Another width only adds a constant times the integral of the pressure change d, which the load
+    balance sets to zero.
     """
     places = np.linspace(0, 1, nodes)
     edges = np.concatenate([[0.0], (places[1:] + places[:-1]) / 2, [1.0]])
@@ -106,7 +108,7 @@ def kernel(nodes: int) -> Vector:
 
 @lru_cache(maxsize=16)
 def weights(nodes: int) -> Vector:
-    """Trapezium weights on a unit width."""
+    """Weights of the trapezium rule on a unit width."""
     result = np.full(nodes, 1 / (nodes - 1))
     result[[0, -1]] /= 2
     result.setflags(write=False)
@@ -149,13 +151,13 @@ def _complementarity_slopes(state: FilmState) -> tuple[Vector, Vector]:
 
 
 def _spread(bands: tuple[Vector, Vector, Vector], matrix: Vector) -> Vector:
-    """Rows of the inner nodes: tridiagonal matrix times dense matrix."""
+    """Tridiagonal matrix times dense matrix, for the rows of the inner nodes."""
     lower, middle, upper = (band[:, None] for band in bands)
     return lower * matrix[:-2] + middle * matrix[1:-1] + upper * matrix[2:]
 
 
 def _along(bands: tuple[Vector, Vector, Vector], vector: Vector) -> Vector:
-    """Rows of the inner nodes: tridiagonal matrix times vector."""
+    """Tridiagonal matrix times vector, for the rows of the inner nodes."""
     lower, middle, upper = bands
     return lower * vector[:-2] + middle * vector[1:-1] + upper * vector[2:]
 
@@ -170,7 +172,7 @@ def _widened(bands: tuple[Vector, Vector, Vector]) -> Vector:
 
 
 class LinearSystem:
-    """Linearised equations at a state; `solve` gives the change that cancels residuals."""
+    """Linearised equations at a state; `solve` gives the change that cancels the residuals."""
 
     def __init__(self, flow: ReynoldsProblem, bed: Bed, state: FilmState) -> None:
         nodes = self.nodes = flow.nodes
@@ -267,7 +269,7 @@ def _allowed(state: FilmState, change: FilmState) -> float:
 def _measures(
     flow: ReynoldsProblem, bed: Bed, state: FilmState, newton_residual: NewtonResidual
 ) -> tuple[float, float, float]:
-    """Relative flux spread, load residual, and the largest of the other scaled residuals."""
+    """Relative spread of the flux, load residual, and the largest of the other scaled residuals."""
     fluxes = flux(flow, state.pressure, state.cavitation, state.film)
     drag_flow = abs(flow.drive) * np.min(flow.gap(state.film)[1])
     spread = np.ptp(fluxes) / (abs(np.mean(fluxes)) + drag_flow + 1e-300)
@@ -278,7 +280,7 @@ def _measures(
 
 
 def newton(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResult:
-    """Solve the film from a starting state; a failure returns a reason."""
+    """Solve the film from a starting state; if this fails, the result has a reason."""
     with np.errstate(all="ignore"):
         return _newton(flow, bed, state)
 
@@ -315,13 +317,13 @@ def _newton(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResult:
 def follow(
     solve: Callable[[float, FilmState], NewtonResult], state: FilmState, first: float, last: float
 ) -> NewtonResult:
-    """Continuation of a film from the first to the last positive value, with adaptive factors.
+    """Solve a film for positive values from first to last, each from the previous state.
 
     Parameters
     ----------
-    solve : outcome at a value, from an initial state
+    solve : function that returns the outcome at a value, from an initial state
     state : initial state at the first value
-    first, last : values, such as speeds
+    first, last : first and last value, such as speeds; the factor between values is adaptive
     """
     outcome = solve(first, state)
     iterations, value, growth = outcome.iterations, first, _GROWTH

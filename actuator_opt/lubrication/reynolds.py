@@ -1,16 +1,18 @@
-"""Reynolds equation of a film along a seal: flux between nodes and its derivatives.
+"""Reynolds equation of a film along a seal: flux between nodes, and its derivatives.
 
 Finite volumes on uniform nodes. The flux of a face is
 
     m = -M dp/dx + (U/2) mean(r T) (1 - theta of the upwind node),
 
-M = r phi_x h^3/(12 eta), T = h_T + sigma phi_s, r the density over that at zero pressure, theta the
-cavitated fraction: the rest of a ruptured film moves with the rod, so mass is conserved where
-the film ruptures and where it forms again. Everything is scaled: pressure by `pressure_scale` above
-the cavitation pressure, film by `film_scale`, length by the width.
+with M = r phi_x h^3/(12 eta) and T = h_T + sigma phi_s. Here U is the speed, h the film, h_T its
+mean gap height, sigma the roughness, eta the viscosity, r the density over that at zero pressure,
+phi_x and phi_s the flow factors, and theta the cavitated fraction. The oil in a ruptured film moves
+with the rod, so mass is conserved where the film ruptures and where it forms again. Everything is
+scaled: pressure above the cavitation pressure by `pressure_scale`, film by `film_scale`, length by
+the width.
 
 The inputs of a lubricated contact are oil, two rough surfaces, an elastic seal and operating
-conditions. Every number is a Python float or, inside `sensitivities`, has a complex step.
+conditions. Every number is a Python float; only `sensitivities` adds complex steps to them.
 """
 
 from __future__ import annotations
@@ -32,12 +34,12 @@ from ..models.rough_surface import (
 )
 
 FLAT = 0.43
-"""F_3/2 at film ratio 0, where the mean planes of both surfaces coincide."""
+"""Asperity integral F_3/2 at film ratio 0, where the mean planes of both surfaces coincide."""
 
 
 @dataclass(frozen=True, slots=True)
 class Lubricant:
-    """Oil: viscosity and density over pressure.
+    """Viscosity and density of the oil as functions of pressure.
 
     Parameters
     ----------
@@ -55,7 +57,7 @@ class Lubricant:
     density_c_b: float = 0.0
 
     def viscosity_ratio(self, pressure: Array) -> Array:
-        """Viscosity over its value at zero pressure."""
+        """Ratio of the viscosity to its value at zero pressure."""
         law = VISCOSITY_LAWS[self.pressure_law].model
         if law is None:
             return 1.0 + 0.0 * pressure
@@ -64,7 +66,7 @@ class Lubricant:
         return value / viscosity
 
     def density_ratio(self, pressure: Array) -> Array:
-        """Density over its value at zero pressure."""
+        """Ratio of the density to its value at zero pressure."""
         return 1 + self.density_c_a * pressure / (1 + self.density_c_b * pressure)
 
 
@@ -101,7 +103,7 @@ class Elastic:
 
     @property
     def compliance(self) -> Array:
-        """(1 - nu^2)/(pi E) of the line load [1/Pa]."""
+        """Compliance (1 - nu^2)/(pi E) under a line load [1/Pa]."""
         return (1 - self.poissons_ratio**2) / (math.pi * self.youngs_modulus)
 
 
@@ -135,7 +137,7 @@ class Contact:
 
     @property
     def asperity_stiffness(self) -> Array:
-        """Contact pressure of the asperities over F_3/2 [Pa]."""
+        """Ratio of the asperities' contact pressure to F_3/2 [Pa]."""
         return asperity_stiffness(
             youngs_modulus=self.elastic.youngs_modulus,
             poissons_ratio=self.elastic.poissons_ratio,
@@ -146,7 +148,7 @@ class Contact:
 
 
 def fault(contact: Contact) -> str:
-    """Why a contact is invalid, in one line; empty if it is valid."""
+    """Reason why a contact is invalid, in one line; empty if it is valid."""
     if contact.lubricant.pressure_law not in VISCOSITY_LAWS:
         return (
             f"pressure law {contact.lubricant.pressure_law!r} of the lubricant: "
@@ -217,8 +219,9 @@ Vector = Any
 class ReynoldsProblem:
     """A scaled Reynolds problem on uniform nodes.
 
-    `conductance` = film_scale^3 pressure_scale/(12 eta_0 L) and `drive` = U film_scale/2, both over
-    `flow_scale` [m^2/s]; `rod_share` None means smooth surfaces.
+    `conductance` = film_scale^3 pressure_scale/(12 eta_0 L) and `drive` = U film_scale/2, with
+    viscosity eta_0 at zero pressure, width L and speed U. Both are divided by `flow_scale` [m^2/s].
+    `rod_share` is None for smooth surfaces.
     """
 
     nodes: int
@@ -239,13 +242,13 @@ class ReynoldsProblem:
         return self.drive * (2 * self.flow_scale / self.film_scale)
 
     def oil(self, pressure: Vector) -> tuple[Vector, Vector]:
-        """Density ratio r, and r over the viscosity ratio, at scaled pressures."""
+        """Density ratio r at scaled pressures, and r divided by the viscosity ratio."""
         absolute = self.cavitation_pressure + self.pressure_scale * pressure
         density = self.lubricant.density_ratio(absolute)
         return density, density / self.lubricant.viscosity_ratio(absolute)
 
     def gap(self, film: Vector) -> tuple[Vector, Vector]:
-        """phi_x h^3 and T of scaled films."""
+        """Terms phi_x h^3 and T of the flux, for scaled films."""
         if self.rod_share is None:
             return film**3, film
         ratio = film / self.roughness_ratio
@@ -276,7 +279,7 @@ def flux(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vect
 
 
 def faces(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vector) -> FaceFlux:
-    """Flux and its derivatives for a real state; local laws use a complex step."""
+    """Flux and its derivatives for a real state; a complex step differentiates local laws."""
     density, fluidity = flow.oil(pressure + 1j * STEP)
     opening, carried = flow.gap(film + 1j * STEP)
     density_slope, fluidity_slope = density.imag / STEP, fluidity.imag / STEP
@@ -309,5 +312,5 @@ def faces(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vec
 
 
 def banded(before: Vector, after: Vector) -> tuple[Vector, Vector, Vector]:
-    """Lower, middle and upper band of d(flux out - flux in)/d(node), rows of the inner nodes."""
+    """Lower, middle and upper band of d(flux out - flux in)/d(node) at the inner nodes."""
     return -before[:-1], before[1:] - after[:-1], after[1:]

@@ -1,4 +1,4 @@
-"""Smooth films: a gap of given shape, a slider, and an elastic back-up ring on its rod."""
+"""Films between smooth surfaces: gap of given shape, slider, elastic back-up ring on a rod."""
 
 from __future__ import annotations
 
@@ -15,12 +15,16 @@ from .reynolds import Elastic, Lubricant, ReynoldsProblem, Vector
 _NARROWEST = 0.04
 """Square of the smallest relative half width of the initial pressure."""
 _FASTER = (1.0, 30.0)
-"""Multiples of the speed for the initial guess of a loaded film, with increasing thickness."""
+"""Multiples of the speed for the initial guess of a loaded film; a larger multiple gives a
+thicker film."""
 
 
 @dataclass(frozen=True, slots=True)
 class SmoothFilm:
-    """A solved smooth film, or the reason for a failure. Forces are per circumference."""
+    """A solved film between smooth surfaces, or the reason for a failure.
+
+    Forces are per circumference.
+    """
 
     converged: bool
     reason: str
@@ -43,12 +47,12 @@ class Gap:
     Parameters
     ----------
     width : width of the face [m]
-    profile : height of the unloaded face above the rod at uniform nodes [m]; its level matters
-        only for a fixed gap
+    profile : height of the unloaded face above the rod at uniform nodes [m]; a constant added to
+        it matters only for a fixed gap
     lubricant : oil
     speed : rod speed [m/s], positive outstroke
     sealed_pressure, outer_pressure : pressures at the ends [Pa]
-    line_load : load int p dx on the film [N/m]; None: fixed gap
+    line_load : load on the film, int p dx [N/m]; None: fixed gap
     elastic : elasticity of the ring; None: rigid
     cavitation_pressure : [Pa]
     """
@@ -65,7 +69,7 @@ class Gap:
 
 
 def fault(gap: Gap) -> str:
-    """Why a gap is invalid, in one line; empty if it is valid."""
+    """Reason why a gap is invalid, in one line; empty if it is valid."""
     for name, value in (
         ("width", gap.width),
         ("viscosity", gap.lubricant.dynamic_viscosity),
@@ -89,7 +93,7 @@ def fault(gap: Gap) -> str:
 
 
 def solve_gap(gap: Gap, nodes: int = 0) -> SmoothFilm:
-    """Film, drag and flow of a smooth gap.
+    """Solve a smooth gap for film, drag and flow.
 
     The film is h = h_0 + profile - (1 - nu^2)/(pi E) int p ln(x - s)^2 ds, h_0 from the line load
     ([Huang2017] eq. 19 to 22, with local density and viscosity).
@@ -166,9 +170,10 @@ def _fixed_gap(gap: Gap) -> SmoothFilm:
 
 
 def _loaded_gap(gap: Gap) -> SmoothFilm:
-    """Initial state from dry contact with its inlet film; else from a thick film.
+    """Solve a loaded gap, starting from dry contact plus its inlet film, else from a thick film.
 
-    At the inlet a pressure gradient w leaves a film of h* = sqrt(8 eta U/(9 w)).
+    At the inlet, a pressure gradient w lets a film of h* = sqrt(8 eta U/(9 w)) pass, with viscosity
+    eta and speed U.
     """
     pressure = _scales(gap)
     rise = 4 * (gap.line_load or 0.0) / gap.width**2
@@ -194,7 +199,7 @@ def _loaded_gap(gap: Gap) -> SmoothFilm:
 
 
 def _dry(gap: Gap, flow: ReynoldsProblem, bed: Bed, least: float) -> FilmState:
-    """Elliptic pressure over the contact width of a cylinder, and the film above it."""
+    """Elliptic pressure over the contact width of a cylinder, and the film under it."""
     place = np.linspace(0, 1, flow.nodes)
     ends = bed.sealed + (bed.outer - bed.sealed) * place
     relief = float(np.mean(gap.profile[[0, -1]]) - np.min(gap.profile))

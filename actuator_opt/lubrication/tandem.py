@@ -1,4 +1,4 @@
-"""Two seals in series: the pressure between them at which both have the same flow."""
+"""Two seals in series: find the pressure between them at which both have the same flow."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from .film import Film, solve_film
 from .reynolds import Contact, Elastic, Lubricant, Surface, Vector
 
 HIGHEST = 1.5
-"""Largest interseal pressure that is tried, over the higher end pressure,
-by default."""
+"""Default for the largest interseal pressure tried, as a multiple of the higher end pressure."""
 MATCH = 1e-8
-"""Difference at which two flows count as equal, over the larger flow and the flow of the rod."""
+"""Difference at which two flows count as equal, relative to the largest of both flows and the flow
+that the rod carries."""
 _MOST_TRIALS = 60
 _EMPTY = 0.9
-"""Initial share without oil in the space between the seals for starved films."""
+"""Initial share without oil of the space between the seals, when starved films are solved."""
 _NO_LIMIT = (
     "the inner seal still passes more than the outer seal at {:.4g} Pa: "
     "the pressure between them exceeds this value"
@@ -30,12 +30,12 @@ _NO_SUPPLY = "at {:.4g} Pa oil leaves the space between the seals on both sides:
 
 @dataclass(frozen=True, slots=True)
 class TandemSeal:
-    """A seal of a row.
+    """One of two seals in series.
 
     Parameters
     ----------
-    static : function of sealed and outer pressure: width [m] and static pressure at uniform nodes
-        [Pa] (all pressures absolute)
+    static : function of sealed and outer pressure that returns width [m] and static pressure at
+        uniform nodes [Pa]; all pressures are absolute
     elastic, surface : elasticity and roughness of the seal
     """
 
@@ -54,7 +54,7 @@ class Tandem:
     cavitation: float  # share of the space between the seals without oil, if starved [-]
     inner: Film | None
     outer: Film | None
-    match_residual: float  # difference of the flows over the larger flow and the carried flow
+    match_residual: float  # relative difference of both flows, as in `MATCH`
 
 
 @dataclass(slots=True)
@@ -71,7 +71,7 @@ class _Row:
     films: tuple[Film | None, Film | None] = (None, None)
 
     def solve(self, pressure: float, cavitation: float = 0.0) -> tuple[Film, Film]:
-        """Films of both seals; the seal that draws oil from the space between may be starved."""
+        """Solve both films; the seal that draws oil from the space between them may starve."""
         draws_out = self.speed > 0
         first = self._film(
             self.inner, self.sealed_pressure, pressure, self.films[0],
@@ -116,20 +116,20 @@ def solve_tandem(
     highest: float = HIGHEST,
     start: Tandem | None = None,
 ) -> Tandem:
-    """Pressure between two seals at which both have the same flow.
+    """Find the pressure between two seals at which both have the same flow.
 
-    Secant steps inside a bracket from the cavitation pressure to `highest` times the sealed
-    pressure; the surplus flow of the inner seal falls with the interseal pressure. If one seal
+    Secant steps search a bracket from the cavitation pressure to `highest` times the higher end
+    pressure. The surplus flow of the inner seal falls as the interseal pressure rises. If one seal
     draws more than the other supplies even at the cavitation pressure, the space between them is
-    starved: it stays at that pressure, partly filled.
+    starved: it stays at the cavitation pressure, partly filled.
 
     Parameters
     ----------
-    inner, outer : seal on the pressure side, seal behind it
+    inner, outer : seal on the pressure side, and seal on the outer side
     lubricant : oil of both seals
     speed : rod speed [m/s], positive outstroke
     sealed_pressure, outer_pressure, cavitation_pressure : absolute pressures [Pa]
-    highest : largest interseal pressure tried, over the higher end pressure [-]
+    highest : largest interseal pressure tried, as a multiple of the higher end pressure [-]
     start : tandem of a nearby point, as initial state
 
     Returns
@@ -171,8 +171,8 @@ def _search(row: _Row, guess: float, low: float, high: float) -> Tandem:
 def _next(trials: list[tuple[float, float]], bottom: float, top: float) -> float:
     """The next pressure: a secant through the last two trials, or the middle of the bracket.
 
-    If all trials lie on one side, the end of the bracket is tried early; every fifth step halves
-    the bracket.
+    If all trials lie on the same side of the solution, the other end of the bracket is tried early.
+    Every fifth step halves the bracket.
     """
     middle = (bottom + top) / 2
     if len(trials) < 2:
@@ -191,10 +191,10 @@ def _next(trials: list[tuple[float, float]], bottom: float, top: float) -> float
 
 
 def _starved(row: _Row, first: Film, second: Film, pressure: float) -> Tandem:
-    """Share without oil of the space between the seals, by regula falsi.
+    """Find the share of the space between the seals that has no oil, by regula falsi.
 
-    A flooded and a starved film may both exist at the same supply: the starved film is followed,
-    from an almost empty space.
+    A flooded and a starved film may both exist for the same supply of oil. The starved film is
+    followed, starting from an almost empty space.
     """
     outward = row.speed > 0
     given, drawn = (first, second) if outward else (second, first)

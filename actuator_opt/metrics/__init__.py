@@ -1,4 +1,4 @@
-"""Metrics: everything that an evaluation computes."""
+"""Metrics: all results that an evaluation computes, declared in one table."""
 
 from .metric import MetricRow
 from .table import METRICS, of_metric

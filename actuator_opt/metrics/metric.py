@@ -12,8 +12,8 @@ from ..base.quantities import INFINITY, Quantity, Sense
 from ..base.units import BASE, unit
 
 Feed = Literal["wall", "oil", "own"]
-"""Source of the validity warnings that a metric inherits: the barrel's wall model (bore growth),
-or the oil's bulk modulus; "own": a warning about the metric concerns its own model."""
+"""Source of a metric's validity warnings: the wall model of the barrel (by bore growth) or the bulk
+modulus of the oil. "own": a warning about the metric concerns the metric's own model."""
 
 Wall = Literal["layered", "thin_laminate"]
 """Wall models of a laminated barrel."""
@@ -24,10 +24,10 @@ CRITERION = "criterion"
 
 @dataclass(frozen=True, slots=True)
 class CheckLine:
-    """A line of the check list: number, title, limit (SI) and its source.
+    """A line of the check list: number, title, limit (SI) and source of the limit.
 
-    Without `limit`, only the author of a design can set a limit. `advice` lines are shown and give
-    warnings, but do not constrain the optimiser.
+    A line without `limit` is checked only if the design file sets a limit. Lines with `advice` are
+    shown and give warnings, but do not constrain the optimiser.
     """
 
     number: str
@@ -42,13 +42,13 @@ class CheckLine:
 
     @property
     def order(self) -> tuple[int, ...]:
-        """Chapter and line as numbers, for sorting: ``"10.2"`` after ``"9.1"``."""
+        """Chapter and line as numbers, so that ``"10.2"`` sorts after ``"9.1"``."""
         return tuple(int(part) for part in self.number.split("."))
 
 
 @dataclass(frozen=True, slots=True)
 class Least:
-    """Least value (SI) for a part that can be made, with the source of the number."""
+    """Smallest value (SI) for which a part can be made, and the source of this value."""
 
     value: float
     source: str
@@ -65,12 +65,12 @@ class MetricRow:
     name, symbol, dimension, unit, label, lower, upper : its quantity (`quantities.Quantity`)
     worst : which value over load cases and places is the worst
     model : ``"module.function"`` of `actuator_opt.models`; None for plain geometry
-    feeds : source of inherited warnings
+    feeds : where its validity warnings come from
     check : its line of the check list; None if it has no check
     by_wall : replaces `model`, by wall model of a laminated barrel
-    at : replaces `model`, by place; a place may be a pattern (``"* yield, *"``)
+    at : replaces `model` at some locations; a key may be a pattern (``"* yield, *"``)
     at_stops : whether it is also computed at both stops if their loads differ
-    least : least value for a part that can be made (`geometry_…` only)
+    least : smallest value for which a part can be made (`geometry_…` only)
     short : shorter label for a tile of a report
     """
 

@@ -1,7 +1,7 @@
-"""All metrics, one row each: quantity, worst value, model, inherited warnings, check, labels.
+"""Table of all metrics: quantity, worst value, model, inherited warnings, check, labels.
 
-The evaluation, check list, optimiser limits, warnings, tables, reports, JSON Schema and help read
-this table. A new metric is a row here and a line that computes it (`MetricArrays.put`).
+Evaluation, check list, limits of the optimiser, warnings, tables, reports, JSON Schema and help all
+use this table. To add a metric, write a row here and a line that computes it (`MetricArrays.put`).
 """
 
 from __future__ import annotations
@@ -393,21 +393,21 @@ CHECKS: tuple[tuple[MetricRow, CheckLine], ...] = tuple(
         key=lambda line: line[1].order,
     )
 )
-"""The check list in order; a limit applies to the worst value of its metric."""
+"""The check list in order of its lines; a limit applies to the worst value of the metric."""
 
 WALL_FED = tuple(fed_by("wall", ROWS))
-"""Metrics that inherit the error of the barrel's wall model."""
+"""Metrics that inherit the validity warnings of the barrel's wall model."""
 
 AT_STOPS = tuple(name for name, row in ROWS.items() if row.at_stops)
 """Metrics that are also computed at both stops if their loads differ."""
 
 OIL_FED = tuple(fed_by("oil", ROWS))
-"""Metrics that inherit the error of the bulk modulus."""
+"""Metrics that inherit the validity warnings of the oil's bulk modulus."""
 
 OWN = frozenset(fed_by("own", ROWS))
-"""Metrics whose warnings concern their own model, not an earlier model."""
+"""Metrics whose warnings concern their own model, not a model whose results they use."""
 
 
 def of_metric(name: str) -> Quantity:
-    """Quantity of a metric; an undeclared metric of the user is a plain ratio."""
+    """Quantity of a metric; an undeclared user metric is a plain ratio."""
     return METRICS.get(name) or Quantity(name, "", "ratio", "", name.replace("_", " "))

@@ -1,4 +1,4 @@
-"""A compact seal: a rubber block between two guides, effective in both directions."""
+"""A compact seal: a rubber block between two guides, which seals in both directions."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ def contact(seal: SealSizes) -> SealContact:
 
 
 def groove(sizes: Mapping[str, Array]) -> SealGroove:
-    """Groove for a block of the free section."""
+    """Groove for a block with the seal's free section."""
     section, width = sizes["section"], sizes["width"]
     depth = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
     return SealGroove(depth, width, AXIAL_PLAY * width, (SealPart(section * width, depth / 2),))
 
 
 def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
-    """A block with the land as its face, tapered where the body is wider."""
+    """Outline of a block with the land as its face; a wider body tapers towards the land."""
     width, depth, middle = sizes["width"], room.depth, room.middle
     land = min(sizes["land"], width)
     a, b = middle - width / 2, middle + width / 2

@@ -1,8 +1,8 @@
-"""A mounted seal: its sizes by key of the design file, its contact, and its outline.
+"""A mounted seal: sizes by key of the design file, contact with the counterface, and outline.
 
-The contact is line load, width, peak pressure and profile. Outlines are polygons without pressure,
-in m: x runs from the sealed side of the groove, r from the counterface into the groove. A round
-ring keeps its section area: squeezed, it is a rectangle between two half circles.
+The contact comprises line load, width, peak pressure and profile. Outlines are polygons [m] of the
+seal without pressure: x runs from the sealed side of the groove, r from the counterface into the
+groove. A round ring keeps its section area: squeezed, it is a rectangle between two half circles.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ class SizeField(NamedTuple):
     Parameters
     ----------
     size : the size
-    default : function of default value from the preceding numbers (SI), such as `section` and
-        `gland_depth`; None if the design must state the size
+    default : function that computes the default from the preceding values (SI), such as
+        `section` and `gland_depth`; None if the design must state the size
     """
 
     size: Size
@@ -99,8 +99,8 @@ SHARED = (THICKNESS, WIDTH, GROOVE_WIDTH, LAND, RELIEF, TAPER, ROOT_CLEARANCE)
 
 
 WITHIN, TOUCHING = 1e-6, 1.0
-"""Least excess of a static profile, as a share of the sealed pressure and in Pa: below it the
-sealed pressure would open the contact."""
+"""Least excess of contact pressure over oil pressure, as a share of the sealed pressure and in Pa.
+With a smaller excess, the sealed pressure would open the contact."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +135,7 @@ def shaped(
     excess_law: Callable[..., Array],
     profile_law: Callable[..., Array],
 ) -> SealContact:
-    """A contact with a given profile shape, scaled to carry the load."""
+    """A contact with a pressure profile of given shape, scaled to carry the load."""
     ends = {"sealed_pressure": pressure, "outer_pressure": 0.0}
     excess = excess_law(line_load=load, width=width, **ends)
 
@@ -147,7 +147,7 @@ def shaped(
 
 
 def landed(load: Array, width: Array, pressure: Array) -> SealContact:
-    """A worn-in land under a line load."""
+    """Contact of a worn-in flat land under a line load."""
     peak = contact_profile.land_peak(
         line_load=load, width=width, sealed_pressure=pressure, outer_pressure=0.0
     )
@@ -166,7 +166,7 @@ _CORNERS = 24
 
 
 class Shape(NamedTuple):
-    """A named closed polygon; `free` is the outline before mounting."""
+    """A named closed polygon; `free` marks the outline before mounting."""
 
     kind: Literal["elastomer", "polymer", "back-up", "free"]
     points: Polygon

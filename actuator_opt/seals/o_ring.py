@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..finite_elements.result import SealSolution
 
 ON_LIMIT = 1e-6
-"""Squeeze beyond the range of a law that an optimum on its limit may have."""
+"""Tolerance on the squeeze range of a law, for an optimum that lies on its limit."""
 
 
 def law_inputs(seal: SealSizes) -> dict[str, Array]:
@@ -32,7 +32,7 @@ def law_inputs(seal: SealSizes) -> dict[str, Array]:
 
 
 def contact(seal: SealSizes) -> SealContact:
-    """Contact by the law of the ring, limited to the groove width."""
+    """Contact by the contact law of the ring, no wider than the groove."""
     law, inputs, pressure = seals.LAWS[seal.law], law_inputs(seal), seal["pressure"]
     width = gland.limited_width(
         contact_width=law.contact_width(**inputs), groove_width=seal["groove_width"]
@@ -55,12 +55,12 @@ def contact(seal: SealSizes) -> SealContact:
 
 
 def round_piece(section: Array, depth: Array) -> SealPart:
-    """A round ring in a groove."""
+    """The part of a round ring in its groove."""
     return SealPart((0.25 * math.pi) * section * section, depth / 2)
 
 
 def groove(sizes: Mapping[str, Array]) -> SealGroove:
-    """The standard gland of the section."""
+    """The standard gland for the section."""
     section = sizes["section"]
     depth = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
     width = gland.groove_width(section=section)
@@ -68,12 +68,12 @@ def groove(sizes: Mapping[str, Array]) -> SealGroove:
 
 
 def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
-    """A round ring from the counterface to the groove's bottom."""
+    """Outline of a round ring from the counterface to the bottom of the groove."""
     return round_ring(room.middle, 0.0, room.depth, sizes["section"])
 
 
 def law_warnings(seal: SealSizes) -> Iterable[str]:
-    """A law outside the hardness, squeeze or pressure of its test data."""
+    """Warn of a contact law used outside the hardness, squeeze or pressure of its test data."""
     law = seals.LAWS[seal.law]
     modulus_law = elastomer.MODULUS_LAWS[seal.hardness_model]
     hardness = float(np.max(seal["hardness"]))

@@ -1,4 +1,4 @@
-"""Interface of a seal type: names, sizes, faults, groove, contact, outline, elements."""
+"""Interface of a seal type: names, sizes, faults, groove, contact, outline, finite elements."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ..finite_elements.result import SealSolution
 
 AXIAL_PLAY = 1.1
-"""Default groove over seal width (choice: 10 % clearance for motion and swell)."""
+"""Default ratio of groove width to seal width. Our choice: 10 % clearance for motion and swell."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,7 @@ class SealGroove(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Space of a seal between its back-up rings: axial ends, depth [m]."""
+    """Space for a seal between its back-up rings: positions of its axial ends, and depth [m]."""
 
     start: float
     end: float
@@ -83,7 +83,7 @@ class Room(NamedTuple):
 
     @property
     def middle(self) -> float:
-        """Halfway between the ends [m]."""
+        """Axial position halfway between the ends [m]."""
         return (self.start + self.end) / 2
 
 
@@ -111,7 +111,7 @@ class SealType:
     title : title in reports
     help : meaning of the name
     fields : its sizes; a design must not state others
-    faults : contradictions between stated sizes (floats by key)
+    faults : function that yields contradictions between stated sizes (floats by key)
     groove : groove for `section`, `squeeze` and the required sizes, floats or arrays by key
     contact : contact for the numbers of a seal
     outline : mounted outline for floats by key, in its space

@@ -1,4 +1,4 @@
-"""Contact pressures that a design states, for any type of seal."""
+"""Contact pressures that a design states for a seal of any type."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class PressureProfile(Protocol):
 
 
 def contact(tables: Sequence[PressureProfile], pressure: Array) -> SealContact:
-    """Stated profiles, interpolated between neighbouring pressures at equal t.
+    """Interpolate stated profiles between neighbouring pressures, at equal shares t of the width.
 
     Parameters
     ----------
@@ -64,13 +64,13 @@ def contact(tables: Sequence[PressureProfile], pressure: Array) -> SealContact:
     mixed = sum(
         np.asarray(share)[..., None] * row for share, row in zip(shares, at_knots, strict=True)
     )
-    highest = np.argmax(real(mixed), axis=-1)[..., None]  # piecewise linear: peak at a knot
+    highest = np.argmax(real(mixed), axis=-1)[..., None]  # piecewise linear: peak at a node
     peak = np.take_along_axis(mixed, highest, axis=-1)[..., 0]
     return SealContact(load, width, peak, profile, peak - pressure, width)
 
 
 def _share(pressure: Array, pressures: Sequence[float], index: int) -> Array:
-    """Weight of a table at a pressure: 1 at its own, falling to 0 at the neighbouring pressures."""
+    """Weight of a profile at a pressure: 1 at its own, falling to 0 at its neighbours'."""
     table_pressure = pressures[index]
     rising: Array = 1.0
     falling: Array = 1.0

@@ -37,27 +37,27 @@ if TYPE_CHECKING:
     from ..finite_elements.result import SealSolution
 
 TAPER_DEFAULT = math.radians(6.0)
-"""Default taper beside the land (a choice)."""
+"""Default angle of the taper beside the land [rad] (our choice)."""
 
 LAND_SHARE = 0.5
-"""Default land over width (a choice)."""
+"""Default ratio of land to ring width (our choice)."""
 
 ROOM = 0.1
-"""Share by which the O-ring may exceed the ring width: its groove is wider by this share."""
+"""Share of the ring width by which the O-ring, and so the groove, may be wider than the ring."""
 
 ENERGISER_ELEMENTS = 96
-"""Elements around the O-ring: with 64, some load steps dent its contact by 8 % of the line
-load, or do not converge."""
+"""Number of elements around the O-ring. With 64, the line load of some load steps is too small by
+8 %, or they do not converge."""
 
 EDGE = 0.15e-3
-"""Radius of the edges of the land in finite elements, m (choice: broken edges of a turned PTFE
-ring)."""
+"""Radius of the edges of the land in finite elements [m]. Our choice, for the broken edges of a
+turned PTFE ring."""
 
 _text = INPUTS["length"].text
 
 
 def contact(seal: SealSizes) -> SealContact:
-    """Load of the O-ring and of the pressure behind the ring, on its land."""
+    """Contact of the land, loaded by the O-ring and by the pressure behind the ring."""
     law, inputs = seals.LAWS[seal.law], law_inputs(seal)
     pressure, width, land = seal["pressure"], seal["width"], seal["land"]
     foot = law.contact_width(**inputs | {"pressure": 0.0 * pressure})
@@ -96,7 +96,7 @@ def groove(sizes: Mapping[str, Array]) -> SealGroove:
 
 
 def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
-    """The sliding ring with its land between two tapers, and the O-ring behind it."""
+    """Outline of the sliding ring, its land between two tapers, and of the O-ring behind it."""
     width, thick = sizes["width"], sizes["thickness"]
     land = min(sizes["land"], width)
     relief = min(sizes["relief"], width - land)
@@ -115,7 +115,7 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
 
 
 def faults(sizes: Mapping[str, float]) -> Iterable[SizeFault]:
-    """The O-ring is not wider than its ring; land and relief fit the ring."""
+    """Faults of an O-ring wider than its ring, and of land or relief that do not fit the ring."""
     width, section = sizes.get("width"), sizes.get("section")
     if width is None or section is None:
         return

@@ -30,13 +30,13 @@ from .seal_type import (
 )
 
 LAND_SHARE = 0.1
-"""Default land over lip length (a choice)."""
+"""Default ratio of land to lip length (our choice)."""
 
 _text = INPUTS["length"].text
 
 
 def contact(seal: SealSizes) -> SealContact:
-    """Contact of the lip's rim."""
+    """Contact of the rim of a lip."""
     pressure, thickness = seal["pressure"], seal["thickness"]
     side = 1.0 if seal.on_rod else -1.0
     lip = {
@@ -66,7 +66,7 @@ def contact(seal: SealSizes) -> SealContact:
 
 
 def groove(sizes: Mapping[str, Array]) -> SealGroove:
-    """Groove of a body as long as the groove minus its clearance, with space between the lips."""
+    """Groove of a U-cup, whose body is as long as the groove minus the clearance."""
     section, width = sizes["section"], sizes["width"]
     depth = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
     lips = (2 * sizes["thickness"] - section) * width
@@ -75,7 +75,7 @@ def groove(sizes: Mapping[str, Array]) -> SealGroove:
 
 
 def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
-    """Two lips open to the sealed side; the heel behind them fills the groove but for clearance."""
+    """Outline of two lips, open to the sealed side; the heel fills the groove up to a clearance."""
     start, end, depth = room
     length, thick = sizes["width"], min(sizes["thickness"], 0.42 * depth)
     interference = max(
@@ -109,7 +109,7 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
 
 
 def lip_faults(width: float, thickness: float) -> Iterable[SizeFault]:
-    """A lip is longer than its thickness; otherwise the beam model does not apply."""
+    """Fault of a lip that is not longer than thick, so that the beam model does not apply."""
     if width < thickness:
         yield SizeFault(
             "width",
@@ -119,7 +119,7 @@ def lip_faults(width: float, thickness: float) -> Iterable[SizeFault]:
 
 
 def faults(sizes: Mapping[str, float]) -> Iterable[SizeFault]:
-    """The lips are longer than thick, with space between them."""
+    """Faults of lips that are not longer than thick, or have no space between them."""
     width, thickness, section = (sizes.get(key) for key in ("width", "thickness", "section"))
     if width is None or thickness is None or section is None:
         return

@@ -1,1 +1,1 @@
-"""Detailed studies of one design: a seal, the plant of a simulation, the test bench."""
+"""Detailed studies of one design: its seals, its equations of motion, its test bench."""

@@ -1,4 +1,4 @@
-"""Properties of a design for evaluating test records: areas, mass, forces, stiffness."""
+"""Properties of a design for evaluating its test records: areas, mass, forces, stiffness."""
 
 from __future__ import annotations
 
@@ -30,13 +30,14 @@ class Bench:
     Parameters
     ----------
     design : the actuator tested
-    growth : radial growth of the bore at the piston seal over chamber pressure [m/Pa]
+    growth : radial growth of the bore at the piston seal per chamber pressure [m/Pa]
     mass : moving mass inside the force sensor: rod, piston, fastening [kg]
-    rings, wipers : of the first load case
+    rings, wipers : sealing rings and wipers in the first load case
     springs : stiffness budget
-    oil_pressures : of chambers A and B in the first load case [Pa]
-    temperature : of the oil [K]
-    bulk_modulus : of the oil with air over gauge pressure, at the first case's temperature [Pa]
+    oil_pressures : pressures of chambers A and B in the first load case [Pa]
+    temperature : oil temperature [K]
+    bulk_modulus : bulk modulus [Pa] of the oil with air, as a function of gauge pressure, at the
+        temperature of the first load case
     """
 
     design: Design
@@ -62,9 +63,10 @@ class Bench:
     def areas(self, highest_pressure: Array) -> tuple[Array, Array]:
         """Return cap and rod-end piston areas, with the bore grown by the higher chamber pressure.
 
-        A_1 = pi (D/2 + u)^2, A_2 = A_1 - pi d^2/4, u the growth at the piston seal: the pressure
-        acts on the area that the seal closes. Without a piston seal the rod is a plunger: pi d^2/4
-        and zero. Pressure gauge [Pa]; areas [m^2].
+        A_1 = pi (D/2 + u)^2 and A_2 = A_1 - pi d^2/4, with bore D, rod diameter d and the growth u
+        at the piston seal, because the pressure acts on the area that the seal closes. Without a
+        piston seal the rod is a plunger, and the areas are pi d^2/4 and zero. Gauge pressure [Pa];
+        areas [m^2].
         """
         if self.plunger:
             area = forces.piston_area(bore=self.rod_diameter)
@@ -76,17 +78,17 @@ class Bench:
         )
 
     def normal_forces(self, pressure_1: Array, pressure_2: Array) -> list[tuple[Ring, Array]]:
-        """Return every ring with its normal force at chamber pressures, f pi D [N].
+        """Return every ring with its normal force [N] at chamber pressures: line load f times pi D.
 
-        The first ring in a row seals the pressure; the others only have their squeeze. Gauge
-        pressures [Pa], any shape.
+        The first of several rings in series seals the pressure; the others are only squeezed. Gauge
+        pressures [Pa], arrays of any shape.
         """
         return [(ring, force) for ring, _, force in self._rubbing(pressure_1, pressure_2)]
 
     def _rubbing(
         self, pressure_1: Array, pressure_2: Array
     ) -> Iterator[tuple[Ring, SealContact, Array]]:
-        """Yield every ring with its contact, and the normal force of its row [N]."""
+        """Yield every ring with its contact and the normal force of all rings in series [N]."""
         for ring in self._loaded(pressure_1, pressure_2):
             contact = seal_contact(ring)
             load = contact.line_load
@@ -104,20 +106,20 @@ class Bench:
         return total
 
     def coulomb(self, pressure_1: Array, pressure_2: Array) -> Array:
-        """Return the design's Coulomb friction [N]: rings and wipers, no side load on guides."""
+        """Return the Coulomb friction of rings and wipers [N], without side load on guides."""
         wiped = sum(float(wiper.friction) for wiper in self.wipers)
         return sum((friction for _, friction in self._coulomb(pressure_1, pressure_2)), wiped)
 
     def _coulomb(self, pressure_1: Array, pressure_2: Array) -> Iterator[tuple[Ring, Array]]:
-        """Yield every ring with the Coulomb friction of its row, by its friction law [N]."""
+        """Yield every ring with the Coulomb friction of all rings in series [N]."""
         for ring, contact, force in self._rubbing(pressure_1, pressure_2):
             yield ring, ring.element.friction_law.coefficient(ring.sizes, contact) * force
 
     def sliding(self, speed: Array, pressure_1: Array, pressure_2: Array) -> tuple[Array, Array]:
-        """Return the design's friction without side load on guides: level and viscous part [N].
+        """Return level and viscous part [N] of the friction, without side load on guides.
 
-        The level is Coulomb friction plus the breakaway friction that remains at a speed [m/s].
-        Gauge pressures [Pa].
+        The level is Coulomb friction plus the excess of breakaway friction that remains at the
+        speed [m/s]. Gauge pressures [Pa].
         """
         level = sum((float(wiper.friction) for wiper in self.wipers), 0.0 * speed)
         viscous = 0.0 * speed
@@ -150,7 +152,7 @@ class Bench:
         )
 
     def _loaded(self, pressure_1: Array, pressure_2: Array) -> list[Ring]:
-        """Return the rings at chamber pressures; the first of each row seals the pressure."""
+        """Return the rings at chamber pressures; the first on piston and rod seals the pressure."""
         p1, p2 = (
             np.maximum(pressure, 0.0) for pressure in np.broadcast_arrays(pressure_1, pressure_2)
         )
@@ -169,10 +171,10 @@ class Bench:
         return rings
 
     def stiffness(self, position: Array, pressure_1: Array, pressure_2: Array) -> Array:
-        """Return the stiffness with closed ports over a record [N/m]; NaN for a plunger.
+        """Return the stiffness with closed ports at every sample [N/m]; NaN for a plunger.
 
-        Position of the piston from the cap end [m], gauge pressures [Pa], all (samples). The oil of
-        each chamber has its bulk modulus with air at the pressure there.
+        The arguments are arrays (samples,): position of the piston from the cap end [m], gauge
+        pressures [Pa]. The bulk modulus of the oil with air is taken at each chamber's pressure.
         """
         place = np.clip(position, 0.0, self.stroke)[None, :]
         if self.plunger:
@@ -197,7 +199,7 @@ class Bench:
 
 
 def _leads(ring: Ring) -> bool:
-    """Whether a ring seals the pressure of its row."""
+    """Whether a ring is the first of its series and so seals the pressure."""
     return ring.groove.path == f"seals.{ring.name}."
 
 
@@ -207,7 +209,7 @@ def _first(parts: dict[str, Array]) -> list[Array]:
 
 
 def bench(subject: PreparedDesign) -> Bench:
-    """Return the bench properties of a design; oil and temperature are those of the first case."""
+    """Return the bench properties of a design, with oil and temperature of the first load case."""
     v = subject.values()
     done = compute(subject, v)
     g = done.geometry

@@ -1,4 +1,4 @@
-"""Oil films of a seal row over pressure and speed; each solution starts from the previous one."""
+"""Oil films of seals in series over pressure and speed, each solved from the previous solution."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ from ..models import friction
 from ..seals.contact import SealContact
 
 Stroke = Literal["out", "in"]
-"""Direction of the counterface past the seal: out of the sealed room, or in."""
+"""Direction in which the counterface moves past the seal: out of the sealed chamber, or into it."""
 
 
 def drives(place: Place) -> Stroke:
-    """Return the stroke direction of a driven actuator.
+    """Return the direction of the counterface past a seal while the oil drives the actuator.
 
-    A driven piston moves away from the pressure it seals, so the bore moves in past its seal. It
-    moves out where a load overruns the actuator.
+    A driven piston moves away from the pressure that it seals, so the bore moves in past the piston
+    seal. The bore moves out if a load overruns the actuator.
     """
     return "in" if place == "piston" else "out"
 
 
 @dataclass(frozen=True, slots=True)
 class Sealing:
-    """The rings of one seal row, which share the oil, from the sealed side outwards.
+    """One ring, or two in series with oil between them, from the sealed side outwards.
 
     Parameters
     ----------
-    rings : each with the pressure on its outer side; plain floats
+    rings : the rings, each with the pressure on its outer side; plain floats
     outward : whether the counterface moves towards the outer side
-    growth : of the counterface over the pressure on it [m/Pa]
+    growth : growth of the counterface per pressure on it [m/Pa]
     """
 
     rings: tuple[Ring, ...]
@@ -51,7 +51,7 @@ class Sealing:
         return self.growth * (pressure + float(self.rings[-1]["outer_pressure"]))
 
     def row(self, pressure: float, speed: float, **changes: float) -> FilmRow:
-        """Return the films at a pressure difference and speed, with the first ring's `changes`."""
+        """Return film inputs at a pressure and speed; `changes` are for the first ring."""
         grown = self.grown(pressure)
         rings = []
         for ring in self.rings:
@@ -61,12 +61,12 @@ class Sealing:
         return FilmRow(tuple(rings), self.outward)
 
     def alone(self, index: int) -> Sealing:
-        """Return the row with one of its rings alone."""
+        """Return a copy with only one of the rings."""
         return Sealing((self.rings[index],), self.outward, self.growth)
 
 
 def sealing(base: Base, place: Place, case: int) -> Sealing:
-    """Return the rings of a place with the oil and outer side of a load case, driven."""
+    """Return the rings of piston or rod, with oil and outer pressure of a driven load case."""
     rings = tuple(floats(ring, case) for ring in of_place(base.rings, place))
     pressure = float(of_case(base.state.driven_pressure, case))
     growth = 0.0
@@ -77,7 +77,7 @@ def sealing(base: Base, place: Place, case: int) -> Sealing:
 
 
 class Missing(NamedTuple):
-    """A point without a film: pressure difference [Pa], speed [m/s], and the reason."""
+    """A point for which no film was solved: pressure difference [Pa], speed [m/s], and reason."""
 
     pressure: float
     speed: float
@@ -86,18 +86,19 @@ class Missing(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class FilmMap:
-    """Friction of a seal row over pressure and speed; NaN without a film.
+    """Friction of rings in series as a function of pressure and speed; NaN without a film.
 
     Parameters
     ----------
-    pressures, speeds : differences to the outer side (p,) [Pa], (v,) [m/s]
+    pressures, speeds : pressure differences to the outer side (p,) [Pa], speeds (v,) [m/s]
     parts : friction of every ring (p, v, rings) [N]
-    between : pressure between two rings over the outer side (p, v) [Pa]; NaN for a single ring
+    between : pressure between two rings, above the outer pressure (p, v) [Pa]; NaN for a single
+        ring
     thickness : mean film of every ring (p, v, rings) [m]
     viscous : share of oil shear in the friction (p, v)
-    breakaway : of all rings, dry (p,) [N]; two rings share the pressure as in the film at the
-        lowest speed
-    why : points without a film, with the reason
+    breakaway : dry breakaway friction of all rings (p,) [N]; two rings share the pressure as in the
+        film at the lowest speed
+    why : points without a film, each with the reason
     """
 
     pressures: Array
@@ -116,7 +117,7 @@ class FilmMap:
 
     @property
     def damping(self) -> Array:
-        """Return the secant damping (p, v) [N s/m]."""
+        """Return the secant damping, friction over speed (p, v) [N s/m]."""
         return self.friction / self.speeds
 
     def at(self, pressure: float, speed: float) -> tuple[int, int]:
@@ -130,7 +131,7 @@ class FilmMap:
 def film_map(
     sealing: Sealing, pressures: Sequence[float], speeds: Sequence[float], **changes: float
 ) -> FilmMap:
-    """Return the films at every pressure and speed; `changes` are those of the first ring."""
+    """Solve the films at every pressure and speed; `changes` replace inputs of the first ring."""
     shape = len(pressures), len(speeds)
     count = len(sealing.rings)
     parts, thickness = np.full((2, *shape, count), nan)
@@ -173,21 +174,21 @@ def film_map(
 
 
 def ring_friction(solved: Solved) -> tuple[float, ...]:
-    """Return the friction of every ring of a row [N]; NaN without a film."""
+    """Return the friction of every ring [N]; NaN without a film."""
     if solved.why:
         return (nan,) * len(solved.row.rings)
     return tuple(float(friction) for friction in solved.row.frictions(solved.values))
 
 
 def breakaway(ring: Ring) -> float:
-    """Return a ring's friction with all oil squeezed out [N]; 0 where pressure lifts it off."""
+    """Return the friction of a ring with all oil squeezed out [N]; 0 if pressure lifts it off."""
     return dry_friction(
         ring, seal_contact(ring.at(pressure=abs(ring["pressure"]))), "asperity_friction"
     )
 
 
 def dry_friction(ring: Ring, contact: SealContact, coefficient: str) -> float:
-    """Return the friction of a ring's contact for one of its coefficients [N]."""
+    """Return the friction [N] of a ring's dry contact for a friction coefficient."""
     return float(
         friction.seal_friction(
             line_load=contact.line_load,

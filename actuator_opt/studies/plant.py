@@ -1,4 +1,7 @@
-"""The plant of a simulation: numbers of a design, SI, at the oil temperature of its first case."""
+"""The plant of a simulation: values of a design's equations of motion, SI.
+
+Oil properties are taken at the temperature of the first load case.
+"""
 
 from __future__ import annotations
 
@@ -20,13 +23,13 @@ from ..models import end_stop, lines, linkage
 from .bench import Bench, bench, first_case
 
 LEAST_AIR = 1e-4
-"""Free air content above which the air limits a vacuum (a choice: 0.01 %)."""
+"""Free air content above which the air, by its expansion, limits a vacuum. Our choice: 0.01 %."""
 
 CAVITY = 1e-6
-"""Volume share of a cavity that limits a vacuum in oil with less air; only below atmospheric
-pressure (a choice: at 0.05 bar absolute it takes 0.006 % of the volume)."""
+"""Volume share of a cavity that limits a vacuum in oil with less air. It exists only below
+atmospheric pressure. Our choice: at 0.05 bar absolute it takes 0.006 % of the volume."""
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
-"""Chamber pressures, relative to the supply pressure, for fitting the friction."""
+"""Chamber pressures at which the friction is fitted, as shares of the supply pressure."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +40,7 @@ class Oil:
     bulk_modulus: float
     """Tangent bulk modulus of the pure oil at zero gauge pressure."""
     slope: float
-    """Increase of the bulk modulus with pressure; of a Tait law the secant to supply pressure."""
+    """Increase of the bulk modulus per pressure; for a Tait law, the secant to supply pressure."""
     air_content: float
     polytropic_index: float
     density: float
@@ -68,7 +71,7 @@ class ValveData:
     rated: float
     leakage_supply: float
     leakage_tank: float
-    """Coefficients of an edge, fully open and centred [m^3/s/sqrt(Pa)]."""
+    """All coefficients are of a metering edge, fully open or (leakage) centred [m^3/s/sqrt(Pa)]."""
     signal: float
     natural_frequency: float
     damping_ratio: float
@@ -78,7 +81,7 @@ class ValveData:
 
 @dataclass(frozen=True, slots=True)
 class LineData:
-    """The lines of one chamber: before and after a throttle, or two halves without one."""
+    """The lines of one chamber in two parts: before and after a throttle, else two halves."""
 
     near_volume: float = 0.0
     near_wall: float = 0.0
@@ -90,14 +93,14 @@ class LineData:
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """A force over chamber pressures, c0 + c1 |p_A - p_B| + c2 p_B + c3 max(p_A, p_B) [N]."""
+    """A force fitted to chamber pressures: c0 + c1 |p_A - p_B| + c2 p_B + c3 max(p_A, p_B) [N]."""
 
     constant: float
     difference: float = 0.0
     rod_side: float = 0.0
     higher: float = 0.0
     error: float = 0.0
-    """Largest deviation from the seals' own law, relative to its largest value."""
+    """Largest deviation from the friction law of the seals, relative to its largest value."""
 
     def at(self, pressure_a: Array, pressure_b: Array) -> Array:
         """Return the force at chamber pressures [Pa]."""
@@ -122,9 +125,9 @@ class SealData:
 class Plant:
     """Properties of a design in its equations of motion, SI.
 
-    Chamber volumes at position x from the cap end: A_A x + dead volume, A_B (s - x) + dead volume,
-    lines not counted; `walls` is the expansion of barrel and rod per pressure, without oil and
-    lines.
+    At position x from the cap end, with stroke s, the chamber volumes are A_A x + dead volume and
+    A_B (s - x) + dead volume, without lines. `walls` is the expansion of barrel and rod per
+    pressure, without oil and lines.
     """
 
     design: Design
@@ -152,14 +155,14 @@ class Plant:
     films: dict[str, bool]
     """Whether the piston and rod seals run on an oil film in the design."""
     oil_damping: float
-    """Oil shear in gaps, at the piston [N s/m]."""
+    """Damping by oil shear in gaps, at the piston [N s/m]."""
     stop_stiffness: float
     closed_length: float
 
     def joint(
         self, position: Array
     ) -> tuple[linkage.LinkageGeometry, linkage.ReflectedInertia] | None:
-        """Return the linkage at a position, with the joint's inertia reflected to the rod."""
+        """Return linkage geometry and reflected inertia of the joint at a position."""
         pivots = self.design.linkage
         if pivots is None:
             return None
@@ -194,7 +197,7 @@ class Plant:
 def plant(subject: PreparedDesign) -> Plant:
     """Return the plant of a design, at the temperature of its first load case.
 
-    Friction of an oil film is taken as dry, with its coefficient.
+    Seals with an oil film count as dry, with their friction coefficient.
     """
     v = subject.values()
     done = compute(subject, v)
@@ -243,7 +246,7 @@ _NOT_WALLS = (*OIL, "pipes", "hoses")
 
 
 def _extra(done: ModelRun) -> float:
-    """Return the barrel length beyond the stroke and the parts."""
+    """Return the barrel length in excess of stroke and parts."""
     g = done.geometry
     return first_case(g.barrel_length - g.piston_length - g.head_length - g.stroke)
 
@@ -332,7 +335,7 @@ def _numbers(v: Values, section: Any, at: str) -> dict[str, float] | None:
 
 
 def _seals(v: Values, own: Bench, supply: float) -> SealData:
-    """Return friction as a function of the pressures, fitted to the seals' own law."""
+    """Return friction as a function of the pressures, fitted to the friction law of the seals."""
     p_a, p_b = (pressure.ravel() for pressure in np.meshgrid(*2 * (supply * np.array(SHARES),)))
     loads = [(ring, force) for ring, force in own.normal_forces(p_a, p_b)]
     coulomb = own.coulomb(p_a, p_b)

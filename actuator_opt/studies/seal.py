@@ -1,6 +1,6 @@
 """Study of a seal: contact, oil film, friction, leakage and gland, at one point or over a map.
 
-Works for every sealing element, whether the design uses its film or a friction coefficient.
+The study works for every sealing ring, whether the design uses an oil film or a coefficient.
 """
 
 from __future__ import annotations
@@ -34,20 +34,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RingPoint:
-    """One ring at an operating point; arrays over its contact, empty without a film.
+    """One ring at an operating point; arrays are along the contact, empty without a film.
 
     Parameters
     ----------
-    ring : its properties
+    ring : properties of the ring
     contact : load per length, width and peak pressure
     modulus : lowest, assumed and highest Young's modulus of the squeezed part [Pa]
     x : distance from the sealed side [m]
     static, oil, asperity : pressures, absolute [Pa]
-    film : distance of the mean planes [m]
-    viscous, asperity_friction : of the whole circumference [N]
-    coefficient_friction : from the coefficient of friction instead [N]
-    breakaway : dry, all oil squeezed out [N]
-    load_residual, mass_residual : of the film's balances
+    film : film thickness, the distance between the mean planes [m]
+    viscous, asperity_friction : friction by oil shear and asperities, whole circumference [N]
+    coefficient_friction : friction from the friction coefficient, without a film [N]
+    breakaway : breakaway friction with all oil squeezed out [N]
+    load_residual, mass_residual : relative errors of the film's balances of load and mass
     """
 
     ring: Ring
@@ -68,17 +68,18 @@ class RingPoint:
 
 @dataclass(frozen=True, slots=True)
 class SealPoint:
-    """The seals of a place at one speed, pressure and stroke direction.
+    """The seals of piston or rod at one speed, pressure and stroke direction.
 
     Parameters
     ----------
-    stroke : of the counterface past the seal: out of the sealed room, or in
-    speed, pressure, temperature : [m/s], sealed pressure over the outer side [Pa], [K]
-    rings : from the sealed side outwards
+    stroke : direction of the counterface past the seal: out of the sealed chamber, or in
+    speed, pressure, temperature : speed [m/s], sealed pressure above the outer pressure [Pa], oil
+        temperature [K]
+    rings : the rings, from the sealed side outwards
     why : reason for a missing film, else empty
     between : pressure between two rings, gauge [Pa]; NaN for a single ring
-    flow : towards the outer side [m^3/s]
-    lower, upper : friction over the scatter of the modulus [N]
+    flow : flow towards the outer side [m^3/s]
+    lower, upper : least and greatest friction within the scatter of the modulus [N]
     """
 
     stroke: Stroke
@@ -114,7 +115,7 @@ class SealPoint:
 
     @property
     def breakaway(self) -> float:
-        """Return the friction after a standstill [N]."""
+        """Return the breakaway friction after a standstill [N]."""
         return sum(ring.breakaway for ring in self.rings)
 
     @property
@@ -124,7 +125,7 @@ class SealPoint:
 
     @property
     def damping(self) -> float:
-        """Return the secant damping at the speed [N s/m]."""
+        """Return the secant damping, friction over speed [N s/m]."""
         return float(damping.secant(friction=self.friction, speed=self.speed))
 
 
@@ -141,10 +142,10 @@ class SqueezeRow:
 
 
 class DoubleStroke(NamedTuple):
-    """Oil past a rod seal, both strokes at one pressure [m^3]; NaN without a film.
+    """Oil that passes a rod seal on both strokes at one pressure [m^3]; NaN without a film.
 
-    Oil carried out by the stroke out, oil drawn back by the stroke in (negative: it leaks out too),
-    and the net oil left outside.
+    The values are: oil carried out on the outstroke, oil drawn back on the instroke (negative if
+    the instroke leaks too), and the net oil left outside.
     """
 
     carried_out: float
@@ -170,15 +171,15 @@ class SealStudy(Displayed):
     Parameters
     ----------
     place : piston or rod
-    out, back : the operating point on both strokes, at one speed and pressure
-    outer_pressure : gauge, on the outer side; for a piston the chamber it moves into [Pa]
-    stroke : of the actuator [m]
-    clearance : radial, behind the seal [m]
-    growth : of the bore over the piston seal at the pressure [m]; 0 at the rod
-    squeezes : over tolerance, temperature and pressure
+    out, back : the operating point on outstroke and instroke, at one speed and pressure
+    outer_pressure : gauge pressure on the outer side [Pa]; for a piston, of the chamber it moves to
+    stroke : stroke of the actuator [m]
+    clearance : radial clearance behind the seal [m]
+    growth : growth of the bore at the piston seal under the pressure [m]; 0 at the rod
+    squeezes : squeeze by tolerance, temperature and pressure
     curves : friction over speed at three pressures
-    map : over speed and pressure, if requested
-    elements : finite elements of the first ring, as mounted first; empty if not requested
+    map : friction over speed and pressure, if requested
+    elements : finite-element contacts of the first ring, first as mounted; empty if not requested
     """
 
     design: Design
@@ -196,7 +197,7 @@ class SealStudy(Displayed):
 
     @property
     def drive(self) -> SealPoint:
-        """Return the operating point of a driven actuator."""
+        """Return the operating point of the stroke on which the oil drives the actuator."""
         return self.out if drives(self.place) == "out" else self.back
 
     @property
@@ -220,7 +221,7 @@ class SealStudy(Displayed):
 
     @property
     def lugre(self) -> LuGre | None:
-        """Return the LuGre parameters for a simulation; None without a film or a load mass."""
+        """Return the parameters of the LuGre friction model; None without a film or a load mass."""
         static, mass = self.drive.breakaway, self.design.load.mass
         if not self.drive.converged or not (static > 0 and mass > 0):
             return None
@@ -234,7 +235,7 @@ class SealStudy(Displayed):
         return LuGre(float(stiffness), float(bristle), float(passive))
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the JSON form, SI; null without a film."""
+        """Return the study for JSON, SI; values that need a film are null without it."""
         drive = self.drive
         both = {"out": self.out, "in": self.back}
         oil = self.double_stroke
@@ -347,11 +348,11 @@ HARDEST = 98.0
 
 CURVE_SPEEDS = tuple(float(v) for v in np.geomspace(1e-4, 1.0, 17))
 CURVE_SHARES = (0.02, 0.5, 1.0)
-"""Speeds [m/s] and shares of the supply pressure of the friction curves."""
+"""Speeds [m/s] and pressures (as shares of the supply pressure) of the friction curves."""
 
 MAP_SPEEDS = tuple(float(v) for v in np.geomspace(5e-4, 0.5, 13))
 MAP_SHARES = (0.02, 0.1, 0.25, 0.5, 0.75, 1.0)
-"""Speeds [m/s] and shares of the supply pressure of a map."""
+"""Speeds [m/s] and pressures (as shares of the supply pressure) of a map."""
 
 
 def study(
@@ -368,12 +369,13 @@ def study(
 
     Parameters
     ----------
-    subject : a design whose elements at the place all use a film
-    speed, pressure : of the counterface [m/s], sealed pressure over the outer side [Pa]; default:
-        those of the moving load case with the highest pressure, which also sets outer side and oil
+    subject : a design whose rings on piston or rod all use a film
+    speed, pressure : speed of the counterface [m/s], sealed pressure above the outer pressure [Pa].
+        The default is from the moving load case with the highest pressure, which also sets outer
+        pressure and oil
     curves : compute friction over speed at three pressures
     mapped : compute a map over speed and pressure
-    elements : contacts from `with_elements`, to be stored
+    elements : contacts from `with_elements`, stored in the result
 
     Raises
     ------
@@ -440,7 +442,8 @@ def with_elements(
 ) -> tuple[PreparedDesign, tuple[MountedContact, ...]]:
     """Return the design with finite-element contact profiles for a seal, and these contacts.
 
-    Of two rings only the first gets a profile; the second keeps its closed form.
+    Of two rings, only the first gets a profile; the contact of the second still follows from the
+    formula of its type.
     """
     v = subject.values()
     ring = floats(of_place(base(subject, v).rings, place)[0], 0)
@@ -452,7 +455,7 @@ def with_elements(
 
 
 def _within(seal_row: Sequence[Ring], place: Place, pressure: float) -> None:
-    """Reject a pressure that stated profiles do not cover."""
+    """Raise an error for a pressure that the stated contact profiles do not cover."""
     for ring in seal_row:
         tables = ring.element.contact
         if tables and pressure > tables[-1].pressure * (1 + 1e-9):
@@ -470,7 +473,7 @@ def _within(seal_row: Sequence[Ring], place: Place, pressure: float) -> None:
 
 
 def _case(ring: Ring, speed: float | None) -> int:
-    """Return the load case for the point: the moving one with the highest pressure."""
+    """Return the load case of the study: the moving case with the highest pressure."""
     pressures, speeds = (
         np.atleast_2d(np.asarray(ring[name], dtype=float))[:, 0] for name in ("pressure", "speed")
     )
@@ -514,11 +517,11 @@ def modulus_range(ring: Ring) -> tuple[float, float, float]:
 
 
 STATED_FACTOR = 1.5
-"""Scatter of a stated modulus, as for the polyurethane of the rod-seal studies."""
+"""Factor by which a stated modulus scatters, as for the polyurethane of the rod-seal studies."""
 
 
 def _bounds(solved: Solved) -> tuple[float, float]:
-    """Return least and largest friction over the scatter of all moduli; NaN without a film."""
+    """Return least and largest friction within the scatter of all moduli; NaN without a film."""
     if not solved.films:
         return nan, nan
     frictions = [solved.friction()]
@@ -538,7 +541,7 @@ def _bounds(solved: Solved) -> tuple[float, float]:
 
 
 def _face_factor(ring: Ring) -> tuple[float, float, float]:
-    """Return the lowest, assumed and highest modulus of the sliding face, over the assumed one."""
+    """Return lowest, assumed and highest modulus of the sliding face, relative to the assumed."""
     if ring.element.seal_type.modulus_by == "hardness":  # the face is plastic, its modulus stated
         return 1 / STATED_FACTOR, 1.0, STATED_FACTOR
     low, value, high = modulus_range(ring)
@@ -574,7 +577,7 @@ def _ring_point(ring: Ring, solved: Solved, index: int) -> RingPoint:
 def _squeezes(
     subject: PreparedDesign, evaluation: Base, seal_row: Sequence[Ring], growth: float
 ) -> Sequence[SqueezeRow]:
-    """Return squeeze over tolerance at coldest, case and hottest, without and with pressure."""
+    """Return squeeze ranges at coldest, case and hottest temperature, without and with pressure."""
     design, v = subject.design, subject.values()
     temperatures = [float(np.max(evaluation.state.temperature))]
     if design.environment is not None:

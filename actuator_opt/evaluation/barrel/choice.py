@@ -1,7 +1,7 @@
 """The barrel in an evaluation: the only place that selects a tube model.
 
-Isotropic (Lamé), exact layered tube (default of all laminates), thin laminate (fast), or the
-formula of the paper; all later code works with a `Wall`.
+The models are: isotropic (Lamé), exact layered tube (default for all laminates), thin laminate
+(fast), and the formula of the paper. Each returns a `Wall`, with which all later code works.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from . import laminate, wall
 from .wall import Wall
 
 LAMINATES = ("layered", "thin_laminate")
-"""Wall models for plies."""
+"""Wall models that treat the barrel as a laminate of plies."""
 
 
 def kind(design: Design, materials: Mapping[str, Material]) -> str:
-    """Wall model of a design: isotropic, as_published, layered or thin_laminate."""
+    """Name of a design's wall model: isotropic, as_published, layered or thin_laminate."""
     if design.barrel.model != "auto":
         return design.barrel.model
     first = materials[design.barrel.layup[0].material]
@@ -32,7 +32,7 @@ def kind(design: Design, materials: Mapping[str, Material]) -> str:
 def compute(
     v: Values, design: Design, stock: MaterialValues, geometry: Geometry, state: LoadState
 ) -> Wall:
-    """The wall of a design under its supply pressure."""
+    """Calculate the barrel wall of a design under its supply pressure."""
     model = kind(design, stock.materials)
     if model in LAMINATES:
         exact = model == "layered"

@@ -43,14 +43,14 @@ from .wall import (
 )
 
 FEW = 32
-"""Batch size below which a model costs about as much for all designs as for a few."""
+"""Number of designs below which sorting out repeated designs saves no time."""
 
 
 def distinct(arguments: Mapping[str, Any]) -> tuple[dict[str, Any], Callable[[Array], Array]]:
-    """Arguments of a model for distinct designs only, and the mapping back to all designs.
+    """Drop repeated designs from a model's arguments; also return the indices that restore them.
 
-    Designs are the last axis of every array, of length 1 for a shared value; their number follows
-    from the arguments that are arrays.
+    The last axis of every array counts the designs; it has length 1 if they share the value. The
+    number of designs follows from the longest last axis.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def _is_array(value: Any) -> bool:
 
 
 def _arrays(value: Any) -> Iterator[Array]:
-    """All arrays in a value."""
+    """Return all arrays within a nested value."""
     if _is_array(value):
         yield value
     elif isinstance(value, (list, tuple)):
@@ -104,7 +104,7 @@ def _arrays(value: Any) -> Iterator[Array]:
 
 
 def _changed(value: Any, change: Callable[[Array], Array]) -> Any:
-    """A value with every array in it replaced."""
+    """Copy a nested value, with `change` applied to every array in it."""
     if _is_array(value):
         return change(value)
     if isinstance(value, (list, tuple)):
@@ -118,7 +118,7 @@ def _changed(value: Any, change: Callable[[Array], Array]) -> Any:
 def compute(
     v: Values, design: Design, stock: MaterialValues, g: Geometry, state: LoadState, *, exact: bool
 ) -> Wall:
-    """Wall of several layers, or of plies."""
+    """Calculate a barrel wall of several layers, or of plies."""
     missing: list[str] = []
     states = plies.climates(v, design)
     layers = plies.layers(v, stock, design.barrel.layup, "barrel.layup", states, missing)
@@ -180,22 +180,22 @@ class _ResidualStress:
     autofrettage: Autofrettage | None
 
     def cured(self) -> bool:
-        """Whether any state differs from the stress-free temperature."""
+        """Whether any service temperature differs from the stress-free (cure) temperature."""
         return any(bool(np.any(real(state.change))) for state in self.states)
 
     def from_cure(self) -> _ResidualStress:
-        """Residual stress from cooling after cure only, before machining and assembly."""
+        """Residual stress from cooling after cure alone, before machining and assembly."""
         return replace(self, path=replace(self.path, clamp=None), autofrettage=None)
 
     def of(self, rows: list[int]) -> Stress | None:
-        """Residual stress of these layers, (faces, layers, climates, 1, designs)."""
+        """Residual stress of the layers in `rows`, (faces, layers, climates, 1, designs)."""
         clamped = self.path.clamp is not None
         if not clamped and self.autofrettage is None and not self.cured():
             return None
         change = np.stack([np.atleast_1d(state.change) for state in self.states])
         parts = []
         for k, part in enumerate(self.solution.stress):
-            unit = part[:, rows]  # in two steps: a list and an integer together would move the axes
+            unit = part[:, rows]  # two steps: a list with an integer moves axes
             stress = unit[:, :, WARMTH, None] * change
             if clamped:
                 stress = stress + unit[:, :, FORCE, None] * self.path.held
@@ -208,7 +208,7 @@ class _ResidualStress:
 def _autofrettage(
     v: Values, design: Design, layers: Sequence[Layer], g: Geometry
 ) -> Autofrettage | None:
-    """A single overpressure of the open barrel at assembly temperature, before machining."""
+    """Residual stress of autofrettage: one overpressure of the open barrel, before machining."""
     if design.barrel.autofrettage_pressure is None or not layers[0].yields:
         return None
     if not all(layer.balanced for layer in layers):
@@ -228,7 +228,7 @@ def _autofrettage(
 
 
 def _load(solution: WallSolution, rows: list[int], axial: Array) -> Stress:
-    """Stress per pressure of these layers for every load path, (faces, layers, 1, paths, designs).
+    """Stress per pressure of the layers in `rows`, (faces, layers, 1, paths, designs).
 
     `axial` is the axial force per pressure, (paths, designs).
     """
@@ -240,7 +240,7 @@ def _load(solution: WallSolution, rows: list[int], axial: Array) -> Stress:
 
 
 def _by_climate(values: Sequence[Array]) -> Array:
-    """A strength of a layer, one value per climate, on the axes of its stresses."""
+    """Give the strengths of a layer, one per climate, the same axes as its stresses."""
     rows = np.stack(np.broadcast_arrays(*[np.atleast_1d(value) for value in values]))
     return rows[None, None, :, None]
 
@@ -248,7 +248,7 @@ def _by_climate(values: Sequence[Array]) -> Array:
 def _strengths(
     design: Design, layers: Sequence[Layer], residual: _ResidualStress, supply: Array, wall: Wall
 ) -> None:
-    """First-ply and yield pressures of every layer, mode and load path."""
+    """First-ply failure and yield pressures by layer, failure mode and load path."""
     paths, axial = tuple(wall.path.per_pressure), np.stack(list(wall.path.per_pressure.values()))
     brittle = [i for i, layer in enumerate(layers) if layer.strengths]
     if brittle:
@@ -276,9 +276,10 @@ def _strengths(
 def _rows(
     states: Sequence[Climate], paths: tuple[str, ...], values: Array
 ) -> Iterator[tuple[str, Array]]:
-    """Climate and load path by name, with (designs,) of values (climates, paths, designs).
+    """Split values (climates, paths, designs) into (climate and load path, values of all designs).
 
-    Each is a separate smooth limit: an optimum may lie where two of them intersect.
+    The optimiser treats each pair as a separate smooth limit: an optimum may lie where two of them
+    intersect.
     """
     for t in range(values.shape[0]):
         for p, place in enumerate(paths):
@@ -294,10 +295,11 @@ def _metal(
     paths: tuple[str, ...],
     wall: Wall,
 ) -> None:
-    """Yield pressure of a metal layer, and its stress under pulsating pressure.
+    """Calculate the yield pressure of a metal layer, and its stress under pulsating pressure.
 
-    The pulse goes from the residual stress to the stress at supply pressure. Its mean is the larger
-    equivalent stress at its ends minus half the range, and not below zero (no credit).
+    The pulse goes from the residual stress to the stress at supply pressure. The mean stress is the
+    larger equivalent stress at the two ends of the pulse, minus half the range. A negative mean
+    counts as zero: it gives no credit.
     """
     limit = _by_climate(layer.yields)
     utilisation = strength.yield_utilisation(stress=load, yield_strength=limit, residual=residual)
@@ -319,7 +321,7 @@ def _metal(
 def _cooling(
     layers: Sequence[Layer], residual: _ResidualStress, wall: Wall, *, exact: bool
 ) -> None:
-    """Liner yield over stress after cool-down from cure, and tension of the liner on the plies."""
+    """Compute yield over stress of the liner after cure, and strength over stress of its bond."""
     liners = [i for i, layer in enumerate(layers) if layer.yields]
     if not liners or len(liners) == len(layers):
         wall.why_no_mismatch = "the wall has no liner under plies"
@@ -363,7 +365,7 @@ def _ladder(
     *,
     exact: bool,
 ) -> None:
-    """Burst of every climate and load path, and first-ply failure after liner yield."""
+    """Compute burst pressures by climate and load path, and first-ply failure after liner yield."""
     if wall.missing:
         return
     if all(layer.isotropic for layer in layers):

@@ -1,11 +1,12 @@
-"""Barrel wall of any model: results, response to unit loads, and the axial force in it.
+"""Barrel wall of any model: results, response to unit loads, and the axial force in the wall.
 
-A laminated wall responds to unit pressure, unit axial force and unit temperature change, as the
-exact layered tube or the fast thin laminate; both give stresses at the layer faces.
+The response of a laminated wall to unit pressure, unit axial force and unit temperature change
+comes from the exact layered tube or from the fast thin laminate. Both give the stresses at the
+faces of the layers.
 
-The axial force follows from mount, load direction, stop and tie rods; the ends are never assumed
-open or closed. Tie rods clamp the barrel with their preload and carry their share of the separating
-force. The default preload keeps the joint closed at proof pressure.
+The axial force follows from mount, load direction, stop and tie rods. The barrel is never assumed
+to be simply open-ended or closed-ended. Tie rods clamp the barrel with their preload and carry
+their share of the separating force. The default preload keeps the joint closed at proof pressure.
 """
 
 from __future__ import annotations
@@ -40,9 +41,9 @@ LARGEST = "largest axial load"
 class Swelling:
     """Response of the wall to pressure and axial force, far from its ends, (designs,).
 
-    `growth` and `shortening` are bore growth [m/Pa] and axial strain [1/Pa] per pressure at no
-    axial force, `stretch` the axial strain per axial force [1/N]; growth per axial force is
-    shortening/(2 pi r_i) by reciprocity.
+    `growth` is the radial growth of the bore [m/Pa] and `shortening` the axial strain [1/Pa], both
+    per pressure and without axial force. `stretch` is the axial strain per axial force [1/N]. By
+    reciprocity, the growth per axial force is shortening/(2 pi r_i), with bore radius r_i.
     """
 
     growth: Array
@@ -53,11 +54,11 @@ class Swelling:
 
 @dataclass(frozen=True, slots=True)
 class LoadPath:
-    """Axial forces in the wall.
+    """Axial forces in the barrel wall.
 
-    `per_pressure` by name (designs,) [m^2]; `held` without pressure [N]; `cases` at the chamber
-    pressures (cases, designs) [N], including `held`; `share` is the barrel's share of a separating
-    force.
+    `per_pressure` is the force per pressure by load path, (designs,) [m^2]. `held` is the force
+    without pressure [N]. `cases` are the forces at the chamber pressures, including `held`,
+    (cases, designs) [N]. `share` is the share of a separating force that the barrel carries.
     """
 
     per_pressure: dict[str, Array]
@@ -68,7 +69,7 @@ class LoadPath:
 
 
 def largest_area(design: Design, g: Geometry) -> Array:
-    """Largest area on which supply pressure separates the ends: end stop or mount."""
+    """Largest area on which supply pressure separates the ends, by end stop or mount."""
     if design.cylinder.end_stop == "internal":
         return g.area_a
     return g.area_b if design.cylinder.mount.startswith("cap") else g.area_a
@@ -82,7 +83,7 @@ def load_path(
     state: LoadState,
     swelling: Swelling,
 ) -> LoadPath:
-    """The load paths of a design with known wall stiffness."""
+    """Axial forces in a design's barrel wall, for a known wall stiffness."""
     if design.cylinder.mount.startswith("cap"):
         cases = barrel_ends.axial_force_cap_mounted(
             rod_side_pressure=state.moving_b, rod_side_area=g.area_b, stop_force=0.0
@@ -100,7 +101,7 @@ def load_path(
 
 
 def clamp_stiffness(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Array:
-    """Axial stiffness of the parts that clamp the barrel between both ends."""
+    """Axial stiffness of the parts, such as tie rods, that clamp the barrel between both ends."""
     joint = joint_of(design)
     assert joint is not None
     assert joint.stiffness is not None
@@ -117,9 +118,9 @@ def _clamped(
     worst: dict[str, Array],
     cases: Array,
 ) -> LoadPath:
-    """A barrel between tie rods: two springs in parallel with preload.
+    """Axial forces in a barrel between tie rods, as two preloaded springs in parallel.
 
-    `worst` is the separating area of the pressure, by name of the load path.
+    `worst` is the area on which the pressure separates the ends, by load path.
     """
     springs = {
         "barrel_stiffness": 1 / (swelling.stretch * g.barrel_length),
@@ -152,7 +153,7 @@ def _clamped(
 
 
 SEAL_STEP = 0.5
-"""Share of the far-field growth at a pressure step, `barrel.pressure_step_factor(0)`."""
+"""Bore growth at a pressure step over that far from it, from `barrel.pressure_step_factor(0)`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,15 +167,16 @@ class Cycle:
 
 @dataclass(slots=True)
 class Wall:
-    """The wall of a design. Pressures by place (part, mode, load path), Pa, (designs,).
+    """The wall of a design. Pressures are by location (part, mode, load path), Pa, (designs,).
 
-    `cycles` are the stresses of metals under pulsating pressure, by place; `ply_fatigue` is the
+    `cycles` are the stresses of metals under pulsating pressure, by location. `ply_fatigue` is the
     fatigue strength of fibres over their stress amplitude.
 
-    `growth` is at supply pressure, the larger value with and without the axial force of the cases;
-    `case_growth` at the pressures of the cases; `missing` are unknown strengths;
-    `axial_line_stiffness` is the axial E t of the wall, N/m; `mismatch` is yield over liner stress,
-    `bond` strength over liner tension on the plies, both after cool-down from cure.
+    `growth` is the bore growth at supply pressure: the larger of the values with and without the
+    axial force of the load cases. `case_growth` is the growth at the pressures of the load cases.
+    `missing` names unknown strengths. `axial_line_stiffness` is the axial E t of the wall, N/m.
+    `mismatch` is yield over stress of the liner, and `bond` is bond strength over the tension
+    between liner and plies, both after cool-down from cure.
     """
 
     swelling: Swelling
@@ -208,7 +210,7 @@ def metal_swelling(
     *,
     as_published: bool,
 ) -> Wall:
-    """Wall of a single isotropic layer."""
+    """Calculate a barrel wall of a single isotropic layer."""
     name = design.barrel.layup[0].material
     modulus = stock.get(name, "youngs_modulus", "youngs_modulus_2")
     ratio = stock.get(name, "poissons_ratio", "poissons_ratio_12")
@@ -286,7 +288,7 @@ def _utilisation(
     *,
     clamped: bool = True,
 ) -> Array:
-    """1/yield pressure at the bore; with preload the stress at zero pressure is not zero."""
+    """1/yield pressure at the bore, including the stress that preload causes at zero pressure."""
     hoop, radial, along = barrel.bore_stresses(pressure=1.0, axial_force=axial, **size)
     zero = 0.0 * hoop
     residual = None
@@ -298,14 +300,14 @@ def _utilisation(
 
 
 PRESSURE, FORCE, WARMTH = range(3)
-"""Unit loads of a `WallSolution`."""
+"""Indices of the unit loads in a `WallSolution`: pressure, axial force, temperature change."""
 
 
 @dataclass(frozen=True, slots=True)
 class WallSolution:
-    """Response to unit loads: ply stresses (faces, layers, loads, designs) and stiffness.
+    """Stiffness of the wall, and ply stresses under unit loads, (faces, layers, loads, designs).
 
-    `walls` are the layer stiffnesses in tube axes, as input of `rod.layered_section`.
+    `walls` are the stiffnesses of the layers in tube axes, as `rod.layered_section` expects them.
     """
 
     stress: Stress
@@ -316,7 +318,7 @@ class WallSolution:
 
 
 def exact_solution(layers: Sequence[Layer], g: Geometry) -> WallSolution:
-    """The layered tube under its three unit loads."""
+    """Solve the exact layered tube under its three unit loads."""
     tube = layered_tube(layers=[layer.as_tube() for layer in layers], inner_radius=g.inner_radius)
     unit = np.eye(3)
     state = tube_state(
@@ -326,7 +328,7 @@ def exact_solution(layers: Sequence[Layer], g: Geometry) -> WallSolution:
         temperature_change=unit[WARMTH][:, None],
     )
     stress = ply_stresses_at_faces(tube=tube, state=state)
-    if tube.twisting:  # the plies of a pair then differ
+    if tube.twisting:  # with twist, the two plies of a +/- pair have different stresses
         other = ply_stresses_at_faces(tube=tube, state=state, opposite=True)
         stress = stress_of([np.concatenate(pair) for pair in zip(stress, other, strict=True)])
     return WallSolution(
@@ -339,7 +341,7 @@ def exact_solution(layers: Sequence[Layer], g: Geometry) -> WallSolution:
 
 
 def thin_solution(layers: Sequence[Layer], g: Geometry) -> WallSolution:
-    """The membrane: stresses at mid-radius, growth at the bore."""
+    """Solve the thin laminate as a membrane: stresses at mid-radius, growth at the bore."""
     reduced, rotated, loads = [], [], []
     for layer in layers:
         c = layer.constants
@@ -385,7 +387,7 @@ def thin_solution(layers: Sequence[Layer], g: Geometry) -> WallSolution:
             free_strain_2=second * unit,
         )
         radial = 0.0 * along
-        if layer.isotropic:  # the pressure itself is exact at the liner's bore
+        if layer.isotropic:  # at the liner's bore the radial stress is exactly the pressure
             radial = radial - np.array([1.0, 0.0, 0.0])[:, None]
         rows.append(np.stack(np.broadcast_arrays(along, across, radial, shear)))
 
