@@ -542,7 +542,11 @@ def check_inputs(
     """
     rising = all(b > a for a, b in zip((0.0, *pressures), pressures, strict=False))
     checks = (
-        (not section > 0, f"section {section:g} m is not positive", "give the free section"),
+        (
+            not section > 0,
+            f"section {section:g} m is not positive",
+            "give the diameter of the undeformed section",
+        ),
         (
             not 0 < squeeze <= MOST_SQUEEZE,
             f"squeeze {squeeze:g} is outside 0 to {MOST_SQUEEZE:g}",
