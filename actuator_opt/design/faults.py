@@ -310,7 +310,7 @@ def rod(view: FileView) -> Iterator[Fault]:
             (owner, "thread", "pitch"),
             (owner, "thread", "diameter"),
             factor=0.5,
-            why=": no core remains",
+            why=", or no core of the thread remains",
         )
 
 

@@ -50,7 +50,7 @@ class MetricLimit:
 
 
 ENDS = ("retracted", "extended")
-OWN_PLACE = "position of the case"
+OWN_PLACE = "position of the load case"
 """Places of a joint torque: both stops, and the stated position of a load case."""
 
 

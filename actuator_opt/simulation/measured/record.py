@@ -66,7 +66,10 @@ class AlignedRecord:
             present = np.isfinite(values)
             count = int(np.count_nonzero(present))
             if count < FEWEST:
-                notes.append(f"{signal}: {count} samples, left out: at least {FEWEST} are needed")
+                notes.append(
+                    f"{signal}: {count} samples, but at least {FEWEST} are needed, so it "
+                    "is left out"
+                )
                 continue
             channels[signal] = time[present], values[present]
             if gap_list := gaps(time, values):
