@@ -92,7 +92,7 @@ def choosable(path: str, tree: Any) -> Target:
         raise ValueFault("is not the canonical PATH", f"write {target.path}")
     variables = tree.get("variables") if isinstance(tree, dict) else None
     if isinstance(variables, dict) and path in variables:
-        raise ValueFault("is also listed in variables", "keep it in either variables or choices")
+        raise ValueFault("is also a variable", "keep it in variables or in choices, not in both")
     return target
 
 

@@ -553,8 +553,8 @@ def assess(
     reasons = list(doubts)
     if freedom == 0:
         reasons.append(
-            f"{speed.size} points for {len(values)} parameters leave no degree of freedom to "
-            "estimate errors"
+            f"{speed.size} points for {len(values)} parameters leave no degree of freedom, so "
+            "errors are unknown"
         )
     elif estimate.rank < len(values):
         reasons.append(f"the points determine {estimate.rank} of {len(values)} parameters")

@@ -84,10 +84,7 @@ class YieldEstimate:
     def sentence(self) -> str:
         """The estimate, or the reason why it is missing."""
         if self.value is None or self.lower is None or self.upper is None:
-            return (
-                f"Production yield not estimated ({self.why}); `actuator-opt uncertainty` "
-                "computes it."
-            )
+            return f"Yield not estimated ({self.why}); `actuator-opt uncertainty` computes it."
         shown = f"{_percent(self.lower)} to {_percent(self.upper)} %, {self.draws} samples"
         text = (
             f"About {_percent(self.value)} % of the actuators built to this design would meet "
