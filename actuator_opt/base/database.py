@@ -252,7 +252,7 @@ def _prepare(connection: sqlite3.Connection, path: Path, version: str) -> None:
     """Create the tables of a new file; refuse a foreign database."""
     tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}
     if tables and not tables >= TABLES:
-        raise refused(path, "is a database of another program", "name another file")
+        raise refused(path, "is another program's database", "name another file")
     connection.execute("PRAGMA journal_mode = WAL")
     connection.execute("PRAGMA synchronous = NORMAL")
     connection.execute(
@@ -396,9 +396,7 @@ class Reader:
         if not isinstance(data, list) or not all(
             isinstance(column, list) and len(column) == len(NumberColumn._fields) for column in data
         ):
-            raise refused(
-                self.path, "does not state the column names of its rows", "run the sweep again"
-            )
+            raise refused(self.path, "does not name the columns of its rows", "run the sweep again")
         return tuple(NumberColumn(*column) for column in data)
 
     def _texts(self, number: int) -> dict[str, tuple[str, ...]]:

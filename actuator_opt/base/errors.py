@@ -110,7 +110,7 @@ class ExitCode(IntEnum):
 
 EXIT_CODES = {
     ExitCode.MET: "requirements met",
-    ExitCode.MISSED: "a requirement is missed, or cannot be met",
+    ExitCode.MISSED: "a requirement missed or infeasible",
     ExitCode.USAGE: "usage",
     ExitCode.BAD_INPUT: "bad input, or a file that cannot be written",
     ExitCode.SOLVER_FAILED: "solver failed",

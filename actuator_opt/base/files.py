@@ -202,7 +202,7 @@ def require_apart(target: Path, *sources: str) -> None:
     for source in sources:
         with contextlib.suppress(OSError, ValueError):
             if target.samefile(source):
-                message = "is an input file and would be overwritten"
+                message = "is an input and would be overwritten"
                 raise InputError(Diagnostic(message, "choose another file", str(target)))
 
 
