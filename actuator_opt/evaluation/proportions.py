@@ -154,11 +154,11 @@ _WIDE = "our choice"
 TABLE: tuple[Proportion, ...] = (
     Proportion(
         "cylinder.dead_volume_a", "times the swept volume of the piston", 0.0, 1.0,
-        "our choice, no standard: most of the oil moves", _dead("a"),
+        "our choice: most of the oil moves", _dead("a"),
     ),
     Proportion(
         "cylinder.dead_volume_b", "times the swept volume of the piston", 0.0, 1.0,
-        "our choice, no standard: most of the oil moves", _dead("b"),
+        "our choice: most of the oil moves", _dead("b"),
     ),
     Proportion(
         "lines", "times the swept volume of the piston, in one line", 0.0, 20.0, _WIDE,
@@ -187,7 +187,7 @@ TABLE: tuple[Proportion, ...] = (
     ),
     Proportion(
         "supply.pressure", "MPa (mean hoop stress, pressure times radius over wall)", 0.2,
-        2500.0, "our choice, no standard: more than the fibres of the library withstand", _hoop,
+        2500.0, "our choice: more than the fibres of the library withstand", _hoop,
     ),
     Proportion(
         "supply.return_pressure", "times the supply pressure", 0.0, 0.5, _WIDE,

@@ -512,7 +512,9 @@ def raise_pressure(
         except NotConverged as reason:
             step /= 2
             if step < SHORTEST_STEP:
-                raise NotConverged(f"{reason} beyond {current:.3g} of the modulus") from reason
+                raise NotConverged(
+                    f"{reason} at pressures above {current:.3g} times the modulus"
+                ) from reason
             continue
         state, current, step = next_state, trial, step * GROWTH
         problem.steps += 1

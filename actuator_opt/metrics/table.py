@@ -16,7 +16,7 @@ from ..joints.kinds import JOINTS
 from ..models.thread import LEAST_OVERLAP
 from .metric import CRITERION, CheckLine, Least, MetricRow, fed_by, table
 
-_LEAST_WALL = Least(LEAST_METAL, "our choice, no standard: at least 1 mm")
+_LEAST_WALL = Least(LEAST_METAL, "our choice: at least 1 mm")
 
 # fmt: off
 ROWS = table((
@@ -62,13 +62,12 @@ ROWS = table((
               "smallest seal squeeze after growth and tolerance", worst="min",
               model="gland.squeeze_extremes", feeds=("wall",),
               check=CheckLine("5.1", "smallest seal squeeze", 0.08,
-                          "our choice, no standard: 8 % after bore growth and tolerances (gland "
-                          "tables have 8 % at 5.33 mm to 15 % at 1.78 mm)")),
+                          "our choice: 8 % after bore growth and tolerances (gland tables have 8 "
+                          "% at 5.33 mm to 15 % at 1.78 mm)")),
     MetricRow("seal_squeeze_max", "C_max", "ratio", "%", "largest seal squeeze at assembly",
               worst="max", model="gland.squeeze_extremes", feeds=(),
               check=CheckLine("5.2", "largest seal squeeze", 0.25,
-                          "our choice, no standard: 25 %, the largest value of gland tables (at "
-                          "1.78 mm)")),
+                          "our choice: 25 %, the largest value of gland tables (at 1.78 mm)")),
     MetricRow("seal_fill", "phi", "ratio", "%", "largest groove fill",
               worst="max", model="gland.gland_fill", feeds=(),
               check=CheckLine("5.3", "groove fill", 0.85, "common limit 85 %")),
@@ -128,9 +127,7 @@ ROWS = table((
                                                      "position loop",
               worst="min", model="loop.ultimate_gain", feeds=("oil",),
               check=CheckLine("6.8", "gain margin of the position loop", 10 ** (6 / 20), "our "
-                                                                                         "choice, "
-                                                                                         "no "
-                                                                                         "standard: "
+                                                                                         "choice: "
                                                                                          "6 dB")),
     MetricRow("phase_margin", "phi_m", "angle", "deg", "phase margin of the position loop",
               worst="min", lower=-pi, upper=pi, model="loop.margins", feeds=("oil",), check=None),
@@ -138,7 +135,7 @@ ROWS = table((
               worst="min", model="loop.margins", feeds=("oil",), check=None),
     MetricRow("efficiency", "eta", "ratio", "%", "force efficiency",
               worst="min", model="forces.efficiency", feeds=(),
-              check=CheckLine("6.3", "force efficiency", 0.85, "our choice, no standard: 85 %")),
+              check=CheckLine("6.3", "force efficiency", 0.85, "our choice: 85 %")),
     MetricRow("proof_factor", "S_p", "ratio", "", "yield or first-ply pressure over proof pressure",
               worst="min", model="barrel.von_mises", feeds=("wall",),
               check=CheckLine("2.2", "proof pressure (yield or first ply)", 1.0,
@@ -154,12 +151,12 @@ ROWS = table((
     MetricRow("first_ply_factor", "S_fpf", "ratio", "", "first-ply pressure over working pressure",
               worst="min", model="strength_modes.max_stress_modes", feeds=("wall", "own"),
               check=CheckLine("2.4", "first-ply (leak) pressure", 1.5,
-                          "our choice, no standard: no matrix cracks up to proof pressure"),
+                          "our choice: no matrix cracks up to proof pressure"),
               by_wall={"layered": CRITERION, "thin_laminate": CRITERION}),
     MetricRow("yield_factor", "S_y", "ratio", "", "yield over working stress of metal parts",
               worst="min", model="barrel.von_mises", feeds=("wall",),
               check=CheckLine("2.1", "wall stress at working pressure", 1.5,
-                          "our choice, no standard: 1.5 on the yield strength of every metal part"),
+                          "our choice: 1.5 on the yield strength of every metal part"),
               by_wall={"layered": "strength.yield_utilisation",
                        "thin_laminate": "strength.yield_utilisation"},
               at={"rod": "column.amplified_moment",
@@ -184,12 +181,11 @@ ROWS = table((
               short="buckling over push load"),
     MetricRow("thread_factor", "S_t", "ratio", "", "yield over stress at the rod thread root",
               worst="min", model="rod.thread_stress_area", feeds=(),
-              check=CheckLine("3.4", "rod thread root", 1.5, "our choice, no standard: 1.5 on "
-                                                             "yield strength")),
+              check=CheckLine("3.4", "rod thread root", 1.5, "our choice: 1.5 on yield strength")),
     MetricRow("retention_factor", "S_r", "ratio", "", "strength of cap retention over its load",
               worst="min", model="lap_joint.bond_edge_shear", feeds=(),
               check=CheckLine("4.1", "cap retention", 1.5,
-                          f"our choice, no standard: 1.5 on {judged_on(JOINTS.values(), 0)}"),
+                          f"our choice: 1.5 on {judged_on(JOINTS.values(), 0)}"),
               at=models_at(JOINTS.values(), "retention_factor")),
     MetricRow("retention_burst_factor", "S_rb", "ratio", "",
               "ultimate strength of cap retention over its load", worst="min", model=None, feeds=(),
@@ -198,14 +194,12 @@ ROWS = table((
               at=models_at(JOINTS.values(), "retention_burst_factor")),
     MetricRow("cap_factor", "S_c", "ratio", "", "yield over bending stress of the end caps",
               worst="min", model="end_plate.hub_plate_stress", feeds=(),
-              check=CheckLine("4.3", "end plate bending", 1.5, "our choice, no standard: 1.5 on "
-                                                               "yield strength"),
+              check=CheckLine("4.3", "end plate bending", 1.5, "our choice: 1.5 on yield strength"),
               at={"cap, supported by its skirt": "end_plate.hung_plate_stress",
                   "head": "end_plate.end_plate_stress"}),
     MetricRow("pin_factor", "S_pin", "ratio", "", "shear yield over shear stress of the clevis pins",
               worst="min", model="retention.pin_shear_stress", feeds=(),
-              check=CheckLine("4.4", "clevis pins", 2.0, "our choice, no standard: 2 on shear "
-                                                         "yield strength")),
+              check=CheckLine("4.4", "clevis pins", 2.0, "our choice: 2 on shear yield strength")),
     MetricRow("bearing_overlap", "L/d", "ratio", "",
               "bearing span over rod diameter, at full extension", worst="min",
               model="retention.guide_forces", feeds=(),
@@ -279,32 +273,29 @@ ROWS = table((
               "buckling load of the rod's wall over the largest push load", worst="min",
               model="shell_buckling.local_shell_force", feeds=(),
               check=CheckLine("3.3", "local buckling of the rod's wall", 2.0,
-                          "our choice, no standard: 2, in addition to the knock-down for "
-                          "imperfections")),
+                          "our choice: 2, in addition to the knock-down for imperfections")),
     MetricRow("rod_factor", "S_ro", "ratio", "", "strength of the rod's plies over their stress",
               worst="min", model=CRITERION, feeds=(),
-              check=CheckLine("3.2", "rod plies", 1.5, "our choice, no standard: 1.5 on first-ply "
-                                                       "failure or yield"),
+              check=CheckLine("3.2", "rod plies", 1.5, "our choice: 1.5 on first-ply failure or "
+                                                       "yield"),
               at={"* yield, *": "strength.yield_utilisation"}),
     MetricRow("fitting_factor", "S_ft", "ratio", "",
               "strength of the bonded rod fittings over their load", worst="min",
               model="lap_joint.bond_edge_shear", feeds=(),
               check=CheckLine("3.5", "bonded rod fittings", 1.5,
-                          "our choice, no standard: 1.5 on the elastic peak shear, as for cap "
-                          "retention")),
+                          "our choice: 1.5 on the elastic peak shear, as for cap retention")),
     MetricRow("bond_thermal_factor", "S_bt", "ratio", "",
               "bond strength over the thermal shear stress at the bond's edge, without load", worst="min",
               model="lap_joint.bond_thermal_shear", feeds=(),
               check=CheckLine("3.6", "bonds over the temperature range", 1.0,
-                          "our choice, no standard: without load, the elastic shear at the bond's "
-                          "edge stays below its strength")),
+                          "our choice: without load, the elastic shear at the bond's edge stays "
+                          "below its strength")),
     MetricRow("winding_margin", "-", "angle", "deg",
               "winding angle minus the smallest feasible angle", worst="min", model=None, feeds=(),
               check=CheckLine("12.1", "winding angles", 0.0, "smallest winding angle that can be "
                                                              "made with the ply")),
     MetricRow("ply_thickness_margin", "-", "ratio", "%",
-              "excess of the layer's thickness over the smallest feasible thickness, as a share "
-              "of that", worst="min", model=None,
+              "layer thickness above the smallest feasible thickness, as a share of it", worst="min", model=None,
               feeds=(),
               check=CheckLine("12.2", "layer thicknesses", 0.0, "smallest thickness that can be "
                                                                 "made with the ply")),
@@ -314,8 +305,8 @@ ROWS = table((
     MetricRow("clearance_min", "c_min", "length", "um",
               "smallest radial clearance of piston and head over the temperature range", worst="min",
               model=None, feeds=(), check=CheckLine("9.1", "clearance over the temperature range", 5e-6,
-                          "our choice, no standard: 5 um remain for an oil film after unequal "
-                          "thermal expansion")),
+                          "our choice: 5 um remain for an oil film after unequal thermal "
+                          "expansion")),
     MetricRow("blocked_port_factor", "S_bl", "ratio", "",
               "proof pressure over the rod-side pressure while the rod-side port is blocked", worst="min", model=None,
               feeds=(),
@@ -341,15 +332,15 @@ ROWS = table((
     MetricRow("end_stop_factor", "S_end", "ratio", "", "proof pressure over peak end-stop pressure",
               worst="min", model="endurance.end_stop_peak_pressure", feeds=(),
               check=CheckLine("8.2", "end-stop peak pressure, including the load of the load case", 1.0,
-                          "our choice, no standard: the peak stays within proof pressure")),
+                          "our choice: the peak stays within proof pressure")),
     MetricRow("trapped_factor", "S_tr", "ratio", "", "proof pressure over trapped-oil pressure",
               worst="min", model="oil_laws.thermal_pressure_slope", feeds=(),
               check=CheckLine("11.2", "trapped-fluid pressure", 1.0,
-                          "our choice, no standard: trapped oil stays within proof pressure")),
+                          "our choice: trapped oil stays within proof pressure")),
     MetricRow("line_drop_ratio", "dp/p", "ratio", "%", "line pressure drop over supply pressure",
               worst="max", model="lines.line_pressure_drop", feeds=(),
-              check=CheckLine("7.3", "line pressure drop", 0.05, "our choice, no standard: 5 % of "
-                                                                 "the supply pressure")),
+              check=CheckLine("7.3", "line pressure drop", 0.05, "our choice: 5 % of the supply "
+                                                                 "pressure")),
     MetricRow("liner_yield_factor", "S_l", "ratio", "", "liner yield pressure over working pressure",
               worst="min", model="barrel.von_mises", feeds=("wall",), check=None,
               by_wall={"layered": "strength.yield_utilisation",
@@ -392,16 +383,15 @@ ROWS = table((
     MetricRow("geometry_dead_point", "-", "length", "mm",
               "change of actuator length that remains before a dead point of the linkage", worst="min", model=None,
               feeds=(), check=None,
-              least=Least(LEAST_METAL, "our choice, no standard: 1 mm before a dead point, where "
-                                       "the force gives no torque")),
+              least=Least(LEAST_METAL, "our choice: 1 mm before a dead point, where the force "
+                                       "gives no torque")),
     MetricRow("geometry_joint_angle", "-", "ratio", "%",
               "stroke that remains beyond the joint angle of a load case", worst="min", model=None, feeds=(),
               check=None, least=Least(0.0, "the joint must reach the angle of the load case")),
     MetricRow("geometry_thread_crest", "-", "ratio", "%",
               "engagement depth of the cap thread, as a share of that with full crests", worst="min", model=None,
               feeds=(), check=None,
-              least=Least(LEAST_OVERLAP, "our choice, no standard: crests within tolerance class "
-                                         "6g")),
+              least=Least(LEAST_OVERLAP, "our choice: crests within tolerance class 6g")),
 ))
 # fmt: on
 """Every metric by name."""

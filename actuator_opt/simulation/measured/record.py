@@ -406,8 +406,8 @@ def _coarse_sampling(
     record_step = min(float(np.median(np.diff(t))) for t, _ in samples.values())
     if simulated_step > WIDE * record_step:
         yield (
-            f"the simulation is sampled every {1000.0 * simulated_step:.3g} ms, the record every "
-            f"{1000.0 * record_step:.3g} ms, so peaks may be missed: state sample_time"
+            f"the simulation is sampled every {1000.0 * simulated_step:.3g} ms, but the record "
+            f"every {1000.0 * record_step:.3g} ms, so peaks may be missed: state sample_time"
         )
 
 
