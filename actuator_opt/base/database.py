@@ -350,7 +350,7 @@ class Reader:
         select = "SELECT id, hash, name, design, columns, checksum FROM studies ORDER BY id"
         studies = self.connection.execute(select).fetchall()
         if not studies:
-            raise refused(self.path, "has no study", "fill it with `sweep --store` first")
+            raise refused(self.path, "has no study", "run `sweep --store` first to fill it")
         matches = [row for row in studies if number in (None, row[0])]
         if not matches:
             have = ", ".join(f"{row[0]} ({row[2]})" for row in studies[-8:])

@@ -90,7 +90,7 @@ INPUTS = _table("""
  radial_clearance     | c      | length      | mm   | 0.001 | 2     | radial clearance
  tolerance            | tol    | length      | mm   | 0     | 2     | tolerance
  cross_section        | W      | length      | mm   | 0.5   | 30    | free seal cross-section
- squeeze              | C      | ratio       | %    | 0     | 45    | seal squeeze of the free section
+ squeeze              | C      | ratio       | %    | 0     | 45    | seal squeeze, as a share of the free cross-section
  stretch              | e      | ratio       | %    | 0     | 25    | seal stretch
  groove_width         | g      | length      | mm   | 0.5   | 60    | groove width
  seal_count           | n      | count       | -    | 0     | 8     | number of seals
@@ -115,8 +115,8 @@ INPUTS = _table("""
  load_mass            | m      | mass        | kg   | 0     | 1e6   | load mass reflected to the rod
  position             | x      | length      | mm   | 0     | 10000 | piston position from the cap end
  fraction             | x/s    | ratio       | %    | 0     | 100   | position as a fraction of the stroke
- friction_coefficient | mu     | ratio       | -    | 0.001 | 2     | dry friction coefficient seal on counterface
- breakaway_ratio      | F_S/F_C| ratio       | -    | 1     | 5     | breakaway over running friction
+ friction_coefficient | mu     | ratio       | -    | 0.001 | 2     | dry friction coefficient of the seal on its counterface
+ breakaway_ratio      | F_S/F_C| ratio       | -    | 1     | 5     | ratio of breakaway to running friction
  stribeck_speed       | v_s    | speed       | mm/s | 0.01  | 500   | Stribeck speed
  breakaway_travel     | z_max  | length      | mm   | 0.001 | 10    | breakaway travel
  viscous_friction     | sigma_2| damping     | N*s/m| 0     | 1e7   | viscous friction coefficient of the seals
@@ -127,7 +127,7 @@ INPUTS = _table("""
  surface_roughness    | Ra     | length      | um   | 0.01  | 20    | surface roughness Ra
  rms_roughness        | R_q    | length      | um   | 0     | 20    | RMS surface roughness
  taper                | alpha  | angle       | deg  | 0.5   | 60    | taper
- allowed_angle        | theta  | angle       | deg  | 0     | 90    | winding angle the shop can make
+ allowed_angle        | theta  | angle       | deg  | 0     | 90    | winding angle that can be made
  ply_thickness        | t_p    | length      | mm   | 0.01  | 50    | cured thickness of one ply
  autofrettage_pressure| p_af   | pressure    | bar  | 1     | 5000  | autofrettage pressure
  frequency            | f      | frequency   | Hz   | 0.001 | 100000| frequency
@@ -177,7 +177,7 @@ MATERIAL_PROPERTIES = _table("""
  minimum_angle        | theta_min | angle    | deg    | 0     | 90    | smallest winding angle that can be made
  temperature_knockdown| k_T    | ratio       | -      | 0.05  | 1     | strength left at the stated temperature
  moisture_knockdown   | k_w    | ratio       | -      | 0.05  | 1     | strength left after moisture saturation
- basis_knockdown      | k_b    | ratio       | -      | 0.05  | 1     | allowable over the stated value
+ basis_knockdown      | k_b    | ratio       | -      | 0.05  | 1     | allowable strength, as a share of the stated value
  temperature_min      | T_min  | temperature | degC   | -200  | 300   | lowest service temperature
  temperature_max      | T_max  | temperature | degC   | -100  | 1000  | highest service temperature
  bulk_modulus         | K      | pressure    | MPa    | 100   | 5000  | isothermal tangent bulk modulus
@@ -187,20 +187,20 @@ MATERIAL_PROPERTIES = _table("""
  volume_expansion     | alpha_V| per_temperature | 1/K | 0     | 0.005 | volumetric thermal expansion
  vapour_pressure      | p_v    | pressure    | Pa     | 0     | 1e6   | vapour pressure, absolute
  hardness             | S      | hardness    | ShoreA | 20    | 99    | Shore A hardness
- hardness_modulus_factor | f_E | ratio       | -      | 0.1   | 10    | modulus over that by hardness
+ hardness_modulus_factor | f_E | ratio       | -      | 0.1   | 10    | Young's modulus, divided by that estimated from hardness
  friction_coefficient | mu     | ratio       | -      | 0.001 | 2     | dry friction coefficient on the stated counterface
- breakaway_ratio      | F_S/F_C| ratio       | -      | 1     | 5     | breakaway over running friction
+ breakaway_ratio      | F_S/F_C| ratio       | -      | 1     | 5     | ratio of breakaway to running friction
  stribeck_speed       | v_s    | speed       | mm/s   | 0.01  | 500   | Stribeck speed
  extrusion_gap_max    | g_max  | length      | mm     | 0.001 | 2     | largest extrusion gap at the stated pressure
  pressure_max         | p_max  | pressure    | bar    | 1     | 2000  | highest pressure without back-up ring
  bond_strength        | tau    | pressure    | MPa    | 0.5   | 200   | adhesive shear strength
  bearing_strength     | p_b    | pressure    | MPa    | 0.5   | 500   | allowable bearing pressure
  fatigue_cycles       | N_w    | ratio       | -      | 1      | 1e12 | cycles of the fatigue strength
- fatigue_stress_ratio | R      | ratio       | -      | -1     | 0.99 | stress ratio (lowest over highest) of the fatigue strength
+ fatigue_stress_ratio | R      | ratio       | -      | -1     | 0.99 | stress ratio (lowest stress over highest) of the fatigue strength
  shear_strength       | tau_m  | pressure    | MPa    | 0.5    | 3000 | ultimate shear strength
  matrix_temperature_knockdown | k_Tm | ratio | -      | 0.05   | 1    | matrix strength left at the knock-down temperature
  matrix_moisture_knockdown | k_wm | ratio    | -      | 0.05   | 1    | matrix strength left after moisture saturation
- process_knockdown    | k_p    | ratio       | -      | 0.05   | 1    | fibre tension strength of the made part over the coupon
+ process_knockdown    | k_p    | ratio       | -      | 0.05   | 1    | fibre tension strength of the made part, as a share of the coupon's
  knockdown_temperature| T_k    | temperature | degC   | 30     | 1000 | temperature of the temperature knock-downs
  fibre_volume_fraction| V_f    | ratio       | -      | 0.1    | 0.8  | fibre volume fraction
  density_temperature  | T_rho  | temperature | degC   | -60    | 100  | temperature of the density
@@ -213,7 +213,7 @@ MATERIAL_PROPERTIES = _table("""
  bond_thickness       | t_a    | length      | mm     | 0.005  | 5    | bond line thickness
  speed_max            | v_max  | speed       | m/s    | 0.001  | 50   | highest sliding speed
  softening            | b_E    | per_temperature | 1/K | -0.01 | 0.05 | relative fall of the elastomer's modulus per kelvin
- stiffening_temperature | T_10 | temperature | degC   | -150   | 150  | where cold makes the modulus ten times its plateau (torsion test)
+ stiffening_temperature | T_10 | temperature | degC   | -150   | 150  | temperature at which cold makes the modulus ten times its plateau (torsion test)
  asperity_friction    | f      | ratio       | -      | 0.001  | 1    | dry friction of the asperities in the film model
  seal_roughness       | sigma  | length      | um     | 0.01   | 20   | RMS roughness of the sliding face in the film model
  asperity_radius      | R_a    | length      | um     | 0.01   | 1000 | radius of the asperity tips
@@ -224,7 +224,7 @@ RECORDS = _table("""
  cutoff               | f_c    | frequency   | Hz     | 0.01  | 100000 | cut-off frequency of the filter
  moving_mass          | m      | mass        | kg     | 0     | 1e6    | mass moving inside the force sensor
  load_force           | F_L    | force       | N      | -2e7  | 2e7    | force of the load, against extension
- pressure_lag         | tau    | time        | ms     | -100  | 100    | time by which the pressures come late
+ pressure_lag         | tau    | time        | ms     | -100  | 100    | time by which the pressure signals lag
  span                 | L      | length      | mm     | 1     | 20000  | span between the supports
 """)
 """Quantities of a test record's settings; only forces and times may be negative."""
@@ -238,7 +238,7 @@ SCENARIOS = _table("""
  position_value       | x      | length      | mm     | -10000| 10000  | position
  speed_value          | v      | speed       | m/s    | -20   | 20     | speed
  force_value          | F_L    | force       | N      | -2e7  | 2e7    | force of the load, against extension
- torque_value         | M_L    | torque      | N*m    | -1e7  | 1e7    | torque of the load, against the motion counted positive
+ torque_value         | M_L    | torque      | N*m    | -1e7  | 1e7    | torque of the load, against the positive direction of motion
  flow_value           | q      | flow        | l/min  | -1e6  | 1e6    | flow
  shaft_speed_value    | n      | angular_speed | rpm  | -20000| 20000  | speed of the shaft
  shaft_angle_value    | phi    | angle       | deg    | -1e6  | 1e6    | angle of the shaft
@@ -269,7 +269,7 @@ SCENARIOS = _table("""
  static_force         | F_S    | force       | N      | 0     | 1e7    | breakaway friction
  stribeck_exponent    | delta  | ratio       | -      | 0.3   | 4      | exponent of the Stribeck curve
  bristle_damping      | sigma_1| damping     | N*s/m  | 0     | 1e8    | bristle damping
- damping_factor       | -      | ratio       | -      | 0     | 10     | damping of a stop over sqrt(K m)
+ damping_factor       | -      | ratio       | -      | 0     | 10     | damping of a stop, divided by the root of its stiffness times the moving mass
  cycles_per_window    | n      | count       | -      | 1     | 1000   | cycles in a window
 """)
 """Inputs of a scenario, in addition to its design; only coordinates of signals may be negative."""
@@ -277,17 +277,17 @@ SCENARIOS = _table("""
 RESULTS = _table("""
  rise_time            | t_r    | time        | ms     | | | time from 10 to 90 % of the step
  settling_time        | t_s    | time        | ms     | | | time until the response stays within 2 % of the step
- overshoot            | M_p    | ratio       | %      | | | overshoot over the step
- steady_state_ratio   | e_ss   | ratio       | %      | | | steady-state error over the step
+ overshoot            | M_p    | ratio       | %      | | | overshoot, as a share of the step
+ steady_state_ratio   | e_ss   | ratio       | %      | | | steady-state error, as a share of the step
  following_error      | e      | length      | mm     | | | largest position error after the first period
- hold_drift           | v_d    | speed       | mm/s   | | | creep in the last tenth of the time
+ hold_drift           | v_d    | speed       | mm/s   | | | creep speed in the last tenth of the time
  peak_pressure        | p_max  | pressure    | bar    | | | highest chamber pressure
  lowest_pressure      | p_min  | pressure    | bar    | | | lowest chamber pressure, gauge
- cavitation_margin    | p-p_v  | pressure    | bar    | | | lowest absolute chamber pressure less the vapour pressure of the oil
+ cavitation_margin    | p-p_v  | pressure    | bar    | | | lowest absolute chamber pressure minus the vapour pressure of the oil
  stop_speed           | v_e    | speed       | m/s    | | | highest speed at which the piston meets a stop
- efficiency           | eta    | ratio       | %      | | | work at the load over work of the supply
+ efficiency           | eta    | ratio       | %      | | | work done on the load, as a share of the supply's work
  supply_energy        | W_P    | energy      | J      | | | work of the supply
  dynamic_stiffness    | k_dyn  | stiffness   | kN/mm  | | | dynamic stiffness at the frequency of the load
- dynamic_phase        | phi    | angle       | deg    | -180 | 180 | phase by which the force leads
+ dynamic_phase        | phi    | angle       | deg    | -180 | 180 | phase by which the force leads the motion
 """)
 """Results of a simulation, which the requirements of a scenario can name."""

@@ -22,11 +22,14 @@ from .structure import KeyEntry, Loc, MaterialLookup, child_at, entries, leaves
 MOST_FAULTS = 100
 
 _TABLE_KEYS = {
-    "variables": "PATHs such as cylinder.bore, each with lower and upper",
-    "requirements": "metrics, each with min or max",
+    "variables": "PATHs such as cylinder.bore, each with a lower and an upper bound",
+    "requirements": "metrics, each with a smallest (min) or largest (max) value",
     "choices": "PATHs such as seals.rod.compound, each with a list of allowed values",
-    "waivers": "metrics such as seal_section, each with a reason",
-    "measured": "PATHs such as seals.rod.friction_coefficient, each with lower, upper and record",
+    "waivers": "metrics such as seal_section, each with the reason why its check is waived",
+    "measured": (
+        "PATHs such as seals.rod.friction_coefficient, each with the lower and upper "
+        "bound from a test record"
+    ),
     "materials": "names of materials, each with its changed properties",
     "uncertainty": "PATHs such as cylinder.bore, each with a distribution",
     "set": "PATHs of the design such as cylinder.bore, each with its value",

@@ -71,8 +71,8 @@ def recheck(tree: dict[str, Any]) -> Iterator[Fault]:
     if count > MOST_COMBINATIONS:
         yield Fault(
             ("choices",),
-            f"{count} combinations are too many, as each is tried",
-            f"remove values until at most {MOST_COMBINATIONS} are left",
+            f"{count} combinations are too many, because every combination is computed",
+            f"remove values until at most {MOST_COMBINATIONS} combinations remain",
             at_key=True,
         )
 
@@ -92,7 +92,7 @@ def choosable(path: str, tree: Any) -> Target:
         raise ValueFault("is not the canonical PATH", f"write {target.path}")
     variables = tree.get("variables") if isinstance(tree, dict) else None
     if isinstance(variables, dict) and path in variables:
-        raise ValueFault("is also a variable", "keep it in variables or in choices")
+        raise ValueFault("is also a variable", "keep it in variables or in choices, not in both")
     return target
 
 
@@ -167,7 +167,7 @@ def material_faults(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
                 message = f'"{errors.shown(name)}": unknown material'
                 yield Fault(loc, message, errors.remedy(name, candidates))
             else:
-                message = f"{name}: its kind ({materials.kind(name)}) does not suit this place"
+                message = f"{name}: a material of kind {materials.kind(name)} cannot be used here"
                 yield Fault(loc, message, f"use e.g. {', '.join(candidates[:6])}")
 
 

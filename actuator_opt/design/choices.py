@@ -59,11 +59,10 @@ EndStop: TypeAlias = Annotated[
 WallModel: TypeAlias = Annotated[
     Literal["auto", "isotropic", "thin_laminate", "layered", "as_published"],
     Choice(
-        "how the wall is computed; auto: isotropic for one metal layer, else layered; "
-        "isotropic: thick tube of one material; "
-        "thin_laminate: plies as a thin wall, fast, for t/r up to 0.05; "
-        "layered: plies as a thick tube, exact; "
-        "as_published: isotropic, but the bore grows as [ElAsswad2018] prints it"
+        "how the wall is computed; auto: isotropic for one metal layer, else layered; isotropic: "
+        "thick tube of one material; thin_laminate: plies as a thin wall, fast, for ratios of "
+        "wall thickness to radius up to 0.05; layered: plies as a thick tube, exact; "
+        "as_published: isotropic, but with the bore growth formula printed in [ElAsswad2018]"
     ),
 ]
 Criterion: TypeAlias = Annotated[
@@ -105,10 +104,10 @@ Direction: TypeAlias = Annotated[
 Topology: TypeAlias = Annotated[
     Literal["per_chamber", "aalto_as_published", "elasswad_as_published"],
     Choice(
-        "how the stiffness of oil, walls and lines combines; "
-        "per_chamber: the parts of each chamber in series, both chambers in parallel; "
-        "aalto_as_published: totals of oil, walls and lines in series, as [AaltoThesis] prints it; "
-        "elasswad_as_published: oil and wall in series, as [ElAsswad2018] prints it"
+        "how the stiffness of oil, walls and lines combines; per_chamber: the parts of each "
+        "chamber in series, both chambers in parallel; aalto_as_published: the totals of oil, "
+        "walls and lines in series, the formula printed in [AaltoThesis]; elasswad_as_published: "
+        "oil and wall in series, the formula printed in [ElAsswad2018]"
     ),
 ]
 SealState: TypeAlias = Annotated[
@@ -124,16 +123,16 @@ Chamber: TypeAlias = Annotated[
 LineType: TypeAlias = Annotated[
     Literal["pipe", "hose"],
     Choice(
-        "item of the stiffness budget for its wall compliance (which follows from the material); "
-        "pipe: a rigid tube; hose: a flexible hose"
+        "item of the stiffness budget to which the compliance of its wall is added (the material "
+        "determines that compliance); pipe: a rigid tube; hose: a flexible hose"
     ),
 ]
 End: TypeAlias = Annotated[
     Literal["closed", "valve", "constant_pressure", "reducing_valve"],
     Choice(
-        "end of both lines while the load excites the actuator; closed: blocked; "
-        "valve: the valve of this file, with the spool position that holds the load; "
-        "constant_pressure: a port at constant pressure; "
-        "reducing_valve: the pressure reducing valve of ports.reducing_valve"
+        "end of both lines while the load excites the actuator; closed: blocked; valve: the valve "
+        "of this file, with the spool position at which it holds the load; constant_pressure: a "
+        "port at constant pressure; reducing_valve: the pressure reducing valve of "
+        "ports.reducing_valve"
     ),
 ]

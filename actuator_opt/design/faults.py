@@ -221,7 +221,7 @@ def valve(view: FileView) -> Iterator[Fault]:
         text = quantities.INPUTS["leakage_flow"].text
         yield Fault(
             ("valve", "leakage_flow"),
-            f"{text(leakage)}: the leakage reaches the flow of the open valve",
+            f"{text(leakage)}: the leakage is as large as the flow of the open valve",
             f"write less than {text(most)}",
         )
 
@@ -232,7 +232,7 @@ def stiffness(view: FileView) -> Iterator[Fault]:
     if published and view.text("stiffness", "seals") == "sticking":
         yield Fault(
             ("stiffness", "seals"),
-            "sticking: the published topologies do not include seals",
+            "sticking seals have no effect in the published topologies, which omit seals",
             'write "topology: per_chamber", or "seals: sliding"',
         )
 
@@ -315,7 +315,7 @@ def rod(view: FileView) -> Iterator[Fault]:
             (owner, "thread", "pitch"),
             (owner, "thread", "diameter"),
             factor=0.5,
-            why=": no core remains",
+            why=", or no core of the thread remains",
         )
 
 
@@ -414,7 +414,7 @@ def _case_force(loc: Loc, case: dict[str, Any], *, linked: bool) -> Iterator[Fau
         other = "joint_torque" if torque else "lever_arm"
         yield Fault(
             (*loc, other),
-            "force and joint torque in one load case",
+            "both force and joint torque in one load case",
             "keep one of them",
             at_key=True,
         )

@@ -510,7 +510,11 @@ def fit_double_exponential(speed: Array, damping: Array, weights: Array | None =
         "rate_2": float(terms[1][1]),
     }
     at_limit = [rate for rate in rates if abs(rate) > 0.999 * steepest]
-    doubts = ("an exponential so steep that only one point affects it",) if at_limit else ()
+    doubts = (
+        ("one exponential falls so steeply that only a single point determines it",)
+        if at_limit
+        else ()
+    )
     least = dict.fromkeys(("rate_1", "rate_2"), 1 / float(v[-1]))
     law = laws.double_exponential
     return assess("double exponential", law, values, v, b, w, least=least, doubts=doubts)
@@ -552,14 +556,17 @@ def assess(
     reasons = list(doubts)
     if freedom == 0:
         reasons.append(
-            f"{speed.size} points leave no degree of freedom for {len(values)} parameters"
+            f"{speed.size} points for {len(values)} parameters leave no degree of freedom, so "
+            "errors are unknown"
         )
     elif estimate.rank < len(values):
         reasons.append(f"the points determine {estimate.rank} of {len(values)} parameters")
     else:
         weak = [key for key, parameter in estimate.parameters.items() if not parameter.identifiable]
         if weak:
-            reasons.append(f"bounds of {', '.join(weak)} wider than {WEAK:.0%} of the value")
+            reasons.append(
+                f"confidence interval of {', '.join(weak)} wider than {WEAK:.0%} of the value"
+            )
     return LawFit(
         name=name,
         law=law,
@@ -673,7 +680,8 @@ def _points(
     if v.ndim != 1 or v.shape != b.shape or v.shape != w.shape:
         sizes = ", ".join(str(values.shape) for values in (v, b, w))
         raise _fault(
-            f"speed, damping and weights have shapes {sizes}", "give one value of each per point"
+            f"speed, damping and weights have shapes {sizes}",
+            "give one value of speed, damping and weight for each point",
         )
     for name, values in (("speed", v), ("damping", b), ("weight", w)):
         not_finite = np.flatnonzero(~np.isfinite(values))
@@ -691,7 +699,7 @@ def _points(
     different = np.unique(v).size
     if different < parameters:
         fault = f"{different} different speeds for a law with {parameters} parameters"
-        raise _fault(fault, f"give at least {parameters}; bounds need one more")
+        raise _fault(fault, f"give at least {parameters}, and one more to get confidence intervals")
     order = np.argsort(v, kind="stable")
     return v[order], b[order], w[order]
 

@@ -57,18 +57,29 @@ class Valve(Section):
         float, Of("pressure_drop", "pressure drop across the edge at rated flow")
     ] = 35e5
     leakage_flow: Annotated[
-        float, Of("leakage_flow", "leakage of one edge with centred spool: half of the valve's")
+        float,
+        Of(
+            "leakage_flow",
+            "leakage of one metering edge with centred spool: half of the valve's leakage",
+        ),
     ] = 0.0
     leakage_drop: Annotated[
         float, Of("pressure_drop", "pressure drop across the edge at the leakage flow")
     ] = 50e5
     tank_leakage_drop: Annotated[
         float | None,
-        Of("pressure_drop", "the same across an edge to tank; default: leakage_drop"),
+        Of(
+            "pressure_drop",
+            "pressure drop across an edge to tank at the leakage flow; default: leakage_drop",
+        ),
     ] = None
     rated_viscosity: Annotated[
         float | None,
-        Of("oil_viscosity", "oil viscosity at rated flow; default: rated flow for any oil"),
+        Of(
+            "oil_viscosity",
+            "oil viscosity at which the rated flow applies; default: the rated "
+            "flow applies to any oil",
+        ),
     ] = None
     offset: Annotated[float, Of("signal_offset", "signal that centres the spool")] = 0.0
     signal: Annotated[float, Of("signal", "signal of the fully open spool")] = 10.0
@@ -79,9 +90,9 @@ class Valve(Section):
 class Throttle(Section):
     """One-way flow-control valves that throttle the outflow, linearised for each load case."""
 
-    area: Annotated[float, Of("orifice_area", "area of the fully open needle")]
+    area: Annotated[float, Of("orifice_area", "flow area of the fully open needle")]
     opening: Annotated[float, Of("opening", "opening of the needle")] = 1.0
-    check_area: Annotated[float, Of("orifice_area", "area of the open check valve")]
+    check_area: Annotated[float, Of("orifice_area", "flow area of the open check valve")]
     cracking_pressure: Annotated[
         float, Of("pressure_drop", "opening pressure of the check valve")
     ] = 0.4e5
@@ -90,9 +101,15 @@ class Throttle(Section):
 class ReducingValve(Section):
     """A pressure reducing valve at the end of a line: a second-order model for small signals."""
 
-    conductance: Annotated[float, Of("conductance", "static regulating conductance")]
+    conductance: Annotated[
+        float,
+        Of(
+            "conductance",
+            "flow change over pressure change of the regulated port, in slow (static) operation",
+        ),
+    ]
     passive_conductance: Annotated[
-        float, Of("conductance", "conductance of the valve opening, at any frequency")
+        float, Of("conductance", "flow over pressure drop of the valve opening, at any frequency")
     ] = 0.0
     natural_frequency: Annotated[float, Of("frequency", "natural frequency of the valve")]
     damping_ratio: Annotated[float, Of("damping_ratio", "damping ratio of the valve")]
@@ -132,7 +149,8 @@ class Linkage(Section):
     base_radius: Annotated[float, Of("pivot_radius", "distance from joint axis to fixed pivot")]
     crank_radius: Annotated[float, Of("pivot_radius", "distance from joint axis to crank pin")]
     angle_offset: Annotated[
-        float, Of("joint_angle", "angle between both radii at joint angle 0, signed")
+        float,
+        Of("joint_angle", "angle between base radius and crank radius at joint angle 0, signed"),
     ] = 0.0
 
 
@@ -141,7 +159,8 @@ class Load(Section):
 
     mass: Annotated[float, Of("load_mass", "moving mass, reflected to the rod")] = 0.0
     inertia: Annotated[
-        float, Of("load_inertia", "inertia about the joint of the linkage; added to mass")
+        float,
+        Of("load_inertia", "moment of inertia about the joint of the linkage; it is added to mass"),
     ] = 0.0
 
 
@@ -203,7 +222,7 @@ class Uncertain(Section):
     tolerance: Annotated[str | None, Text("ISO 286 class of a diameter or length, e.g. H8", 10)] = (
         None
     )
-    source: Annotated[str | None, Text("source, as named in a report", 200)] = None
+    source: Annotated[str | None, Text("source, named in reports", 200)] = None
 
 
 class FluidSection(Section):
@@ -231,7 +250,9 @@ class Supply(Section):
     """Gauge pressures of supply and return, at the actuator's ports."""
 
     pressure: Annotated[float, Of("working_pressure", "gauge pressure at the driven port")]
-    return_pressure: Annotated[float, Of("pressure", "gauge pressure at the other port")] = 0.0
+    return_pressure: Annotated[
+        float, Of("pressure", "gauge pressure at the port that is not driven")
+    ] = 0.0
     proof_ratio: Annotated[float, Of("safety_factor", "proof pressure over supply pressure")] = 1.5
 
 
@@ -245,7 +266,8 @@ class Environment(Section):
     ] = 293.15
     wet: Annotated[bool, Boolean("whether the laminate is saturated with moisture")] = True
     trapped_rise: Annotated[
-        float | None, Of("temperature_rise", "temperature rise of the oil with blocked ports")
+        float | None,
+        Of("temperature_rise", "temperature rise of the oil while both ports are blocked"),
     ] = None
     cure_temperature: Annotated[
         float | None, Of("temperature", "temperature at which the laminate is stress-free")
@@ -299,7 +321,8 @@ class Ply(Section):
         float | None,
         Of(
             "ply_thickness",
-            "cured thickness of one ply; rounding a design gives a whole number of plies",
+            "cured thickness of one ply; when a design is rounded, each layer gets a whole number "
+            "of plies",
         ),
     ] = None
 
@@ -320,7 +343,10 @@ class Barrel(Section):
     ] = None
     allowed_angles: Annotated[
         tuple[
-            Annotated[float, Of("allowed_angle", "feasible winding angle, for rounding")],
+            Annotated[
+                float,
+                Of("allowed_angle", "winding angle that can be made; a design is rounded to it"),
+            ],
             ...,
         ]
         | None,
@@ -360,7 +386,9 @@ class Fitting(Section):
     material: Annotated[str | None, MaterialName("isotropic")] = None
     """Default: the rod's material."""
     adhesive: Annotated[str, MaterialName("fastening")]
-    length: Annotated[float, Of("part_length", "overlap with the tube, inside it")]
+    length: Annotated[
+        float, Of("part_length", "length over which the fitting overlaps the tube, inside it")
+    ]
     wall: Annotated[
         float | None,
         Of("wall_thickness", "wall thickness of the fitting in the overlap; default: solid"),
@@ -375,9 +403,11 @@ class Rod(Section):
     """
 
     material: Annotated[str, MaterialName("isotropic")]
-    outer_diameter: Annotated[float, Of("rod_diameter", "diameter in the rod seal")]
+    outer_diameter: Annotated[
+        float, Of("rod_diameter", "diameter of the rod where it passes the rod seal")
+    ]
     inner_diameter: Annotated[
-        float, Of("rod_inner_diameter", "bore of a hollow rod; 0 is solid")
+        float, Of("rod_inner_diameter", "bore of a hollow rod; 0: a solid rod")
     ] = 0.0
     extension: Annotated[float, Of("length", "length outside the head when retracted")] = 0.0
     thread: Thread | None = None
@@ -426,13 +456,19 @@ class _Retention(Section):
 
     type: choices.RetentionType
     length: Annotated[
-        float, Of("part_length", "overlap of skirt and barrel, or tie-rod engagement")
+        float,
+        Of(
+            "part_length",
+            "length over which skirt and barrel overlap, or thread engagement of the tie rods",
+        ),
     ]
     wall: Annotated[float, Of("wall_thickness", "thickness of the skirt")] = 1.5e-3
     material: Annotated[str | None, MaterialName("fastening")] = None
     count: Annotated[float, Of("bolt_count", "number of tie rods")] = 4.0
     thread: RetentionThread | None = None
-    preload: Annotated[float | None, Of("force", "total tie-rod tension without pressure")] = None
+    preload: Annotated[
+        float | None, Of("force", "total tension of all tie rods without pressure")
+    ] = None
 
 
 def _own_fields() -> dict[str, Any]:
@@ -475,9 +511,9 @@ class Stiffness(Section):
     seal_deflection: Annotated[
         float, Of("breakaway_travel", "travel at which sticking seals break away")
     ] = 1e-4
-    load_cell: Annotated[float | None, Of("stiffness", "stiffness of a test rig's load cell")] = (
-        None
-    )
+    load_cell: Annotated[
+        float | None, Of("stiffness", "stiffness of the load cell of a test rig")
+    ] = None
 
 
 class LoadCase(Section):
@@ -488,8 +524,11 @@ class LoadCase(Section):
 
     name: Annotated[str, CaseName("name of the case in reports and PATHs")]
     direction: choices.Direction
-    force: Annotated[float | None, Of("force", "axial force to deliver")] = None
-    joint_torque: Annotated[float | None, Of("torque", "joint torque, instead of a force")] = None
+    force: Annotated[float | None, Of("force", "axial force that the actuator must deliver")] = None
+    joint_torque: Annotated[
+        float | None,
+        Of("torque", "joint torque that the actuator must deliver, instead of a force"),
+    ] = None
     lever_arm: Annotated[
         float | None, Of("lever_arm", "lever arm of the joint torque; default: from the linkage")
     ] = None
@@ -515,16 +554,16 @@ class LoadCase(Section):
         float | None,
         Of(
             "pressure",
-            "gauge pressure in chamber A while holding; "
-            "default: that of a critical-centre valve that holds the force",
+            "gauge pressure in chamber A while the valve holds the force; default: the pressure "
+            "with a critical-centre valve",
         ),
     ] = None
     pressure_b: Annotated[
         float | None,
         Of(
             "pressure",
-            "gauge pressure in chamber B while holding; "
-            "default: that of a critical-centre valve that holds the force",
+            "gauge pressure in chamber B while the valve holds the force; default: the pressure "
+            "with a critical-centre valve",
         ),
     ] = None
 

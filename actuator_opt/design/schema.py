@@ -336,7 +336,7 @@ def _start_and_sizes(quantity: Quantity, path: str) -> Schema:
     return {
         "start": value,
         "step": {
-            "description": "step of the variable, which takes its multiples",
+            "description": "step: the variable takes only multiples of it",
             "allOf": [value],
         },
         "sizes": {"description": SizesKind.help, "anyOf": [*options, sizes | {"items": value}]},
@@ -353,7 +353,10 @@ def _measured(definitions: Schema) -> Schema:
                 "type": "string",
                 "description": "name of the record in a report",
             }
-    help = "Values from a test record: PATH with 95 % bounds and the name of the record."
+    help = (
+        "Values from a test record: PATH with the bounds of its 95 % confidence interval "
+        "and the name of the record."
+    )
     return {"description": help} | _by_path(schemas)
 
 
@@ -368,7 +371,10 @@ def _uncertainty(definitions: Schema) -> Schema:
     for name in quantities.MATERIAL_PROPERTIES:
         pattern = rf"^materials\.[^.]+\.{name}$"
         schema["patternProperties"][pattern] = schemas[f"materials.[*].{name}"]
-    help = "Scatter of values beyond that of libraries and practice: PATH with a distribution."
+    help = (
+        "Scatter of values, in addition to that from libraries and practice: PATH with a "
+        "distribution."
+    )
     return {"description": help} | schema
 
 
@@ -455,7 +461,7 @@ def _requirements(metrics: Mapping[str, Quantity], definitions: Schema) -> Schem
             "properties": {key: {"$ref": f"#/definitions/{kind}"} for key in ("min", "max")},
         }
     return {
-        "description": "Limits on metrics, met in the worst load case.",
+        "description": "Limits that metrics must meet in the worst load case.",
         "additionalProperties": False,
         "properties": properties,
     }

@@ -159,8 +159,8 @@ def grooves(view: FileView) -> Iterator[Fault]:
         if length is not None and width >= length:
             yield Fault(
                 seal_grooves[0][0],
-                f"grooves outside the {part}: they need at least {length_text(width)}, "
-                f"{part}.length is {length_text(length)}",
+                f"the grooves do not fit into the {part}: they need at least {length_text(width)}, "
+                f"but {part}.length is {length_text(length)}",
                 f"increase {part}.length or use smaller rings",
             )
         deep = (*place[:-1], "thickness" if place[-2] == "guide" else "section")
@@ -173,14 +173,14 @@ def grooves(view: FileView) -> Iterator[Fault]:
                 yield Fault(
                     deep,
                     f"groove too deep: {length_text(max(rest, 0.0))} core remains in the piston, "
-                    f"the rod needs {length_text(core)}",
+                    f"but the rod needs {length_text(core)}",
                     "use a smaller section, a larger bore or a rod thread that fits",
                 )
         elif rod_diameter < bore <= rod_diameter + 2 * depth:
             yield Fault(
                 deep,
-                f"groove outside the head: it reaches {length_text(rod_diameter + 2 * depth)}, "
-                f"the bore is {length_text(bore)}",
+                "the groove does not fit into the head: its diameter is "
+                f"{length_text(rod_diameter + 2 * depth)}, but the bore is {length_text(bore)}",
                 "use a smaller section, a larger bore or a thinner rod",
             )
 
@@ -272,7 +272,7 @@ def profiles(view: FileView) -> Iterator[Fault]:
                 yield Fault(
                     (*at, "pressure"),
                     f"{INPUTS['pressure'].text(pressure)}: not above the previous profile",
-                    "sort the profiles by pressure, each once",
+                    "sort the profiles by pressure, and state each pressure once",
                 )
             last = last if pressure is None else pressure
             pressures = [x for x in stresses if isinstance(x, float)]
@@ -280,8 +280,8 @@ def profiles(view: FileView) -> Iterator[Fault]:
             if complete and pressure is not None and max(pressures) <= pressure:
                 yield Fault(
                     (*at, "stresses"),
-                    f"nowhere above the sealed pressure ({INPUTS['pressure'].text(pressure)}): "
-                    "this contact does not seal",
+                    "the contact pressure nowhere exceeds the sealed pressure "
+                    f"({INPUTS['pressure'].text(pressure)}), so this contact does not seal",
                     "state contact pressures that include the sealed pressure",
                 )
             if len(positions) != len(stresses):
@@ -340,7 +340,7 @@ def films(view: FileView) -> Iterator[Fault]:
             if law is not None and law.film and count is not None and count != 1:
                 yield Fault(
                     (*loc, "count"),
-                    f"{count:g} rings in a row: the film model covers one ring or a pair",
+                    f"{count:g} rings in a row, but the film model covers one ring or a pair",
                     "write count: 1, and a block secondary for the second ring",
                 )
 

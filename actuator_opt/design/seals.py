@@ -48,7 +48,9 @@ class SealElement(Section):
     type: choices.SealType = o_ring.TYPE.name
     compound: Annotated[str, MaterialName("seal")]
     section: Annotated[float, Of("cross_section", "free cross-section of the ring")]
-    squeeze: Annotated[float, Of("squeeze", "nominal squeeze over free section")]
+    squeeze: Annotated[
+        float, Of("squeeze", "nominal squeeze, as a share of the free cross-section")
+    ]
     tolerance: Annotated[float, Of("tolerance", "tolerance of the gland depth")] = 0.0
     section_tolerance: Annotated[float, Of("tolerance", "tolerance of the free cross-section")] = (
         0.0
@@ -81,11 +83,14 @@ class SealElement(Section):
     ] = None
     breakaway_ratio: Annotated[
         float | None,
-        Of("breakaway_ratio", "breakaway over running friction; default: the compound's"),
+        Of("breakaway_ratio", "ratio of breakaway to running friction; default: the compound's"),
     ] = None
     stribeck_speed: Annotated[
         float | None,
-        Of("stribeck_speed", "decay speed of the breakaway friction; default: the compound's"),
+        Of(
+            "stribeck_speed",
+            "sliding speed over which breakaway friction decays; default: the compound's",
+        ),
     ] = None
     viscous_friction: Annotated[
         float, Of("viscous_friction", "viscous part of the seal friction")
@@ -117,7 +122,7 @@ class Wiper(Section):
 
     compound: Annotated[str, MaterialName("seal")]
     section: Annotated[float, Of("cross_section", "free radial height over the lip")]
-    squeeze: Annotated[float, Of("squeeze", "interference over the free radial height")]
+    squeeze: Annotated[float, Of("squeeze", "interference, as a share of the free radial height")]
     thickness: Annotated[float, Of("part_length", "radial thickness of the lip at its root")]
     width: Annotated[float, Of("part_length", "length of the lip")]
     groove_width: Annotated[float, Of("groove_width", "axial width of the groove")]

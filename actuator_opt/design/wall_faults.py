@@ -67,7 +67,7 @@ def barrel_model(view: FileView) -> Iterator[Fault]:
     if view.text("barrel", "model") == "isotropic" and layers > 1:
         yield Fault(
             ("barrel", "model"),
-            f"isotropic: this model has a single layer, the layup has {layers}",
+            f"isotropic: this model supports a single layer, but the layup has {layers}",
             "write auto, or keep one layer",
         )
 
@@ -86,9 +86,12 @@ def autofrettage(view: FileView) -> Iterator[Fault]:
             f"write more than {text(supply)}",
         )
     elif len(view.items("barrel", "layup")) == 1:
-        remedy = "remove the line, or wrap the liner"
+        remedy = "remove the line, or add layers around the liner"
         yield Fault(
-            loc, "the wall is a single layer: nothing supports a liner", remedy, at_key=True
+            loc,
+            "the wall is a single layer, so nothing around it keeps a liner compressed",
+            remedy,
+            at_key=True,
         )
 
 

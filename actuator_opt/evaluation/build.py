@@ -278,7 +278,7 @@ def _metric(
         computed_at_all = name in computed.metrics
         why = computed.why.get(name, NO_ANSWER if computed_at_all else NOT_COMPUTED)
         if value == math.inf:
-            why = computed.why.get(name, "no load: the factor is unlimited")
+            why = computed.why.get(name, "no load, so the safety factor is unlimited")
         definition = None if name in METRICS else subject.quantities[name]
         return Metric(name=name, value=None, why=why, definition=definition)
     _, case, place = next(row for row in rows if row[0] == value)

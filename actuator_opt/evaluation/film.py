@@ -277,10 +277,7 @@ def _opened(ring: Ring) -> str:
     pressure = ring["pressure"]
     if seal_contact(ring.at(pressure=abs(pressure))).excess > 0:
         return ""
-    return (
-        f"{pressure / 1e6:.4g} MPa opens the contact of the {ring.label}: its contact load "
-        "is too small"
-    )
+    return f"{pressure / 1e6:.4g} MPa lifts the {ring.label} off: its contact load is too small"
 
 
 def _tandem(row: FilmRow, start: Tandem | None) -> Tandem:

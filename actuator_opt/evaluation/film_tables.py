@@ -143,7 +143,11 @@ def table(row: FilmRow, samples: Sequence[FilmRow]) -> FilmTable:
     axes = _axes(walker, base, others, at_design)
     film_surrogate = surrogate(walker, base=base, axes=axes)
     if film_surrogate is None:
-        raise _unsolved(row, "too many points within the variable bounds have no solution")
+        raise _unsolved(
+            row,
+            "the oil film has no solution at too many of the points computed "
+            "within the variable bounds",
+        )
     points = [base, *(point for point in others[:CHECKS] if base.keys() <= point.keys())]
     return FilmTable(
         film_surrogate, row, _errors(walker, film_surrogate, points), float(at_design.values[-2])
@@ -153,7 +157,9 @@ def table(row: FilmRow, samples: Sequence[FilmRow]) -> FilmTable:
 def _unsolved(row: FilmRow, why: str) -> Unsolvable:
     first = row.rings[0]
     message = f"the oil film of the {first.label} has no solution: {why}"
-    remedy = 'write "friction: coefficient", or use a more usual squeeze, pressure or speed'
+    remedy = (
+        'write "friction: coefficient", or bring squeeze, pressure or speed closer to common values'
+    )
     path = f"{first.groove.path}friction"
     return Unsolvable(Diagnostic(message, remedy, path=path))
 

@@ -236,6 +236,7 @@ def warnings(design: Design, joint: DrivenJoint | None) -> Iterable[tuple[str, s
     end = min(ends, key=lambda name: ends[name])
     yield (
         "",
-        f"the inertia of the joint equals {design.load.inertia / ends[end] ** 2:.4g} kg at the rod "
-        f"where the lever arm is least ({end}); load cases without a position use this mass",
+        "at the rod, the inertia of the joint acts like a mass of "
+        f"{design.load.inertia / ends[end] ** 2:.4g} kg where the lever arm is least ({end}); load "
+        "cases without a stated position use this mass",
     )

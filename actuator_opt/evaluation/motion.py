@@ -228,7 +228,7 @@ def _position_loop(
     position_open_loop = motion.position_loop(positions, extending=directions)
     limit = loop.ultimate_gain(loop=position_open_loop)
     out.why["ultimate_gain"] = out.why["gain_margin"] = "the loop is stable at any gain"
-    out.why["phase_margin"] = "no crossover: the open-loop gain stays below one"
+    out.why["phase_margin"] = "no crossover frequency: the open-loop gain stays below 1"
     stated = design.control is not None and design.control.gain is not None
     gain = v["control.gain"] if stated else maximum(0.5 * _least(limit.gain), LEAST_GAIN)
     margin = limit.gain / gain
@@ -289,8 +289,9 @@ def warnings(
         if valve is not None and valve.tank_leakage_drop not in (None, valve.leakage_drop):
             yield (
                 "ultimate_gain",
-                "tank edges and supply edges leak differently: the holding pressures assume equal "
-                "edges; a scenario computes its own",
+                "the valve's tank edges and supply edges leak differently, but the holding "
+                "pressures are computed for equal edges; a scenario takes the difference into "
+                "account",
             )
     yield from _ports(v, design, motion, state)
     yield from _lines(design, motion, out)
@@ -309,8 +310,9 @@ def _loop(v: Values, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, s
     if 0 <= damped < LEAST_DAMPING:
         yield (
             "damping_ratio",
-            f"the load has almost no damping (ratio {damped:.1g}): its loop must be slow; "
-            "state valve.leakage_flow with ports.end: valve, or piston.leakage_conductance",
+            f"the load has almost no damping (ratio {damped:.1g}), which permits a slow position "
+            "loop only; to add damping, state valve.leakage_flow with ports.end: valve, or "
+            "piston.leakage_conductance",
         )
     weakest = weakest_per_chamber(motion.springs)
     resonance = float(np.min(np.real(motion.closed_frequency(weakest))))
@@ -319,8 +321,9 @@ def _loop(v: Values, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, s
     if near:
         yield (
             "bandwidth",
-            f"at {near} of {len(widths)} places the closed loop falls to -3 dB only at or above "
-            "the load resonance: there it oscillates and does not follow the signal",
+            f"for {near} of {len(widths)} combinations of position and direction, the closed "
+            "loop's gain falls to -3 dB only near or above the load's resonance; at that "
+            "frequency the load oscillates and does not follow the signal",
         )
     least = min(float(np.min(np.real(x))) for x in out.metrics["ultimate_gain"].values())
     margin = min(float(np.min(np.real(x))) for x in out.metrics["gain_margin"].values())
@@ -336,13 +339,14 @@ def _loop(v: Values, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, s
     for case in stalled:
         yield (
             "bandwidth",
-            f"{case}: the held force needs the whole supply pressure, the valve has no effect",
+            f"{case}: holding the force takes the whole supply pressure, which leaves the valve no "
+            "pressure to move the rod",
         )
     if least == 0:
         yield (
             "ultimate_gain",
-            "no gain is stable: the load itself is unstable, or leakage across the piston "
-            "exceeds that of the valve; add valve leakage or load damping",
+            "the loop is unstable at any gain: either the load itself is unstable, or the piston "
+            "leaks more than the valve; add valve leakage or load damping",
         )
 
 
@@ -354,15 +358,16 @@ def _ports(
         for metric in ("damping_ratio", "dynamic_stiffness"):
             yield (
                 metric,
-                "ports.end is closed: damping ratio and dynamic stiffness exclude the leakage of "
-                "the holding valve; write end: valve to include it",
+                "ports.end is closed, so damping ratio and dynamic stiffness exclude the leakage "
+                "of the holding valve; write end: valve to include it",
             )
     slow = np.ravel(np.real(state.speed)) == 0
     excited = [case.frequency is not None for case in design.load_cases]
     if motion.throttles and np.any(slow & np.array(excited)):
         yield (
             "dynamic_stiffness",
-            "a throttle in a case with excitation but no speed: taken at creeping flow",
+            "a load case has a frequency but no speed, so its throttle is calculated for very "
+            "slow (creeping) flow",
         )
     for i, accumulator in enumerate(design.ports.accumulators):
         held = state.holding_a if accumulator.chamber == "a" else state.holding_b
@@ -370,8 +375,8 @@ def _ports(
         if float(np.min(np.real(held))) <= precharge:
             yield (
                 "",
-                f"ports.accumulators[{i}]: its precharge is not below the holding pressure in "
-                "every case: it takes no oil there",
+                f"ports.accumulators[{i}]: in at least one load case the holding pressure does not "
+                "exceed the gas precharge, so the accumulator takes in no oil",
             )
 
 
@@ -387,7 +392,7 @@ def _lines(design: Design, motion: Motion, out: MetricArrays) -> Iterable[tuple[
             metric = "dynamic_stiffness" if "dynamic_stiffness" in out.metrics else "bandwidth"
             yield (
                 metric,
-                f"{place}: a single lumped element, valid to {limit:.0f} Hz, but {source} has "
-                f"{fastest:.4g} Hz: the result is rough, the report compares it with transmission "
-                "lines",
+                f"{place} is modelled as a single lumped element, valid up to {limit:.0f} Hz, but "
+                f"{source} has {fastest:.4g} Hz; the result is rough, and the report compares it "
+                "with transmission lines",
             )

@@ -52,8 +52,8 @@ class Proportion:
         elif self.least in (0.0, -inf):
             usual = f"at most {high}"
         return (
-            f"{self.path} is out of proportion: {_plain(number)} {self.meaning}, usual is {usual} "
-            f"({self.source}); check its unit and decimal point"
+            f"{self.path} is out of proportion: it is {_plain(number)} {self.meaning}; {usual} is "
+            f"usual ({self.source}); check its unit and decimal point"
         )
 
 
@@ -150,30 +150,30 @@ def _lines(v: Values, design: Design, g: Geometry) -> Array | None:
 
 
 _BORE = "times the bore"
-_WIDE = "choice"
+_WIDE = "our choice"
 
 TABLE: tuple[Proportion, ...] = (
     Proportion(
         "cylinder.dead_volume_a", "times the swept volume of the piston", 0.0, 1.0,
-        "choice: most of the oil moves", _dead("a"),
+        "our choice: most of the oil moves", _dead("a"),
     ),
     Proportion(
         "cylinder.dead_volume_b", "times the swept volume of the piston", 0.0, 1.0,
-        "choice: most of the oil moves", _dead("b"),
+        "our choice: most of the oil moves", _dead("b"),
     ),
     Proportion(
         "lines", "times the swept volume of the piston, in one line", 0.0, 20.0, _WIDE,
         _lines,
     ),
     Proportion(
-        "rod.outer_diameter", _BORE, 0.15, 0.98, "choice; ISO 6020-2 has 0.44 to 0.72",
+        "rod.outer_diameter", _BORE, 0.15, 0.98, "our choice; ISO 6020-2 has 0.44 to 0.72",
         lambda v, design, g: g.rod_diameter / g.bore,
     ),
     Proportion(
-        "clevis.pin_diameter", _BORE, 0.1, 1.5, "choice; 0.4 to 0.6 is common", _pin,
+        "clevis.pin_diameter", _BORE, 0.1, 1.5, "our choice; 0.4 to 0.6 is common", _pin,
     ),
     Proportion(
-        "rod.thread.diameter", _BORE, 0.1, 1.0, "choice; 0.4 to 0.7 is common",
+        "rod.thread.diameter", _BORE, 0.1, 1.0, "our choice; 0.4 to 0.7 is common",
         _stated("rod.thread.diameter", lambda g: g.bore),
     ),
     Proportion(
@@ -184,26 +184,28 @@ TABLE: tuple[Proportion, ...] = (
         "cylinder.stroke", _BORE, 0.1, 60.0, _WIDE, lambda v, design, g: g.stroke / g.bore,
     ),
     Proportion(
-        "barrel.layup", "times the inner radius as wall thickness", 0.005, 2.0, _WIDE, _wall,
+        "barrel.layup", "times the inner radius (wall thickness)", 0.005, 2.0, _WIDE, _wall,
     ),
     Proportion(
-        "supply.pressure", "MPa of mean hoop stress, pressure times radius over wall", 0.2, 2500.0,
-        "choice: above the fibres of the library", _hoop,
+        "supply.pressure", "MPa (mean hoop stress, pressure times radius over wall)", 0.2,
+        2500.0, "our choice: more than the fibres of the library withstand", _hoop,
     ),
     Proportion(
         "supply.return_pressure", "times the supply pressure", 0.0, 0.5, _WIDE,
         lambda v, design, g: v["supply.return_pressure"] / v["supply.pressure"],
     ),
     Proportion(
-        "supply.proof_ratio", "times the supply pressure", 1.0, 4.0, "choice; ISO 10100 has 1.5",
+        "supply.proof_ratio", "times the supply pressure", 1.0, 4.0, "our choice; ISO 10100 has "
+                                                                     "1.5",
         lambda v, design, g: v["supply.proof_ratio"],
     ),
     Proportion(
-        "piston.clearance", _BORE, 5e-5, 0.01, "choice; a fit H8/f7 of 25 mm has 0.0008 to 0.0015",
+        "piston.clearance", _BORE, 5e-5, 0.01, "our choice; a fit H8/f7 of 25 mm has 0.0008 to "
+                                               "0.0015",
         lambda v, design, g: g.piston_clearance / g.bore,
     ),
     Proportion(
-        "head.clearance", "times the rod diameter", 5e-5, 0.02, "choice, as for the piston",
+        "head.clearance", "times the rod diameter", 5e-5, 0.02, "our choice, as for the piston",
         lambda v, design, g: g.head_clearance / g.rod_diameter,
     ),
     Proportion(
@@ -228,12 +230,12 @@ TABLE: tuple[Proportion, ...] = (
         lambda v, design, g: v["cylinder.stop_travel"] / g.stroke,
     ),
     Proportion(
-        "seals.piston", "times the bore as groove depth", 0.004, 0.25,
-        "choice; ISO 3601-2 grooves", _gland("piston"),
+        "seals.piston", "times the bore (groove depth)", 0.004, 0.25,
+        "our choice, from ISO 3601-2 grooves", _gland("piston"),
     ),
     Proportion(
-        "seals.rod", "times the rod diameter as groove depth", 0.004, 0.4,
-        "choice; ISO 3601-2 grooves", _gland("rod"),
+        "seals.rod", "times the rod diameter (groove depth)", 0.004, 0.4,
+        "our choice, from ISO 3601-2 grooves", _gland("rod"),
     ),
     Proportion(
         "retention.wall", _BORE, 0.01, 0.7, _WIDE, _skirt(lambda g: g.fit.wall / g.bore),
@@ -250,15 +252,16 @@ TABLE: tuple[Proportion, ...] = (
         for usual in joint.usual
     ),
     Proportion(
-        "load.mass", "m/s^2 of load acceleration at supply pressure", 0.05, inf, _WIDE,
+        "load.mass", "m/s^2 (acceleration of the load at supply pressure)", 0.05, inf, _WIDE,
         _acceleration,
     ),
     Proportion("load_cases", "strokes per second", 1e-5, 200.0, _WIDE, _strokes),
     Proportion(
-        "fluid.temperature", "degC of oil", -60.0, 200.0, "choice; hydraulic oils", _temperatures,
+        "fluid.temperature", "degC of oil", -60.0, 200.0, "our choice, for hydraulic oils",
+        _temperatures,
     ),
     Proportion(
-        "environment", "K between coldest and hottest", 0.0, 250.0, _WIDE, _climate,
+        "environment", "K between lowest and highest temperature", 0.0, 250.0, _WIDE, _climate,
     ),
 )  # fmt: skip
 """All checked proportions."""

@@ -87,20 +87,20 @@ class YieldEstimate:
     def sentence(self) -> str:
         """The estimate in a sentence, or the reason why it is missing."""
         if self.value is None or self.lower is None or self.upper is None:
-            return f"Yield not estimated ({self.why}): `actuator-opt uncertainty` computes it."
+            return f"Yield not estimated ({self.why}); `actuator-opt uncertainty` computes it."
         shown = f"{_percent(self.lower)} to {_percent(self.upper)} %, {self.draws} samples"
         text = (
             f"About {_percent(self.value)} % of the actuators built to this design would meet "
             f"every requirement ({shown})"
         )
         if self.with_checks is not None and self.with_checks < self.value:
-            text += f", {_percent(self.with_checks)} % every check as well"
+            text += f", and {_percent(self.with_checks)} % would also pass every check"
         if self.worst is not None and self.worst_fails:
-            text += f"; {self.worst} fails most, in {_percent(self.worst_fails)} %"
+            text += f"; {self.worst} fails most often, in {_percent(self.worst_fails)} %"
         return f"{text}."
 
 
-UNKNOWN = YieldEstimate(why="an evaluation does not sample")
+UNKNOWN = YieldEstimate(why="an evaluation draws no samples")
 """Yield of a plain evaluation."""
 
 

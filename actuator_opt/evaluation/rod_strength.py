@@ -212,7 +212,7 @@ def _layers(
 ) -> None:
     """Compute strength ratios by layer, mode and direction, on both sides of the bent rod."""
     if not section.layers:
-        out.skip("rod_factor", "the rod is a single metal: see yield_factor")
+        out.skip("rod_factor", "the rod is made of a single metal: see yield_factor")
         return
     push_bending, pull_bending = (
         column.bending_axial_force(

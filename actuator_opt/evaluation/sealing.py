@@ -257,7 +257,7 @@ def contacts(ring: Ring, supply: float) -> tuple[MountedContact, ...]:
         raise ActuatorError(
             Diagnostic(
                 f"{ring.label}: no finite elements for a {ring.element.type}",
-                f"use them for {types}, or state your own profiles",
+                f"use them for {types}, or state measured or computed contact profiles",
             )
         )
     solution = elements.solve(ring.sizes, room(ring), [share * supply for share in SHARES])

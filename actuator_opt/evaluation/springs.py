@@ -314,19 +314,21 @@ def warnings(s: Springs) -> Iterable[tuple[str, str]]:
         for metric in ("stiffness_min", "natural_frequency"):
             yield (
                 metric,
-                f"stiffness as published ({s.topology.partition('_')[0]}): totals of oil, barrel "
-                "and lines in series, with errors up to 13 % with hoses; per_chamber is exact",
+                f"stiffness as published ({s.topology.partition('_')[0]}): the totals of oil, "
+                "barrel and lines are taken in series, which errs by up to 13 % with hoses; "
+                "topology per_chamber is exact",
             )
         for cause in ("pipes", "hoses"):
             give = s.chambers.get(cause)
             if give is not None and not (np.all(give.a0) and np.all(give.b0)):
                 yield (
                     "stiffness_min",
-                    f"as published, {cause} on a single chamber have no effect: the other chamber "
-                    "counts as infinitely stiff",
+                    f"in the published formula, {cause} on a single chamber have no effect, "
+                    "because the other chamber counts as infinitely stiff",
                 )
     if s.seals is not None:
         yield (
             "",
-            "the stiffness includes sticking seals, which is valid only until breakaway",
+            "the stiffness includes that of sticking seals, which vanishes as soon as the seals "
+            "slide",
         )

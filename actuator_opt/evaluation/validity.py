@@ -120,21 +120,21 @@ def _contact(subject: PreparedDesign, ring: Ring) -> Iterable[tuple[str, str]]:
     else:
         yield (
             "friction_running",
-            f"{ring.label}: stated contact profiles are used unchanged, even if bore "
-            "growth reduces the squeeze",
+            f"{ring.label}: the stated contact profiles are used as given; a loss of squeeze by "
+            "bore growth is ignored",
         )
     if compatible(subject.materials[liquid], subject.materials[compound]) is False:
         yield "", f"{ring.label}: {compound} does not withstand {liquid}"
     if np.any(np.real(ring["squeeze_left"]) <= 0):
         yield (
             "friction_running",
-            f"{ring.label}: bore growth uses up the whole squeeze, there is no contact",
+            f"{ring.label}: bore growth uses up the whole squeeze, so the ring no longer touches",
         )
     elif not np.all(np.real(seal_contact(ring).excess) > 0):
         yield (
             "friction_running",
-            f"{ring.label}: the sealed pressure would open the contact; its contact load is "
-            "too small",
+            f"{ring.label}: the sealed pressure would lift the ring off, because its contact load "
+            "is too small",
         )
 
 
@@ -146,8 +146,8 @@ def _leak_at_rest(subject: PreparedDesign) -> Iterable[tuple[str, str]]:
     ):
         yield (
             "rod_leakage",
-            "the film of the rod seals also leaks on the instroke: an averaged film passes oil at "
-            "any gap, even at rest, where a real elastomer seal is tight; rod_leakage is too high",
+            "rod_leakage is too high: the model's averaged oil film passes oil at any gap, even "
+            "at rest and on the instroke, where a real elastomer seal is tight",
         )
 
 
@@ -158,16 +158,20 @@ def _film(name: str, table: FilmTable) -> Iterable[tuple[str, str]]:
             error = 100 * table.errors[quantity]
             yield (
                 metric,
-                f"{name}: the surrogate's {quantity} is up to {error:.1f} % from "
-                "the solved films within the bounds",
+                f"{name}: within the variable bounds, the interpolated {quantity} of the oil film "
+                f"deviates by up to {error:.1f} % from the solved film",
             )
     if not table.surrogate.covers(table.row.inputs()):
-        yield "friction_running", f"{name}: the design is outside the surrogate's box"
+        yield (
+            "friction_running",
+            (f"{name}: the design is outside the range for which oil films were solved"),
+        )
     if table.surrogate.failed:
         count = len(table.surrogate.failed)
         yield (
             "friction_running",
-            f"{name}: {count} of its points have no solution ({table.surrogate.failed[0]})",
+            f"{name}: {count} of the computed oil films have no solution "
+            f"({table.surrogate.failed[0]})",
         )
 
 
@@ -194,7 +198,7 @@ def _limits(
     if supply > end * (1 + 1e-9):
         yield (
             "extrusion_factor",
-            f"{ring.label}: limits of the extrusion gap are known up to {end / 1e5:.0f} bar "
+            f"{ring.label}: limits of the extrusion gap are known only up to {end / 1e5:.0f} bar "
             "and assumed constant beyond; use a back-up ring",
         )
 
@@ -211,12 +215,12 @@ def seal_models(
         worst = max(table.errors["friction"] for table in subject.films.values())
         yield _use(
             rough_surface.asperity_pressure,
-            "mean-film Reynolds equation with cavitation, rough and elastic contact; "
-            f"surrogate within {100 * worst:.2g} %",
+            "mean-film Reynolds equation with cavitation and rough, elastic contact; "
+            f"interpolation error up to {100 * worst:.2g} %",
             doubted=worst > FILM_ERROR,
         )
     if any("extrusion_gap_max" not in subject.materials[r.element.compound].numbers for r in rings):
-        yield _use(gland.extrusion_gap_limit, "gap over hardness and pressure", doubted=False)
+        yield _use(gland.extrusion_gap_limit, "gap limit by hardness and pressure", doubted=False)
 
 
 def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:
@@ -265,8 +269,8 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
     if kind_of(subject) == "thin_laminate" and thin > laminate.THIN_WALL_LIMIT:
         text = (
             f"thin-laminate barrel at t/r = {thin:.3f} (reliable to {laminate.THIN_WALL_LIMIT}): "
-            "bore growth is too low by 10 to 25 %, and so are gap, squeeze loss and "
-            "compliance; first ply and burst of plies are conservative"
+            "the model gives 10 to 25 % too little bore growth, extrusion gap, squeeze loss and "
+            "compliance; its first-ply and burst pressures are conservative"
         )
         for metric in WALL_FED:
             yield metric, text
@@ -278,16 +282,16 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
     yield from _bond_warnings(run)
     for part, assumption in (
         ("head", "material and length of the piston"),
-        ("caps", f"the piston's material, thickness {PLAIN_CAP:g} bore"),
+        ("caps", f"the piston's material, and a thickness of {PLAIN_CAP:g} times the bore"),
     ):
         if part not in subject.design.model_fields_set:
-            yield "", f"no {part} stated: assumed {assumption}"
+            yield "", f"no {part} stated; assumed: {assumption}"
     lives = [np.min(np.real(x)) for x in run.computed.metrics.get("cycle_life", {}).values()]
     if lives and np.isfinite(min(lives)) and min(lives) > LONGEST_LIFE:
         yield (
             "cycle_life",
             f"pressure-cycle life beyond {LONGEST_LIFE / 1e6:.0f} million cycles is extrapolated: "
-            "treat it as a lower bound; adhesive and plies are not included",
+            "treat it as a lower bound that excludes adhesive and plies",
         )
     section = subject.design.fluid
     yield from state.warnings(section, subject.materials[section.material], v.cases, run.state)
@@ -305,8 +309,8 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
         yield (
             "",
             (
-                "side load displaces the piston: on one side the extrusion gap is larger by the "
-                f"clearance, {1e6 * float(np.max(g.piston_clearance)):.0f} um"
+                "side load pushes the piston against the bore, so on one side the extrusion gap "
+                f"grows by the clearance of {1e6 * float(np.max(g.piston_clearance)):.0f} um"
             ),
         )
 
@@ -320,7 +324,8 @@ def _measured(subject: PreparedDesign, v: Values) -> Iterable[tuple[str, str]]:
             yield (
                 "",
                 f"{path}: {text(value)} is outside the bounds from {bounds.record}, "
-                f"{text(bounds.lower)} to {text(bounds.upper)}: the record does not support it",
+                f"{text(bounds.lower)} to {text(bounds.upper)}: the test record does not support "
+                "this value",
             )
 
 
@@ -331,28 +336,34 @@ def _wall_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str
     if laminated and (environment is None or environment.cure_temperature is None):
         yield (
             "",
-            "no cure temperature stated: first ply and yield exclude cooling stresses",
+            "no cure temperature stated, so first-ply and yield pressures exclude cooling stresses",
         )
     elif laminated and run.wall.expansion is None:
         yield (
             "",
-            f"first ply and yield exclude cooling stresses: {run.wall.why_no_mismatch}",
+            f"first-ply and yield pressures exclude cooling stresses: {run.wall.why_no_mismatch}",
         )
     if laminated and not all(ply.balanced for ply in subject.design.barrel.layup):
-        yield "", "bending and buckling treat single plies of the wall as balanced pairs"
+        yield (
+            "",
+            (
+                "bending and buckling are computed as if single plies of the wall were balanced "
+                "pairs"
+            ),
+        )
     autofrettage = run.wall.autofrettage
     if subject.design.barrel.autofrettage_pressure is not None:
         if autofrettage is None:
             yield (
                 "",
-                "autofrettage is ignored: it needs the exact tube, a metal liner and "
-                "balanced pairs",
+                "autofrettage is ignored: its model needs the layered (exact) wall, a metal liner "
+                "and balanced pairs",
             )
         elif float(np.min(np.real(autofrettage.axial_margin))) < 0:
             yield (
                 "reverse_yield_factor",
-                "autofrettage also yields the liner axially: the axial residual strain is "
-                "too low by up to a third; hoop residual stresses are accurate",
+                "autofrettage also yields the liner axially: the computed axial residual strain "
+                "is up to a third too low; hoop residual stresses are accurate",
             )
 
 
@@ -372,8 +383,8 @@ def _rod_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str,
         for metric in ("yield_factor", "rod_factor", "local_buckling_factor"):
             yield (
                 metric,
-                f"the push is above {NEAR:.0%} of the buckling load: bending of the rod is "
-                "extrapolated beyond it",
+                f"the push exceeds {NEAR:.0%} of the buckling load; beyond that, the bending of "
+                "the rod is extrapolated",
             )
 
 
@@ -392,9 +403,9 @@ def _bond_warnings(run: ModelRun) -> Iterable[tuple[str, str]]:
         place = max(sums, key=lambda name: sums[name])
         yield (
             "",
-            f"bond of the {place}: the elastic edge shears of force and of temperature add up to "
-            f"{sums[place]:.2f} times the strength; each is checked alone, because a ductile "
-            "adhesive yields and relieves both",
+            f"bond of the {place}: at the bond's edge, the elastic shear stresses due to force and "
+            f"temperature add up to {sums[place]:.2f} times the strength; each is checked alone, "
+            "because a ductile adhesive yields and relieves both",
         )
 
 

@@ -467,7 +467,7 @@ def _words(
         "",
         *(f"{title(outline.part)}: {outline.material}" for outline in outlines),
         "",
-        "Not drawn, as the models have no geometry for them: threads, ports, fillets, chamfers.",
+        "Not drawn, as the models do not describe their shape: threads, ports, fillets, chamfers.",
         "Rings are drawn as rectangles in their grooves, without their true sections.",
     ]
     lines += notes(evaluation.design, evaluation.lengths)

@@ -175,8 +175,14 @@ def bounds_solid(profile: Profile) -> bool:
 
 
 def _fault(part: str) -> InputError:
-    remedy = "make room for its grooves and walls: see the geometry_... metrics of evaluate"
-    return InputError(Diagnostic(f"{part}: its section crosses itself or has no wall", remedy))
+    remedy = (
+        "enlarge the part to fit its grooves and walls: see the geometry_... metrics of evaluate"
+    )
+    return InputError(
+        Diagnostic(
+            f"{part}: the outline of its section crosses itself, or a wall has no thickness", remedy
+        )
+    )
 
 
 def _bars(outline: Outline) -> SolidBody:

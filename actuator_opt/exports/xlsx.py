@@ -234,7 +234,7 @@ def _variables(book: Any, evaluation: Evaluation) -> None:
     sheet.put("A1", f"{evaluation.name}: variables", bold=True)
     design = evaluation.design
     names = [f"{name} [unit of its row]" for name in ("lower bound", "value", "upper bound")]
-    sheet.head(3, ("variable", "quantity", "unit", *names, "place between the bounds [%]"))
+    sheet.head(3, ("variable", "quantity", "unit", *names, "position between the bounds [%]"))
     if not design.variables:
         sheet.put("A4", "this design has no variables")
     for at, (path, bounds) in enumerate(design.variables.items(), 4):
@@ -302,7 +302,10 @@ def _about(book: Any, evaluation: Evaluation, program: str, date: str | None) ->
         ("date", date or ""),
         ("hash of the input", evaluation.spec_hash),
         ("margin", "(result - limit)/|limit| for min, negated for max; met from -1e-6 on"),
-        ("blue cells", "limits: change one, and its margin and verdict follow; results do not"),
+        (
+            "blue cells",
+            "if you change a limit, its margin and verdict follow; the results do not change",
+        ),
         *(("warning", words) for words in evaluation.warnings),
     ]
     for at, (name, words) in enumerate(rows, 1):

@@ -515,7 +515,9 @@ def raise_pressure(
         except NotConverged as reason:
             step /= 2
             if step < SHORTEST_STEP:
-                raise NotConverged(f"{reason} beyond {current:.3g} of the modulus") from reason
+                raise NotConverged(
+                    f"{reason} at pressures above {current:.3g} times the modulus"
+                ) from reason
             continue
         state, current, step = next_state, trial, step * GROWTH
         problem.steps += 1
@@ -545,7 +547,11 @@ def check_inputs(
     """
     rising = all(b > a for a, b in zip((0.0, *pressures), pressures, strict=False))
     checks = (
-        (not section > 0, f"section {section:g} m is not positive", "give the free section"),
+        (
+            not section > 0,
+            f"section {section:g} m is not positive",
+            "give the diameter of the undeformed section",
+        ),
         (
             not 0 < squeeze <= MOST_SQUEEZE,
             f"squeeze {squeeze:g} is outside 0 to {MOST_SQUEEZE:g}",

@@ -157,8 +157,8 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
         ):
             candidates.append((friction, rank, error))
     message = (
-        f"the friction drives the rod instead of opposing it (only {100 * share:.0f} % of its "
-        "power opposes motion)"
+        f"the computed friction drives the rod instead of opposing it (only {100 * share:.0f} % of "
+        "its power opposes motion)"
     )
     remedy = "check signs and zeros of all channels, bore and rod of the design, mass and load"
     if candidates:

@@ -288,7 +288,10 @@ def bending(record: Record, specimen: Specimen) -> BendingResult:
     noise = scatter(straight_part.parts)
     doubts = _doubts_of_record(result, by_strain=by_strain, cut=straight_part.cut, noise=noise)
     if loop.both:
-        way = "bent both ways: the slope is taken from the side bent further, starting where"
+        way = (
+            "the specimen is bent both ways, so the slope is taken on the side that is bent "
+            "further, starting where"
+        )
         doubts.append(f"{way} the force is zero")
     return replace(result, doubts=(*_doubts_of_specimen(result), *doubts))
 
@@ -393,42 +396,50 @@ def _doubts_of_record(
     strains = result.strains
     if strains is None:
         doubts.append(
-            "the depth of the section is not known: the slope is taken between "
+            "the depth of the section is not known, so the slope is taken between "
             f"{_percent(SHARES[0])} and {_percent(SHARES[1])} of the highest force, not between "
             "strains"
         )
     elif not by_strain:
         doubts.append(
-            f"the test does not cover the strains {100 * STRAINS[0]:g} to {100 * STRAINS[1]:g} "
-            f"%: the slope is taken between {100 * strains[0]:.2g} and {100 * strains[1]:.2g} %"
+            f"the test does not cover the usual strains of {100 * STRAINS[0]:g} to "
+            f"{100 * STRAINS[1]:g} %: the slope is taken between {100 * strains[0]:.2g} and "
+            f"{100 * strains[1]:.2g} %"
         )
     if cut:
         low, high = (1e3 * deflection for deflection in result.deflections)
-        words = "force over deflection is curved: the slope is taken from its straight part"
+        words = (
+            "the curve of force over deflection is bent, so the slope is taken from its "
+            "straight part"
+        )
         doubts.append(f"{words}, from {low:.3g} to {high:.3g} mm")
     if abs(result.bent) > BENT:
         doubts.append(
-            f"the slope changes by {_percent(result.bent)} along the part used: yielding, slip, "
-            "or settling supports"
+            f"the slope changes by {_percent(result.bent)} along the part used: yielding, slip, or "
+            "supports that settle"
         )
     if result.unloading is None or result.loading is None:
         way = "loading" if result.unloading is None else "unloading"
-        doubts.append(f"{way} only: support friction and creep change the slope")
+        doubts.append(
+            f"the record covers {way} only, so support friction and creep change the slope"
+        )
     elif abs(result.loading - result.unloading) > APART * result.slope.value:
         ways = ["loading", "unloading"]
         share = (result.loading - result.unloading) / result.slope.value
         first, second = ways if share > 0 else reversed(ways)
         doubts.append(
-            f"{first} is {_percent(abs(share))} steeper than {second}: support friction, creep "
-            "or damage; the mean is used"
+            f"the slope of {first} is {_percent(abs(share))} steeper than that of {second}, by "
+            "support friction, creep or damage; the mean is used"
         )
     if result.hysteresis is None and result.unloading is not None and result.loading is not None:
         words = (
-            "the hysteresis cannot be determined, as unloading returns more work than loading took"
+            "the hysteresis cannot be determined, as unloading returned more work than loading took"
         )
-        doubts.append(f"{words}: F_L lags w, or one drifts")
+        doubts.append(f"{words}: F_L lags w, or one of them drifts")
     if noise > NOISY:
-        words = "force and deflection scatter: noise of the deflection alone would make the slope"
+        words = (
+            "force and deflection scatter; the noise of the deflection alone would make the slope"
+        )
         doubts.append(f"{words} {_percent(noise)} too low")
     return doubts
 
@@ -450,7 +461,7 @@ def _doubts_of_specimen(result: BendingResult) -> list[str]:
         )
     elif share > SHEARED:
         words = f"shear deflection is {_percent(share)} of that by bending"
-        doubts.append(f"{words}: the modulus depends on it")
+        doubts.append(f"{words}, so the modulus depends strongly on its correction")
     if height is not None and specimen.span < SLENDER * height:
         doubts.append(
             f"the span is {specimen.span / height:.1f} depths, less than {SLENDER:g}: shear and "

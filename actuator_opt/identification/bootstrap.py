@@ -107,7 +107,7 @@ def resampled(
         too few resamples
     """
     if count < FEWEST:
-        message = f"{count} resamples are too few for 2.5 % tails"
+        message = f"{count} resamples are too few to find the outer 2.5 % on each side"
         raise InputError(Diagnostic(message, f"use {FEWEST} or more, usually 200"))
     curve_rng, window_rng = map(np.random.default_rng, np.random.SeedSequence(seed).spawn(2))
     curve = stribeck if isinstance(stribeck, StribeckFit) else None
@@ -168,7 +168,10 @@ def _lugre(
     """A LuGre model with confidence intervals from resampled points and windows."""
     blocks = reversals.velocity.shape[0]
     if blocks < LEAST_WINDOWS:
-        doubt = f"{blocks} windows are too few to resample: bounds are from the linearised model"
+        doubt = (
+            f"{blocks} time windows are too few to resample, so the confidence intervals "
+            "come from the linearised model"
+        )
         return replace(fit, doubts=(*fit.doubts, doubt))
     problem = LuGreResiduals(reversals, points, stribeck, fit)
     best = searched(tuple(fit.parameters), fit.values)

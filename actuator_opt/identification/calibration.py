@@ -37,8 +37,8 @@ def of_curve(
     offset = stribeck.parameters.get("offset")
     if offset is not None and (offset.lower > 0 or offset.upper < 0):
         yield (
-            f"the offset of {offset.value:.3g} N between both directions is not in the design's "
-            "friction, which is the mean"
+            f"friction differs between both directions by an offset of {offset.value:.3g} N, which "
+            "the design ignores; its friction is the mean of both"
         )
     yield from _shape(points, stribeck)
     deviation = level - float(np.mean(level) / np.mean(stated)) * stated
@@ -48,7 +48,7 @@ def of_curve(
         yield (
             f"the measured friction deviates from the contact law by {100 * share:+.0f} % of F_C "
             f"at {points[worst].pressure / 100000.0:.3g} bar: the factor is a mean over the "
-            "record's pressures, and its bounds cover all of them"
+            "record's pressures, and its confidence interval covers the factors at all of them"
         )
 
 
@@ -64,8 +64,8 @@ def _shape(points: Sequence[FrictionPoint], stribeck: StribeckFit) -> Iterator[s
     worst = float(np.max(np.abs(assumed / fitted - 1)))
     yield (
         f"the exponent of the Stribeck curve is {exponent.value:.2f} ({exponent.lower:.2f} to "
-        f"{exponent.upper:.2f}), but {STRIBECK_EXPONENT:g} in the design: error up to "
-        f"{100 * worst:.0f} % at the record's speeds"
+        f"{exponent.upper:.2f}), but {STRIBECK_EXPONENT:g} in the design, which changes the "
+        f"friction by up to {100 * worst:.0f} % at the record's speeds"
     )
 
 
@@ -75,9 +75,10 @@ def extrapolated(bench: Bench, points: Sequence[FrictionPoint]) -> Iterator[str]
     speed, pressure = max(point.speed for point in points), max(point.pressure for point in points)
     if fastest > FARTHER * speed or bench.supply_pressure > FARTHER * pressure:
         yield (
-            f"the record reaches {1000.0 * speed:.3g} mm/s and {pressure / 100000.0:.3g} bar, "
-            f"the design {1000.0 * fastest:.3g} mm/s and {bench.supply_pressure / 100000.0:.3g} "
-            "bar: beyond the record friction is extrapolated by contact law and Stribeck curve"
+            f"the record reaches {1000.0 * speed:.3g} mm/s and {pressure / 100000.0:.3g} bar, the "
+            f"design {1000.0 * fastest:.3g} mm/s and {bench.supply_pressure / 100000.0:.3g} bar; "
+            "beyond the record, friction is extrapolated by the contact law and the Stribeck "
+            "curve"
         )
 
 
@@ -85,7 +86,7 @@ def weakly_known(parameters: Mapping[str, Parameter]) -> Iterator[str]:
     """One-line note with the names of weakly known parameters."""
     names = [name for name, parameter in parameters.items() if not parameter.identifiable]
     if names:
-        yield f"only weakly known (bounds beyond 30 %): {', '.join(names)}"
+        yield f"only weakly known (confidence interval wider than 30 %): {', '.join(names)}"
 
 
 KEYS = ("friction_coefficient", "breakaway_ratio", "stribeck_speed", "viscous_friction")
@@ -236,15 +237,15 @@ def calibration(identification: Identification) -> Calibration:
     if not parameters:
         causes = "; ".join(dict.fromkeys(reasons.values()))
         raise identification.record.fault(
-            f"the record determines no seal parameter: {causes}",
+            f"the record determines no parameter of the seals: {causes}",
             "record plateaus of several constant speeds, in both directions",
         )
     doubts += weakly_known({parameter.name: parameter.known for parameter in parameters})
     doubts += extrapolated(bench, points)
     if len(bench.rings) + len(bench.wipers) > 1:
         doubts.append(
-            "one factor for all rings and wipers, as a cylinder record cannot separate piston "
-            "from rod"
+            "all rings and wipers get the same factor, as a cylinder record cannot separate "
+            "piston from rod"
         )
     return Calibration(
         identification,
@@ -266,7 +267,10 @@ def _beyond_range(parameter: SealParameter) -> str | None:
     ]
     if not outside:
         return None
-    return f"measured {quantity.text(outside[0])}, but a design accepts {quantity.range_text()}"
+    return (
+        f"the measured value is {quantity.text(outside[0])}, but a design accepts "
+        f"{quantity.range_text()}"
+    )
 
 
 def refuse_films(design: Design) -> None:
@@ -281,8 +285,8 @@ def refuse_films(design: Design) -> None:
         for tail, element in getattr(design.seals, place).elements().items():
             if element.friction_law.film:
                 message = (
-                    "the friction of this seal comes from an oil film, but records give "
-                    "coefficients"
+                    "the friction of this seal is computed from an oil film, but a record gives "
+                    "friction coefficients"
                 )
                 remedy = 'write "friction: coefficient" to calibrate it'
                 raise InputError(Diagnostic(message, remedy, path=f"seals.{place}.{tail}friction"))
@@ -361,12 +365,13 @@ def _from_level(
     parameter = rated(value, value - half, rise * value + half, error)
     at = f"{1e3 * float(np.mean(speed)):.3g} mm/s"
     doubts = [
-        f"friction measured at {at} only: its viscous part at other speeds comes from the design"
+        f"friction was measured at {at} only, so its viscous part at other speeds comes from the "
+        "design"
     ]
     if rise > 1 + RISEN:
         doubts.append(
             f"the design's breakaway ratio and Stribeck speed make friction at {at} {rise:.2f} "
-            "times its Coulomb part: the factor depends on them"
+            "times its Coulomb part, so the factor depends on them"
         )
     return [_coefficient(parameter, bench, f"friction at {at}")], value * coulomb, doubts
 

@@ -194,7 +194,7 @@ def condition(
     else:
         cleaned, quality = before.cleaned, before.quality
     lost = [name for name in CHANNELS if name in record and name not in cleaned]
-    notes += [f"{name} has no samples: left out" for name in lost]
+    notes += [f"{name} has no samples and is left out" for name in lost]
     sections = low_pass(cutoff=cutoff, order=order, sample_time=step, compensated=compensated)
     pieces, dropped = [], []
     for first, last in _breaks(time, cleaned, step, cutoff):
@@ -216,7 +216,7 @@ def condition(
     gaps = len(pieces) + len(dropped) - 1
     if gaps:
         short = f", {sum(dropped):.3g} s too short to use" if dropped else ""
-        notes.append(f"{gaps} gaps; {len(pieces)} sections used{short}")
+        notes.append(f"{gaps} gaps split the record; {len(pieces)} sections are used{short}")
     notes += _timing(steps, step, cutoff)
     quality = {
         name: channel._replace(noise=_noise(time, record[name], name, pieces))
@@ -234,9 +234,11 @@ def _timing(steps: Array, step: float, cutoff: float) -> list[str]:
     bridged = steps[steps < (_bridged(step, cutoff) + 1.5) * step]
     skipped = float(np.sum(np.round(bridged / step) - 1))
     if skipped > 0:
-        notes.append(f"{skipped:.0f} samples are missing in time: interpolated")
+        notes.append(f"{skipped:.0f} samples are missing from the sequence and were interpolated")
     if np.abs(steps[steps < 1.5 * step] - step).max() > 0.01 * step:
-        notes.append(f"sample times are uneven: resampled at {1000.0 * step:.4g} ms")
+        notes.append(
+            f"sample times are uneven, so the record was resampled at {1000.0 * step:.4g} ms"
+        )
     return notes
 
 
@@ -260,14 +262,16 @@ def _cleaned(record: Record, step: float) -> tuple[dict[str, Array], dict[str, Q
 def _check_settings(record: Record, cutoff: float, order: int, lag: float) -> None:
     """Reject invalid filter settings."""
     if not (math.isfinite(cutoff) and cutoff > 0):
-        raise record.fault(f"a cut-off of {cutoff:g} Hz", 'give one above zero: --cutoff "30 Hz"')
+        raise record.fault(
+            f"a cut-off of {cutoff:g} Hz", 'give a frequency above zero: --cutoff "30 Hz"'
+        )
     if not 1 <= order <= ORDERS or int(order) != order:
         raise record.fault(
             f"a filter of order {order:g}", f"give a whole number from 1 to {ORDERS}"
         )
     if not abs(lag) <= LATEST:
         raise record.fault(
-            f"a lag of the pressures of {lag:g} s", f"give one within {LATEST:g} s either way"
+            f"a lag of the pressures of {lag:g} s", f"give a lag from -{LATEST:g} to {LATEST:g} s"
         )
 
 

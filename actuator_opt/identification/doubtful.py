@@ -90,10 +90,10 @@ class Unequal(NamedTuple):
         stated = 1e3 * np.sqrt(4 * area / np.pi)
         diameter = "plunger" if plunger else "bore"
         return (
-            f"pressure makes friction differ between directions by {100 * abs(self.share):.2g} % "
-            f"of its force: the {diameter} seems to be {stated * np.sqrt(1 - self.share):.4g} mm "
-            f"({stated:.4g} stated), or a pressure or force sensor has such an error; correct "
-            "this first"
+            "under pressure, friction differs between both directions by "
+            f"{100 * abs(self.share):.2g} % of its force: the {diameter} seems to be "
+            f"{stated * np.sqrt(1 - self.share):.4g} mm ({stated:.4g} stated), or a pressure or "
+            "force sensor has an error of this size; correct it first"
         )
 
 
@@ -180,8 +180,8 @@ def hidden(parameters: Mapping[str, Parameter], fastest: float, falls: bool) -> 
     if speed is None:
         if falls and "viscous" in parameters:
             return (
-                f"friction falls up to {1000.0 * fastest:.3g} mm/s and its rise towards rest is "
-                "not resolved: F_C and σ₂ are unknown; give more and faster speeds"
+                f"friction falls up to {1000.0 * fastest:.3g} mm/s, and the points do not resolve "
+                "its rise towards rest, so F_C and σ₂ are unknown; give more and faster speeds"
             )
         return None
     if fastest < REACH * speed.value:
@@ -208,33 +208,37 @@ def misled(
         least = float(np.min(np.abs(fitted - value)))
         if (lower > 0 or upper < 0) and abs(value) >= least:
             yield (
-                f"the offset is {value:.3g} N, but the least friction is {least:.3g} N: it would "
-                "drive the rod in one direction; check the bore and the zeros of the sensors"
+                f"the offset is {value:.3g} N, but the least friction is {least:.3g} N: in one "
+                "direction, friction would drive the rod; check the bore and the zeros of the "
+                "sensors"
             )
     missed = float(np.std(residuals))
     scatter = float(np.sqrt(np.mean((residuals / errors) ** 2)))
     if scatter > BEYOND and missed > MISSED * float(np.median(np.abs(fitted))):
         yield (
-            f"the curve misses the points by {missed:.3g} N, but their errors are "
-            f"{float(np.median(errors)):.2g} N: friction depends on more than speed and pressure"
+            f"the curve misses the points by {missed:.3g} N, more than their errors of "
+            f"{float(np.median(errors)):.2g} N, so friction depends on more than speed and "
+            "pressure"
         )
 
 
 def ways(parameters: Mapping[str, Parameter], error: Unequal | None) -> Iterator[str]:
     """Yield notes on a missing direction of motion, or on a difference between the directions."""
     if "offset" not in parameters:
-        yield "one direction only: a zero error of a sensor counts as friction"
+        yield (
+            "the rod slides in one direction only, so a zero error of a sensor counts as friction"
+        )
         return
     offset = parameters["offset"]
     if (error is not None and error.sure) or offset.lower <= 0 <= offset.upper:
         return
     if error is None:
         yield (
-            "an offset between both directions: sensor zeros, areas, or direction-dependent "
-            "seals; the record cannot show which"
+            "friction differs between both directions by an offset, caused by sensor zeros, "
+            "areas, or direction-dependent seals; the record cannot show by which"
         )
     else:
         yield (
-            "an offset between both directions that does not grow with pressure: sensor zeros, "
-            "or direction-dependent seals, but not the areas"
+            "friction differs between both directions by an offset that does not grow with "
+            "pressure; the cause is sensor zeros or direction-dependent seals, but not the areas"
         )

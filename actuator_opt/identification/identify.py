@@ -72,17 +72,18 @@ def lag_to_correct(parameter: Parameter | None) -> tuple[float, str]:
         return 0.0, CANNOT
     if not -EARLIEST <= parameter.value <= 0.99 * LAG:
         beyond = f"beyond {-1000.0 * EARLIEST:g} to {1000.0 * LAG:g} ms, which no sensor has"
-        return 0.0, f"the reversals fit a lag {beyond}: not corrected, {STATE}"
+        return 0.0, f"the reversals suggest a lag {beyond}, so none is corrected; {STATE}"
     bounds = f"{lower:.2f} to {upper:.2f}"
     if upper < 0:
         return 0.0, (
-            f"friction leads the motion by {-value:.2f} ms ({-upper:.2f} to {-lower:.2f}): due "
-            "to σ₁/σ₀, or a lagging position; the record cannot show which. No lag is "
-            f"corrected, {STATE}"
+            f"friction leads the motion by {-value:.2f} ms ({-upper:.2f} to {-lower:.2f}), because "
+            "of bristle damping (σ₁/σ₀) or a lagging position; the record cannot show which. No "
+            f"lag is corrected; {STATE}"
         )
     if lower > 0 and parameter.value > LEAST_LAG:
         return parameter.value, (
-            f"the pressures lag by {value:.2f} ms ({bounds}), from the reversals; corrected"
+            f"the pressures lag by {value:.2f} ms ({bounds}), according to the reversals; this lag "
+            "was corrected"
         )
     return 0.0, ""
 
@@ -96,8 +97,8 @@ def rejected_correction(parameter: Parameter, remaining: Parameter | None) -> st
         return ""
     return (
         f"correcting the pressures by {1000.0 * parameter.value:.2f} ms leaves a lag of "
-        f"{1000.0 * remaining.value:.2f} ms: the lag fits some other effect, so none is corrected; "
-        f"{STATE}"
+        f"{1000.0 * remaining.value:.2f} ms: it imitates some other effect, so no lag is "
+        f"corrected; {STATE}"
     )
 
 
@@ -105,7 +106,7 @@ def with_uncertain_damping(lugre: LuGreFit | str) -> LuGreFit | str:
     """The LuGre model without confidence limits on sigma_1, for a record with an unknown lag."""
     if isinstance(lugre, str):
         return lugre
-    doubt = "σ₁ is valid if no pressure lags: a lag τ adds σ₀ τ"
+    doubt = "σ₁ is valid only if no pressure lags; a lag τ would add σ₀ τ to it"
     parameters = unbounded(lugre.parameters, ("bristle_damping",))
     return replace(lugre, parameters=parameters, doubts=(*lugre.doubts, doubt))
 
@@ -238,8 +239,8 @@ def _outside(slidings: Sequence[Sliding], bench: Bench) -> list[str]:
         return []
     return [
         f"x ranges from {1000.0 * place.min():.1f} to {1000.0 * place.max():.1f} mm, but the "
-        f"stroke is {1000.0 * bench.stroke:.1f} mm: its zero is not at the cap end; no stiffness "
-        "outside the stroke"
+        f"stroke is {1000.0 * bench.stroke:.1f} mm: its zero is not at the cap end, and no "
+        "stiffness is computed outside the stroke"
     ]
 
 
@@ -289,7 +290,7 @@ def _pace(motion: ConditionedRecord) -> list[str]:
     if abs(slope - 1) <= PACE:
         return []
     slope = round(slope, 2) + 0.0  # avoids -0.00
-    return [f"v is {slope:.2f} times the slope of x: check its unit and sign; v is ignored"]
+    return [f"v is {slope:.2f} times the slope of x: v is ignored; check its unit and sign"]
 
 
 def _models(
@@ -320,12 +321,13 @@ def _check_channels(record: Record, bench: Bench, settings: Settings) -> None:
             'name it with --column "p2=...", or write "count: 0" in seals.piston for a plunger',
         )
     if "F_L" in record and settings.load_force is not None:
-        message = "a load is stated, but the record measures it in column F_L"
+        message = "a load is stated, but the record contains its measured values in column F_L"
         raise record.fault(message, "leave out --load-force (load_force), or the column")
     if "F_L" not in record and settings.load_force is None:
         raise record.fault(
             "no column F_L, the force of the load",
-            'name it with --column "F_L=...", or state it: --load-force "0 N" for a free rod',
+            'name it with --column "F_L=...", or state its value: --load-force "0 N" for a '
+            "free rod",
         )
 
 
@@ -398,7 +400,8 @@ def _fits(points: Sequence[FrictionPoint]) -> dict[str, LawFit | str]:
     speeds = different([point.speed for point in points])
     if len(speeds) < LEAST_SPEEDS:
         reason = (
-            f"{len(speeds)} different speeds: a model of damping over speed needs {LEAST_SPEEDS}"
+            f"{len(speeds)} different speeds, but a model of damping over speed needs "
+            f"{LEAST_SPEEDS}"
         )
         return dict.fromkeys(LAWS, reason)
     speed = np.array([point.speed for point in points])

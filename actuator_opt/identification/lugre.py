@@ -534,9 +534,9 @@ def fit_lugre(
     if not hidden_lag:
         return fit
     doubt = (
-        f"the position resolution hides reversals for {1000.0 * reversals.blur:.0f} ms: no lag of "
-        f"the pressures is fitted, but bounds allow for {1000.0 * USUAL:.0f} ms; move faster or "
-        "state --pressure-lag"
+        f"the position resolution hides reversals for {1000.0 * reversals.blur:.0f} ms, so no lag "
+        "of the pressures is fitted; the confidence intervals allow for a lag of "
+        f"{1000.0 * USUAL:.0f} ms; move faster or state --pressure-lag"
     )
     return replace(fit, doubts=(*fit.doubts, doubt))
 
@@ -559,13 +559,13 @@ def _from_windows(reversals: Windows, fixed: Mapping[str, float]) -> LuGreFit:
         if reversals.fastest < FAR * fit.values["stribeck_speed"]:
             fit = replace(fit, parameters=unbounded(fit.parameters, INSEPARABLE))
         doubt = (
-            f"F_C is the level at {fastest:.3g} mm/s, including viscous friction, as one speed "
-            "cannot separate them; give plateaus or sweeps of other speeds"
+            f"F_C is the whole friction level at {fastest:.3g} mm/s and includes viscous friction, "
+            "which a single speed cannot separate; give plateaus or sweeps of other speeds"
         )
     elif slides:
         doubt = (
-            f"F_C is the friction level up to {fastest:.3g} mm/s, between F_C and F_S: give "
-            "plateaus or sweeps of other speeds"
+            f"F_C is the friction level up to {fastest:.3g} mm/s, which lies between the true F_C "
+            "and F_S; give plateaus or sweeps of other speeds"
         )
     else:
         doubt = "the rod hardly slides: the record shows bristles, but no friction level"
@@ -589,7 +589,10 @@ def _any_exponent(fit: LuGreFit, reversals: Windows, fixed: Mapping[str, float])
         variances = [candidate.parameters[name].standard_error ** 2 for candidate in (fit, other)]
         if np.isfinite(variances).all():
             errors[name] = float(np.sqrt(extra**2 + max(variances[1] - variances[0], 0.0)))
-    doubt = f"the exponent is fixed at {EXPONENT:g}, bounds allow for {OTHER:g}"
+    doubt = (
+        f"the exponent is fixed at {EXPONENT:g}; the confidence intervals allow for "
+        f"{OTHER:g} as well"
+    )
     parameters = widened(fit.parameters, errors, NORMAL)
     return replace(fit, parameters=parameters, doubts=(*fit.doubts, doubt))
 
@@ -604,13 +607,13 @@ def _consistent_with_points(
     if stribeck.doubted:
         confirmed = agreed(parameters, stribeck.parameters)
         parameters = unbounded(parameters, set(parameters) - set(confirmed))
-        doubts.append("areas or sensors are wrong, according to the points of steady sliding")
+        doubts.append("the points of steady sliding show that areas or sensors are wrong")
     elif not np.isfinite(level.upper) and not (speed is not None and speed.identifiable):
         if np.isfinite(parameters["coulomb"].upper):
             fastest = 1e3 * max(point.speed for point in points)
             doubts.append(
-                f"F_C is the friction level up to {fastest:.3g} mm/s: steady sliding there does "
-                "not separate it from F_S and σ₂; give more and faster speeds"
+                f"F_C is the friction level up to {fastest:.3g} mm/s; steady sliding at these "
+                "speeds does not separate it from F_S and σ₂; give more and faster speeds"
             )
         parameters = unbounded(parameters, INSEPARABLE)
     return replace(fit, parameters=parameters, doubts=tuple(doubts))

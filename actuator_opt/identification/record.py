@@ -423,8 +423,8 @@ def parse_record(
         for k, (channel, column) in enumerate(by_channel.items())
     }
     notes += [
-        f"{channel}: absolute pressure, converted to gauge with the standard atmosphere of "
-        "1.01325 bar"
+        f"{channel} is an absolute pressure and was converted to gauge with the standard "
+        "atmosphere of 1.01325 bar"
         for channel, column in by_channel.items()
         if column.absolute
     ]
@@ -595,7 +595,7 @@ def _columns(
     if used:
         source = "SI units" if given.si else f"units of {shown(Path(given.name).name)}"
         names = _list([shown(cells[i][0]) for i in used])
-        notes.append(f"{source} used, as the header states none: {names}")
+        notes.append(f"{source} used, as the header states no units: {names}")
     return columns, notes
 
 
@@ -621,7 +621,7 @@ def _place_by_header(
                 f'columns "{shown(first)}" and "{shown(second)}" are both {channel}',
                 "rename or delete one"
                 if first == second
-                else f'say which with --column "{channel}=NAME", or rename one',
+                else f'choose a column with --column "{channel}=NAME", or rename one',
             )
         places.setdefault(channel, i)
     if "t" not in places and "t" not in stated:
@@ -636,7 +636,7 @@ def _place_by_header(
 def _column_notes(sheet: Sheet, used: set[int], unitless: Sequence[str]) -> list[str]:
     """Notes on columns that are no channels or have no unit."""
     unused = [cell for k, cell in enumerate(sheet.header) if cell and k not in used]
-    notes = [f"columns that are not channels: {_list(unused)}"] if unused else []
+    notes = [f"columns ignored, as they are not channels: {_list(unused)}"] if unused else []
     if unitless:
         notes.append(f"columns without a unit, left out: {_list(unitless)}")
     return notes

@@ -354,7 +354,7 @@ def _channels(record: Record) -> tuple[Array, Array]:
     for values, name in ((w, "w"), (force, "F_L")):
         reach = float(np.ptp(values))
         if reach == 0:
-            message = f"{name} is constant, except for single samples"
+            message = f"{name} is constant except for single samples"
             raise record.fault(message, "give a record of a loaded specimen")
         if not USUAL[0] <= reach <= USUAL[1]:
             message = f"{name} spans {reach:.3g} {'m' if name == 'w' else 'N'}"
@@ -458,14 +458,14 @@ class Spectrum(NamedTuple):
             return "the position shows no motion above its noise"
         if self.motion > cutoff:
             return (
-                f"the motion reaches {self.motion:.3g} Hz, above the cut-off: raise --cutoff, or "
+                f"the motion reaches {self.motion:.3g} Hz, above the cut-off; raise --cutoff, as "
                 "fast motion is lost"
             )
         if 0 < self.floor < cutoff:
             return (
-                f"99.9 % of the motion lies below {self.motion:.3g} Hz, and the position is "
-                f"noise above {self.floor:.3g} Hz: a cut-off between them loses nothing and "
-                "reduces noise"
+                f"99.9 % of the motion lies below {self.motion:.3g} Hz, and above {self.floor:.3g} "
+                "Hz the position is mere noise; a cut-off between these frequencies loses no "
+                "motion and reduces noise"
             )
         return f"99.9 % of the motion lies below {self.motion:.3g} Hz, within the cut-off"
 

@@ -148,7 +148,10 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
     speeds = different([point.speed for point in points])
     if len(speeds) < 2:
         at = f"one speed, {1e3 * speeds[0]:.3g} mm/s" if speeds else "no steady sliding"
-        return f"{at}: a Stribeck curve needs plateaus or sweeps of 2 speeds, 5 for F_S and v_s"
+        return (
+            f"{at}, but a Stribeck curve needs plateaus or sweeps of 2 speeds, or of 5 to "
+            "give F_S and v_s"
+        )
     further = _further(points, area)
     doubts: list[str] = []
     fits = []
@@ -159,8 +162,8 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
         fits.append(_fit(points, tuple(names), EXPONENT))
     if not fits:
         return (
-            f"{len(points)} points for {2 + len(further)} parameters: give more plateaus or sweeps "
-            "at other speeds"
+            f"{len(points)} points for {2 + len(further)} parameters are too few; give more "
+            "plateaus or sweeps at other speeds"
         )
     best = min(fits, key=_information)
     if "static" in best.parameters:
@@ -169,13 +172,15 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
         if exponent is None or not exponent.identifiable:
             best = _allowing_exponents(best, points)
     if len(fits) < 2:
-        doubts.append(f"{len(speeds)} speeds cannot show F_S and v_s; five or more can")
+        doubts.append(
+            f"{len(speeds)} speeds are too few to determine F_S and v_s; give five or more"
+        )
     elif "static" not in best.parameters:
-        doubts.append("no rise of friction towards rest: F_S and v_s are not observable")
+        doubts.append("friction does not rise towards rest, so F_S and v_s cannot be determined")
     elif "exponent" not in best.parameters:
         doubts.append(
-            f"the exponent is fixed at {EXPONENT:g}, bounds allow for {OTHER:g}: seven speeds "
-            "would determine it"
+            f"the exponent is fixed at {EXPONENT:g}, and the confidence intervals allow for "
+            f"{OTHER:g} as well; seven speeds would determine it"
         )
     slowest, *_, fastest = sorted(points, key=lambda point: point.speed)
     falls = abs(fastest.friction) < abs(slowest.friction)

@@ -295,10 +295,13 @@ def no_windows(motion: ConditionedRecord) -> str:
         if motion.sample_time * lowest * SLOWEST > 1:
             remedy = f"sample at {SLOWEST * lowest:.3g} Hz or faster, and {remedy}"
         return (
-            f"no windows at this cut-off: {motion.cutoff:.3g} Hz blur the half second about a "
-            f"reversal in which bristles show; {remedy}"
+            f"no reversal can be used at this cut-off: {motion.cutoff:.3g} Hz blur the half second "
+            f"about a reversal, in which the deflection of bristles shows; {remedy}"
         )
-    return "no uninterrupted half second about a reversal, where bristles show"
+    return (
+        "the record has no uninterrupted half second about a reversal, where the "
+        "deflection of bristles shows"
+    )
 
 
 def _grain(places: Sequence[float], step: float) -> float:

@@ -172,7 +172,7 @@ def _cut_faults(
     if missing:
         yield Fault(
             loc,
-            f"{name} has no {' nor '.join(missing)}: its thread cannot be assessed",
+            f"{name} has no {' nor '.join(missing)}: the strength of its thread cannot be computed",
             f'add e.g. "{missing[0]}: 355 MPa" under materials.{name}, {OTHERWISE}',
         )
 
@@ -331,7 +331,7 @@ def _assessment(loaded: Loaded) -> EndThread | str:
     end_thread, materials = derive(loaded.end), loaded.materials
     for name in (end_thread.male, end_thread.female):
         if materials.kind(name) != "metal":
-            return f"{name} is not a metal: a thread needs metal"
+            return f"{name} is not a metal, but a thread must be cut into metal"
         if any(strength is None for strength in _strengths(materials, name)):
             return f"{name} has no yield or ultimate strength"
     return end_thread
@@ -458,7 +458,7 @@ def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tu
             yield (
                 "retention_factor",
                 f"{label.label}: {label.text(least)}, but {label.text(LEAST_METAL)} is needed: "
-                "such a thread cannot be cut, and its factors are void",
+                "such a thread cannot be cut, and its safety factors mean nothing",
             )
 
 
@@ -478,7 +478,7 @@ JOINT = Joint(
     kinds=(),
     without={
         "material": (
-            "without effect on a thread, which is cut into barrel and caps",
+            "has no effect on a thread, which is cut into barrel and caps",
             "remove the line; change barrel.layup or caps.material",
         )
     },
@@ -518,7 +518,8 @@ JOINT = Joint(
             "turns of the thread",
             5.0,
             60.0,
-            "choice: start and run-out take two turns, the first turns carry most of the load",
+            "our choice; two turns are lost at start and run-out, and the first turns carry most "
+            "of the load",
             lambda end: end.sizes["length"] / end.sizes["thread.pitch"],
         ),
     ),

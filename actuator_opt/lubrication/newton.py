@@ -294,7 +294,11 @@ def _newton(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResult:
             return NewtonResult(state, "", iteration, spread, load)
         if not np.isfinite(spread + load + largest):
             return NewtonResult(
-                state, "the film left the range of its laws", iteration, spread, load
+                state,
+                "the film's pressure or thickness left the valid range of its laws",
+                iteration,
+                spread,
+                load,
             )
         if iteration == MOST_ITERATIONS:
             break
@@ -337,6 +341,6 @@ def follow(
             continue
         growth = growth**0.5
         if growth < _LEAST_GROWTH:
-            reason = f"{trial.reason}; continuation failed at {value:.2e}"
+            reason = f"{trial.reason}; the stepwise approach to the solution failed at {value:.2e}"
             return replace(trial, reason=reason, iterations=iterations)
     return replace(outcome, iterations=iterations)

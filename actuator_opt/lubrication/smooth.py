@@ -84,7 +84,7 @@ def fault(gap: Gap) -> str:
     static = gap.width * (gap.sealed_pressure + gap.outer_pressure) / 2
     if gap.line_load <= static:
         return (
-            f"line load {gap.line_load:g} N/m: the pressures at the ends alone carry "
+            f"line load {gap.line_load:g} N/m: the pressures at its ends alone already carry "
             f"{static:g} N/m, so the ring lifts off"
         )
     if gap.elastic is not None and np.ptp(gap.profile) == 0:

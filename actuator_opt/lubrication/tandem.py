@@ -22,8 +22,8 @@ _NO_LIMIT = (
     "the pressure between them exceeds this value"
 )
 _JUMP = (
-    "space between the seals {:.3f} empty: the film jumps from starved to flooded, "
-    "with flows that differ by {:.1e} of the larger"
+    "with the space between the seals {:.3f} empty, the film jumps from starved to flooded, and "
+    "the two flows differ by {:.1e} of the larger flow"
 )
 _NO_SUPPLY = "at {:.4g} Pa oil leaves the space between the seals on both sides: it runs dry"
 
@@ -151,7 +151,7 @@ def _search(row: _Row, guess: float, low: float, high: float) -> Tandem:
         first, second = row.solve(pressure)
         if not (first.converged and second.converged):
             side, film = ("outer", second) if first.converged else ("inner", first)
-            return _failure(f"{side} seal at {pressure:.4g} Pa between them: {film.reason}")
+            return _failure(f"{side} seal, with {pressure:.4g} Pa between the seals: {film.reason}")
         surplus = first.flow - second.flow
         carried = abs(row.speed) / 2 * min(first.mean_film, second.mean_film)
         mismatch = abs(surplus) / max(abs(first.flow), abs(second.flow), carried)
@@ -163,7 +163,10 @@ def _search(row: _Row, guess: float, low: float, high: float) -> Tandem:
         if pressure == high and surplus > 0:
             return _failure(_NO_LIMIT.format(pressure))
         if len(trials) >= _MOST_TRIALS:
-            return _failure(f"flows differ by {mismatch:.1e} of the larger after many iterations")
+            return _failure(
+                f"the flows of both seals still differ by {mismatch:.1e} of the larger "
+                "flow after many iterations"
+            )
         bottom, top = (pressure, top) if surplus > 0 else (bottom, pressure)
         pressure = _next(trials, bottom, top)
 

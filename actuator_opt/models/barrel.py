@@ -333,7 +333,10 @@ def wall_ratio_for_strain(
     ratio = strain * youngs_modulus / pressure
     excess = ratio - 1 - poissons_ratio
     if np.any(np.asarray(real(excess)) <= 0):
-        message = "no wall reaches this bore strain: strain E/p must exceed 1 + poissons_ratio"
+        message = (
+            "no wall is thick enough for so small a bore strain: "
+            "strain*youngs_modulus/pressure must exceed 1 + poissons_ratio"
+        )
         raise ValueError(message)
     above = ratio + 1 - (2 * poissons_ratio if closed else poissons_ratio)
     return sqrt(above / excess)

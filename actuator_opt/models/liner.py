@@ -164,7 +164,7 @@ def layer_thickness_for_strain(
     start = highest + 0 * value
     spare = _bore_strain(others, *plain) <= aim if others else start < 0
     if np.any(np.asarray(((value > aim) & ~spare) | (aim <= 0))):
-        message = "no thickness of this layer up to the largest holds the bore strain"
+        message = "the bore strain exceeds its limit even with the largest thickness of this layer"
         raise ValueError(message)
     thickness, slope = _search(xp, trial, aim, (start, value, slope), spare)
     rest = _bore_strain(_with(layers, index, thickness), *loads) - strain

@@ -483,7 +483,7 @@ def margin_rules(
     140 V/m, 0.220 s
     """
     if law not in ("p", "pi"):
-        raise ValueError(f"law: {law}; the margin rules give p or pi, take ziegler_nichols")
+        raise ValueError(f"law: {law}; the margin rules support p or pi only; use ziegler_nichols")
     gain = ultimate_gain / positive(gain_margin)
     integral = math.inf if law == "p" else 4 / (gain * positive(velocity_gain))
     return ControllerGains(gain, integral, 0.0)

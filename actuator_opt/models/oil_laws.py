@@ -364,7 +364,7 @@ BULK_MODULUS_LAWS = kinds(
     ),
     BulkModulusLaw(
         "linear",
-        "by the oil's slope",
+        "linearly, by the slope stated for the oil",
         needs=("bulk_modulus_slope",),
         modulus=_linear,
         density=_compressed(_linear, sloped=True),
@@ -373,7 +373,7 @@ BULK_MODULUS_LAWS = kinds(
     ),
     BulkModulusLaw(
         "tait",
-        "by the Tait equation with its three constants",
+        "by the Tait equation, with three constants of the oil",
         needs=("tait_modulus", "tait_decay", "tait_coefficient"),
         modulus=_tait,
         density=_tait_density,

@@ -279,7 +279,7 @@ LAWS = kinds(
     "contact law",
     SealLaw(
         "energised",
-        "line contact that the oil widens and loads, within 3 % of finite elements",
+        "line contact that oil pressure widens and loads, within 3 % of finite elements",
         ENERGISED_RING.line_load,
         ENERGISED_RING.contact_width,
         ENERGISED_RING.peak_pressure,
@@ -304,7 +304,7 @@ LAWS = kinds(
     # f = E W g + p b, b = W sqrt(6 g/pi), p_max = 4 E sqrt(g/(6 pi)) + p.
     SealLaw(
         "hertz_lindley",
-        "Hertz line contact under Lindley's force, as wide at any pressure",
+        "Hertz line contact under Lindley's force, equally wide at any pressure",
         _hertz_load,
         _hertz_width,
         _hertz_peak,
@@ -316,7 +316,7 @@ LAWS = kinds(
     # b = W sqrt(1 - (1 - C)^2), f = p b: no preload, zero at zero pressure.
     SealLaw(
         "chord",
-        "as [ElAsswad2018] prints it, no force without pressure",
+        "formula printed in [ElAsswad2018], without force at zero pressure",
         _chord_load,
         _chord_width,
         _uniform_peak,
@@ -328,7 +328,7 @@ LAWS = kinds(
     # b = (pi W/4)[1/(1 - C) - (1 - C)] by area conservation, f = p b (choice).
     SealLaw(
         "stadium",
-        "a flattened ring of the same section, likewise",
+        "a flattened ring of the same cross-section, also without force at zero pressure",
         _stadium_load,
         _stadium_width,
         _uniform_peak,

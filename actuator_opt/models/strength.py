@@ -255,14 +255,14 @@ CRITERIA = kinds(
     "criterion",
     Criterion(
         "max_stress",
-        "one stress reaches its strength",
+        "a single stress reaches its strength",
         "maximum stress",
         max_stress_modes,
         by_strain=False,
     ),
     Criterion(
         "max_strain",
-        "one strain reaches its limit",
+        "a single strain reaches its limit",
         "maximum strain",
         max_strain_modes,
         by_strain=True,

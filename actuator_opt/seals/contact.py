@@ -70,28 +70,29 @@ GROOVE_WIDTH = Size(
 LAND = Size(
     "land",
     "part_length",
-    "axial width of the face in contact without pressure; default: half the width of a "
-    "step ring, the whole width of a compact seal; for a U-cup twice its rim radius, "
-    "default a tenth of the lip length",
+    "axial width of the contact without pressure; default: half the width of a step ring, the "
+    "whole width of a compact seal; for a U-cup it is twice the radius of its lip's edge "
+    "(default: a tenth of the lip length)",
     "2 mm",
 )
 RELIEF = Size(
     "relief",
     "length",
-    "pressure-wetted face of a step ring in front of its land; default: half of the "
-    "width outside the land",
+    "width of a step ring's face in front of its land, on which the oil pressure acts; default: "
+    "half of the width outside the land",
     "1 mm",
 )
 TAPER = Size(
     "taper",
     "taper",
-    "angle between the counterface and the tapers beside a step ring's land; default: 6 deg",
+    "angle of the tapers beside a step ring's land against the sliding counterface; default: 6 deg",
     "6 deg",
 )
 ROOT_CLEARANCE = Size(
     "root_clearance",
     "length",
-    "gap under a U-cup's lip at the body; default: its interference",
+    "gap between U-cup lip and counterface where the lip joins the body; default: the "
+    "interference of the lip",
     "0.3 mm",
 )
 SHARED = (THICKNESS, WIDTH, GROOVE_WIDTH, LAND, RELIEF, TAPER, ROOT_CLEARANCE)

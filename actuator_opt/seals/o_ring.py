@@ -79,7 +79,7 @@ def law_warnings(seal: SealSizes) -> Iterable[str]:
     hardness = float(np.max(seal["hardness"]))
     if not modulus_law.hardness_range[0] <= hardness <= modulus_law.hardness_range[1]:
         yield (
-            f"{hardness:g} Shore A, the {modulus_law.name} law is valid from "
+            f"{hardness:g} Shore A, but the {modulus_law.name} law is valid from "
             f"{modulus_law.hardness_range[0]:g} to {modulus_law.hardness_range[1]:g}"
         )
     ratio = float(np.max(np.abs(seal["pressure"] / seal["youngs_modulus"])))
@@ -90,13 +90,13 @@ def law_warnings(seal: SealSizes) -> Iterable[str]:
     if not (low - ON_LIMIT <= remaining and nominal <= high + ON_LIMIT):
         squeeze = nominal if nominal > high else remaining
         yield (
-            f"squeeze {100 * squeeze:.3g} %, the {law.name} law was compared with data from "
+            f"squeeze {100 * squeeze:.3g} %, but the {law.name} law was compared with data from "
             f"{100 * low:.0f} to {100 * high:.0f} %"
         )
     if ratio > law.pressure_range[1]:
         yield (
-            f"pressure is {ratio:.1f} times Young's modulus, the {law.name} law "
-            f"was compared with data up to {law.pressure_range[1]:g}"
+            f"pressure is {ratio:.1f} times Young's modulus, but the {law.name} law was compared "
+            f"with data up to {law.pressure_range[1]:g}"
         )
 
 
@@ -131,5 +131,8 @@ TYPE = SealType(
     model=None,
     contact_model="{law} O-ring",
     warnings=law_warnings,
-    elements=Elements(_solve, "The last step towards the outer side depends on the mesh."),
+    elements=Elements(
+        _solve,
+        "How steeply the pressure falls at the edge towards the outer side depends on the mesh.",
+    ),
 )

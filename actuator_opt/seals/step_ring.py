@@ -185,12 +185,12 @@ TYPE = SealType(
     face=True,
     o_ring_gland=False,
     model=step_seal.line_load,
-    contact_model="{law} O-ring behind a worn-in land",
+    contact_model="O-ring ({law} law) behind a worn-in land",
     warnings=law_warnings,
     elements=Elements(
         _solve,
-        "The peak is at an end of the land and depends on the mesh and on the edge radius;"
-        " line load and width hardly do. The decrease of the peak above 5 MPa in Huang2017"
-        " is not reproduced.",
+        "The peak is at an end of the land and depends on the mesh and on the edge radius; line "
+        "load and contact width hardly depend on them. The decrease of the peak above 5 MPa in "
+        "Huang2017 is not reproduced.",
     ),
 )

@@ -197,7 +197,7 @@ def _design(t: np.ndarray, frequency: float) -> _Design:
     span = t[-1] - t[0]
     step = span / (len(t) - 1)
     if not frequency > 0 or (span + step) * frequency < 1 - 1e-6:
-        message = f"{span:.3g} s are less than one cycle of {frequency:g} Hz"
+        message = f"{span:.3g} s are shorter than one cycle of {frequency:g} Hz"
         raise InputError(Diagnostic(message, "give a longer record or a higher frequency"))
     if 2 * step * frequency >= 1:
         message = f"samples every {step:.3g} s do not resolve {frequency:g} Hz"

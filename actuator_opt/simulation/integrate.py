@@ -209,7 +209,7 @@ def translate(outputs: Sequence[Any]) -> tuple[dict[str, Any], list[Any]]:
         if node.op in ("variable", "flag"):
             translations[node.index] = free[node.args[0]] = casadi.SX.sym(node.args[0])
         elif node.op == "table":
-            message = "the method cvodes cannot look up a record"
+            message = "the method cvodes cannot read values from a record"
             raise InputError(Diagnostic(message, "integrate by lsoda, without --fast"))
         else:
             translations[node.index] = _operation(
@@ -540,7 +540,7 @@ def _segment(
         run.events.append(Event(name, time, bool(m[first + switch])))
         if len(run.events) > MOST_CHANGES:
             remedy = "increase the damping of the part that switches"
-            raise Stuck(time, state, f"{name} switches without end", remedy)
+            raise Stuck(time, state, f"{name} switches back and forth endlessly", remedy)
         y, start, store_first = state, time, True
         begin += k + (time >= times[begin + k + 1])
     return y, m

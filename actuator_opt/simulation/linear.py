@@ -528,12 +528,13 @@ def _gains_by_rule(
         )
         note = (
             "Ziegler-Nichols ignores friction and leaves little margin on a lightly damped oil "
-            "spring: check the overshoot before using the gain"
+            "spring: check the overshoot before you use the gain"
         )
         return gains, "Ziegler and Nichols", (note,)
     if control.law == "pid":
         message = (
-            "tuning by margins supports p or pi, as a derivative part reduces the margins here"
+            "tuning by margins supports only p and pi, as a derivative part would reduce the "
+            "margins"
         )
         remedy = "write law: pi, or tuning: ziegler_nichols"
         raise InputError(Diagnostic(message, remedy, path="control.tuning"))

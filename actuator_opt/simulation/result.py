@@ -375,7 +375,10 @@ def _step_results(step: Servo, spacing: float) -> tuple[dict[str, float | None],
     metrics = step.metrics
     error = abs(metrics.steady_state_error) / abs(step.target - step.start)
     if metrics.rise_time is not None and metrics.rise_time < RISE * spacing:
-        coarse = f"the rise takes at most {RISE} samples: state a shorter sample_time"
+        coarse = (
+            f"the rise takes {RISE} samples or fewer, which is too coarse; state a "
+            "shorter sample_time"
+        )
         return dict.fromkeys(_STEP) | {"steady_state_ratio": error}, dict.fromkeys(_STEP, coarse)
     figures = {
         "rise_time": metrics.rise_time,
@@ -417,7 +420,9 @@ def values(
         results["cavitation_margin"] = lowest + ATMOSPHERIC_PRESSURE - plant.oil.vapour_pressure
     if "position" in signals:
         results["hold_drift"] = _drift(scenario, records, time, signals)
-        why["hold_drift"] = "signal, reference or load still cause motion in the last tenth"
+        why["hold_drift"] = (
+            "signal, reference or load still cause motion in the last tenth of the time"
+        )
         speed = _stop_speed(time, signals["speed"], events)
         results["stop_speed"], why["stop_speed"] = speed, NO_STOP
     loop, parts = reference(scenario)

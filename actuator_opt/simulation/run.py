@@ -215,7 +215,10 @@ def _simplifications(scenario: Scenario, actuator: Plant) -> Iterator[str]:
     if friction.coulomb is None and friction.model != "none" and scenario.motor is None:
         error = max(seals.coulomb.error, seals.static.error)
         if error > WARN_PLANE:
-            yield f"the fit of friction over the pressures is within {100 * error:.1f} %"
+            yield (
+                "friction is interpolated over the pressures with an error of up to "
+                f"{100 * error:.1f} %"
+            )
         films = [place for place in ("piston", "rod") if actuator.films[place]]
         if films:
             yield (
@@ -223,7 +226,7 @@ def _simplifications(scenario: Scenario, actuator: Plant) -> Iterator[str]:
                 "its coefficient: state friction.coulomb and viscous for its running friction"
             )
     if actuator.design.ports.accumulators:
-        yield "accumulators at the ports (ports.accumulators) are not simulated"
+        yield "accumulators at the ports (ports.accumulators) are left out of the simulation"
 
 
 def _limits(scenario: Scenario, actuator: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
@@ -246,15 +249,18 @@ def _limits(scenario: Scenario, actuator: Plant, signals: Mapping[str, Array]) -
     if bench is not None and "position" in signals:
         x = signals["position"]
         if float(np.max(np.abs(x - x[0]))) > 0.5 * bench.stroke:
-            yield "the load cylinder exceeds its stroke: it starts in the middle and has no stops"
+            yield (
+                "the load cylinder leaves its stroke, as its model starts in the middle and "
+                "has no stops"
+            )
 
 
 def _coarse_samples(step: float, signals: Mapping[str, Array]) -> Iterator[str]:
     """A note if the sample time is so long that the samples may miss a peak."""
     if step > COARSE and "pressure_a" in signals:
         yield (
-            f"peaks and step results are taken from samples, {1e3 * step:.3g} ms apart: "
-            "state a shorter sample_time"
+            f"peaks and step results are taken from samples that are {1e3 * step:.3g} ms apart; "
+            "for closer values state a shorter sample_time"
         )
 
 
@@ -281,8 +287,8 @@ def _pump_not_in_equilibrium(scenario: Scenario, actuator: Plant) -> Iterator[st
     equilibrium = actuator.return_pressure + relief.pressure + over
     if abs(equilibrium - initial) > SETTLED * initial:
         yield (
-            f"the supply line starts at {text(initial)} (supply.pressure), but pump "
-            f"and relief valve settle near {text(equilibrium)}: set supply.pressure there"
+            f"the supply line starts at {text(initial)} (supply.pressure), but pump and relief "
+            f"valve settle near {text(equilibrium)}: set supply.pressure to that value"
         )
 
 

@@ -262,7 +262,9 @@ class _Bench:
             if number is not None and resolved.quantity is not None:
                 return _Target(resolved.path, resolved.loc, resolved.quantity, number, "scenario")
         message = "no number is stated here"
-        raise InputError(Diagnostic(message, "name a number that the file states", path=name))
+        raise InputError(
+            Diagnostic(message, "name a PATH for which the file states a number", path=name)
+        )
 
     def parameter(
         self, target: _Target, reference: Mapping[str, float], step: float

@@ -401,7 +401,7 @@ def study(
     if not speed >= SLOWEST:
         raise InputError(
             Diagnostic(
-                f"speed {speed:g} m/s: film and secant damping need a moving seal",
+                f"speed {speed:g} m/s: oil film and secant damping need a moving seal",
                 f'state {SLOWEST:g} m/s or more, e.g. --speed "0.1 m/s"',
                 path=f"seals.{place}",
             )

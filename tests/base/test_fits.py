@@ -144,7 +144,9 @@ def test_exact_number_of_points_leaves_no_bounds():
     assert np.isinf(fit.parameters["exponent"].upper)
     lower, upper = fit.bounds(2e-3)
     assert (lower, upper) == (-np.inf, np.inf)
-    assert fit.doubts == ("2 points leave no degree of freedom for 2 parameters",)
+    assert fit.doubts == (
+        "2 points for 2 parameters leave no degree of freedom, so errors are unknown",
+    )
 
 
 def test_constant_damping_has_exponent_zero_and_no_r_squared():

@@ -149,7 +149,10 @@ def identified(kind: str):
     """What a record of a kind tells; `bare` is one without any model."""
     if kind == "bare":
         whole = identified("pre-sliding")
-        why = "no uninterrupted half second about a reversal, where bristles show"
+        why = (
+            "the record has no uninterrupted half second about a reversal, where the "
+            "deflection of bristles shows"
+        )
         return replace(
             whole,
             points=(),

@@ -413,7 +413,7 @@ def checks() -> tuple[Check, ...]:
             0.22,
             "stance",
             "liner",
-            "choice: 1.5 on yield of every metal part",
+            "our choice: 1.5 on the yield strength of every metal part",
         ),
         Check(
             "proof pressure (yield or first ply)",
@@ -478,7 +478,7 @@ def checks() -> tuple[Check, ...]:
             0.1118,
             "swing",
             None,
-            "choice: 85 %",
+            "our choice: 85 %",
         ),
         Check(
             "line velocity",

@@ -197,8 +197,10 @@ CROSS = [
     ("  port_diameter: 6 mm", "  port_diameter: 25 mm", "cylinder.port_diameter", "smaller than"),
     ("    diameter: 10 mm", "    diameter: 14 mm", "rod.thread.diameter", "larger than the rod"),
     ("    pitch: 1.5 mm", "    pitch: 5 mm", "rod.thread.pitch", "no core"),
-    ("  length: 18 mm", "  length: 3.5 mm", "seals.piston.section", "grooves outside the piston"),
-    ("  length: 22 mm", "  length: 3.5 mm", "seals.rod.section", "grooves outside the head"),
+    ("  length: 18 mm", "  length: 3.5 mm", "seals.piston.section", "the grooves do not fit into "
+                                                                    "the piston"),
+    ("  length: 22 mm", "  length: 3.5 mm", "seals.rod.section", "the grooves do not fit into the "
+                                                                 "head"),
     ("  model: auto  ", "  length: 149 mm\n  model: auto  ", "barrel.length",
      "shorter than stroke + piston + head (150 mm)"),
     ("  return_pressure: 2 bar", "  return_pressure: 100 bar", "supply.return_pressure",

@@ -211,7 +211,7 @@ def test_autofrettage_needs_a_wrap():
     text = head + rest[rest.index("  rod.outer_diameter:") :]
     fault = only(text)
     assert fault.path == "barrel.autofrettage_pressure"
-    assert "nothing supports a liner" in fault.message
+    assert "nothing around it keeps a liner compressed" in fault.message
 
 
 class Stock(dict):

@@ -286,7 +286,7 @@ def test_a_pressure_out_of_reach_is_said_in_words(monkeypatch):
         elements_around=16,
     )
     assert len(solution.contacts) == 2
-    assert "of the modulus" in solution.failure
+    assert "times the modulus" in solution.failure
 
 
 def test_a_missing_library_is_one_clear_line(monkeypatch):

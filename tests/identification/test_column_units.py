@@ -34,7 +34,9 @@ def test_si_is_m_s_pa_n_and_kelvin():
     for name, values in {"p1": (2e6, 3e6), "x": (0.05, 0.06), "F_L": (-70, 80)}.items():
         np.testing.assert_array_equal(record[name], values)
     np.testing.assert_array_equal(record["T"], [313.15, 314.15])
-    assert 'SI units used, as the header states none: "t", "p1", "x", "F_L", "T"' in record.notes
+    assert (
+        'SI units used, as the header states no units: "t", "p1", "x", "F_L", "T"'
+    ) in record.notes
 
 
 def test_a_unit_in_the_header_wins_over_si():

@@ -390,9 +390,12 @@ def test_dropped_samples(lost, pieces):
         assert error_of(motion, "x", record, truth) < 1e-4
         assert sum(piece.time.size for piece in motion.pieces) >= left.size
         if pieces == 2:
-            assert "1 gaps; 2 sections used" in motion.notes
+            assert "1 gaps split the record; 2 sections are used" in motion.notes
         elif broken.time.size < record.time.size:
-            assert f"{lost} samples are missing in time: interpolated" in motion.notes
+            assert (
+                f"{lost} samples are missing from the sequence and were interpolated"
+                in motion.notes
+            )
 
 
 def test_missing_samples_of_what_is_not_needed_break_nothing():
@@ -402,7 +405,7 @@ def test_missing_samples_of_what_is_not_needed_break_nothing():
     motion = condition(but(record, T=half, v=half))
     assert len(motion.pieces) == 1
     motion = condition(but(record, T=np.nan * half))
-    assert "T has no samples: left out" in motion.notes
+    assert "T has no samples and is left out" in motion.notes
     assert "T" not in motion.quality
 
 
@@ -515,7 +518,7 @@ def test_the_cutoff_advised_is_one_that_works():
 @pytest.mark.parametrize(
     ("choices", "says"),
     [
-        ({"cutoff": 0.0}, 'a cut-off of 0 Hz; give one above zero: --cutoff "30 Hz"'),
+        ({"cutoff": 0.0}, 'a cut-off of 0 Hz; give a frequency above zero: --cutoff "30 Hz"'),
         ({"cutoff": -1.0}, "a cut-off of -1 Hz"),
         ({"cutoff": math.nan}, "a cut-off of nan Hz"),
         ({"cutoff": math.inf}, "a cut-off of inf Hz"),
@@ -527,7 +530,10 @@ def test_the_cutoff_advised_is_one_that_works():
         ({"order": 2.5}, "a filter of order 2.5"),
         ({"order": math.nan}, "a filter of order nan"),
         ({"order": math.inf}, "a filter of order inf"),
-        ({"pressure_lag": math.nan}, "a lag of the pressures of nan s; give one within 0.1 s"),
+        (
+            {"pressure_lag": math.nan},
+            "a lag of the pressures of nan s; give a lag from -0.1 to 0.1 s",
+        ),
         ({"pressure_lag": 3.0}, "a lag of the pressures of 3 s"),
     ],
 )
@@ -606,7 +612,9 @@ def test_spectrum_of_a_sine_in_noise(quantum):
     assert 5.0 <= found.motion < 6.0
     assert found.motion < found.floor < 15.0
     assert found.kept == pytest.approx(1.0, abs=1e-3)
-    assert "a cut-off between them loses nothing and reduces noise" in found.says(motion.cutoff)
+    assert "a cut-off between these frequencies loses no motion and reduces noise" in found.says(
+        motion.cutoff
+    )
     assert "within the cut-off" in found.says(found.motion + 0.1)
 
 
@@ -622,8 +630,8 @@ def test_spectrum_warns_of_motion_beyond_the_cutoff(width):
     # v^2 of 1 mm at 40 Hz over that of both sines
     lost = 0.04**2 / (0.04**2 + 0.04**2)
     assert found.kept == pytest.approx(1 - lost, abs=0.02)
-    assert "above the cut-off: raise --cutoff" in found.says(motion.cutoff)
-    assert "within the cut-off" in found.says(60.0) or "between them" in found.says(60.0)
+    assert "above the cut-off; raise --cutoff" in found.says(motion.cutoff)
+    assert "within the cut-off" in found.says(60.0) or "between these" in found.says(60.0)
 
 
 @pytest.mark.parametrize("speed", [1e-3, 3.3e-3, 0.02])

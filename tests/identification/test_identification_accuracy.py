@@ -214,7 +214,7 @@ def test_pre_sliding():
     assert found.lugre.values["bristle_stiffness"] == pytest.approx(5e6, rel=0.03)
     assert found.lugre.parameters["bristle_stiffness"].identifiable
     assert level.value == pytest.approx(TRUTH.static, rel=0.02)
-    assert any("between F_C and F_S" in one for one in found.lugre.doubts)
+    assert any("between the true F_C and F_S" in one for one in found.lugre.doubts)
 
 
 def test_a_rod_that_never_slides_shows_no_level():

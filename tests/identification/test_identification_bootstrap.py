@@ -275,5 +275,5 @@ def test_few_windows_keep_the_linearised_bounds(measured):
 
 def test_too_few_resamples_are_refused(measured):
     """Fewer resamples than have a tail of 2.5 % are one line."""
-    with pytest.raises(InputError, match=r"are too few for 2\.5 % tails"):
+    with pytest.raises(InputError, match=r"are too few to find the outer 2\.5 %"):
         run(measured, count=20)

@@ -49,7 +49,7 @@ def test_a_record_that_parts_nothing_is_one_line():
         for name, one in whole.stribeck.parameters.items()
     }
     blind = replace(whole, stribeck=replace(whole.stribeck, parameters=unknown))
-    with pytest.raises(ao.InputError, match="determines no seal parameter"):
+    with pytest.raises(ao.InputError, match="determines no parameter of the seals"):
         calibration(blind)
 
 

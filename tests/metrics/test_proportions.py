@@ -97,7 +97,7 @@ def test_shipped_designs_are_in_proportion(path):
 def test_the_number_is_the_ratio():
     """100 l on a 40 ml cylinder: 100e-3/(pi/4 0.023^2 0.11) = 2190 times."""
     (sentence,) = said(FREE, {"cylinder.dead_volume_a": "100 l"})
-    assert "2190 times the swept volume of the piston, usual is at most 1 " in sentence
+    assert "it is 2190 times the swept volume of the piston; at most 1 is usual " in sentence
 
 
 def test_check_evaluate_and_optimise_tell():

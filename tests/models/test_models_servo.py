@@ -233,7 +233,7 @@ def test_an_unknown_law_is_one_clear_line():
     """Another word names the choices; the margin rules say where a PID comes from."""
     with pytest.raises(ValueError, match="law: pd; choose one of p, pi, pid"):
         loop.ziegler_nichols(law="pd", ultimate_gain=1.0, ultimate_period=1.0)
-    with pytest.raises(ValueError, match="law: pid; the margin rules give p or pi"):
+    with pytest.raises(ValueError, match="law: pid; the margin rules support p or pi"):
         loop.margin_rules(law="pid", ultimate_gain=1.0, velocity_gain=1.0)
 
 

@@ -223,8 +223,8 @@ def test_standard_error_of_the_stiffness_is_its_scatter():
             {"position": np.full(101, 0.08)},
             "the position does not oscillate at 5 Hz; give",
         ),
-        ({"frequency": 0.4}, "1 s are less than one cycle of 0.4 Hz; give a longer record"),
-        ({"frequency": -5.0}, "1 s are less than one cycle of -5 Hz; give a longer record"),
+        ({"frequency": 0.4}, "1 s are shorter than one cycle of 0.4 Hz; give a longer record"),
+        ({"frequency": -5.0}, "1 s are shorter than one cycle of -5 Hz; give a longer record"),
         (
             {"frequency": 50.0},
             "samples every 0.01 s do not resolve 50 Hz; give more than two samples",

@@ -50,7 +50,11 @@ def alone(text, values):
 
 FAULTS = [
     ("seals.rod.compound: [nbr_7, nbr_90]", '"nbr_7": unknown material', "nbr_70"),
-    ("seals.rod.compound: [nbr_90, steel_e355]", "kind (metal) does not suit", "use e.g."),
+    (
+        "seals.rod.compound: [nbr_90, steel_e355]",
+        "a material of kind metal cannot be used",
+        "use e.g.",
+    ),
     ("seals.rod.count: [1.5, 2]", "1.5: must be a whole number", "write 1"),
     ("seals.rod.section: [1.78, 2.62 mm]", "unit missing", "1.78 mm"),
     ("seals.rod.section: [2 bar]", "bar is a pressure", "mm"),

@@ -114,7 +114,7 @@ def test_without_draws_the_reason_and_the_way_on_are_said(wide):
     films = prepare(ao.read(DESIGNS / "huang_110_80_560.yaml").design)
     reasons = {
         "oil films": quick_yield(films, replace(wide, requirements=())),
-        "does not sample": wide.yield_estimate,
+        "draws no samples": wide.yield_estimate,
         "custom metrics": quick_yield(
             ao.read(case.PLAIN).subject(),
             replace(wide, requirements=(replace(wide.requirements[0], metric="mine"),)),
@@ -211,7 +211,7 @@ def test_the_verdict_is_amber_where_a_limit_has_no_reserve(optimum):
     assert f"\x1b[33;1m! {words}\x1b[0m" in shown
     assert "`actuator-opt optimise --yield 0.99`" in shown
     fails = optimum.best_evaluation.yield_estimate.worst_fails
-    assert f"buckling_factor fails most, in {100 * fails:.0f} %" in shown
+    assert f"buckling_factor fails most often, in {100 * fails:.0f} %" in shown
     assert "no reserve" in str(optimum)
     assert "Without reserve (margin below 0.1 %): stiffness_min" in str(optimum)
     data = optimum.to_dict()

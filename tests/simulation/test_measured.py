@@ -88,8 +88,8 @@ def test_a_value_beyond_its_bounds_is_said():
     assert not any("bench.csv" in words for words in inside.warnings)
     said = [words for words in outside.warnings if "bench.csv" in words]
     assert said == [
-        f"{PATH}: 0.2 is outside the bounds from bench.csv, 0.09 to 0.11: the record does "
-        "not support it"
+        f"{PATH}: 0.2 is outside the bounds from bench.csv, 0.09 to 0.11: the test record does not "
+        "support this value"
     ]
 
 

@@ -178,7 +178,7 @@ def test_a_record_is_refused_in_a_line(casadi):
     force = [{"shape": "record", "file": "f.csv", "column": "F", "scale": 1.0}]
     scene = case.scenario(initial=case.MIDDLE, load={"force": force}, signal=[])
     record = {("f.csv", "F"): (np.linspace(0, 1, 50), np.zeros(50))}
-    with pytest.raises(InputError, match="cannot look up a record; integrate by lsoda"):
+    with pytest.raises(InputError, match="cannot read values from a record; integrate by lsoda"):
         case.run(scene, case.plant(), method="cvodes", records=record)
 
 

@@ -141,7 +141,9 @@ def test_channels_are_read_with_their_units():
         "shaft_speed": pytest.approx(2 * np.pi), "shaft_angle": pytest.approx(np.pi),
     }  # fmt: skip
     unknown, still = found.notes
-    assert unknown.startswith('columns that are not channels: "note"; channels are p1, p2, x')
+    assert unknown.startswith(
+        'columns ignored, as they are not channels: "note"; channels are p1, p2, x'
+    )
     assert still == (
         "pressure_b, position, signal, flow_a, shaft_speed, shaft_angle: constant throughout the "
         "record"
@@ -155,7 +157,7 @@ def test_missing_samples_are_left_out_channel_by_channel():
     assert found.channels["pressure_a"][0].tolist() == [0, 1, 2, *range(6, 20)]
     assert list(found.channels) == ["pressure_a"]
     assert found.notes[:2] == (
-        "position: 4 samples, left out: at least 10 are needed",
+        "position: 4 samples, but at least 10 are needed, so it is left out",
         "pressure_a: 3 samples are missing from 3 to 5 s, left out",
     )
 
@@ -380,7 +382,7 @@ def test_parameters_without_effect_are_told():
         ("stribeck_speed", even, own, "static and Coulomb friction are equal; fit static too"),
         ("valve_offset", scene, replace(own, valve=None), "the design has no valve"),
         ("mass", held, own, "the ports of the valve are blocked"),
-        ("valve_leakage", scene, tight, "it is a factor"),
+        ("valve_leakage", scene, tight, "design's valve, which is zero"),
     ):
         with pytest.raises(InputError, match=why):
             entries([name], there, body)
@@ -471,7 +473,7 @@ def test_a_channel_that_stands_still_is_left_out():
     )
     found = fit(*case(air_content=0.005), {}, record, ("air_content",))
     assert found.values["air_content"] == pytest.approx(0.01, rel=0.05)
-    assert "position is constant in the record: not used in the fit" in found.doubts
+    assert "position is constant in the record and was not used in the fit" in found.doubts
 
 
 def test_a_leakage_that_is_not_there_is_bounded_from_zero():
@@ -490,7 +492,7 @@ def test_a_model_that_lacks_something_says_so():
     own = replace(own, valve=replace(own.valve, natural_frequency=55.0))
     found = fit(scene, own, {}, bench(4), ("air_content",))
     assert "position" in found.missed
-    assert any("misses the record by more than its noise" in one for one in found.doubts)
+    assert any("differs from the record by more than its noise" in one for one in found.doubts)
 
 
 def test_pairs_that_hide_in_each_other_are_named():

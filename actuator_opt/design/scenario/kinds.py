@@ -394,7 +394,7 @@ SHAPES = kinds(
     ),
     SignalShape(
         "step",
-        "value from start on",
+        "constant value after start",
         ("value",),
         ("start",),
         instead={"end": "pulse"},
@@ -518,9 +518,10 @@ Law: TypeAlias = Annotated[str, choice_of("law of the controller", LAWS)]
 Tuning: TypeAlias = Annotated[
     Literal["margins", "ziegler_nichols", "stated"],
     Choice(
-        "tuning of gain and times; margins: from the ultimate point "
-        "of the linear model with a gain margin, direction and place of least gain; "
-        "ziegler_nichols: by their table from the same point; stated: all values are stated"
+        "how gain and times are found; margins: from the stability limit of the linear model and "
+        "a gain margin, at the position and in the direction with the lowest limit; "
+        "ziegler_nichols: by the table of Ziegler and Nichols from the same limit; stated: all "
+        "values are stated"
     ),
 ]
 Friction: TypeAlias = Annotated[str, choice_of("friction model of the seals", FRICTIONS)]

@@ -19,7 +19,10 @@ class SignalSegment(Section):
     """A part of a signal; the parts of a list are added."""
 
     shape: kinds.Shape
-    start: Annotated[float, Of("instant", "start time; for a record: time of its zero")] = 0.0
+    start: Annotated[
+        float,
+        Of("instant", "start time; for a record, the scenario time at which its own time is 0"),
+    ] = 0.0
     end: Annotated[float | None, Of("instant", "end time")] = None
     frequency: Annotated[float | None, Of("frequency", "frequency of a sine")] = None
     phase: Annotated[float, Of("phase", "phase of a sine at its start")] = 0.0
@@ -27,49 +30,63 @@ class SignalSegment(Section):
         str | None, FileName("CSV file of a record, beside the scenario", "record.csv")
     ] = None
     column: Annotated[str | None, Label("column of a record, by its header", "force")] = None
-    scale: Annotated[float, Of("factor", "factor on a record")] = 1.0
+    scale: Annotated[float, Of("factor", "factor that multiplies a record")] = 1.0
 
 
 class ValveSignal(SignalSegment):
     """A part of the valve signal."""
 
-    value: Annotated[float | None, Of("signal_value", "height, or amplitude of a sine")] = None
+    value: Annotated[
+        float | None, Of("signal_value", "height of this part, or amplitude of a sine")
+    ] = None
 
 
 class PositionSignal(SignalSegment):
     """A part of a position over time."""
 
-    value: Annotated[float | None, Of("position_value", "height, or amplitude of a sine")] = None
+    value: Annotated[
+        float | None, Of("position_value", "height of this part, or amplitude of a sine")
+    ] = None
 
 
 class SpeedSignal(SignalSegment):
     """A part of a speed over time."""
 
-    value: Annotated[float | None, Of("speed_value", "height, or amplitude of a sine")] = None
+    value: Annotated[
+        float | None, Of("speed_value", "height of this part, or amplitude of a sine")
+    ] = None
 
 
 class ForceSignal(SignalSegment):
     """A part of the load force, positive against extension."""
 
-    value: Annotated[float | None, Of("force_value", "height, or amplitude of a sine")] = None
+    value: Annotated[
+        float | None, Of("force_value", "height of this part, or amplitude of a sine")
+    ] = None
 
 
 class TorqueSignal(SignalSegment):
     """A part of the load torque on a shaft or joint."""
 
-    value: Annotated[float | None, Of("torque_value", "height, or amplitude of a sine")] = None
+    value: Annotated[
+        float | None, Of("torque_value", "height of this part, or amplitude of a sine")
+    ] = None
 
 
 class ShaftSpeedSignal(SignalSegment):
     """A part of a shaft's speed over time."""
 
-    value: Annotated[float | None, Of("shaft_speed_value", "height, or amplitude of a sine")] = None
+    value: Annotated[
+        float | None, Of("shaft_speed_value", "height of this part, or amplitude of a sine")
+    ] = None
 
 
 class ShaftAngleSignal(SignalSegment):
     """A part of a shaft's angle over time."""
 
-    value: Annotated[float | None, Of("shaft_angle_value", "height, or amplitude of a sine")] = None
+    value: Annotated[
+        float | None, Of("shaft_angle_value", "height of this part, or amplitude of a sine")
+    ] = None
 
 
 SAMPLES = 2000
@@ -97,10 +114,14 @@ class Machine(Section):
 
     displacement: Annotated[float, Of("displacement", "displacement per revolution")]
     setting: Annotated[float, Of("displacement_setting", "displacement setting")] = 1.0
-    slip: Annotated[float, Of("slip_coefficient", "C_s, laminar slip")]
-    coulomb: Annotated[float, Of("coulomb_coefficient", "C_f, friction in proportion to pressure")]
-    viscous: Annotated[float, Of("viscous_coefficient", "C_v, friction in proportion to speed")]
-    constant_torque: Annotated[float, Of("constant_torque", "T_c, torque at any speed")] = 0.0
+    slip: Annotated[float, Of("slip_coefficient", "coefficient C_s of laminar slip")]
+    coulomb: Annotated[
+        float, Of("coulomb_coefficient", "coefficient C_f of friction in proportion to pressure")
+    ]
+    viscous: Annotated[
+        float, Of("viscous_coefficient", "coefficient C_v of friction in proportion to speed")
+    ]
+    constant_torque: Annotated[float, Of("constant_torque", "torque loss T_c at any speed")] = 0.0
 
 
 class PumpMachine(Machine):
@@ -112,7 +133,7 @@ class PumpMachine(Machine):
 class ReliefValve(Section):
     """A relief valve."""
 
-    pressure: Annotated[float, Of("pressure_drop", "cracking pressure above tank")]
+    pressure: Annotated[float, Of("pressure_drop", "cracking pressure above the tank pressure")]
     override: Annotated[
         float, Of("pressure_drop", "pressure rise above cracking at the rated flow")
     ] = 10e5
@@ -157,15 +178,21 @@ class Cushion(Section):
     length: Annotated[float, Of("part_length", "length of the cushioned travel")]
     open_area: Annotated[float, Of("orifice_area", "flow area when the spear enters")]
     end_area: Annotated[float, Of("orifice_area", "remaining flow area at the stop")]
-    exponent: Annotated[float, Of("stribeck_exponent", "exponent of the area over the travel")] = (
-        1.0
-    )
+    exponent: Annotated[
+        float, Of("stribeck_exponent", "exponent by which the flow area falls over the travel")
+    ] = 1.0
 
 
 class Stops(Section):
     """Stops at the ends of the stroke; their stiffness follows from the design's stop_travel."""
 
-    damping: Annotated[float, Of("damping_factor", "damping over sqrt(K m)")] = 0.5
+    damping: Annotated[
+        float,
+        Of(
+            "damping_factor",
+            "damping of a stop, divided by the root of its stiffness times the moving mass",
+        ),
+    ] = 0.5
     cushion: Cushion | None = None
 
 
@@ -173,19 +200,25 @@ class ScenarioFriction(Section):
     """Friction of the seals: calculated from the design, or stated in the scenario."""
 
     model: kinds.Friction = "lugre"
-    coulomb: Annotated[float | None, Of("coulomb_force", "F_C; default: from the design")] = None
-    static: Annotated[float | None, Of("static_force", "F_S; default: F_C")] = None
+    coulomb: Annotated[
+        float | None, Of("coulomb_force", "Coulomb friction F_C; default: from the design")
+    ] = None
+    static: Annotated[float | None, Of("static_force", "breakaway friction F_S; default: F_C")] = (
+        None
+    )
     stribeck_speed: Annotated[float | None, Of("stribeck_speed", "v_s")] = None
     exponent: Annotated[float, Of("stribeck_exponent", "delta")] = 2.0
     viscous: Annotated[float | None, Of("viscous_friction", "sigma_2")] = None
     bristle_travel: Annotated[
-        float | None, Of("breakaway_travel", "z_max; default: stiffness.seal_deflection")
+        float | None,
+        Of("breakaway_travel", "breakaway travel z_max; default: stiffness.seal_deflection"),
     ] = None
     bristle_damping: Annotated[
         float | None,
         Of(
             "bristle_damping",
-            "sigma_1; default: sqrt(sigma_0 m), reduced with speed to stay passive",
+            "bristle damping sigma_1; default: sqrt(sigma_0 m) of bristle stiffness and moving "
+            "mass, reduced with speed so that friction adds no energy",
         ),
     ] = None
 
@@ -256,7 +289,7 @@ class Controller(Section):
     law: kinds.Law = "p"
     tuning: kinds.Tuning = "margins"
     margin: Annotated[
-        float | None, Of("margin", "gain margin of tuning by margins; default: 2, pi: 3")
+        float | None, Of("margin", "gain margin for tuning by margins; default: 2, or 3 for law pi")
     ] = None
     position_gain: Annotated[float | None, Of("position_gain", "gain of a position loop")] = None
     speed_gain: Annotated[float | None, Of("speed_gain", "gain of a speed loop")] = None
@@ -266,9 +299,15 @@ class Controller(Section):
     shaft_angle_gain: Annotated[
         float | None, Of("shaft_angle_gain", "gain of a shaft-angle loop")
     ] = None
-    gain_factor: Annotated[float, Of("part_factor", "factor on the gain, tuned or stated")] = 1.0
-    integral_factor: Annotated[float, Of("part_factor", "factor on the integral part")] = 1.0
-    derivative_factor: Annotated[float, Of("part_factor", "factor on the derivative part")] = 1.0
+    gain_factor: Annotated[
+        float, Of("part_factor", "factor that multiplies the gain, tuned or stated")
+    ] = 1.0
+    integral_factor: Annotated[
+        float, Of("part_factor", "factor that multiplies the integral part")
+    ] = 1.0
+    derivative_factor: Annotated[
+        float, Of("part_factor", "factor that multiplies the derivative part")
+    ] = 1.0
     integral_time: Annotated[float | None, Of("time_constant", "T_i")] = None
     derivative_time: Annotated[float | None, Of("time_constant", "T_d")] = None
     filter_time: Annotated[float, Of("time_constant", "filter time T_f of the derivative")] = 1e-3

@@ -331,7 +331,7 @@ def _cooling(
         if wall.expansion is not None:
             wall.why_no_mismatch = "no cure temperature stated: add environment.cure_temperature"
         return
-    wall.why_no_mismatch = "the thin laminate has no radial stress at the liner"
+    wall.why_no_mismatch = "the thin-laminate model has no radial stress at the liner"
     for k, i in enumerate(liners):
         stress = tuple(part[:, [k]] for part in stresses)
         used = strength.yield_utilisation(

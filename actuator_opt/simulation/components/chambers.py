@@ -224,7 +224,8 @@ def dead_volume(circuit: Circuit, volume: float, area: float, chamber: str) -> f
     if volume >= least:
         return volume
     circuit.system.notes.append(
-        f"{chamber}: dead volume taken as {least * 1e6:.2g} ml, 0.5 mm of its area"
+        f"{chamber}: the dead volume is too small for the simulation and was set to "
+        f"{least * 1e6:.2g} ml, the chamber's area times 0.5 mm"
     )
     return least
 
@@ -505,7 +506,10 @@ def _far(
     data = circuit.plant.lines[port.name]
     share = 0.5 if port.outer is not None and port.line is not None else 1.0
     if share * data.far_volume < LEAST_NODE:
-        circuit.system.notes.append(f"{name}: volume taken as {LEAST_NODE * 1e6:.2g} ml")
+        circuit.system.notes.append(
+            f"{name}: the volume is too small for the simulation and was "
+            f"set to {LEAST_NODE * 1e6:.2g} ml"
+        )
     node(
         circuit,
         name,

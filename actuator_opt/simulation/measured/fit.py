@@ -149,7 +149,9 @@ class RecordFitProblem:
         self._cached: tuple[bytes, Array, Mapping[str, Array]] | None = None
         self.noise = {name: noise(y) for name, (_, y) in measured.channels.items()}
         constant = [name for name, level in self.noise.items() if level == 0]
-        self.notes = [f"{name} is constant in the record: not used in the fit" for name in constant]
+        self.notes = [
+            f"{name} is constant in the record and was not used in the fit" for name in constant
+        ]
         varying = {
             name: channel for name, channel in measured.channels.items() if name not in constant
         }
@@ -320,7 +322,7 @@ class RecordFitProblem:
             if np.count_nonzero(inside_run) >= FEWEST
         }
         if not overlap:
-            message = "too little of the record overlaps the scenario to determine a lag"
+            message = "the record overlaps the scenario for too short a time to determine a lag"
             raise measured.fault(message, "measure longer, or state the lag")
         return overlap
 
@@ -389,7 +391,10 @@ def _thinning_notes(
         steps.setdefault(_every(time), []).append(name)
     for step, names in sorted(steps.items()):
         if step > 1:
-            yield f"{named(names, used)}: the fit uses one of {step} samples, {MOST} at most"
+            yield (
+                f"{named(names, used)}: the fit uses one in every {step} samples, to keep to "
+                f"at most {MOST}"
+            )
 
 
 def _every(time: Array) -> int:
@@ -732,20 +737,20 @@ def _unidentified(fitted: Mapping[str, Fitted]) -> Iterator[str]:
             low = side == "lower"
             end = parameter.entry.lower if low else parameter.entry.upper
             yield (
-                f"{name} is at the {side} end of its range, {quantity.text(end)}: the "
-                f"record suggests {('less' if low else 'more')}, or the simulation lacks "
-                "something else"
+                f"{name} is at the {side} end of its range, {quantity.text(end)}: the record "
+                f"suggests a {('smaller' if low else 'larger')} value, or the model lacks some "
+                "other effect"
             )
         elif value.verdict == "identifiable":
             continue
         elif not np.isfinite(value.upper):
             yield (
-                f"{name} is not identifiable: no measured channel depends on it, or only in "
-                "combination with other fitted parameters"
+                f"{name} is not identifiable: no measured channel depends on it, or its effect "
+                "cannot be separated from that of other fitted parameters"
             )
         else:
             between = f"{quantity.text(value.lower, 3)} to {quantity.text(value.upper, 3)}"
-            yield f"{name} is {value.verdict}: the record allows {between}"
+            yield f"{name} is {value.verdict}: the record admits values from {between}"
 
 
 def _inseparable(
@@ -760,8 +765,8 @@ def _inseparable(
     ]
     if pairs:
         yield (
-            f"correlated errors: {', '.join(pairs)}; the pair is known better than each alone: "
-            "state one, or measure what separates them"
+            f"correlated errors: {', '.join(pairs)}; the record determines such a pair better than "
+            "its single parameters, so state one of them, or measure a signal that separates them"
         )
 
 
@@ -781,12 +786,12 @@ def _misfits(after: Overlay, before: Overlay) -> Iterator[str]:
             f"{name} {quantity.text(channel.rms, 2)}, {_times(channel.rms / channel.noise)} times"
         )
         if channel.rms > WORSE * before.residuals[name].rms:
-            yield f"{name} fits worse than before: the channels contradict each other"
+            yield f"{name} fits worse than before the fit, so the channels contradict each other"
     if misfits:
         yield shown(
-            f"the simulation misses the record by more than its noise ({'; '.join(misfits)}): the "
-            "model lacks something (or the record was smoothed), and the bounds do not include "
-            "the resulting bias of the parameters",
+            "the simulation differs from the record by more than its noise "
+            f"({'; '.join(misfits)}): the model lacks an effect, or the record was smoothed. This "
+            "biases the parameters, and their confidence intervals exclude the bias",
             400,
         )
 
@@ -798,6 +803,6 @@ def _times(ratio: float) -> str:
 def _controller_notes(tuned: Tuned | None) -> Iterator[str]:
     if tuned is not None and tuned.origin != "stated":
         yield (
-            f"the controller's gain is not stated but comes from {tuned.origin}: state the test "
+            f"the controller's gain is not stated but comes from {tuned.origin}; state the test "
             "bench's gain in control"
         )

@@ -66,7 +66,7 @@ def entries(names: Sequence[str], scenario: Scenario, plant: Plant) -> tuple[Fit
             faults.append(Diagnostic(f"{name} has no effect: {why}", "leave it out"))
         elif name == "stribeck_speed" and "static" not in names and _even(scenario, plant):
             message = f"{name} has no effect: static and Coulomb friction are equal"
-            faults.append(Diagnostic(message, "fit static too, or state a higher one"))
+            faults.append(Diagnostic(message, "fit static too, or state a higher static friction"))
     if not names:
         faults.append(Diagnostic("no parameter to fit", f"name one of {', '.join(known)}"))
     if faults:
@@ -84,7 +84,7 @@ def _idle(name: str, scenario: Scenario, plant: Plant) -> str | None:
             return "the lines do not end at a valve"
         leaks = plant.valve.leakage_supply or plant.valve.leakage_tank
         if name == "valve_leakage" and not leaks:
-            return "it is a factor, but the design's valve has no leakage"
+            return "it multiplies the leakage of the design's valve, which is zero"
         return None
     if name == "lag":
         return None

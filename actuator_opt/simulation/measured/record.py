@@ -69,7 +69,10 @@ class AlignedRecord:
             present = np.isfinite(values)
             count = int(np.count_nonzero(present))
             if count < FEWEST:
-                notes.append(f"{signal}: {count} samples, left out: at least {FEWEST} are needed")
+                notes.append(
+                    f"{signal}: {count} samples, but at least {FEWEST} are needed, so it "
+                    "is left out"
+                )
                 continue
             channels[signal] = time[present], values[present]
             if gap_list := gaps(time, values):
@@ -412,8 +415,8 @@ def _coarse_sampling(
     record_step = min(float(np.median(np.diff(t))) for t, _ in samples.values())
     if simulated_step > WIDE * record_step:
         yield (
-            f"the simulation is sampled every {1000.0 * simulated_step:.3g} ms, the record every "
-            f"{1000.0 * record_step:.3g} ms, so peaks may be missed: state sample_time"
+            f"the simulation is sampled every {1000.0 * simulated_step:.3g} ms, but the record "
+            f"every {1000.0 * record_step:.3g} ms, so peaks may be missed: state sample_time"
         )
 
 

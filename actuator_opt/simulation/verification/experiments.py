@@ -462,7 +462,9 @@ def bandwidth(stand: Stand, expected: float, loop: Loop) -> ExperimentResult:
     facts = stand.facts(sines[-1].record)
     why = _no_sine(sines[-1])
     if share is None or why:
-        why = why or f"no -3 dB point within a factor of {MOST:g} of the linear bandwidth"
+        why = why or (
+            f"the gain does not cross -3 dB within a factor of {MOST:g} of the linear bandwidth"
+        )
         return ExperimentResult({"bandwidth": None}, how, facts, why)
     return ExperimentResult({"bandwidth": expected * exp(share)}, how, facts)
 
@@ -660,7 +662,7 @@ def decay(stand: Stand, ends: str, resonance: float) -> ExperimentResult:
     faded = np.flatnonzero(spans < FADED * spans[:1])
     count = int(faded[0]) if faded.size else len(spans)
     if count < 2:
-        why = f"overdamped or stuck: it comes to rest after {len(spans)} half periods"
+        why = f"overdamped or stuck: the piston comes to rest after {len(spans)} half periods"
         return ExperimentResult(dict.fromkeys(names), how, facts, why)
     halves = np.diff(times[: count + 1])
     if np.max(halves) > UNEVEN * np.min(halves):
@@ -935,7 +937,10 @@ def operating_point(facts: Facts | None, assumed: tuple[float, float]) -> str:
     (a, b), (taken_a, taken_b) = (
         [1e-5 * pressure for pressure in pair] for pair in (facts.pressures, assumed)
     )
-    words = f"chambers at {a:.0f} and {b:.0f} bar, linear tier {taken_a:.0f} and {taken_b:.0f}"
+    words = (
+        f"chambers at {a:.0f} and {b:.0f} bar, but {taken_a:.0f} and {taken_b:.0f} bar in "
+        "the linear model"
+    )
     if facts.spool is not None:
         words += f"; spool at about {0.5 * sum(facts.spool):.2g} V"
     return words

@@ -178,7 +178,7 @@ def verify(
 def _notes(scenario: Scenario, any_requirement: bool) -> tuple[str, ...]:
     if not any_requirement:
         return ("the design has no dynamic requirement",)
-    notes = ["each experiment is made only where the linear tier is worst"]
+    notes = ["each experiment is simulated only at the point where the linear model is worst"]
     control = scenario.control
     own_controller = control is not None and (
         loop_of(control) != "position"
@@ -192,7 +192,9 @@ def _notes(scenario: Scenario, any_requirement: bool) -> tuple[str, ...]:
         )
     omitted = _left_out(scenario.load)
     if omitted:
-        notes.append(f"the experiments load the rod with a constant force and omit: {omitted}")
+        notes.append(
+            f"the experiments load the rod with a constant force; they leave out {omitted}"
+        )
     return tuple(notes)
 
 
@@ -269,7 +271,8 @@ class _Bench:
         ):
             return []
         return [
-            f"met only due to friction: without it {METRICS[requirement.metric].text(frictionless)}"
+            "met only because of friction; without friction the value is "
+            f"{METRICS[requirement.metric].text(frictionless)}"
         ]
 
     def _impossible(self, metric: str, spot: Spot) -> str:
@@ -289,7 +292,9 @@ class _Bench:
         if stand.plant.valve is None:
             return "the design has no valve"
         if not stand.steady_gain > 0:
-            return "no gain stabilises the loop in the linear tier, so it never comes to rest"
+            return (
+                "no gain stabilises the loop in the linear model, so the loop never comes to rest"
+            )
         return ""
 
     def stand(self, spot: Spot) -> Stand:
@@ -380,7 +385,7 @@ class _Bench:
             value, remaining = before.values.get(metric), without.values.get(metric)
             if remaining is None or not isfinite(remaining):
                 words = without.why or "there is no limit"
-                return shares, [*reasons, f"{name} decides: without it {words}"]
+                return shares, [*reasons, f"the difference is due to {name}; without it, {words}"]
             share = relative_difference(value, remaining)
             if share is not None and abs(share) > AGREE / 2:
                 shares[name] = share
@@ -398,9 +403,9 @@ class _Bench:
         stand = self._placed(metric, spot)
         words = f"compared at {1e3 * stand.position:.3g} mm"
         if metric in HELD:
-            return f"{words}, off the stop"
+            return f"{words}, away from the stop"
         direction = "extending" if self._way(spot, stand) else "retracting"
-        return f"{words}, {direction}: the spool rests {stand.opening:.2g} V off its centre"
+        return f"{words}, {direction}: the spool rests {stand.opening:.2g} V from its centre"
 
 
 _EXPERIMENTS = {
