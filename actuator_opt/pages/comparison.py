@@ -143,7 +143,10 @@ def sentences(comparison: Comparison) -> list[str]:
 
 
 def unlike(comparison: Comparison) -> list[str]:
-    """Metrics that cannot be compared, as the designs compute them differently, with reasons."""
+    """Sentences on metrics that cannot be compared.
+
+    For some designs their smallest value governs, for others their largest.
+    """
     lines = []
     for metric, senses in comparison.unlike.items():
         least, most = (

@@ -320,8 +320,8 @@ def _ratios(name: str, fit: LawFit, points: Sequence[FrictionPoint]) -> Points:
 def pressure_levels(points: Sequence[FrictionPoint]) -> list[list[FrictionPoint]]:
     """Points of one direction of motion, grouped by pressure.
 
-    Empty unless at least two pressures have three speeds each and share a range of speeds. Only one direction counts: even without load,
-    the pressure differs between the two.
+    Empty unless at least two pressures have three speeds each and share a range of speeds. Only
+    one direction counts: even without load, the pressure differs between the two.
     """
     for way in (1, -1):
         here = [point for point in points if way * point.velocity > 0]
