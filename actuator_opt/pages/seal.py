@@ -1,5 +1,4 @@
-"""The page of a seal study: gland, squeeze, operating point, contact, oil film, friction,
-leakage."""
+"""The page of a seal study: gland, squeeze, operating point, contact, oil film, and losses."""
 
 from __future__ import annotations
 

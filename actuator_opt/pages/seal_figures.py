@@ -35,7 +35,8 @@ DAMPING = "Secant damping F/v, kN·s/m"
 def squeeze_figure(study: SealStudy) -> Ink:
     """Bars from loosest to tightest squeeze of every ring, with the limits.
 
-    There is a bar for each combination of temperature and pressure. Drawn, not a chart: each row has its numbers beside its bar.
+    There is a bar for each combination of temperature and pressure. Drawn, not a chart: each row
+    has its numbers beside its bar.
     """
     rows = study.squeezes
     labels = 62.0

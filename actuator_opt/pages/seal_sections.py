@@ -49,7 +49,7 @@ METAL, HATCHING = "#eef1f3", "#9aa3ab"
 def stroke_names(study: SealStudy) -> tuple[str, str]:
     """Names of the driven stroke and of its return.
 
-    An overrunning load moves the piston against the sealed pressure, so the two names swap.
+    On the return stroke an overrunning load drives the piston against the pressure it seals.
     """
     return ("outstroke", "instroke") if study.place == "rod" else ("driven", "overrun")
 
@@ -74,7 +74,7 @@ _LINE = 3.1
 
 @dataclass(frozen=True, slots=True)
 class FilledGroove:
-    """A groove and the bodies in it; x from its left side, r from the counterface, in m."""
+    """A groove and the bodies in it; x [m] starts at its left side, r [m] at the counterface."""
 
     groove: Groove
     element: SealElement | None
@@ -142,7 +142,7 @@ class _Gland:
         return max(filled.depth for filled in self.grooves)
 
     def y(self, r: float, beyond: float = 0.0) -> float:
-        """Paper of r (m from the counterface), and some mm further away from it."""
+        """Position on paper of r (m from the counterface), moved `beyond` mm further away."""
         return self.surface + self.side * (r * self.factor + beyond)
 
     def right(self, index: int) -> float:
@@ -150,7 +150,7 @@ class _Gland:
 
 
 def gland_drawing(study: SealStudy, *, width: float = 180.0) -> GlandDrawing:
-    """Grooves, rings, counterface and gap of a place, dimensioned: a section, drawn to scale."""
+    """Dimensioned section to scale: grooves, rings, counterface and gap of piston or rod."""
     grooves = filled_grooves(study.design, study.place)
     deepest, wide = max(filled.depth for filled in grooves), sum(filled.width for filled in grooves)
     room = width - sum(_BESIDE) - (len(grooves) + 1) * _LAND
@@ -247,7 +247,7 @@ def _rectangle(left: float, right: float, low: float, high: float) -> list[Point
 
 
 def _rings(frame: _Gland, filled: FilledGroove, left: float) -> None:
-    """Draw the bodies in a groove; the outlines of uncompressed rings are dashed."""
+    """Draw the bodies in a groove; outlines of undeformed rings are dashed."""
     for shape in filled.shapes:
         points = [(left + x * frame.factor, frame.y(r)) for x, r in shape.points]
         if shape.kind == "free":
@@ -477,7 +477,7 @@ class GrooveOnPaper:
 
 
 def gland_sizes(ring: Ring) -> tuple[float, float]:
-    """Length that the elements have in the groove, and its depth from the counterface [m]."""
+    """Axial space for the ring in the groove, and the groove's depth from the counterface [m]."""
     return room(ring), float(ring.element.seal_type.groove(ring.numbers).depth)
 
 

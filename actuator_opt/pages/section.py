@@ -160,7 +160,7 @@ def _parts(ink: Ink, frame: _Frame, outlines: Sequence[Outline]) -> None:
 
 
 def _edges(outline: Outline, frame: _Frame) -> list[list[Point]]:
-    """Outline strokes of both halves: not on the axis, nor where a part's polygons meet."""
+    """Outline strokes of both halves; omitted on the axis and where polygons of a part meet."""
     segments = []
     for index, polygon in enumerate(outline.polygons):
         for a, b in zip(polygon, [*polygon[1:], polygon[0]], strict=True):

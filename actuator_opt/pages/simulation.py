@@ -136,7 +136,7 @@ def series(simulation: Simulation) -> list[Series]:
 
 
 def _grid(simulation: Simulation) -> tuple[Array, Array]:
-    """Times [s] at even steps with their samples; of an instant with two samples the later one."""
+    """Evenly spaced times [s] with their samples; of two samples at an instant, the later."""
     time, duration = simulation.time, simulation.scenario.duration
     step = simulation.scenario.sample_time or duration / SAMPLES
     count = max(round(duration / step), 1)
@@ -310,7 +310,7 @@ def results(simulation: Simulation) -> list[ShownResult]:
 
 
 def reasons(simulation: Simulation) -> dict[str, list[str]]:
-    """Reasons of missing values, each with its results; expected reasons are left out."""
+    """Reasons for missing values, each with its results; expected reasons are left out."""
     missing: dict[str, list[str]] = {}
     limited = {requirement.metric for requirement in simulation.requirements}
     bench = simulation.scenario.held_ports is not None
