@@ -34,8 +34,8 @@ LEAST_STRIP, FOOT = 15.2, 8.4
 MOST_MARKS = 8
 """Largest number of events marked in the panels over time."""
 LAG = 0.02
-"""Greatest difference between spool position and valve signal, as a share of the largest signal, for
-which a flow is drawn over the signal (our choice)."""
+"""Greatest difference between spool position and valve signal, as a share of the largest signal,
+for which a flow is drawn over the signal (our choice)."""
 FLOWS = (("flow_a", "A"), ("flow_b", "B"), ("flow_supply", "supply"), ("flow_tank", "tank"))
 Measured = Mapping[str, tuple[Array, Array]]
 """Time [s] and values (SI) by the name of the signal."""
@@ -160,7 +160,7 @@ def strips_with_room(shown: Sequence[Strip], height: float) -> list[Panel]:
 
 
 def _parts_with_room(made: Sequence[FigurePart], height: float) -> list[FigurePart]:
-    """The first parts that fit the height; a small later part may replace a larger part."""
+    """Parts that fit the height, in order; a part that does not fit is skipped."""
     chosen: list[FigurePart] = []
     used = 0.0
     for part in made:

@@ -271,7 +271,7 @@ LOWEST = 1e-6
 def convergence_figure(
     trace: Sequence[Sequence[float]], metric: str, evaluations: int, title: str
 ) -> Ink:
-    """Improvements (evaluation, objective in SI, worst violation) over the evaluations made."""
+    """Improvements (evaluation, objective in SI, worst violation) over the evaluation count."""
     if not trace:
         return titled(Chart(title, [], height=0.0), ["No search: nothing could move."])
     quantity = of_metric(metric)

@@ -314,9 +314,10 @@ def shown(uncertainty: Uncertainty) -> list[LimitYield]:
 
 
 def margins_figure(uncertainty: Uncertainty, *, width: float = 180.0) -> Ink:
-    """Margins of every requirement as a strip. || The line covers 1 to 99 % of draws, the box 5 to 95 %; marks show median and nominal design.
+    """Margins of every requirement as a strip.
 
-    Drawn, not a chart: the probability is beside each strip.
+    The line covers 1 to 99 % of draws, the box 5 to 95 %. Marks show the median and the nominal
+    design. Drawn, not a chart: the probability is beside each strip.
     """
     lines = shown(uncertainty)
     top = 9.0

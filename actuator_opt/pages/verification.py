@@ -58,7 +58,7 @@ class RequirementLine(NamedTuple):
 
 
 def blocks(verification: Verification) -> list[Block]:
-    """Every requirement by the linear model and in time, then the experiments, on the terminal."""
+    """Terminal: every requirement by linear model and time simulation, then experiments."""
     lines = [_line(row) for row in verification.rows]
     columns = [Column(HEADS[0], width=1.0, least=20)]
     columns += [

@@ -43,7 +43,7 @@ _NEAR = 0.6
 
 @dataclass(frozen=True, slots=True)
 class Rung:
-    """A bar of the ladder: name, pressure [Pa], fill, remark, required pressure [Pa]."""
+    """A bar of a step to burst: name, pressure [Pa], fill, remark, required pressure [Pa]."""
 
     name: str
     pressure: float
@@ -135,8 +135,9 @@ def _curve(words: str, study: WallStudy, values: Array, style: int) -> Curve:
 
 
 def ladder_figure(rungs: Sequence[Rung], working: float, *, width: float = 180.0) -> Ink:
-    """Bars of the pressures at which parts of the wall fail, up to burst. || A red tick marks the required pressure.
+    """Bars of the pressures at which parts of the wall fail, up to burst.
 
+    A red tick marks the required pressure.
     Drawn, not a chart: each bar has its numbers and a remark beside it.
     """
     step, top = 4.8, 5.0
@@ -203,7 +204,7 @@ def wall_figure(layers: Sequence[tuple[str, float, str]], *, width: float = 180.
 
 
 MOST_STEPS = 10
-"""Most steps to burst that are drawn; if there are more, the first ones and the last."""
+"""Most steps to burst that are drawn; if there are more, the last and the first nine are drawn."""
 
 _PLACE = re.compile(r"layup\[(\d+)\] [^\s,]+")
 _SHORT = {

@@ -18,7 +18,8 @@ MOST_BYTES = 50_000_000
 MOST_FILES = 16
 """Maximum number of attachments (a choice: a report has two, an editor may add some)."""
 NEAR = 4096
-"""Maximum bytes from a dictionary's type to its begin and to its end (a choice; ours have 200)."""
+"""Maximum bytes from a dictionary's type to its start and to its end (our choice; ours need
+200)."""
 _MARK, _OBJECT = b"/EmbeddedFile", b" obj"
 _STREAM = re.compile(rb">>\s{0,16}stream\r?\n")
 _STEP = 1_000_000

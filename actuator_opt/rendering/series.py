@@ -96,7 +96,7 @@ class FileColumn:
 
 
 class Coded(NamedTuple):
-    """Texts as indices of `words`; a negative code is an empty cell."""
+    """Texts stored as indices into `words`; a negative index is an empty cell."""
 
     codes: Array
     words: Sequence[str]
@@ -151,7 +151,7 @@ def _quoted(text: str) -> str:
 
 
 GROUP = 32_768
-"""Number of rows in memory from which a row group is written."""
+"""Number of rows in memory at which a row group is written."""
 
 
 class ParquetFile(AbstractContextManager["ParquetFile"]):

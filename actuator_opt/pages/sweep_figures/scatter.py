@@ -122,7 +122,7 @@ def _directions(
 
 
 def _span(feasible: Array, every: Sequence[Array]) -> tuple[float, float]:
-    """The range of the feasible designs and as much again about it, as far as there are designs."""
+    """Axis range: feasible designs with a margin as wide again, limited to where designs lie."""
     known = np.concatenate(list(every))
     known = known[np.isfinite(known)]
     low, high = float(known.min()), float(known.max())

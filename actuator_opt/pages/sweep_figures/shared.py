@@ -35,7 +35,7 @@ ORIGINS = ("requirement", "case")
 
 @dataclass(frozen=True)
 class DrawnRows:
-    """Designs to draw: their variants (combinations of names), rows, and the step between them."""
+    """Designs to draw: variants (combinations of names), rows, and sampling step of the rows."""
 
     variants: Array
     rows: Array
