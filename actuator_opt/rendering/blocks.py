@@ -149,7 +149,7 @@ class Share:
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """Place of a value between its bounds, from zero to one; `at` names a bound it has reached."""
+    """Position of a value between its bounds, from 0 to 1; `at` names a bound it has reached."""
 
     place: float
     at: str = ""

@@ -131,7 +131,7 @@ def room(page: Page) -> float:
 
 
 def rest(page: Page, hero: float) -> float:
-    """Height that remains on the first sheet below a figure of this height and the blocks [mm]."""
+    """Height that remains on the first sheet with the blocks and a figure of height `hero` [mm]."""
     legend = sum(
         text_width(f"{n} {part}, {material}", 5.8) + 4.0 for n, part, material in page.items
     )

@@ -30,7 +30,7 @@ class PathMark(TypedDict):
 
 @final
 class TextMark(TypedDict):
-    """A line of text: the middle of its capitals in mm, type size in points, clockwise angle."""
+    """A line of text: mid-height of its capitals [mm], type size [pt], clockwise angle."""
 
     text: str
     at: list[float]

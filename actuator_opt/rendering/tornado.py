@@ -25,7 +25,7 @@ BEYOND = 1.4
 class TornadoBar:
     """An input, with the changes (display units) at its upper end and at its lower end.
 
-    A prediction is drawn as a stroke. `words` are written at the right; red if the end has no design.
+    A prediction is drawn as a stroke. `words` at the right are red if the end has no design.
     """
 
     name: str
