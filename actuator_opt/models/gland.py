@@ -15,7 +15,7 @@ from typing import TypeAlias
 from ..base.numeric import Array, geometry, maximum, minimum, namespace, real, sqrt, where
 
 WIDTH_RATIO = 1.3655
-"""Groove width over free section: least squares through the origin on the five tabulated
+"""Ratio of groove width to free section: least squares through the origin on the five tabulated
 reciprocating glands (mid-tolerance widths 2.4255, 3.6195, 4.8135, 7.2005, 9.5885 mm at sections
 1.778, 2.616, 3.531, 5.334, 6.985 mm); largest residual 0.083 mm (at 5.334 mm)."""
 

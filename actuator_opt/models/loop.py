@@ -384,8 +384,8 @@ def _phase(upper: Polynomial, lower: Polynomial, omega: Array) -> Array:
 
 
 GAIN_MARGIN = 3.0
-"""Ultimate gain over gain (a choice: reserve for the friction, oil and strokes that the linear loop
-leaves out)."""
+"""Ratio of ultimate gain to gain (our choice: a reserve for effects of friction, oil and stroke that
+the linear loop leaves out)."""
 
 
 _ZIEGLER_NICHOLS = {"p": (0.5, None, 0.0), "pi": (0.45, 1 / 1.2, 0.0), "pid": (0.6, 1 / 2, 1 / 8)}

@@ -20,8 +20,8 @@ Chamber: TypeAlias = Literal["a", "b"]
 class TrialMotion:
     """Trial motion over that of the piston; the remaining motion compresses the oil.
 
-    `exchange` is the volume that passes between the walls of both chambers, over area B; `pull` is
-    the motion of the end that the pressure of a chamber pulls.
+    `exchange` is the volume that passes from the wall of one chamber to that of the other, divided
+    by area B; `pull` is the motion of the end that is loaded by a chamber's pressure.
     """
 
     exchange: Array

@@ -5,9 +5,9 @@ plunger's diameter: the standard housings of both diameters are equal. All value
 pressures are gauge unless called absolute.
 
 The damping of the two cylinders may change oppositely with pressure. The load f per length of a
-face rises with the sealed pressure p by its balance k = (df/dp)/b, where b is the contact width. Oil
-pressure that falls evenly across the face carries half of p b. At these speeds, asperities cause
-the friction. At higher pressure they carry more load if k > 1/2, and less if k < 1/2.
+face rises with the sealed pressure p by its balance k = (df/dp)/b, where b is the contact width.
+Oil pressure that falls evenly across the face carries half of p b. At these speeds, asperities
+cause the friction. At higher pressure they carry more load if k > 1/2, and less if k < 1/2.
 
 Equation 26: of the back-up ring the paper states only the material, PTFE with copper; the values
 used here are assumed; the constants below state them.

@@ -1,10 +1,10 @@
 """[AaltoThesis] Table 1 applied to a design's O-rings: sign of ten factors' effect on friction.
 
 Table 1 lists what raises the friction of an O-ring, from an O-ring handbook. Here every factor of a
-design moves by a little and the friction of its two rings is evaluated again: with coefficients of
-friction, and on the oil film. The elasticity, relative change of friction over that of the factor,
-gives the verdict. The film responds to first order by its exact slopes, as in every evaluation.
-Where a contact law has a kink, as at a squeeze of 15 %, the slope is that of one side.
+design is changed slightly, and the friction of its two rings is evaluated again: with coefficients
+of friction, and on the oil film. The verdict follows from the elasticity: the relative change of
+friction, divided by that of the factor. The film responds to first order by its exact slopes, as in
+every evaluation. If a contact law has a kink, as at a squeeze of 15 %, the slope on one side counts.
 """
 
 from __future__ import annotations
