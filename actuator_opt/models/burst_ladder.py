@@ -6,8 +6,8 @@ ladder. Burst is the largest load of the ladder. An isotropic liner yields by vo
 keeps its stress at yield, while the fibres take the further load: yielding is no failure.
 
 All designs of an array take the same fixed number of steps; masks exclude designs that have failed
-already. A complex step follows the branch of its design. `Mechanics` gives the stresses under a load: this module has the thin
-laminate, `tube_burst` the exact tube.
+already. A complex step follows the branch of its design. `Mechanics` gives the stresses under a
+load: for the thin laminate in this module, for the exact tube in `tube_burst`.
 """
 
 from __future__ import annotations

@@ -148,9 +148,9 @@ def one_way_pressure_drop(
 ) -> Array:
     """Pressure drop of the valve at a flow: the needle's own law, or both paths together.
 
-    Outward flow passes the needle alone. Inward flow lies between no drop and the larger of the
-    fully open pressure and the drop of the check valve alone; the monotone balance is solved
-    there by bracketed Newton steps, the last of which carries the derivatives.
+    Outward flow passes only the needle. The drop of inward flow lies between zero and the larger
+    of two pressures: that of the fully open check valve, and the drop at the check valve alone.
+    Bracketed Newton steps solve the monotone flow balance; the last step carries the derivatives.
 
     Parameters
     ----------

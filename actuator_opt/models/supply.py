@@ -72,7 +72,7 @@ def controlled_pump_rate(
     ----------
     flow : q, state of the pump [m^3/s]
     pressure : p_S of the supply line [Pa]
-    set_pressure : p_set, where it delivers nothing [Pa]
+    set_pressure : p_set, at which the pump delivers no flow [Pa]
     gain : K_p, flow per pressure [m^3/s/Pa]
     time_constant : tau [s], > 0
 

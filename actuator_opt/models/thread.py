@@ -264,7 +264,7 @@ def stripping_reductions(*, strength_ratio: Array) -> tuple[Array, Array]:
 
     Parameters
     ----------
-    strength_ratio : R, strength times strip area of the female thread over that of the male [-]
+    strength_ratio : R, (strength x strip area) of the female thread / that of the male [-]
 
     Returns
     -------

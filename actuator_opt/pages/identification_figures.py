@@ -96,7 +96,7 @@ def _sound(sliding: Sliding) -> Array:
 
 
 def joined(pieces: Sequence[tuple[Values, Values]]) -> tuple[Array, Array]:
-    """Pieces of a curve as one curve with a break after each."""
+    """Pieces of a curve joined to one curve, with a break after each piece."""
     breaks = np.array([np.nan])
     xs, ys = (
         np.concatenate([*chain.from_iterable((piece[k], breaks) for piece in pieces), breaks])

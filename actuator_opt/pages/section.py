@@ -76,7 +76,7 @@ class _Frame:
 
 
 def choose_scale(length: float, height: float, room: float, room_high: float) -> tuple[int, int]:
-    """The largest ISO 5455 scale at which `length` × `height` (m) fits the room (mm).
+    """The largest ISO 5455 scale at which `length` × `height` (m) fits the space (mm).
 
     >>> choose_scale(0.23, 0.03, 150.0, 60.0)
     (1, 2)

@@ -125,7 +125,7 @@ def kind_of(simulations: Sequence[Simulation]) -> str:
 def styles(names: Sequence[str]) -> list[Pen]:
     """Pen of every run: the words before the last comma choose the colour, those after it the dash.
 
-    Where the names form no such groups, every run has its own colour and dash.
+    If the names form no such groups, every run has a different colour and dash.
 
     >>> styles(["0 %, out", "0 %, in", "50 %, out", "50 %, in"])
     [(0, 0), (0, 1), (1, 0), (1, 1)]

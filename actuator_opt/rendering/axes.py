@@ -302,7 +302,10 @@ def steady_range(ends: Sequence[float], *, zero: bool = False) -> tuple[float, f
 def names(
     ink: Ink, right: float, y: float, entries: Sequence[tuple[str, dict[str, Any]]], room: float
 ) -> None:
-    """Names of curves in a row that ends at `right`, cut to the room; their lines precede them."""
+    """Draw names of curves, each after a line sample, in a row that ends at `right`.
+
+    Names are cut to the width `room`.
+    """
     if not entries:
         return
     words = [name for name, _ in entries]

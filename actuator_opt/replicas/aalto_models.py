@@ -512,7 +512,7 @@ class DynamicTest:
     static: float
     """Stiffness at mid-stroke with closed ports and hoses [N/m]."""
     closed: StiffnessResponse
-    """Throttle 100 %: cylinder and pipes alone."""
+    """Response with a throttle of 100 %: only cylinder and pipes."""
     area: float
     """Area of the needle as stated [m^2]."""
     needle: Needle

@@ -1,7 +1,7 @@
 """Tables of the values printed in [ElAsswad2018] beside ours, with the paper's contradictions.
 
-One table per subject; the columns are what the paper prints, what its own formula gives with the
-paper's numbers, and what this project's models give for the design.
+One table per subject. Its columns are the printed value, the result of the paper's formula with the
+paper's numbers, and the result of this project's models for the design.
 """
 
 from __future__ import annotations

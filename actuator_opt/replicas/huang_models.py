@@ -251,7 +251,8 @@ class ReliefVariant:
     ----------
     relief, land : [m]; the land is that of the design, or shorter if the relief takes its space
     balance : at the mean pressure
-    pressures, damping : alone at the typical speed (p,) [Pa], [N s/m]; NaN where it lifts off
+    pressures, damping : of the ring alone at the typical speed (p,) [Pa], [N s/m]; NaN where the
+        ring lifts off
     """
 
     relief: float
@@ -561,7 +562,7 @@ PRESSURE = 6e6
 
 @dataclass(frozen=True, slots=True)
 class Readings:
-    """The step ring of the plunger, alone; NaN without a film.
+    """Effects of errors in print on the plunger's step ring; NaN without a film.
 
     Parameters
     ----------

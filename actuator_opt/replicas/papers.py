@@ -1,8 +1,8 @@
 """Common parts for all papers: reader of their data in ``notes/PAPER.yaml``, words of tables.
 
-The data of a paper are its published numbers with their places in the paper, its claims, its
+The data of a paper are its published numbers with their locations in the paper, its claims, its
 numbered equations with the functions that compute them, and reasons in words. The reader is strict:
-each number needs a unit and a place, and the code must know each name.
+each number needs a unit and its location in the paper, and the code must know each name.
 """
 
 from __future__ import annotations

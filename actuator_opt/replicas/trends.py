@@ -4,7 +4,7 @@ Table 1 lists what raises the friction of an O-ring, from an O-ring handbook. He
 design is changed slightly, and the friction of its two rings is evaluated again: with coefficients
 of friction, and on the oil film. The verdict follows from the elasticity: the relative change of
 friction, divided by that of the factor. The film responds to first order by its exact slopes, as in
-every evaluation. If a contact law has a kink, as at a squeeze of 15 %, the slope on one side counts.
+every evaluation. At a kink of a contact law, as at a squeeze of 15 %, the slope on one side counts.
 """
 
 from __future__ import annotations
@@ -56,7 +56,8 @@ class Factor:
     name : as printed
     direction : +1 where the column "to increase friction" prints Increase, -1 where Decrease
     handbook : the direction in the handbook's table ([ORingFriction], table A6-1)
-    paths : PATHs of a design that are moved together; {place}, {compound} and {case} filled in
+    paths : PATHs of a design that are changed together, with placeholders {place}, {compound} and
+        {case}
     """
 
     name: str
@@ -130,7 +131,7 @@ class Trends:
     Parameters
     ----------
     case : the moving load case with the highest friction
-    replaced : places where the design has no elastomer O-ring, and an O-ring replaces its seal
+    replaced : places (piston, rod) at which an O-ring replaces a seal of another kind
     rings : the evaluated rings, with numbers of that case
     coefficient, film : the two models
     """
@@ -206,7 +207,7 @@ def trends(design: Design) -> Trends | None:
 
 
 def _elastomer_o_ring(design: Design, place: Place, numbers: Container[str]) -> bool:
-    """Whether the seal of a place is an O-ring whose modulus follows from its hardness."""
+    """Whether the seal of piston or rod is an O-ring whose modulus follows from its hardness."""
     seal: Seal = getattr(design.seals, place)
     stated = f"materials.{seal.compound}.youngs_modulus" in numbers
     return seal.type == o_ring.TYPE.name and not seal.contact and not stated
@@ -220,7 +221,7 @@ _OF_ANOTHER = (
     "back_up_material",
     "back_up_thickness",
 )
-"""Fields of another type of seal that do not apply to the O-ring in its place."""
+"""Fields of other seal types that do not apply to the O-ring that replaces them."""
 
 
 def _fitted(design: Design, replaced: Sequence[Place], model: str) -> Design:

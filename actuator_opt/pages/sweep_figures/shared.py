@@ -157,7 +157,7 @@ class SweepFigureData:
         return DrawnRows(variant, np.array([best.row]))
 
     def bests(self) -> list[Best]:
-        """The best designs; raises `InputError` where none is feasible."""
+        """The best designs; raises `InputError` if no design is feasible."""
         if not self.swept.best:
             message = f"no feasible design among {self.swept.requested} variants"
             raise InputError(Diagnostic(message, "widen what varies, or draw a contour of a grid"))
