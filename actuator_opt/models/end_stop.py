@@ -210,7 +210,8 @@ def cushion_mean_pressure(
 ) -> Array:
     """Mean pressure of a cushion that stops a mass over its length, E/(A L).
 
-    No cushion of this length can have a lower peak pressure. E is `endurance.end_stop_energy` over the length.
+    No cushion of this length can have a lower peak pressure. E is `endurance.end_stop_energy` over
+    the length.
 
     Parameters
     ----------

@@ -349,7 +349,7 @@ def squeeze_extremes(
     squeeze : nominal C [-]
     section : free section W [m]
     section_tolerance : half width t_W [m]
-    depth_tolerance : half width of the radial space's tolerance t_d [m]
+    depth_tolerance : half the tolerance width of the radial space, t_d [m]
     eccentricity : of rod or piston e, at most its radial clearance [m]
 
     Returns
