@@ -306,7 +306,7 @@ def squeeze_at_volume(*, squeeze: Array, volume_ratio: Array) -> Array:
     Parameters
     ----------
     squeeze : at assembly C [-]
-    volume_ratio : ring over groove volume, relative to assembly r (`volume_ratio`) [-], > 0
+    volume_ratio : r, ring volume / groove volume, relative to assembly (`volume_ratio`) [-], > 0
 
     Returns
     -------
@@ -458,8 +458,8 @@ def extrusion_gap_limit(*, hardness: Array, pressure: Array, table: Table) -> Ar
 def extrusion_pressure_end(*, hardness: Array, table: Table) -> Array:
     """Highest pressure that a table of extrusion limits covers at a hardness.
 
-    It is the lower end of the two rows beside the hardness, and the end of the last row for a
-    harder seal.
+    It is the lower of the last pressures of the two rows with the nearest hardnesses. For a seal
+    harder than the last row, it is the last pressure of that row.
 
     Parameters
     ----------
@@ -500,10 +500,9 @@ def backed_gap_limit(
 ) -> Array:
     """Largest gap with a back-up ring: the larger limit of those that cover the pressure.
 
-    A back-up ring bridges the gap for the seal. The seal's limit therefore does not bind while the
-    ring bears a larger gap, nor the ring's limit while the seal needs no ring. Beyond its last
-    stated pressure a limit is only held constant, so the other limit counts alone. Beyond both
-    pressures the limit stated to the higher pressure counts.
+    A back-up ring bridges the gap for the seal, so the larger of both limits counts. Beyond its
+    last stated pressure, a limit is not data but a constant continuation. There, only the other
+    limit counts. Beyond both pressures, the limit that is stated up to the higher pressure counts.
 
     Parameters
     ----------

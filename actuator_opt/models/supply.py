@@ -27,7 +27,7 @@ def relief_flow(
 
     Parameters
     ----------
-    pressure_difference : dp, pressure line less tank [Pa], either sign
+    pressure_difference : dp, pressure of the line minus tank pressure [Pa], either sign
     cracking_pressure : p_c, where it begins to open [Pa], >= 0
     override : dp_o, pressure above cracking at the rated flow [Pa], > 0
     rated_flow : q_r [m^3/s]
