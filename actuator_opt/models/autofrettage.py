@@ -221,7 +221,7 @@ def autofrettage(
     """Residual state of a lined tube after one overpressure, and its new elastic limit.
 
     sigma_r = -p + Y ln(r/a) in the yielded zone a..c, sigma_t = sigma_r + Y;
-    p(c) = q + Y [ln(c/a) + (1 - c^2/b^2)/2], q from the wrap; the head of the module derives it.
+    p(c) = q + Y [ln(c/a) + (1 - c^2/b^2)/2], q from the wrap; derived in the module's docstring.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ def one_way_flow(
 ) -> Array:
     """Flow out of the chamber, q_needle(dp) + w^2 (3 - 2 w) q_check(dp).
 
-    w rises from 0 at dp = -cracking_pressure to 1 an opening span below it.
+    w rises from 0 at dp = -cracking_pressure to 1 at dp = -(cracking_pressure + opening span).
 
     Parameters
     ----------
