@@ -105,7 +105,8 @@ def one_stress_modes(
 ) -> tuple[Array, Array]:
     """Utilisation of one stress component in tension and in compression.
 
-    sigma/(X_t - sigma_residual) and -sigma/(X_c + sigma_residual), 0 if the stress has the opposite sign.
+    sigma/(X_t - sigma_residual) and -sigma/(X_c + sigma_residual), or 0 for the opposite
+    sign of sigma.
 
     Parameters
     ----------
