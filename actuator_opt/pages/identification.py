@@ -143,7 +143,7 @@ def _tiles(identification: Identification) -> list[Tile]:
 
 
 def _blocks(identification: Identification) -> Iterator[Block]:
-    """Parameters with their verdicts, channels, and the basis of the results."""
+    """Blocks: parameters with their verdicts, channels, and the basis of the results."""
     yield _friction(identification)
     sides = [[*_stribeck(identification), *_fits(identification)], _lugre(identification)]
     shorter = min(sides, key=lambda side: sum(height(block, HALF) for block in side))

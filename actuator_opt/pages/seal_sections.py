@@ -418,7 +418,7 @@ def element_shapes(element: SealElement, *, depth: float, width: float) -> tuple
 
 
 def wiper_shapes(wiper: Wiper, *, depth: float, width: float) -> tuple[Shape, ...]:
-    """A wiper: its body on the inner side, its lip towards the outer side."""
+    """Outline of a wiper, with its body on the inner side and its lip towards the outer side."""
     give = max(wiper.section - depth, 0.0) / 2
     tip = min(wiper.width, 0.9 * width)
     root, thick = width - tip, min(wiper.thickness, 0.8 * depth)
@@ -436,7 +436,7 @@ def wiper_shapes(wiper: Wiper, *, depth: float, width: float) -> tuple[Shape, ..
 
 
 def guide_shapes(guide: Guide) -> tuple[Shape, ...]:
-    """A guide ring fills its groove."""
+    """Outline of a guide ring, which fills its groove."""
     return (Shape("polymer", box(0.0, guide.width, 0.0, guide.thickness)),)
 
 

@@ -23,7 +23,7 @@ NEAR = 4096
 _MARK, _OBJECT = b"/EmbeddedFile", b" obj"
 _STREAM = re.compile(rb">>\s{0,16}stream\r?\n")
 _STEP = 1_000_000
-"""Bytes unpacked at once."""
+"""Number of bytes that are unpacked in one step."""
 _DAMAGED = Diagnostic("its attachment is damaged", "use the original file")
 
 _MOST_PDF_BYTES = 200_000_000

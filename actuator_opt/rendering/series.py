@@ -241,7 +241,7 @@ class ParquetFile(AbstractContextManager["ParquetFile"]):
         return arrow.array(values == 1.0 if field.kind == "flag" else values, mask=missing)
 
     def _write(self) -> None:
-        """Write the rows in memory as a row group."""
+        """Write the rows that are in memory to the file, as a row group."""
         if self._waiting:
             table = self._arrow.Table.from_batches(self._waiting, self._schema)
             self._waiting = []

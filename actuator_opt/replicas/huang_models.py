@@ -149,7 +149,7 @@ def cylinder_map(seals: Sealings, speeds: Sequence[float] = SPEEDS) -> CylinderM
 
 
 def fast_map(seals: Sealings) -> FilmMap:
-    """The plunger at 6 MPa beyond the tested speeds."""
+    """Map of the plunger at 6 MPa, for speeds above the tested range."""
     return film_map(seals.plunger, [PAPER.compared], FAST)
 
 
