@@ -559,7 +559,7 @@ class HeldCylinder:
         """Linear model with a needle of given area; zero area is closed.
 
         Oil leaves both chambers through their needle, as in the half cycle that empties them. The
-        needle is linearised so that it dissipates as much energy as at the thesis' sinusoidal speed.
+        needle is linearised so that it dissipates as much energy as the thesis' sinusoidal motion.
         """
         throttles = {}
         for chamber in CHAMBERS:
