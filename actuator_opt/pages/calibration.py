@@ -39,7 +39,7 @@ from .identification_figures import FORCE, SPEED, joined, measured, speed
 from .report import doubts
 
 MOST_LEVELS, MOST_ROWS = 3, 9
-"""Most pressures and most requirements drawn (our choice: more cannot be told apart by eye)."""
+"""Most pressures and most requirements drawn (our choice: more are hard to distinguish by eye)."""
 STATED, MEASURED = "as stated", "as measured"
 
 

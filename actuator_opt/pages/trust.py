@@ -49,7 +49,7 @@ def brief(optimisation: Optimisation) -> Iterator[Block]:
 
 
 def proof(optimisation: Optimisation, *, shortened: bool = False) -> list[str]:
-    """What the certificate proves; without a certificate, how to get one.
+    """Sentences on what the certificate proves; without a certificate, on how to get one.
 
     `shortened`: the covered limits are counted, not named.
     """
