@@ -65,7 +65,7 @@ def gas_capacitance(
 ) -> Array:
     """Capacitance of the gas for small vibrations, C = V/(n (p + p_a)).
 
-    The gas was filled slowly to V (`filling_index`) and then vibrates fast about it (n).
+    Slow filling has compressed the gas to V (`filling_index`). Fast oscillations about V follow n.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Autofrettage of a metal-lined tube: one overpressure, then elastic unloading.
 
 The liner between the radii a and b is isotropic, elastic and perfectly plastic. It yields by Tresca
-where the hoop less the radial stress is Y, without axial plastic strain; the wrap stays elastic.
+where the hoop minus the radial stress is Y, without axial plastic strain; the wrap stays elastic.
 Everywhere in the liner sigma_z = E e_z + nu (sigma_r + sigma_t) with e_z = eps_z - alpha dT, so
 equilibrium alone gives its axial force. The volume changes only elastically, so that in the elastic
 and in the plastic zone
@@ -18,7 +18,7 @@ The wrap is linear: q = kappa Y x - mu p - tau. Both leave one equation for x, w
 y - m (e^y - 1) + s = 0, m = 1 - 2 kappa < 1, s = 2 (1 + mu)(p_full - p)/Y. Its left side rises and
 its curvature has one sign. Newton's method therefore converges in a few steps from a start that is
 exact at the double root (m = 1, s = 0: collapse of a bare liner); a complex step at the end makes
-every derivative exact. Unloading is elastic: the residual state is the state at p less the elastic
+every derivative exact. Unloading is elastic: the residual state is the state at p minus the elastic
 state at p.
 """
 
@@ -66,11 +66,12 @@ class Autofrettage:
     bore_displacement : permanent radial growth of the bore [m]
     stresses : residual sigma_1, sigma_2, sigma_3, tau_12, each (2 faces, layers, ...) as from
         `layered_tube.ply_stresses_at_faces`; the liner's 1, 2, 3 are z, t, r [Pa]
-    reverse_yield : Tresca stress over yield at the unloaded bore, thermal stress included [-]
+    reverse_yield : Tresca stress at the unloaded bore, thermal stress included, divided by the
+        yield strength [-]
     elastic_limit : pressure at which the liner yields next, with all loads in the same proportion
         [Pa]
     axial_margin : distance of sigma_z to the nearer end of the range sigma_r to sigma_t in the
-        yielded zone, over the yield strength [-]
+        yielded zone, divided by the yield strength [-]
     """
 
     yield_pressure: Array
@@ -220,7 +221,7 @@ def autofrettage(
     """Residual state of a lined tube after one overpressure, and its new elastic limit.
 
     sigma_r = -p + Y ln(r/a) in the yielded zone a..c, sigma_t = sigma_r + Y;
-    p(c) = q + Y [ln(c/a) + (1 - c^2/b^2)/2], q from the wrap; the head of the module derives it.
+    p(c) = q + Y [ln(c/a) + (1 - c^2/b^2)/2], q from the wrap; derived in the module's docstring.
 
     Parameters
     ----------

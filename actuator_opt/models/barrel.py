@@ -194,7 +194,7 @@ def burst_pressure_thick(
     ----------
     inner_radius, outer_radius : radii of the wall [m]
     yield_strength, ultimate_strength : tensile strengths [Pa]
-    axial_force_ratio : n, the wall's axial force over that of a closed cylinder [-], 0 to 1
+    axial_force_ratio : n, the wall's axial force / that of a closed cylinder [-], 0 to 1
 
     Returns
     -------

@@ -130,7 +130,7 @@ def axial_force_cap_mounted(
 ) -> Array:
     """Axial force in the barrel wall of a cylinder held at its cap.
 
-    N = p_B A_B + F_stop: the pressure on the head, and the piston pressing on it.
+    N = p_B A_B + F_stop: the pressure on the head, and the force of the piston that presses on it.
 
     Parameters
     ----------

@@ -5,9 +5,9 @@ matrix or shear failure softens every ply of that material and |angle|; a fibre 
 ladder. Burst is the largest load of the ladder. An isotropic liner yields by von Mises and then
 keeps its stress at yield, while the fibres take the further load: yielding is no failure.
 
-All designs of an array climb the same fixed number of steps under masks, and a complex step follows
-the branch of its design. `Mechanics` gives the stresses under a load: this module has the thin
-laminate, `tube_burst` the exact tube.
+All designs of an array take the same fixed number of steps; masks exclude designs that have failed
+already. A complex step follows the branch of its design. `Mechanics` gives the stresses under a
+load: for the thin laminate in this module, for the exact tube in `tube_burst`.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ MODES = (
     "shear",
     "yield",
 )
-"""Names of the modes by their code in a ladder."""
+"""Names of the failure modes by their code in a ladder."""
 
 _YIELD = 6
 _NONE = 1e-300
@@ -93,7 +93,8 @@ class BurstLadder:
     first_ply_pressure : first failure of a composite ply
     burst_pressure : largest load of the ladder
     liner_yield_pressure : first yield of a metal layer in the intact wall; infinite without one
-    record : per step the code of its mode (a row of `intact`), its load, whether the design climbed
+    record : for each step the code of its mode (a row of `intact`), its load, and whether the
+        design took it
     order : index from the bore of each internal layer, metals first
     intact : 1/p of every mode in the intact wall: rows of modes, faces and layers, then the yield
         of metals

@@ -72,7 +72,7 @@ def mixture_bulk_modulus(
     """Tangent bulk modulus that keeps the mass, K_eff = (f + alpha r)/(f/K_p + alpha r/(n P)).
 
     P = p + p_a, K_p = K + m p, f and r as in `density_ratio`. The result is that of
-    `fluid.effective_bulk_modulus` with alpha/f, the air over the oil volume at the pressure itself.
+    `fluid.effective_bulk_modulus` with alpha/f, the ratio of air to oil volume at this pressure.
     Unlike that formula it has no floor: it tends to n P as P falls to zero.
 
     Parameters

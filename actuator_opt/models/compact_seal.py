@@ -49,7 +49,7 @@ def contact_width(*, squeeze: Array, face_width: Array, groove_width: Array) -> 
     ----------
     squeeze : C of the free radial height [-]
     face_width : free width w of the sliding face [m]
-    groove_width : room between the guide parts [m]
+    groove_width : space between the guide parts [m]
 
     Returns
     -------

@@ -23,7 +23,8 @@ from itertools import pairwise
 from ..base.numeric import Array, clip, geometry, maximum, positive, real, sqrt, where
 
 LIP_PLACES, LIP_SHARE = (0.0, 0.2, 0.6, 1.0), 0.42
-"""Knots of the lip profile, and its third pressure over its second (*choice*, surrogate)."""
+"""Knots of the lip profile, and ratio of its pressure at the third knot to that at the
+second\n(*choice*, surrogate)."""
 O_RING_POWER = 10
 """Power of the energised part, 1 - t^10. It is within 0.18 p of the finite-element profiles of this
 project at a squeeze of 0.10 to 0.20 and p up to E, and worst near the outer edge. Their mean is

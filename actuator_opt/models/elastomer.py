@@ -17,9 +17,10 @@ WLF_SLOPE, WLF_SPAN = 17.44, 51.6
 """Universal constants of the time-temperature shift above the glass transition [Ferry1980]: decades
 and kelvin."""
 GLASS_OFFSET = 5.0
-"""Kelvin from the glass transition up to the stiffening temperature (*choice*: a few kelvin)."""
+"""Stiffening temperature minus glass transition temperature [K] (*choice*: a few kelvin)."""
 ROUSE_EXPONENT = 0.5
-"""Modulus over shifted time in the transition zone, G ~ t^-1/2 (Rouse) [Ferry1980]."""
+"""Exponent of the modulus in the transition zone, G ~ t^-1/2 with shifted time t (Rouse)
+[Ferry1980]."""
 
 
 def modulus_gent(*, hardness: Array) -> Array:

@@ -13,9 +13,9 @@ from .endurance import end_stop_energy
 from .orifice import TURBULENT_COEFFICIENT, orifice_pressure_drop
 
 STOP_TRAVEL = 0.2e-3
-"""Travel over which a stop takes the force of the supply pressure, m [MECE5005]."""
+"""Compression of a stop under the force of the supply pressure, m [MECE5005]."""
 DAMPING_FACTOR = 0.5
-"""Damping of a stop over sqrt(K m): a quarter of the critical value [MECE5005]."""
+"""Ratio of a stop's damping to sqrt(K m), stiffness K, mass m: a quarter of critical [MECE5005]."""
 
 
 @geometry
@@ -210,7 +210,8 @@ def cushion_mean_pressure(
 ) -> Array:
     """Mean pressure of a cushion that stops a mass over its length, E/(A L).
 
-    No cushion of this length has a lower peak; E is `endurance.end_stop_energy` over the length.
+    No cushion of this length can have a lower peak pressure. E is `endurance.end_stop_energy` over
+    the length.
 
     Parameters
     ----------

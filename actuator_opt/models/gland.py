@@ -15,7 +15,7 @@ from typing import TypeAlias
 from ..base.numeric import Array, geometry, maximum, minimum, namespace, real, sqrt, where
 
 WIDTH_RATIO = 1.3655
-"""Groove width over free section: least squares through the origin on the five tabulated
+"""Ratio of groove width to free section: least squares through the origin on the five tabulated
 reciprocating glands (mid-tolerance widths 2.4255, 3.6195, 4.8135, 7.2005, 9.5885 mm at sections
 1.778, 2.616, 3.531, 5.334, 6.985 mm); largest residual 0.083 mm (at 5.334 mm)."""
 
@@ -306,7 +306,7 @@ def squeeze_at_volume(*, squeeze: Array, volume_ratio: Array) -> Array:
     Parameters
     ----------
     squeeze : at assembly C [-]
-    volume_ratio : ring over groove volume, relative to assembly r (`volume_ratio`) [-], > 0
+    volume_ratio : r, ring volume / groove volume, relative to assembly (`volume_ratio`) [-], > 0
 
     Returns
     -------
@@ -349,7 +349,7 @@ def squeeze_extremes(
     squeeze : nominal C [-]
     section : free section W [m]
     section_tolerance : half width t_W [m]
-    depth_tolerance : half width of the radial room t_d [m]
+    depth_tolerance : half the tolerance width of the radial space, t_d [m]
     eccentricity : of rod or piston e, at most its radial clearance [m]
 
     Returns
@@ -458,8 +458,8 @@ def extrusion_gap_limit(*, hardness: Array, pressure: Array, table: Table) -> Ar
 def extrusion_pressure_end(*, hardness: Array, table: Table) -> Array:
     """Highest pressure that a table of extrusion limits covers at a hardness.
 
-    It is the lower end of the two rows beside the hardness, and the end of the last row for a
-    harder seal.
+    It is the lower of the last pressures of the two rows with the nearest hardnesses. For a seal
+    harder than the last row, it is the last pressure of that row.
 
     Parameters
     ----------
@@ -500,10 +500,9 @@ def backed_gap_limit(
 ) -> Array:
     """Largest gap with a back-up ring: the larger limit of those that cover the pressure.
 
-    A back-up ring bridges the gap for the seal. The seal's limit therefore does not bind while the
-    ring bears a larger gap, nor the ring's limit while the seal needs no ring. Beyond its last
-    stated pressure a limit is only held constant, so the other limit counts alone. Beyond both
-    pressures the limit stated to the higher pressure counts.
+    A back-up ring bridges the gap for the seal, so the larger of both limits counts. Beyond its
+    last stated pressure, a limit is not data but a constant continuation. There, only the other
+    limit counts. Beyond both pressures, the limit that is stated up to the higher pressure counts.
 
     Parameters
     ----------

@@ -8,8 +8,8 @@ from ..base.numeric import Array, maximum, minimum, real, where
 from .valve import edge_conductance, edge_flow
 
 LEAST = 1e-12
-"""Least flow over coefficient of an edge that can supply oil [sqrt(Pa)]: that at a drop of 1e-10
-Pa."""
+"""Least ratio of flow to flow coefficient of an edge that can supply oil [sqrt(Pa)]: its value at a
+pressure drop of 1e-10 Pa."""
 
 
 class FeedingEdges(NamedTuple):

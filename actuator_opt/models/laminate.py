@@ -108,7 +108,7 @@ def thermal_line_forces(
 ) -> tuple[Array, Array]:
     """Line forces that a temperature change adds to the mechanical ones in `strains`.
 
-    N_T = dT sum K_k t_k. The stress of a ply then follows from the strain less its alpha dT.
+    N_T = dT sum K_k t_k. The stress of a ply then follows from the strain minus its alpha dT.
 
     Parameters
     ----------

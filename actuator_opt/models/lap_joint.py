@@ -36,7 +36,7 @@ def least_bond_peak_ratio(
 
     Returns
     -------
-    lower bound on the peak over the mean [-]
+    lower bound on the ratio of peak to mean [-]
 
     Notes
     -----

@@ -322,7 +322,7 @@ def ply_stresses_at_faces(
 ) -> tuple[Array, Array, Array, Array]:
     """Stresses of every ply in its own axes, at both faces of its layer.
 
-    The stress is the ply's stiffness times the strains of the wall less the free strains of the
+    The stress is the ply's stiffness times the difference of wall strains and free strains of the
     ply. In a pair without torque both plies differ only in the sign of the shear.
 
     Parameters

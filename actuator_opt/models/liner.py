@@ -28,9 +28,9 @@ class LinerCycle:
     Parameters
     ----------
     strain_range : equivalent elastic strain from rest to pressure [-]
-    shakedown : strain range over twice the yield strain [-]; above 1 every cycle yields in both
-        directions
-    at_rest, at_pressure : equivalent stress over yield [-]; above 1 the next cycle yields
+    shakedown : strain range divided by twice the yield strain [-]; above 1 every cycle yields in
+        both directions
+    at_rest, at_pressure : equivalent stress / yield strength [-]; above 1 the next cycle yields
     """
 
     strain_range: Array

@@ -175,7 +175,7 @@ class ReflectedInertia(NamedTuple):
 def reflected_inertia(*, inertia: Array, lever_arm: Array, lever_slope: Array) -> ReflectedInertia:
     """Joint inertia as the actuator feels it, F = (J/l'^2) dv/dt - (J l''/l'^4) v^2.
 
-    The velocity factor is half the slope of the mass over the length, so that the work of F is
+    The velocity factor is half the derivative of mass by length, so that the work of F is
     the change of J theta_dot^2/2.
 
     Parameters

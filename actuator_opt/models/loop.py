@@ -327,7 +327,7 @@ def margins(*, loop: PositionOpenLoop, gain: Array) -> PositionLoopMargins:
     """Phase margin, its crossover and the -3 dB bandwidth of the closed position loop.
 
     |K N|^2 = |D|^2 gives the crossovers, |D + K N|^2 = 2 |K N|^2 the bandwidth (its first root);
-    the phase margin is the smallest angle between K N/D and -1 over the crossovers.
+    the phase margin is the smallest angle between K N/D and -1 of all crossovers.
 
     Parameters
     ----------
@@ -384,8 +384,8 @@ def _phase(upper: Polynomial, lower: Polynomial, omega: Array) -> Array:
 
 
 GAIN_MARGIN = 3.0
-"""Ultimate gain over gain (a choice: reserve for the friction, oil and strokes that the linear loop
-leaves out)."""
+"""Ratio of ultimate gain to gain (our choice: a reserve for effects of friction, oil and stroke
+that the linear loop leaves out)."""
 
 
 _ZIEGLER_NICHOLS = {"p": (0.5, None, 0.0), "pi": (0.45, 1 / 1.2, 0.0), "pid": (0.6, 1 / 2, 1 / 8)}
@@ -455,7 +455,7 @@ def margin_rules(
 
     That integral time damps the slow pair of poles, s^2 + K K_v s + K K_v/T_i, critically; its zero
     overshoots a step by e^-2. There is no PID: behind a lightly damped oil spring a derivative part
-    takes gain margin away and gives nothing back.
+    reduces the gain margin without any benefit.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """One-way flow-control valve: a needle that throttles, with a check valve beside it.
 
-The pressure difference is that of the chamber less that of the line. If it is positive, oil flows
+The pressure difference is chamber pressure minus line pressure. If it is positive, oil flows
 out of the chamber through the needle only. If it is negative, oil flows into the chamber through
 the needle and, above the cracking pressure, through the check valve too.
 """
@@ -15,12 +15,13 @@ from .orifice import orifice_conductance, orifice_flow, orifice_pressure_drop
 NEEDLE_AREA = 0.22e-4
 """Effective area of the fully open needle, m^2 [AaltoThesis] section 3.1."""
 CHECK_AREA = 0.64e-4
-"""Effective area of free flow, m^2 [AaltoThesis] section 3.1; taken as the poppet's alone
-(choice)."""
+"""Effective area of free flow, m^2 [AaltoThesis] section 3.1; assumed to be
+that of the poppet only (our choice)."""
 CRACKING_PRESSURE = 0.4e5
 """Pressure difference that opens the check valve, Pa [AaltoThesis] section 3.3.5."""
 OPENING_SPAN = 0.1e5
-"""Pressure from cracking to fully open, Pa (choice: between them w^2 (3 - 2 w) of the area)."""
+"""Pressure rise from cracking to fully open, Pa. Our choice: after a share w of this rise, a
+share\nw^2 (3 - 2 w) of the area is open."""
 _STEPS = 80
 _TOLERANCE = 1e-12
 
@@ -39,7 +40,7 @@ def one_way_flow(
 ) -> Array:
     """Flow out of the chamber, q_needle(dp) + w^2 (3 - 2 w) q_check(dp).
 
-    w rises from 0 at dp = -cracking_pressure to 1 an opening span below it.
+    w rises from 0 at dp = -cracking_pressure to 1 at dp = -(cracking_pressure + opening span).
 
     Parameters
     ----------
@@ -147,9 +148,9 @@ def one_way_pressure_drop(
 ) -> Array:
     """Pressure drop of the valve at a flow: the needle's own law, or both paths together.
 
-    Outward flow passes the needle alone. Inward flow lies between no drop and the larger of the
-    fully open pressure and the drop of the check valve alone; the monotone balance is solved
-    there by bracketed Newton steps, the last of which carries the derivatives.
+    Outward flow passes only the needle. The drop of inward flow lies between zero and the larger
+    of two pressures: that of the fully open check valve, and the drop at the check valve alone.
+    Bracketed Newton steps solve the monotone flow balance; the last step carries the derivatives.
 
     Parameters
     ----------

@@ -260,7 +260,7 @@ def mean_gap_ratio(*, film_ratio: Array) -> Array:
 
     Returns
     -------
-    mean gap over the composite roughness [-]
+    mean gap / composite roughness [-]
 
     Notes
     -----

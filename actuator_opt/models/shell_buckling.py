@@ -150,7 +150,7 @@ def local_shell_moment(
 ) -> Array:
     """Bending moment at which the wall of a tube buckles locally, or a long tube flattens.
 
-    The less of pi R^2 t sigma = pi gamma E R t^2/sqrt(3 (1 - nu^2)) and Brazier's
+    The lower of pi R^2 t sigma = pi gamma E R t^2/sqrt(3 (1 - nu^2)) and Brazier's
     (2 sqrt(2) pi/9) E R t^2/sqrt(1 - nu^2); the second governs up to R/t of about 240.
 
     Parameters

@@ -17,9 +17,9 @@ from ..base.numeric import Array, geometry, maximum, real, sqrt, where
 def wetted_back(*, ring_width: Array, foot_width: Array, section: Array, squeeze: Array) -> Array:
     """Length of the ring's back that the pressure wets, a_b = w - b - W (1 - C)/2, at least 0.
 
-    The pressure has pushed the O-ring to the outer side; between its foot b and the groove's outer
-    wall lies the dry quarter round of the squeezed section. Under pressure the foot widens into
-    that dry corner, so a_b does not change.
+    The pressure has pushed the O-ring to the outer side. A dry corner, bounded by the rounded side
+    of the squeezed section, remains between its contact b and the groove's outer wall. Under
+    pressure the contact widens into that corner, so a_b does not change.
 
     Parameters
     ----------

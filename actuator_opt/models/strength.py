@@ -179,7 +179,7 @@ def yield_utilisation(
 ) -> Array:
     """Utilisation 1/SR of a metal: von Mises of residual + SR stress reaches yield.
 
-    With <a, b> of `mises_product` over yield^2:
+    With <a, b> = `mises_product` / yield^2:
     u = (<s, r> + sqrt(<s, r>^2 + (1 - <r, r>) <s, s>))/(1 - <r, r>).
 
     Parameters

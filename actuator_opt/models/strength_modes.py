@@ -105,7 +105,8 @@ def one_stress_modes(
 ) -> tuple[Array, Array]:
     """Utilisation of one stress component in tension and in compression.
 
-    sigma/(X_t - sigma_residual) and -sigma/(X_c + sigma_residual), 0 where the sign is the other.
+    sigma/(X_t - sigma_residual) and -sigma/(X_c + sigma_residual), or 0 for the opposite
+    sign of sigma.
 
     Parameters
     ----------
@@ -168,7 +169,7 @@ def max_stress_modes(
     """Utilisation of every mode of the maximum-stress criterion.
 
     sigma_1/X_t, -sigma_1/X_c, sigma_2/Y_t, -sigma_2/Y_c, |tau_12|/S, sigma_3/Y_t, -sigma_3/Y_c,
-    each strength less the residual stress of that direction.
+    with each strength reduced by the residual stress in its direction.
 
     Parameters
     ----------

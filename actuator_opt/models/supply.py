@@ -27,7 +27,7 @@ def relief_flow(
 
     Parameters
     ----------
-    pressure_difference : dp, pressure line less tank [Pa], either sign
+    pressure_difference : dp, pressure of the line minus tank pressure [Pa], either sign
     cracking_pressure : p_c, where it begins to open [Pa], >= 0
     override : dp_o, pressure above cracking at the rated flow [Pa], > 0
     rated_flow : q_r [m^3/s]
@@ -72,7 +72,7 @@ def controlled_pump_rate(
     ----------
     flow : q, state of the pump [m^3/s]
     pressure : p_S of the supply line [Pa]
-    set_pressure : p_set, where it delivers nothing [Pa]
+    set_pressure : p_set, at which the pump delivers no flow [Pa]
     gain : K_p, flow per pressure [m^3/s/Pa]
     time_constant : tau [s], > 0
 

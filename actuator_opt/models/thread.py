@@ -12,17 +12,17 @@ from ..base.numeric import Array, geometry, real, where
 from .mass import pitch_diameter
 
 HEIGHT = sqrt(3) / 2
-"""Height H of the sharp triangle of an ISO thread over its pitch [ISO68-1]."""
+"""Ratio of the height H of an ISO thread's sharp triangle to its pitch [ISO68-1]."""
 
 RUN_OUT = 0.8
-"""Pitches of the length that carry no load: chamfer and run-out [VDI2230]."""
+"""Length of thread that carries no load, in pitches: chamfer and run-out [VDI2230]."""
 
 FLANK = pi / 6
 """Half of the angle of the thread [rad]."""
 
 LEAST_OVERLAP = 0.8
-"""Least overlap of the flanks over that of full crests (a choice: the overlap that the tolerance 6g
-leaves at a pitch of 1 mm)."""
+"""Least engagement depth of the flanks, as a share of that with full crests (our choice: the depth
+that the tolerance 6g leaves at a pitch of 1 mm)."""
 
 MALE = (5.594, -13.682, 14.107, -6.057, 0.9353)
 FEMALE = (0.728, 1.769, -2.896, 1.296)
@@ -264,7 +264,7 @@ def stripping_reductions(*, strength_ratio: Array) -> tuple[Array, Array]:
 
     Parameters
     ----------
-    strength_ratio : R, strength times strip area of the female thread over that of the male [-]
+    strength_ratio : R, (strength x strip area) of the female thread / that of the male [-]
 
     Returns
     -------

@@ -20,8 +20,8 @@ Chamber: TypeAlias = Literal["a", "b"]
 class TrialMotion:
     """Trial motion over that of the piston; the remaining motion compresses the oil.
 
-    `exchange` is the volume that passes between the walls of both chambers, over area B; `pull` is
-    the motion of the end that the pressure of a chamber pulls.
+    `exchange` is the volume that passes from the wall of one chamber to that of the other, divided
+    by area B; `pull` is the motion of the end that is loaded by a chamber's pressure.
     """
 
     exchange: Array
@@ -49,7 +49,7 @@ def least_energy_motion(
     area_a, area_b : piston areas [m^2]
     oil_a, oil_b : compliance of the oil and the lines of either chamber [m^3/Pa]
     wall_a, wall_b : growth of either chamber's volume per pressure [m^3/Pa]
-    stretch : volume that the pulling chamber gains per pressure as it pulls the end away [m^3/Pa]
+    stretch : volume that the pulling chamber gains per pressure by moving the end [m^3/Pa]
     pulling : chamber whose pressure pulls an end
 
     Returns
@@ -104,8 +104,8 @@ def trial_motion_stiffness(
     area_a, area_b : piston areas [m^2]
     oil_a, oil_b : c, compliance of the oil and the lines of either chamber [m^3/Pa]
     wall_a, wall_b : w, growth of either chamber's volume per pressure, held axially [m^3/Pa]
-    stretch : s, volume that the pulling chamber gains per pressure as it pulls the end away, the
-        wall held radially [m^3/Pa]
+    stretch : s, volume that the pulling chamber gains per pressure by moving the end, without
+        radial growth of the wall [m^3/Pa]
     pulling : chamber whose pressure pulls at an end
 
     Returns

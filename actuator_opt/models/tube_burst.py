@@ -113,7 +113,7 @@ class _Tube:
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
         """Stresses per pressure, and those from the frozen stresses of metals.
 
-        One march gives both: the loads are on an axis before those of the batch.
+        A single march gives both: the loads are on an axis before the axes of the batch.
         """
         xp = namespace(self.axial)
         mask = soft
@@ -143,7 +143,7 @@ class _Tube:
     def _held_back(self, mask: Array | None, frozen: Any) -> tuple[Array, Array] | None:
         """Stresses held back at zero strain, in tube and in ply axes; None without any.
 
-        These are the thermal stresses, less the frozen stresses of yielded metals (in tube axes).
+        These are the thermal stresses minus the frozen stresses of yielded metals (in tube axes).
         """
         if self.hold is None:
             return None if frozen is None else (-frozen, -frozen)

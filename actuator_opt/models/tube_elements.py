@@ -214,7 +214,7 @@ def layered_tube(*, layers: Sequence[TubeLayer], inner_radius: Array) -> Layered
     """Prepare a tube of bonded layers for `layered_tube.tube_state`.
 
     Rotates every stiffness into tube axes (pairs lose their shear coupling) and builds the transfer
-    of each layer from its inner to its outer face, as the head of the module describes.
+    of each layer from its inner to its outer face, as the module's docstring describes.
 
     Parameters
     ----------

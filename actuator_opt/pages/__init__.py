@@ -1,4 +1,4 @@
-"""Reports: one page of data, drawn as PDF and PNG, or as text for the terminal."""
+"""Pages of reports as data, rendered as PDF and PNG, as HTML, or as text for the terminal."""
 
 from __future__ import annotations
 

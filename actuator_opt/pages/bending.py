@@ -1,4 +1,4 @@
-"""The page of a bending test: slope and moduli with bounds, and doubts."""
+"""The page of a bending test: slope and moduli with their confidence intervals, and doubts."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def _strains(bending: BendingResult) -> str:
 
 
 def _parameters(bending: BendingResult) -> list[tuple[str, Parameter]]:
-    """Slope and moduli, without and with the compliances that are known."""
+    """Slope and moduli, before and after the known compliances are subtracted."""
     rows = [
         ("slope of force over deflection", bending.slope),
         ("modulus, nothing taken off", bending.as_published),
@@ -60,7 +60,7 @@ def _parameters(bending: BendingResult) -> list[tuple[str, Parameter]]:
 
 
 def _numbers(parameter: Parameter, bending: BendingResult) -> list[str]:
-    """Value and bounds with their unit."""
+    """Value and confidence interval with their unit."""
     quantity = _SLOPE if parameter is bending.slope else _MODULUS
     values = (parameter.value, parameter.lower, parameter.upper)
     return [text.value_text(quantity, value) for value in values]
@@ -97,7 +97,7 @@ def _blocks(bending: BendingResult) -> Iterator[Block]:
 
 
 def _basis(bending: BendingResult) -> list[str]:
-    """The scope of the bounds, the work lost, and the share of shear."""
+    """Sources of the confidence intervals, energy lost in the load cycle, and share of shear."""
     section = (
         "the second moment once"
         if bending.specimen.outer_diameter is None
@@ -117,7 +117,7 @@ def _basis(bending: BendingResult) -> list[str]:
 
 
 def _loop(bending: BendingResult, room: float) -> Ink:
-    """Force over deflection as recorded."""
+    """Recorded force over deflection."""
     record = bending.record
     curve = Curve("", 1e3 * record["w"], record["F_L"], weight="thin")
     panel = Panel("Force, N", Axis("deflection, mm"), curves=[curve])

@@ -1,4 +1,4 @@
-"""The page of a calibration: measured values, requirements that change, the best design."""
+"""The page of a calibration: measured values, changed requirements, and the best design."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ from .identification_figures import FORCE, SPEED, joined, measured, speed
 from .report import doubts
 
 MOST_LEVELS, MOST_ROWS = 3, 9
-"""Levels of pressure and requirements that are drawn (a choice: what the eye parts)."""
+"""Most pressures and most requirements drawn (our choice: more are hard to distinguish by eye)."""
 STATED, MEASURED = "as stated", "as measured"
 
 
@@ -138,7 +138,7 @@ def _blocks(calibration: Calibration, redesign: Redesign) -> Iterator[Block]:
 
 
 def _values(calibration: Calibration) -> Table:
-    """Every measured value with its bounds and the value stated before."""
+    """Every measured value with its confidence interval and the value that the design stated."""
     rows = []
     for group in calibration.learned:
         quantity, bounds = INPUTS[group.name], group.bounds()
@@ -158,7 +158,7 @@ def _values(calibration: Calibration) -> Table:
 
 
 def _shifts(redesign: Redesign) -> Table:
-    """Requirements that change, before and after, the largest change first."""
+    """Results of the requirements before and after the calibration, the largest change first."""
     columns = [
         Column("requirement", "left", 1.0, breaks=60, mono=True, least=20),
         Column("limit", "right", drop=2),
@@ -193,7 +193,7 @@ def _shift(shift: Shift) -> Row:
 
 
 def _best_tables(rows: Sequence[Sequence[str]]) -> Iterator[Block]:
-    """The best design; on paper in two halves side by side where it is long."""
+    """The best design; on paper, a long table is split into two halves side by side."""
     columns = [
         Column("quantity", "left", 1.0, breaks=60, mono=True, least=20),
         Column(STATED, "right", drop=1),
@@ -211,7 +211,7 @@ def _best_tables(rows: Sequence[Sequence[str]]) -> Iterator[Block]:
 
 
 def _best(redesign: Redesign) -> list[tuple[str, ...]]:
-    """Objective, choices and variables of the best designs before and after."""
+    """Objective, choices and variables of the best design before and after the calibration."""
     before, after = redesign.best_before, redesign.best_after
     if before is None or after is None:
         return []
@@ -242,13 +242,13 @@ def _change(
 
 
 def _tight(redesign: Redesign) -> int:
-    """Limits without reserve of the best design with the measured values, where there is one."""
+    """Number of limits without reserve in the best design after the calibration; 0 without it."""
     best = redesign.best_after
     return len(best.tight) if best is not None and solved(best) else 0
 
 
 def remarks(calibration: Calibration, redesign: Redesign) -> list[str]:
-    """Changes, values left as stated, and doubts."""
+    """Sentences on changed values, on values that were not measured, and on doubts."""
     said = list(redesign.sentences)
     if count := _tight(redesign):
         said.append(f"{count_words(count)} at the best design: it lies on its limits")
@@ -261,14 +261,17 @@ def remarks(calibration: Calibration, redesign: Redesign) -> list[str]:
 
 
 def figure(calibration: Calibration, redesign: Redesign, bench: Bench) -> Ink:
-    """Friction over speed, and the margins before and after."""
+    """Friction over speed, and the margins before and after the calibration."""
     identification = calibration.identification
     panels = [_friction(identification.points, identification.bench, bench), _margins(redesign)]
     return drawn(Chart("Friction and margins", panels, height=64.0))
 
 
 def shown_levels(points: Sequence[FrictionPoint]) -> list[list[FrictionPoint]]:
-    """Points of like pressure, the lowest first; of many levels the ends and the middle."""
+    """Points grouped by pressure, lowest first.
+
+    Of many groups, only the lowest, the middle and the highest are returned.
+    """
     groups = by_pressure(points)
     if len(groups) <= MOST_LEVELS:
         return groups
@@ -276,7 +279,7 @@ def shown_levels(points: Sequence[FrictionPoint]) -> list[list[FrictionPoint]]:
 
 
 def _friction(points: Sequence[FrictionPoint], stated: Bench, measured_: Bench) -> Panel:
-    """Points with their bars; curves of the design before and after at each pressure."""
+    """Measured points with error bars; the design's curves before and after at each pressure."""
     groups = shown_levels(points)
     curves = []
     for style, (words, bench) in enumerate(((MEASURED, measured_), (f"design {STATED}", stated))):
@@ -302,12 +305,12 @@ def _friction(points: Sequence[FrictionPoint], stated: Bench, measured_: Bench) 
 
 
 def _against(point: FrictionPoint) -> tuple[float, float]:
-    """Friction against the motion with its standard error [N]."""
+    """Friction as a force that opposes the motion, and its standard error [N]."""
     return math.copysign(1.0, point.velocity) * point.friction, point.error
 
 
 def _margins(redesign: Redesign) -> Panel:
-    """Margins of the requirements that change, before and after, with bounds."""
+    """Margins of the changed requirements before and after, with confidence intervals."""
     moved = _moved(redesign)[:MOST_ROWS]
     title = "Margin of requirements, as tested, %"
     if not moved:
@@ -328,7 +331,7 @@ def _margins(redesign: Redesign) -> Panel:
 
 
 def _span(shift: Shift) -> tuple[float, float, float, float]:
-    """Margins before and after, and the bounds of the second [%]."""
+    """Margin before, margin after, and the confidence interval of the margin after [%]."""
     before, after = (100 * (row.margin or 0.0) for row in (shift.before, shift.after))
     if shift.lower is None or shift.upper is None or shift.after.limit == 0:
         return before, after, after, after

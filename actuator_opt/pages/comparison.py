@@ -1,4 +1,4 @@
-"""The page of a comparison: the better design and the reasons, bars, U-curves, tables."""
+"""The page of a comparison: which design is better and why, bars, stiffness curves, tables."""
 
 from __future__ import annotations
 
@@ -33,26 +33,26 @@ from .sweep_figures.ucurves import MOST, Required, has_points, stiffness_panels
 _WORST = {"lighter": "light", "stiffer": "stiff", "smoother": "smooth"}
 _NAMED = {"lighter": "mass", "stiffer": "stiffness", "smoother": "running friction"}
 PART_UNITS = {"lighter": (1e3, "g"), "stiffer": (1e9, "µm/kN"), "smoother": (1.0, "N")}
-"""Factor and unit of the parts of each question."""
+"""Display factor and unit for the bars of each question (lighter, stiffer, smoother)."""
 PART_TITLES = {
     "lighter": "Mass",
     "stiffer": "Compliance at the weakest position",
     "smoother": "Running friction",
 }
 _MOST_PARTS = 4
-"""Most parts in a sentence."""
+"""Largest number of parts named in a sentence."""
 _LONGEST = 18
-"""Most letters of the value of an input (a longer value would leave the paths no room)."""
+"""Longest printed value of an input, in letters; longer values would crowd out the input paths."""
 
 _WIDTH, _RIGHT = 180.0, 20.0
 _STEP, _LEAST_STEP, _SHARE, _LINE = 7.6, 3.8, 5.6 / 7.6, 4.2
-"""Distances of bars [mm], the share that the bar takes, and the height of a line."""
+"""Usual and least spacing of bars [mm], bar height as a share of it, and line height [mm]."""
 _GAP, _TOP, _SMALL = 5.0, 8.4, 3.3
 _NOTE = "Parts of a bar in the order of their key; bold: the best."
 
 
 def page(comparison: Comparison) -> Page:
-    """The page of designs side by side."""
+    """The page that compares designs side by side."""
     return Page(
         name="Designs side by side",
         kind="Comparison",
@@ -74,7 +74,7 @@ def _verdict(comparison: Comparison) -> Verdict:
 
 
 def _tiles(comparison: Comparison) -> Iterator[Tile]:
-    """The best design of every question, and its value."""
+    """For every question, the best design and its value."""
     for question in comparison.questions:
         if question.best is None:
             continue
@@ -92,7 +92,7 @@ def _blocks(comparison: Comparison) -> Iterator[Block]:
     changes = [
         [change.path, *(short(shown(change, value), _LONGEST) for value in change.values)]
         for change in comparison.changes
-        if not change.path.startswith("requirements.")  # their own table follows
+        if not change.path.startswith("requirements.")  # requirements have their own table
     ]
     yield _table(comparison, "What differs in the inputs", changes)
     yield _table(comparison, "Requirements", list(_requirements(comparison)))
@@ -112,7 +112,10 @@ def _blocks(comparison: Comparison) -> Iterator[Block]:
 def _table(
     comparison: Comparison, title: str, rows: Sequence[Sequence[str]], total: int = 0
 ) -> Block:
-    """Values of every design; where all do not fit, each part of the table begins with A."""
+    """Table with a column per design.
+
+    A table that is too wide is split; each part repeats design A.
+    """
     if not rows:
         return Notes(title, ["none"])
     columns = [Column("", width=2.0, breaks=30, least=10)]
@@ -140,7 +143,10 @@ def sentences(comparison: Comparison) -> list[str]:
 
 
 def unlike(comparison: Comparison) -> list[str]:
-    """Metrics whose values are not of the same kind, and why."""
+    """Sentences on metrics that cannot be compared.
+
+    For some designs their smallest value governs, for others their largest.
+    """
     lines = []
     for metric, senses in comparison.unlike.items():
         least, most = (
@@ -155,7 +161,7 @@ def unlike(comparison: Comparison) -> list[str]:
 
 
 def optimality(comparison: Comparison, *, remedy: bool = False) -> list[str]:
-    """The designs not known to be optima; with `remedy` the option that optimises them."""
+    """Sentence on designs not known to be optima; `remedy` adds the option that optimises them."""
     labels = [comparison.labels[k] for k in comparison.not_optimised]
     if not labels:
         return []
@@ -173,7 +179,7 @@ def optimality(comparison: Comparison, *, remedy: bool = False) -> list[str]:
 
 
 def duties(comparison: Comparison) -> list[str]:
-    """A remark on different duties; empty where all are equal."""
+    """A remark if the designs have different duties; empty if all are equal."""
     paths = comparison.duties_differ
     if not paths:
         return []
@@ -182,7 +188,7 @@ def duties(comparison: Comparison) -> list[str]:
 
 
 def part_name(part: str) -> str:
-    """A part in words; "chamber" parts oil A from a design of that letter.
+    """A part in words; the word "chamber" separates oil chamber A from design A.
 
     >>> part_name("piston_seal"), part_name("oil A")
     ('piston seal', 'oil in chamber A')
@@ -192,7 +198,7 @@ def part_name(part: str) -> str:
 
 
 def answer(comparison: Comparison, question: Question) -> str:
-    """One question in a sentence, with the parts that decide it."""
+    """The answer to a question in a sentence, with the parts that decide it."""
     name, quantity = question.name, of_metric(question.metric)
     unknown = [k for k, value in enumerate(question.values) if value is None]
     note = ""
@@ -230,7 +236,7 @@ def _parts(question: Question) -> str:
 
 
 def named(comparison: Comparison, k: int) -> str:
-    """A design's name, its origin, whether it is an optimum and meets its requirements."""
+    """A design's name and origin, whether it is an optimum, and whether it is feasible."""
     evaluation, state = comparison.evaluations[k], comparison.states[k]
     origin = comparison.origins[k]
     beside = "" if origin == evaluation.name else f" ({origin})"
@@ -244,7 +250,7 @@ def named(comparison: Comparison, k: int) -> str:
 
 
 def shown(change: Change, value: Value) -> str:
-    """A value of an input as people read it."""
+    """A value of an input as printed."""
     if value is None:
         return DASH
     if isinstance(value, Fraction):
@@ -257,7 +263,7 @@ def shown(change: Change, value: Value) -> str:
 
 
 def _requirements(comparison: Comparison) -> Iterator[list[str]]:
-    """Limit and value of each; a missed one is marked."""
+    """Limit and value of every requirement; missed requirements are marked."""
     for name, sense, rows in comparison.limits():
         known = [row for row in rows if row is not None]
         quantity = comparison.evaluations[rows.index(known[0])].metrics[known[0].metric].quantity
@@ -276,7 +282,7 @@ def _requirements(comparison: Comparison) -> Iterator[list[str]]:
 
 
 def _metrics(comparison: Comparison) -> Iterator[list[str]]:
-    """Every metric that is not the same to the digits shown."""
+    """Every metric whose printed values differ between the designs."""
     for name, quantity, values in comparison.metrics():
         cells = [_metric(quantity, value) for value in values]
         if len(set(cells)) > 1:
@@ -322,7 +328,7 @@ def comparison_figure(comparison: Comparison) -> Ink:
 
 
 def _hero(comparison: Comparison, room: float) -> Ink:
-    """The bars alone, lower where many designs share the room."""
+    """The bars alone; their spacing shrinks to fit many designs into the available height [mm]."""
     questions = _with_bars(comparison)
     rows = len(questions) * len(comparison.labels)
     ink = Ink(_WIDTH, 400.0)
@@ -341,7 +347,7 @@ def _least(comparison: Comparison) -> float:
 
 
 def _fixed(questions: Sequence[Question]) -> float:
-    """Height of all but the bars [mm]."""
+    """Height of everything except the bars [mm]."""
     return sum(7.0 + _LINE * len(_legend(list(question.parts))) + _GAP for question in questions)
 
 
@@ -351,7 +357,7 @@ def _with_bars(comparison: Comparison) -> list[Question]:
 
 
 def comparison_ucurves(comparison: Comparison) -> Ink | None:
-    """Stiffness over the stroke of the first `MOST` designs; None where none has any."""
+    """Stiffness over the stroke of the first `MOST` designs; None if no design has this curve."""
     if not _with_curves(comparison):
         return None
     names = [f"{label}: {named(comparison, k)}" for k, label in enumerate(comparison.labels[:MOST])]
@@ -360,7 +366,7 @@ def comparison_ucurves(comparison: Comparison) -> Ink | None:
 
 
 def _with_curves(comparison: Comparison) -> bool:
-    """Whether a design that is drawn has a stiffness over the stroke."""
+    """Whether any of the drawn designs has a curve of stiffness over the stroke."""
     return any(has_points(evaluation.curve) for evaluation in comparison.evaluations[:MOST])
 
 
@@ -377,7 +383,7 @@ def _curves(comparison: Comparison) -> Chart:
 
 
 def _required(comparison: Comparison) -> list[Required]:
-    """The stiffness required, and of which designs where it is not of all."""
+    """The required stiffness, with the designs' letters if it does not apply to all of them."""
     required: dict[float, list[str]] = {}
     for _, sense, rows in comparison.limits():
         for label, row in zip(comparison.labels, rows, strict=True):
@@ -399,7 +405,7 @@ def _wrapped(said: str) -> list[str]:
 
 
 def _legend(parts: list[str]) -> list[list[str]]:
-    """Names of parts in lines that fit."""
+    """Names of parts for the key, broken into lines that fit the width."""
     lines: list[list[str]] = [[]]
     used = 0.0
     for part in parts:
@@ -420,7 +426,7 @@ def _bars(
     said: Sequence[str],
     step: float = _STEP,
 ) -> float:
-    """Title, a stacked bar for each design with its sum, and a key of the fills; its height."""
+    """Draw title, a stacked bar with its sum per design, and the key; return the height used."""
     scale, unit = PART_UNITS[question.name]
     parts, tall = list(question.parts), _SHARE * step
     shades = fills(parts) if question.name == "stiffer" else range(len(parts))

@@ -1,6 +1,6 @@
-"""Dynamics on paper: modes, dynamic stiffness and the position loop, as far as a design has them.
+"""Dynamics in a report: modes, dynamic stiffness and position loop, if the design has them.
 
-A design without a valve and without shaken load cases gets one figure.
+A design with neither a valve nor a vibrating load case gets a single figure.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from .dynamics_figures import (
 )
 
 FASTEST = 1e4
-"""Poles above this frequency (Hz) are counted, not listed: the model describes nothing there."""
+"""Poles above this frequency (Hz) are counted, not listed: the model is not valid there."""
 COMPACT, MODES, RESPONSE, OPEN, CLOSED = 56.0, 54.0, 105.0, 97.0, 58.0
 """Heights of the figures [mm]."""
 _END = {
@@ -37,7 +37,7 @@ _END = {
 
 
 def dynamics_blocks(evaluation: Evaluation) -> list[Block]:
-    """Every block of the dynamics; none where there is no study."""
+    """All blocks on dynamics; empty if the evaluation has no dynamics study."""
     study = evaluation.dynamics
     if study is None or len(study.position) < 2 or not study.position[-1] > study.position[0]:
         return []
@@ -59,7 +59,7 @@ def _ratio(value: float) -> str:
 
 
 def damping_sentence(study: DynamicsStudy) -> str:
-    """Damping ratio at the weakest position, with its causes."""
+    """Sentence on the damping ratio at the weakest position and its sources."""
     friction, ends = study.friction_share, study.conductance_share
     whole = friction + ends
     small = 1e-4 * abs(whole)
@@ -105,7 +105,7 @@ def _modes(evaluation: Evaluation, study: DynamicsStudy) -> Block:
 
 
 def shaken_cases(study: DynamicsStudy) -> list[Shaken]:
-    """Load cases that shake the actuator, with stiffness and phase at their worst place."""
+    """Load cases with excitation, each with its least stiffness and the phase along the stroke."""
     return [
         Shaken(clean(case.name), case.frequency, case.stiffness, case.phase)
         for case in study.shaken
@@ -133,7 +133,7 @@ def _response(evaluation: Evaluation, study: DynamicsStudy) -> Block:
 
 
 def lumped_sentence(study: DynamicsStudy) -> str:
-    """Frequencies up to which lumped and transmission lines agree; empty without lines."""
+    """Up to which frequency lumped lines agree with transmission lines; empty without lines."""
     if study.distributed is None:
         return ""
     lumped = next(response for response in study.responses if response.place == "weakest position")
@@ -211,7 +211,7 @@ def _loop(
 
 
 def _passes_behind(loop_study: LoopStudy) -> bool:
-    """Whether the phase margin is that of a crossover beyond -180 degrees."""
+    """Whether the phase margin belongs to a gain crossover with a phase beyond -180 degrees."""
     if loop_study.crossover is None or loop_study.gain_margin <= 1:
         return False
     above = np.asarray(loop_study.open_magnitude) >= 1

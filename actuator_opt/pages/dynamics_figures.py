@@ -1,6 +1,6 @@
 """Figures of the dynamics: modes along the stroke, dynamic stiffness and position loop.
 
-What is required is red where it applies; its forbidden side is hatched.
+Required limits are drawn in red, and their forbidden side is hatched.
 """
 
 from __future__ import annotations
@@ -19,22 +19,22 @@ from ..rendering.chart import Axis, Curve, Level, Panel, Points
 from ..rendering.text import MINUS, SENSES, SUPERSCRIPTS, number, trimmed
 
 DEEPEST = 1000.0
-"""Ratio of the static stiffness to the least one that is drawn."""
+"""Ratio of the static stiffness to the lowest stiffness that is drawn."""
 MOST_CASES = 6
-"""Shaken load cases named above the figure."""
+"""Largest number of load cases with excitation that are named above the figure."""
 STATIC, SHAKEN, BASE, MARGIN = 5, 5, 4, 4
-"""Styles of a static level, of the frequency of a shaken load case, of a line from which a margin
-counts, and of a margin."""
+"""Styles of lines: static stiffness, excitation frequency of a load case, base line of a margin
+(0 dB or -180 degrees), and the margin itself."""
 OPEN, FILLED, PALE = 2, 3, 1
 """Styles of points: ochre, blue, and light blue with a black edge."""
 REACH = 1.25
-"""Ratio of the ends of a limit at one frequency to that frequency."""
+"""Ratio by which a limit at a single frequency is drawn wider, above and below that frequency."""
 ALONG = "piston position from the cap end, mm"
 
 
 @dataclass(frozen=True, slots=True)
 class Shaken:
-    """A load case that shakes the actuator: Hz, its least stiffness (N/m), its phase (rad)."""
+    """A load case with excitation: its frequency (Hz), least stiffness (N/m) and phase (rad)."""
 
     name: str
     frequency: float
@@ -43,19 +43,19 @@ class Shaken:
 
 
 def frequency_axis(study: DynamicsStudy, label: str = "frequency, Hz") -> Axis:
-    """The axis of the frequencies of a study."""
+    """The frequency axis of a study."""
     ends = float(study.frequencies[0]), float(study.frequencies[-1])
     return Axis(label, log=True, range=ends)
 
 
 def limit_level(row: Requirement, value: float, unit: str = "") -> Level:
-    """A requirement as a level at a value of the axis."""
+    """A requirement as a limit line at a value of the axis."""
     words = f"{SENSES[row.sense]} {trimmed(value)}{unit}"
     return Level(value, words, "min" if row.sense == "min" else "max")
 
 
 def minimum(x: float, y: float) -> Points:
-    """The lowest point of a curve over the stroke (mm) with its value."""
+    """A mark at the lowest point of a curve over the stroke (x in mm), labelled with its value."""
     words = f"minimum {number(y)} at {trimmed(x, 3)} mm"
     return Points("", [x], [y], style=FILLED, labels=[words])
 
@@ -64,7 +64,7 @@ def minimum(x: float, y: float) -> Points:
 
 
 def _frequency_panel(study: DynamicsStudy, requirements: Sequence[Requirement]) -> Panel:
-    """Natural frequency along the stroke, with ports closed and with the lines as they end."""
+    """Natural frequency along the stroke: with closed ports, and with the design's lines."""
     xs = [1000.0 * float(x) for x in study.position]
     closed = [float(f) for f in study.closed_frequency]
     ended = [float(f) for f in study.frequency]
@@ -89,7 +89,7 @@ def _frequency_panel(study: DynamicsStudy, requirements: Sequence[Requirement]) 
 
 
 def _damping_panel(study: DynamicsStudy, requirements: Sequence[Requirement]) -> Panel:
-    """Damping ratio along the stroke, and the share of friction at the weakest position."""
+    """Damping ratio along the stroke, and at the weakest position the share due to friction."""
     xs = [1000.0 * float(x) for x in study.position]
     ratios = np.asarray(study.damping_ratio, dtype=float)
     finite = ratios[np.isfinite(ratios)]
@@ -126,7 +126,7 @@ def modes_panels(
 
 
 def _stiffness_range(responses: Sequence[Response], shown: Sequence[float]) -> tuple[float, float]:
-    """Ends (kN/mm) that show the curves down to a thousandth of the static stiffness."""
+    """Range of the axis (kN/mm); it ends at a thousandth of the static stiffness."""
     statics = [response.static / 1e6 for response in responses]
     values = [float(v) / 1e6 for response in responses for v in response.magnitude if v > 0]
     low = max(min([*values, *statics]), min(statics) / DEEPEST)
@@ -136,7 +136,7 @@ def _stiffness_range(responses: Sequence[Response], shown: Sequence[float]) -> t
 def magnitude_panel(
     study: DynamicsStudy, shaken: Sequence[Shaken], requirements: Sequence[Requirement]
 ) -> Panel:
-    """Magnitude of the dynamic stiffness at three places with its static levels."""
+    """Magnitude of the dynamic stiffness at three stroke positions, with the static stiffness."""
     cases = list(zip("abcdef", shaken[:MOST_CASES], strict=False))
     results = [case.stiffness / 1e6 for case in shaken if case.stiffness]
     limits = [row.limit / 1e6 for row in requirements if shaken and row.limit > 0]
@@ -166,7 +166,7 @@ def magnitude_panel(
 
 
 def _case_points(letter: str, case: Shaken) -> Points:
-    """The result of a load case, named in the legend."""
+    """The result of a load case as a point with a legend entry."""
     words = [f"{letter}: {case.name}", f"{trimmed(case.frequency)} Hz"]
     if case.phase is not None:
         words.append(f"{number(math.degrees(case.phase), 3)}°")
@@ -180,7 +180,7 @@ def _case_points(letter: str, case: Shaken) -> Points:
 def _limits_at(
     frequency: float, requirements: Sequence[Requirement], scale: float, unit: str
 ) -> list[Level]:
-    """An upright line at a frequency, and what is required there, named where there is a unit."""
+    """A vertical line at a frequency, and the limits that apply there; `unit` adds their names."""
     levels = [Level(frequency, "", style=SHAKEN, upright=True)]
     for row in requirements:
         level = limit_level(row, scale * row.limit, unit)
@@ -192,7 +192,7 @@ def _limits_at(
 def _phase_panel(
     study: DynamicsStudy, shaken: Sequence[Shaken], requirements: Sequence[Requirement]
 ) -> Panel:
-    """Phase of the dynamic stiffness at three places."""
+    """Phase of the dynamic stiffness at three stroke positions."""
     curves = [np.degrees(response.phase) for response in study.responses]
     low = -180.0 if min(float(np.min(curve)) for curve in curves) < -1.0 else 0.0
     levels: list[Level] = []
@@ -268,7 +268,7 @@ def decibels(ratio: Array | float) -> Array:
 
 
 def governing(loops: Sequence[LoopStudy], figure: str) -> int:
-    """Index of the loop whose margin or bandwidth is least; a loop without a value counts last."""
+    """Index of the loop with the smallest margin or bandwidth; loops without a value come last."""
 
     def least(k: int) -> float:
         value = getattr(loops[k], figure)
@@ -280,7 +280,7 @@ def governing(loops: Sequence[LoopStudy], figure: str) -> int:
 def open_panels(
     study: DynamicsStudy, loops: Sequence[LoopStudy], limits: LoopLimits
 ) -> list[Panel]:
-    """Open loop, magnitude above phase, with the margins where they are least."""
+    """Open loop, magnitude above phase, with the smallest gain and phase margins marked."""
     return [
         _loop_magnitude_panel(study, loops, limits.gain_margin),
         _loop_phase_panel(study, loops, limits.phase_margin),
@@ -288,7 +288,7 @@ def open_panels(
 
 
 def _loop_curves(study: DynamicsStudy, loops: Sequence[LoopStudy], values: str) -> list[Curve]:
-    """Magnitudes of all loops in dB, named by case, direction and place."""
+    """Magnitudes of all loops in dB, named by load case, direction and stroke position."""
     return [
         Curve(f"{loop.case}, {loop.place}", study.frequencies, decibels(getattr(loop, values)))
         for loop in loops
@@ -296,14 +296,14 @@ def _loop_curves(study: DynamicsStudy, loops: Sequence[LoopStudy], values: str) 
 
 
 def _decibel_axis(low: float, high: float) -> Axis:
-    """An axis of whole multiples of 20 dB, or of 10 or 5 where it is short."""
+    """A dB axis with ticks every 20 dB, or every 10 or 5 dB if the range is short."""
     step = 20 if high - low > 50 else 10 if high - low > 25 else 5
     levels = range(step * math.ceil(low / step), math.floor(high) + 1, step)
     return Axis(range=(low, high), ticks=[(level, whole(level)) for level in levels])
 
 
 def _margin(frequency: float, base: float, end: float, words: str) -> tuple[Curve, Points]:
-    """A margin: a line from where it counts to the curve."""
+    """A margin as a line from its base (0 dB or -180 degrees) to the curve, with its label."""
     return (
         Curve("", [frequency, frequency], [base, end], style=MARGIN, dash=0),
         Points("", [frequency], [end], style=PALE, labels=[words]),

@@ -63,13 +63,13 @@ DAMPING = METRICS["damping_seal"]
 MASS = METRICS["mass"]
 _VISCOUS = quantities.INPUTS["viscous_friction"]
 VERDICTS = {"identifiable": "yes", "weakly identifiable": "weakly", "not identifiable": "no"}
-"""Verdicts in the column "identifiable"."""
+"""Words of the verdicts in the column "identifiable"."""
 STATES: dict[str, tuple[State, str]] = {
     "yes": ("met", "✔"),
     "weakly": ("not_checked", "○"),
     "no": ("missed", "✘"),
 }
-"""State and sign of each."""
+"""State (colour) and sign of each verdict."""
 FITS = {"power_law": "power law", "double_exponential": "double exponential"}
 LAWS = {"power_law": "a v^b", "double_exponential": "a₁ exp(b₁ v) + a₂ exp(b₂ v)"}
 
@@ -83,7 +83,7 @@ def page(identification: Identification) -> Page:
         sentence=subject(identification),
         tiles=_tiles(identification),
         hero=lambda room: identification_figure(identification, min(room, MOST)),
-        least=LEAST - SPARE,  # the heights of the blocks are estimated too high by it
+        least=LEAST - SPARE,  # the estimated height of the blocks is too high by SPARE
         blocks=list(_blocks(identification)),
     )
 
@@ -99,11 +99,11 @@ COLUMNS = {
     "stiffness": ("k_eq [kN/mm]", 1e-6, "5g"),
     "growth": ("growth at seal [um]", 1e6, "5g"),
 }
-"""Head with unit, display value over SI value, and digits of a column."""
+"""For each column: head with unit, factor from SI to the displayed value, and digits."""
 
 
 def series(identification: Identification) -> list[Series]:
-    """Quantities over time, a row for each sample; empty where there is no value."""
+    """Quantities over time, one row per sample; cells without a value are empty."""
     return [
         Series(COLUMNS[name][0], (COLUMNS[name][1] * values).tolist(), form=COLUMNS[name][2])
         for name, values in identification.series().items()
@@ -143,7 +143,7 @@ def _tiles(identification: Identification) -> list[Tile]:
 
 
 def _blocks(identification: Identification) -> Iterator[Block]:
-    """Parameters with their verdicts, channels, and the basis of the results."""
+    """Blocks: parameters with their verdicts, channels, and the basis of the results."""
     yield _friction(identification)
     sides = [[*_stribeck(identification), *_fits(identification)], _lugre(identification)]
     shorter = min(sides, key=lambda side: sum(height(block, HALF) for block in side))
@@ -212,7 +212,7 @@ def _fits(identification: Identification) -> list[Block]:
 
 
 def _parameters(title: str, estimates: Sequence[Estimate], note: str) -> Block:
-    """Parameters with bounds; a sign stands beside every verdict."""
+    """Parameters with confidence intervals; every verdict has a sign beside it."""
     columns = [
         Column("parameter", "left", 1.0, least=10),
         Column("", drop=3, style="dim"),
@@ -246,7 +246,7 @@ def _channels(identification: Identification) -> Block:
 
 
 def _curve(identification: Identification) -> list[Block]:
-    """The Stribeck curve over the logarithm of the speed, outwards where the rod moved outwards."""
+    """The Stribeck curve over the logarithm of speed, for extension if the rod extended."""
     fit, points = identification.stribeck, identification.points
     speeds = [point.speed for point in points]
     if not isinstance(fit, StribeckFit) or max(speeds) <= min(speeds):
@@ -303,13 +303,13 @@ COEFFICIENTS = {
     ("double_exponential", "coefficient_2"): _by(DAMPING, "2nd exponential", "a₂"),
     ("double_exponential", "rate_2"): ParameterDisplay("its rate", "b₂", "s/m", 1.0),
 }
-"""Parameters of the fits of the secant damping."""
+"""Parameters of the laws fitted to the secant damping."""
 NOTHING = 2e-3
-"""A value below this share of its bounds' half width is as good as 0 (a choice: 3 digits)."""
+"""A value below this share of half its confidence interval is printed as 0 (our choice)."""
 
 
 class Estimate(NamedTuple):
-    """A parameter as printed: value with unit, bounds without, and its verdict."""
+    """A parameter as printed: value with unit, confidence interval without unit, and verdict."""
 
     label: str
     symbol: str
@@ -326,9 +326,10 @@ def _row(shown: ParameterDisplay, parameter: Parameter) -> Estimate:
 
 
 def rounded(value: float, lower: float, upper: float) -> tuple[str, str, str]:
-    """A value and its bounds, no finer than the bounds warrant, four digits at most.
+    """A value and its confidence interval, rounded to the digits that the interval justifies.
 
-    A value keeps three digits unless it is nothing beside its bounds.
+    At most four digits are printed. A value keeps at least three, unless it is negligible beside
+    its interval.
 
     >>> rounded(4.904e-4, -0.4223, 0.4233), rounded(148.23, 146.21, 150.25)
     (('0.000', '−0.422', '0.423'), ('148.2', '146.2', '150.2'))
@@ -352,7 +353,7 @@ def parameter_rows(parameters: Mapping[str, Parameter]) -> list[Estimate]:
 
 
 def fit_rows(fits: Mapping[str, LawFit | str]) -> list[Estimate]:
-    """Parameters of the damping's fits that have a value."""
+    """Parameters of the damping laws that could be fitted."""
     rows = []
     for name, fit in fits.items():
         if isinstance(fit, str):
@@ -373,7 +374,7 @@ def every_parameter(identification: Identification) -> list[Parameter]:
 
 
 def held(values: Mapping[str, float]) -> str:
-    """Values that were held fixed, in words; empty for none."""
+    """Values that the fit kept fixed, in words; empty if there were none."""
     left = {name: value for name, value in values.items() if name != "lag"}
     said = []
     if "stribeck_speed" in left:
@@ -411,7 +412,7 @@ def pressure(value: float) -> str:
 
 
 def bounds(lower: float, upper: float, quantity: Quantity) -> str:
-    """Both bounds with one unit.
+    """Lower and upper bound with a common unit.
 
     >>> bounds(149.6, 150.4, FORCE)
     '149.6 to 150.4 N'
@@ -421,7 +422,7 @@ def bounds(lower: float, upper: float, quantity: Quantity) -> str:
 
 
 def coefficient_words(coefficient: Coefficient | str) -> str:
-    """The friction coefficient and its basis."""
+    """The friction coefficient and how it was obtained."""
     if isinstance(coefficient, str):
         return sentence(f"Friction coefficient: {coefficient}")
     low, high = (number(1e3 * v, 3) for v in coefficient.speeds)
@@ -457,11 +458,14 @@ def subject(identification: Identification) -> str:
     return f"Record {identification.record.file_name}: {seen}."
 
 
-# ---- record and how it was conditioned ----
+# ---- the record and its conditioning ----
 
 
 def samples_hash(record: Record) -> str:
-    """SHA-256 of the samples: name and little-endian doubles (SI) of time and every channel."""
+    """SHA-256 of the samples.
+
+    It covers the name and the values (little-endian doubles, SI) of time and of every channel.
+    """
     digest = hashlib.sha256()
     for name, values in (("t", record.time), *sorted(record.channels.items())):
         digest.update(name.encode() + b"\0")
@@ -482,7 +486,7 @@ def record_words(identification: Identification) -> str:
 
 
 ROUNDING = 1e-12
-"""Steps and noise below this are rounding of the numbers, SI."""
+"""Resolution steps and noise below this value (SI) are only rounding errors."""
 CHANNEL_HEADS = ("channel", "missing", "spikes", "clipped", "step", "noise (1σ)")
 _CHANNELS = {
     "p1": PRESSURE,
@@ -491,11 +495,11 @@ _CHANNELS = {
     "v": SPEED,
     "F_L": FORCE,
 }
-"""Quantity of each channel: micrometres for the step of a position sensor."""
+"""Display quantity of each channel; a position sensor's resolution is shown in micrometres."""
 
 
 def channel_rows(identification: Identification) -> list[list[str]]:
-    """Samples missing, spikes, clipped; least step and noise of every channel."""
+    """For every channel: missing, spiked and clipped samples, smallest step, and noise."""
     rows = []
     for name, channel in identification.motion.quality.items():
         counts = [trimmed(x, 9) for x in (channel.missing, channel.spikes, channel.clipped)]
@@ -512,7 +516,7 @@ def _small(name: str, value: float) -> str:
 
 
 def conditioning(identification: Identification) -> str:
-    """Filter, mass and lag in sentences."""
+    """Sentences on the filter, the moving mass and the sensor lag."""
     motion, spectrum = identification.motion, identification.spectrum
     gain = "both passes −3 dB" if motion.compensated else "each pass −3 dB"
     load = identification.settings.load_force
@@ -528,7 +532,7 @@ def conditioning(identification: Identification) -> str:
 
 
 def _lag(identification: Identification) -> str:
-    """The lag taken off the pressures, or the reason for none."""
+    """The lag removed from the pressure signals, or why none was removed."""
     taken, seen = identification.pressure_lag, identification.lag_seen
     if identification.settings.pressure_lag is not None:
         return f"{number(1e3 * taken, 3)} ms of lag taken off the pressures, as stated"
@@ -541,19 +545,19 @@ def _lag(identification: Identification) -> str:
 
 
 def mean_label(identification: Identification) -> str:
-    """The stretches behind the mean friction."""
+    """Label of the mean friction, with the parts of the record that it is averaged over."""
     return "mean in sliding" if identification.slides else "mean, without sliding"
 
 
 def _bounds_by(identification: Identification) -> str:
-    """Where the bounds of the parameters come from."""
+    """Sentence on how the parameters' confidence intervals were computed."""
     if identification.settings.bootstrap:
         return f"Bounds by {identification.settings.bootstrap} resampled records."
     return "Bounds of the linearised models."
 
 
 def doubts(identification: Identification) -> list[str]:
-    """Why something has no value, and doubts, in full sentences."""
+    """Doubts, and reasons for missing values, in full sentences."""
     models: dict[str, StribeckFit | LuGreFit | LawFit | str] = {
         "Stribeck curve": identification.stribeck,
         "LuGre model": identification.lugre,
@@ -570,26 +574,26 @@ def doubts(identification: Identification) -> list[str]:
 
 
 def remarks(identification: Identification) -> list[str]:
-    """Notes in full sentences, those left out that the table of channels holds."""
+    """Notes in full sentences, without those that the table of channels already shows."""
     counted = _counted(identification)
     return [_note(pretty(note)) for note in identification.notes if note not in counted]
 
 
 def _note(words: str) -> str:
-    """A sentence; the name of a channel keeps its letter."""
+    """A note as a sentence; the name of a channel is not capitalised."""
     said = sentence(words)
     return words[0] + said[1:] if re.match(rf"({'|'.join(CHANNELS)})\b", words) else said
 
 
 def _counted(identification: Identification) -> set[str]:
-    """Notes that the table of channels holds."""
+    """Notes that the table of channels already shows."""
     total = identification.record.time.size
     quality = identification.motion.quality.items()
     return {note for name, channel in quality for note in channel.told(name, total)}
 
 
 def fit_note(fits: Mapping[str, LawFit | str]) -> str:
-    """Laws and R² of the fits."""
+    """Formula and R² of each fitted damping law."""
     parts = []
     for name, fit in fits.items():
         if isinstance(fit, str):

@@ -33,19 +33,19 @@ STIFFNESS, GROWTH = METRICS["stiffness_min"], METRICS["growth_at_seal"]
 LEAST, MOST = 64.0, 140.0
 """Heights of the whole figure [mm]."""
 NEAREST = 1.5
-"""Ratio of the least measured speed to the least speed of a drawn Stribeck curve."""
+"""Ratio of the lowest measured speed to the lowest speed drawn of a Stribeck curve."""
 LEAST_SPEEDS = 3
-"""Speeds at a level of pressure from which on a map shows more than a curve (a choice)."""
+"""Least number of speeds per pressure for which a map is drawn instead of a curve (our choice)."""
 DAMPING = "Secant damping F/v, kN·s/m"
 FITS = {"power_law": "power law", "double_exponential": "double exp."}
 STYLES = {"power_law": 0, "double_exponential": 1}
-"""Styles of the fits of the secant damping."""
+"""Line styles of the laws fitted to the secant damping."""
 _OTHER = 2
-"""Style of any other fit and of the LuGre model."""
+"""Line style of any other fit and of the LuGre model."""
 
 
 def identification_figure(identification: Identification, height: float = MOST) -> Ink:
-    """All figures of an identification in one drawing of a stated height [mm]."""
+    """All figures of an identification in one drawing of the given height [mm]."""
     chart = Chart(
         "Friction and damping",
         [_over_time(identification), _friction(identification), _damping(identification)],
@@ -58,7 +58,7 @@ def identification_figure(identification: Identification, height: float = MOST) 
 
 
 def _over_time(identification: Identification) -> list[Panel]:
-    """Position, pressures, friction, growth and stiffness over time, one above the other."""
+    """Position, pressures, friction, bore growth and stiffness over time, stacked vertically."""
     slidings = identification.slidings
 
     def curve(words: str, quantity: Quantity, values: Callable[[Sliding], Array]) -> Curve:
@@ -91,12 +91,12 @@ def _over_time(identification: Identification) -> list[Panel]:
 
 
 def _sound(sliding: Sliding) -> Array:
-    """Friction where nothing disturbs the record."""
+    """Friction over time, without the samples that are disturbed or clipped."""
     return np.where(sliding.piece.sound, sliding.friction, np.nan)
 
 
 def joined(pieces: Sequence[tuple[Values, Values]]) -> tuple[Array, Array]:
-    """Pieces of a curve as one curve with a break after each."""
+    """Pieces of a curve joined to one curve, with a break after each piece."""
     breaks = np.array([np.nan])
     xs, ys = (
         np.concatenate([*chain.from_iterable((piece[k], breaks) for piece in pieces), breaks])
@@ -109,7 +109,10 @@ def joined(pieces: Sequence[tuple[Values, Values]]) -> tuple[Array, Array]:
 
 
 def _friction(identification: Identification) -> list[Panel]:
-    """Friction over velocity above its residuals; without a curve above the loop over position."""
+    """Friction over velocity with its residuals below.
+
+    Without a fitted curve, friction is drawn over position instead.
+    """
     fit = identification.stribeck
     if isinstance(fit, StribeckFit):
         return [_velocity_panel(identification, fit), _residuals(identification, fit)]
@@ -129,7 +132,7 @@ def measured(
     across: Callable[[FrictionPoint], float],
     up: Callable[[FrictionPoint], tuple[float, float]],
 ) -> list[Points]:
-    """Points of both ways with their 95 % bars; `up`: value and standard error."""
+    """Points of both directions with 95 % error bars; `up` gives value and standard error."""
     groups = []
     for style, (words, way) in enumerate((("out", 1), ("in", -1))):
         here = [point for point in points if way * point.velocity > 0]
@@ -157,7 +160,7 @@ def _signed_friction(point: FrictionPoint) -> tuple[float, float]:
 
 
 def _velocity_panel(identification: Identification, fit: StribeckFit) -> Panel:
-    """Points with their bars, the curve with its band, F_C and F_S of the LuGre model."""
+    """Measured points, the Stribeck curve with its band, and F_C and F_S of the LuGre model."""
     points = identification.points
     return Panel(
         f"Friction over velocity, {unit_text(FORCE.unit)}",
@@ -171,7 +174,10 @@ def _velocity_panel(identification: Identification, fit: StribeckFit) -> Panel:
 
 
 def _stribeck_curves(points: Sequence[FrictionPoint], fit: StribeckFit) -> list[Curve]:
-    """Curves with their bounds: at the mean pressure, or at both ends where it matters."""
+    """Curves with their bounds, at the mean pressure.
+
+    If friction depends on pressure: at the least and at the greatest pressure.
+    """
     levels = [(fit.reference_pressure, "Stribeck curve, 95 % band")]
     if "pressure_slope" in fit.parameters:
         ends = [f(point.pressure for point in points) for f in (min, max)]
@@ -195,7 +201,7 @@ def _stribeck_curves(points: Sequence[FrictionPoint], fit: StribeckFit) -> list[
 
 
 def _levels(lugre: LuGreFit | str, points: Sequence[FrictionPoint]) -> list[Level]:
-    """F_C and F_S of the LuGre model, short lines at rest."""
+    """F_C and F_S of the LuGre model, as short lines near zero speed."""
     if isinstance(lugre, str):
         return []
     values, offset = lugre.values, lugre.values.get("offset", 0.0)
@@ -210,7 +216,7 @@ def _levels(lugre: LuGreFit | str, points: Sequence[FrictionPoint]) -> list[Leve
 
 
 def _residuals(identification: Identification, fit: StribeckFit) -> Panel:
-    """Measured less fitted friction of every point; the scatter about the LuGre model in lines."""
+    """Measured minus fitted friction of every point; lines mark the scatter of the LuGre fit."""
     numbers = zip(fit.residuals, fit.errors, strict=True)
     of_point = dict(zip(identification.points, numbers, strict=True))
     points = measured(identification.points, _velocity, lambda point: of_point[point])
@@ -230,7 +236,7 @@ def _residuals(identification: Identification, fit: StribeckFit) -> Panel:
 
 
 def _loop(identification: Identification, title: str, why: str) -> Panel:
-    """Friction over position, with F_C of the LuGre model."""
+    """Friction over position, with the Coulomb friction F_C of the LuGre model."""
     pieces = [
         (
             LENGTH.to_display(1.0) * sliding.piece["x"][sliding.piece.sound],
@@ -263,7 +269,7 @@ def _loop(identification: Identification, title: str, why: str) -> Panel:
 
 
 def _damping(identification: Identification) -> list[Panel]:
-    """Secant damping: a map over speed and pressure, or curves above what they leave."""
+    """Secant damping: a map over speed and pressure, or curves with their residuals below."""
     usable = [point for point in identification.points if point.damping > 0]
     if not usable:
         why = "No point of steady sliding with friction against motion: no secant damping."
@@ -300,7 +306,7 @@ def _fit_curve(name: str, fit: LawFit, points: Sequence[FrictionPoint]) -> Curve
 
 
 def _ratios(name: str, fit: LawFit, points: Sequence[FrictionPoint]) -> Points:
-    """Measured over fitted damping less one, per cent."""
+    """Relative residual of the damping, measured / fitted - 1, in per cent."""
     predicted = np.asarray(fit.predict(np.array([point.speed for point in points])))
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = 100 * (np.array([point.damping for point in points]) / predicted - 1)
@@ -312,9 +318,10 @@ def _ratios(name: str, fit: LawFit, points: Sequence[FrictionPoint]) -> Points:
 
 
 def pressure_levels(points: Sequence[FrictionPoint]) -> list[list[FrictionPoint]]:
-    """Points one way by level of pressure, where two levels or more hold three speeds; else none.
+    """Points of one direction of motion, grouped by pressure.
 
-    Both ways differ in pressure without a load already: that alone makes no map.
+    Empty unless at least two pressures have three speeds each and share a range of speeds. Only
+    one direction counts: even without load, the pressure differs between the two.
     """
     for way in (1, -1):
         here = [point for point in points if way * point.velocity > 0]
@@ -329,14 +336,17 @@ def _speeds(group: Sequence[FrictionPoint]) -> int:
 
 
 def _overlap(groups: Sequence[Sequence[FrictionPoint]]) -> bool:
-    """Whether all levels share a range of speeds: else speed alone makes the pressure."""
+    """Whether all pressures share a range of speeds.
+
+    If not, the effects of pressure and of speed cannot be separated.
+    """
     low = max(min(point.speed for point in group) for group in groups)
     high = min(max(point.speed for point in group) for group in groups)
     return high > 1.5 * low
 
 
 def _map(points: Sequence[FrictionPoint], fit: StribeckFit | str) -> Panel:
-    """Points over speed and pressure, shaded by their damping, on the Stribeck curve's surface."""
+    """Points over speed and pressure, shaded by damping, above the surface fitted to them."""
     speeds = [speed(point) for point in points]
     pressures = [PRESSURE.to_display(point.pressure) for point in points]
     surface = ShadedMap((), (), np.empty((0, 0)))

@@ -1,7 +1,7 @@
-"""Pages of materials: the library as a list, an entry with its sources, a comparison, an oil.
+"""Pages of materials: a list of the library, one material with its sources, and a comparison.
 
-An oil is also shown over temperature and pressure, by the laws that an evaluation uses where a
-design names none.
+The properties of an oil are also shown over temperature and pressure. They follow the laws that an
+evaluation uses if the design names no law.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ SHOWN = {
     "seal": ("density", "hardness", "friction_coefficient"),
     "adhesive": ("density", "bond_strength", "shear_modulus"),
 }
-"""Properties that the list shows, by kind."""
+"""Properties shown in the list, by kind of material."""
 _STIFFNESS = ("youngs_modulus", "youngs_modulus_1")
 _STRENGTH = ("strength_1_tension", "yield_strength", "ultimate_strength")
 
 
 def listing(library: Library, *, kind: str | None = None) -> list[Block]:
-    """A material per line, by kind: main properties, share of unverified values, label."""
+    """List with a material per line: main properties, share of unverified values, and label."""
     shown: list[Block] = []
     for group in SHOWN if kind is None else (kind,):
         materials = [library.get(name) for name in library.names(kind=group)]
@@ -68,7 +68,7 @@ def _text(material: Material, name: str) -> str:
 
 
 def blocks(material: Material) -> list[Block]:
-    """A material with all its properties, the sources numbered below; an oil over its range."""
+    """A material with all its properties and numbered sources; for an oil also its chart."""
     remarks = [material.label, *([material.notes] if material.notes else [])]
     if material.warning:
         remarks.append(f"WARNING: {material.warning}")
@@ -105,7 +105,7 @@ def blocks(material: Material) -> list[Block]:
 
 
 def _values(entry: Property) -> list[str]:
-    """The value, or each point of a table with its argument."""
+    """The value of a property, or the points of its table, each with its argument."""
     if not entry.points:
         return [pretty(entry.text)]
     return [pretty(f"{entry.quantity.text(y)} at {_argument(entry, x)}") for x, y in entry.points]
@@ -116,7 +116,7 @@ def _argument(entry: Property, x: float) -> str:
 
 
 def comparison(materials: Sequence[Material]) -> list[Block]:
-    """Properties side by side; from the second material on with the ratio to the first."""
+    """Properties side by side; the second and later materials show their ratio to the first."""
     completed = [material.completed() for material in materials]
     known = {name for properties in completed for name in properties}
     rows: list[Sequence[str]] = []
@@ -140,7 +140,7 @@ def comparison(materials: Sequence[Material]) -> list[Block]:
 
 
 def _per_mass(properties: Mapping[str, Property], names: Sequence[str]) -> float | None:
-    """The first of the named properties that is known, over the density."""
+    """The first of the named properties that has a value, divided by the density."""
     for name in names:
         if name in properties and "density" in properties:
             return properties[name].value / properties["density"].value
@@ -160,18 +160,18 @@ def _compared(entry: Property | None, first: Property | None) -> str:
 # ---- an oil over temperature and pressure ----
 
 PRESSURES = (0.0, 200e5, 350e5)
-"""Gauge pressures of the curves, Pa."""
+"""Gauge pressures at which curves are drawn, Pa."""
 AIR = (0.0, 0.005, 0.01, 0.03)
-"""Entrained air of the curves, by volume at atmospheric pressure."""
+"""Contents of entrained air for which curves are drawn, by volume at atmospheric pressure."""
 _LOW, _HIGH = 1e5, 350e5
 _ZERO = 273.15
 ROOM = 10.0
-"""Room of an axis beyond the coldest and the hottest temperature [K]."""
+"""Margin of the temperature axis beyond the coldest and the hottest point [K]."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Range:
-    """Temperatures (K) of an oil: its service range, and that with the points of its table."""
+    """Temperatures (K) of an oil: its service range, and that range with its table's points."""
 
     low: float
     high: float
@@ -257,7 +257,7 @@ def fluid_chart(material: Material) -> Chart:
 
 
 def fluid_figure(material: Material) -> Ink:
-    """The chart of an oil as a picture of its own."""
+    """The chart of an oil as a separate picture."""
     over = _range(material)
     words = f"{laws_text(material)}; shaded: service range {_degrees(over.low)} to "
     return titled(fluid_chart(material), [_sentence(f"{words}{_degrees(over.high)} °C")])
@@ -280,7 +280,7 @@ def _sentence(text: str) -> str:
 
 
 def _decades(low: float, high: float) -> list[float]:
-    """1, 2, 5, 10, ... within limits."""
+    """The values 1, 2, 5, 10, ... (times powers of ten) within limits."""
     powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
     steps = (step * 10.0**power for power in powers for step in (1, 2, 5))
     return [step for step in steps if low <= step * (1 + 1e-9) and step <= high * (1 + 1e-9)]
@@ -332,7 +332,7 @@ def _viscosity_panel(material: Material, over: _Range) -> Panel:
 
 
 def _bent(viscosity: float | Array) -> Array:
-    """Place of a kinematic viscosity [m²/s] on an axis of ASTM D341."""
+    """Position of a kinematic viscosity [m²/s] on the axis of ASTM D341."""
     return np.asarray(np.log(np.log(1e6 * np.asarray(viscosity) + 0.7)))
 
 

@@ -1,4 +1,4 @@
-"""Blocks of a page about a measured record: fitted parameters, residuals, the record as drawn."""
+"""Blocks of a page about a measured record: fitted parameters, residuals, and charts."""
 
 from __future__ import annotations
 
@@ -32,17 +32,17 @@ from .simulation import tied
 from .simulation_figures import CONSTANT, curve, scaled, timed, titled
 
 MOST_PLACES = 6
-"""Decimals of a bias, at most."""
+"""Largest number of decimals of a bias."""
 TALL = 50.0
-"""Height of a channel with its residual [mm]."""
+"""Height of the chart of a channel with its residual [mm]."""
 ALONE = 3
-"""Channels up to which each has a whole row."""
+"""Largest number of channels for which each channel has a full row."""
 BAND = 2.0
-"""Half the width of the drawn noise band in standard deviations: 95 % of the samples."""
+"""Half width of the drawn noise band in standard deviations; the band contains 95 % of samples."""
 
 
 def blocks(overlay: Overlay, fit: Fit | None) -> list[Block]:
-    """Parameters of a fit, residuals, remarks, and every channel over its simulation."""
+    """Parameters of a fit, residuals, remarks, and every channel drawn with its simulation."""
     made: list[Block] = [] if fit is None else [_parameters(fit)]
     made.append(_residuals(overlay, None if fit is None else fit.before))
     sentences = remarks(overlay, fit)
@@ -53,7 +53,7 @@ def blocks(overlay: Overlay, fit: Fit | None) -> list[Block]:
 
 
 def drawn(overlay: Overlay) -> dict[str, tuple[Array, Array]]:
-    """Channels on the time of the simulation, broken where samples are missing."""
+    """Measured channels over the time of the simulation; gaps where samples are missing."""
     channels = overlay.measured.channels.items()
     return {name: _broken(time - overlay.lag, values) for name, (time, values) in channels}
 
@@ -74,7 +74,7 @@ def channel_words(name: str) -> str:
 
 
 def _residuals(overlay: Overlay, before: Overlay | None) -> Table:
-    """A row for every channel, in its own unit; of a fit with the residual before it."""
+    """A row per channel in its own unit; after a fit, also the residual before the fit."""
     columns = [
         Column("channel", width=1.0, breaks=14, least=10),
         Column("unit", style="dim"),
@@ -111,7 +111,7 @@ def _residuals(overlay: Overlay, before: Overlay | None) -> Table:
 
 
 def _parameters(fit: Fit) -> Table:
-    """A row for every fitted parameter; its unit stands with the fitted value."""
+    """A row for every fitted parameter; the unit is printed with the fitted value."""
     columns = [
         Column("parameter", width=1.0, breaks=14),
         Column("start", "right", style="dim", drop=3),
@@ -140,7 +140,7 @@ def _parameters(fit: Fit) -> Table:
 
 
 def _significant(value: float, half: float) -> str:
-    """A number with two digits of its uncertainty `half`; a dash without bounds."""
+    """A number rounded to two digits of its uncertainty `half`; a dash without an uncertainty."""
     if not math.isfinite(value):
         return DASH
     if value == 0 or half == 0 or not math.isfinite(half):
@@ -158,7 +158,7 @@ def _verdict(fitted: Fitted, *, missed: bool) -> str:
 
 
 def remarks(overlay: Overlay, fit: Fit | None) -> list[str]:
-    """Notes of the record, doubts of the fit, and the lag, as sentences."""
+    """Sentences: notes on the record, doubts about the fit, and the lag."""
     words = [*overlay.notes, *(() if fit is None else fit.doubts)]
     if overlay.lag:
         way = "late" if overlay.lag > 0 else "early"
@@ -170,7 +170,10 @@ def remarks(overlay: Overlay, fit: Fit | None) -> list[str]:
 
 
 def measured_charts(overlay: Overlay) -> list[Chart]:
-    """Every channel that was compared: a chart for every row, so that rows may change sheets."""
+    """Charts of every compared channel.
+
+    Each row is a chart, so that a page break may fall between rows.
+    """
     names = list(overlay.residuals)
     columns = 1 if len(names) <= ALONE else 2
     channels = drawn(overlay)
@@ -188,7 +191,7 @@ def measured_charts(overlay: Overlay) -> list[Chart]:
 def _panels(
     overlay: Overlay, name: str, channels: Mapping[str, tuple[Array, Array]]
 ) -> list[Panel]:
-    """A channel over its simulation, and its residual with the noise of the sensor."""
+    """A channel with its simulation, and the residual with the noise band of the sensor."""
     simulation = overlay.simulation
     quantity, noise = simulation.told[name].quantity, overlay.residuals[name].noise
     time, values = channels[name]

@@ -1,4 +1,4 @@
-"""Blocks of an optimum: variables, choices and sizes, infeasibility, the way to a yield."""
+"""Blocks of an optimum: variables, choices, sizes, reasons of infeasibility, and robustness."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from ..rendering.text import DASH, sentence
 from .uncertainty import percent
 
 MOST_ROWS = 20
-"""Combinations shown; JSON has them all."""
+"""Largest number of combinations shown; the JSON output has them all."""
 MOST_COLUMNS = 4
-"""PATHs that get a column each; of more, the values share a column."""
+"""Largest number of PATHs with a column each; if there are more, their values share a column."""
 WORTH = 10.0
-"""Larger reserves, relative to their limit, are left out: the limit is far away."""
+"""Reserves above this multiple of their limit are left out: the limit is far away."""
 _KINDS = {"dimension": "fixed dimension", "safety factor": "safety: not advised"}
-"""Kinds of a cure in clearer words."""
+"""Clearer words for some kinds of remedy."""
 
 
 # ---- variables ----
@@ -72,12 +72,15 @@ def variables(optimisation: Optimisation) -> Table:
 
 
 def _place(row: VariableResult) -> float:
-    """Place of a value between its bounds, from zero to one."""
+    """Position of a value between its bounds, from 0 (lower) to 1 (upper)."""
     return (row.value - row.lower) / (row.upper - row.lower) if row.upper > row.lower else 0.0
 
 
 def best_values(optimisation: Optimisation, room: float) -> list[Block]:
-    """Values of the variables side by side, as many as this height holds, with a pointer [mm]."""
+    """Best values of the variables side by side.
+
+    Only as many are shown as fit into the height `room` [mm]; a line refers to the others.
+    """
     best = optimisation.best_variables
     lines = (len(best) + 1) // 2
     most = (room - heights.HEAD - 2 * heights.LINE) / (heights.MARKED * heights.LINE)
@@ -103,7 +106,7 @@ def best_values(optimisation: Optimisation, room: float) -> list[Block]:
 
 
 def heading(optimisation: Optimisation) -> str:
-    """Name of the values shown: of the optimum, or of the requested sizes."""
+    """Column head of the values shown: optimum, or requested sizes."""
     if optimisation.rounding is None:
         return "optimum"
     return "continuous" if optimisation.made is None else optimisation.made.name
@@ -121,7 +124,7 @@ def sizes_and_choices(optimisation: Optimisation) -> Iterator[Block]:
 
 
 def heads(paths: Sequence[str]) -> list[str]:
-    """The shortest endings of PATHs, of two words at least, that set them apart.
+    """The shortest endings of PATHs that differ from each other, with at least two words each.
 
     >>> heads(["seals.rod.compound", "seals.piston.compound", "fluid.material"])
     ['rod.compound', 'piston.compound', 'fluid.material']
@@ -137,7 +140,7 @@ def heads(paths: Sequence[str]) -> list[str]:
 
 
 def choice_notes(optimisation: Optimisation) -> list[str]:
-    """The comparison of the combinations, and the omissions of the table, in sentences."""
+    """Sentences on how combinations were compared, and on the combinations not in the table."""
     choices = optimisation.choices
     if choices is None:
         return []
@@ -150,7 +153,7 @@ def choice_notes(optimisation: Optimisation) -> list[str]:
 
 
 def _choices_table(optimisation: Optimisation, choices: Choices) -> Block:
-    """Every combination tried, the best first, and the cost of the others."""
+    """Every combination tried, best first, with its cost compared to the best."""
     paths, objective = _varied(choices), text.metric(optimisation.objective_metric)
     names = heads(paths)
     sized = any(tried.rounded is not None for tried in choices.combinations)
@@ -187,7 +190,7 @@ def _choices_table(optimisation: Optimisation, choices: Choices) -> Block:
 
 
 def _varied(choices: Choices) -> list[str]:
-    """PATHs whose value is not the same in every combination."""
+    """PATHs whose value differs between combinations."""
     first = choices.combinations[0].values
     return [
         path
@@ -200,7 +203,7 @@ def _varied(choices: Choices) -> list[str]:
 
 
 def _rounding_table(optimisation: Optimisation, rounding: Rounding) -> Block:
-    """Every variable before and after rounding, its plies, the cost."""
+    """Every variable before and after rounding, the number of plies, and the cost of rounding."""
     counted = any(row.plies is not None for row in rounding.variables)
     rows: list[list[Cell]] = []
     for row in rounding.variables:
@@ -253,7 +256,7 @@ def _cost(objective: Quantity, rounding: Rounding) -> str:
 
 
 def rounding_notes(optimisation: Optimisation) -> list[str]:
-    """Outcome, effort and the next best designs of a rounding, in sentences."""
+    """Sentences on the outcome and effort of rounding, and on the next best designs."""
     rounding = optimisation.rounding
     if rounding is None:
         return []
@@ -276,7 +279,7 @@ def rounding_notes(optimisation: Optimisation) -> list[str]:
 
 
 def _sizes(optimisation: Optimisation, sizes: Mapping[str, float]) -> str:
-    """Sizes by PATH in words; a PATH without the ending that its value implies."""
+    """Sizes with their PATHs in words; endings of PATHs that follow from the value are omitted."""
     words = []
     for path, value in sizes.items():
         quantity = quantity_of(path, optimisation.design)
@@ -290,7 +293,7 @@ def _sizes(optimisation: Optimisation, sizes: Mapping[str, float]) -> str:
 
 
 def infeasibility_blocks(card: Infeasibility) -> list[Block]:
-    """The card of an infeasible design: the conflict, its size, possible repairs."""
+    """Blocks on an infeasible design: conflicting limits, size of the conflict, and remedies."""
     conflict = text.pretty(sentence(card.sentence)).replace("->", "→")
     blocks: list[Block] = [Notes("Why nothing fits", [conflict])]
     if card.joint:
@@ -332,7 +335,7 @@ def _columns(first: str) -> list[Column]:
 
 
 def _limit(entry: Mapping[str, Any]) -> list[Cell]:
-    """Row of a relaxed limit: its path, or the name of its check."""
+    """Row of a relaxed limit, with its path or the name of its check."""
     origin = str(entry["origin"])
     return [
         str(entry["parameter"] or entry["requirement"]),
@@ -344,7 +347,7 @@ def _limit(entry: Mapping[str, Any]) -> list[Cell]:
 
 
 def _cure(entry: Mapping[str, Any]) -> list[Cell]:
-    """A relaxation that suffices alone."""
+    """Row of a relaxation that is sufficient on its own."""
     return [
         str(entry["parameter"]),
         soft(_KINDS.get(entry["kind"], entry["kind"])),
@@ -359,7 +362,7 @@ def _change(share: float | None) -> str:
 
 
 def _bounds(card: Infeasibility) -> Block:
-    """Bounds that the relaxed design lies at: what opening them helps."""
+    """Bounds on which the relaxed design lies, and the benefit of widening each."""
     columns = [
         Column("bound", "left", 1.3, breaks=24, mono=True),
         Column("now", "right"),
@@ -386,7 +389,7 @@ def _bounds(card: Infeasibility) -> Block:
 
 
 def _closes(gain: float, total: float | None) -> str:
-    """Share of the gap that 1 % more room closes."""
+    """Share of the gap that the first 1 % of widening a bound closes."""
     return f"{text.number(min(gain / total, 100.0), 2)} %" if total else DASH
 
 
@@ -394,7 +397,7 @@ def _closes(gain: float, total: float | None) -> str:
 
 
 def robust_tables(optimisation: Optimisation) -> Iterator[Table]:
-    """Optima on the way to the yield, and reserves kept; nothing of a plain optimum."""
+    """Robust search: its successive optima and the margins added for scatter; else empty."""
     robust = optimisation.robust
     if robust is None:
         return

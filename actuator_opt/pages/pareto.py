@@ -32,18 +32,18 @@ from ..rendering.text import trimmed, unit_text, value_text
 from .report import doubts
 
 SHOWN, FEWER = 21, 17
-"""Designs in the table of two objectives, and of more, whose heads take more lines."""
+"""Designs in the table with two objectives, and with more, as their heads need more lines."""
 MOVING = 5
-"""Most variables in the table."""
+"""Largest number of variables in the table."""
 
 WIDTH, HEIGHT = 180.0, 82.0
 """Size of the chart [mm]."""
 ROOM = 0.06
-"""Share of the range left free around the designs."""
+"""Free margin around the designs, as a share of their range."""
 
 
 def page(front: ParetoFront) -> Page:
-    """The page of a Pareto front; without designs it gives the reason."""
+    """The page of a Pareto front; if the front is empty, the page gives the reason."""
     if not front.points:
         state: State = "infeasible" if front.status == "infeasible" else "missed"
         return Page(
@@ -66,7 +66,7 @@ def page(front: ParetoFront) -> Page:
 
 
 def series(front: ParetoFront) -> list[Series]:
-    """Every design of a front as columns in the units people read."""
+    """Every design of a front as columns in display units."""
     knee = None if front.knee is None else front.knee.index
     count = len(front.points)
     return [
@@ -85,7 +85,7 @@ def series(front: ParetoFront) -> list[Series]:
 
 
 def front_outcome(front: ParetoFront) -> dict[str, Any]:
-    """The numbers that must repeat in a second run (SI): the objectives of every design."""
+    """The values that a repeated run must reproduce: the objectives of every design (SI)."""
     values = {
         f"{objective.metric} of design {k}": point.metrics[objective.metric]
         for k, point in enumerate(front.points, 1)
@@ -140,7 +140,7 @@ def _values(front: ParetoFront) -> list[_Values]:
 
 
 def _shown(front: ParetoFront) -> list[int]:
-    """Designs of the table: those with a role, and others evenly between."""
+    """Indices of designs in the table: designs with a role, and others evenly spaced."""
     most = SHOWN if len(front.objectives) == 2 else FEWER
     last = len(front.points) - 1
     if last < most:
@@ -152,7 +152,7 @@ def _shown(front: ParetoFront) -> list[int]:
 
 
 def _role(front: ParetoFront, k: int) -> str:
-    """The best design of an objective or the knee; empty for others."""
+    """Role of design `k`: best in an objective, or knee; otherwise empty."""
     if front.knee is not None and front.knee.index == k:
         return "knee"
     for objective in front.objectives:
@@ -163,7 +163,7 @@ def _role(front: ParetoFront, k: int) -> str:
 
 
 def _moving(front: ParetoFront) -> list[str]:
-    """Variables that move most along the front, relative to their mean."""
+    """Variables that change most along the front, relative to their mean."""
 
     def span(path: str) -> float:
         values = [point.variables[path] for point in front.points]
@@ -175,7 +175,7 @@ def _moving(front: ParetoFront) -> list[str]:
 
 
 def _evaluated(front: ParetoFront) -> str:
-    """The design that was evaluated in full."""
+    """Sentence on the design that was evaluated in full."""
     return "first design" if front.knee is None else "knee"
 
 
@@ -258,14 +258,14 @@ def _wide(front: ParetoFront) -> Iterator[str]:
 
 
 def front_chart(front: ParetoFront) -> Chart:
-    """Every other objective over the first, side by side."""
+    """Panels side by side, each with one of the other objectives over the first."""
     first, *others = front.objectives
     panels = [_panel(front, (first, 0), (other, k)) for k, other in enumerate(others, 1)]
     return Chart("Pareto front", panels, height=HEIGHT)
 
 
 def front_figure(front: ParetoFront) -> Ink:
-    """The chart of a front as a picture of its own."""
+    """The chart of a front as a separate picture."""
     return titled(front_chart(front))
 
 
@@ -313,7 +313,7 @@ def _label(wish: Wish) -> str:
 
 
 def _range(values: list[float], wish: Wish, front: ParetoFront) -> tuple[float, float]:
-    """The designs' own range with room, and a limit of the objective that is near it."""
+    """Range of the designs with a free margin; it includes a limit that is near."""
     low, high = min(values), max(values)
     span = (high - low) or abs(high) or 1.0
     for row in _required(front, wish):

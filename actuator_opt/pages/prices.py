@@ -1,4 +1,4 @@
-"""Prices of requirements and parameters: tornado, table, movements of the dimensions."""
+"""Prices of requirements and parameters: tornado, table, and changes of the optimal dimensions."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from ..rendering.text import DASH
 from ..rendering.tornado import MOST, TornadoBar, bars
 
 MOVING = 3
-"""Most dimensions named per row of the table of movements."""
+"""Largest number of dimensions named per row of the table of changed dimensions."""
 MOST_MOVES = 8
-"""Most rows of that table: those that change the most."""
+"""Largest number of rows in that table; the largest changes are shown."""
 LEAST_MOVE = 1e-4
-"""Relative movement per +1 % below which a dimension counts as unmoved."""
+"""Relative change per +1 % below which a dimension counts as unchanged."""
 LEAST_EFFECT = 1e-5
-"""Least change drawn, a share of the objective."""
+"""Smallest change that is drawn, as a share of the objective."""
 NO_DESIGN = "no design"
-"""Words at an end without a design."""
+"""Words at an end of a bar for which no feasible design exists."""
 
 
 def price_blocks(optimisation: Optimisation, *, moving: bool = False) -> list[Block]:
-    """The tornado of re-solved ends, the prices, the best trades, the movements of dimensions.
+    """Blocks: tornado of re-solved optima, prices, best trades, and changes of dimensions.
 
-    `moving`: the terminal shows the movements too.
+    `moving`: the terminal also shows the changes of dimensions.
     """
     if not optimisation.sensitivities:
         return []
@@ -45,7 +45,7 @@ def price_blocks(optimisation: Optimisation, *, moving: bool = False) -> list[Bl
 
 
 def sensitivities(optimisation: Optimisation) -> Table:
-    """Price of every limit and parameter, checked by solving again at ±10 %."""
+    """Table of the price of every limit and parameter, checked by re-optimising at ±10 %."""
     objective = text.metric(optimisation.objective_metric)
     required = {row.path: row for row in optimisation.evaluation.requirements}
     rows: list[list[Cell]] = []
@@ -93,7 +93,10 @@ def _margin(limit: Requirement) -> str:
 
 
 def _price(optimisation: Optimisation, row: Sensitivity, objective: Quantity) -> Cell:
-    """The price per unit shown, both sides of a kink; "~" where it is not linear to ±10 %."""
+    """The price per displayed unit; at a kink, the prices on both sides.
+
+    "~" marks a price that is not linear up to ±10 %.
+    """
     factor = row.scale * (objective.to_display(1.0) - objective.to_display(0.0))
 
     def shown(price: float | None) -> str:
@@ -106,7 +109,10 @@ def _price(optimisation: Optimisation, row: Sensitivity, objective: Quantity) ->
 
 
 def _reach(row: Sensitivity) -> float | None:
-    """Relative change of the row at which the active set changes; None beyond ±100 %."""
+    """Relative change of a limit or parameter at which other limits become active.
+
+    None if it is beyond ±100 %.
+    """
     if row.holds_until is None or not row.limit:
         return None
     return row.holds_until / row.limit - 1
@@ -124,7 +130,7 @@ def _reach_words(optimisation: Optimisation, row: Sensitivity) -> str:
 
 
 def quality(optimisation: Optimisation) -> str:
-    """The quality line under the prices."""
+    """Line below the prices on how accurate they are."""
     kkt = optimisation.kkt
     if kkt is None:
         return "Quality: no multipliers (the design is not an optimum); prices are not exact."
@@ -160,9 +166,9 @@ def quality(optimisation: Optimisation) -> str:
 
 
 def moves(optimisation: Optimisation, *, shown: bool = False) -> Block | None:
-    """Movements of the dimensions of the optimum per +1 % of each requirement or parameter.
+    """Change of the optimum's dimensions per +1 % of each requirement or parameter.
 
-    `shown`: on the terminal too.
+    `shown`: the terminal shows the table too.
     """
     variables = {row.path: row for row in optimisation.variables}
     rows: list[list[Cell]] = []
@@ -217,7 +223,7 @@ def moves(optimisation: Optimisation, *, shown: bool = False) -> Block | None:
 
 
 def drawn(optimisation: Optimisation) -> list[Sensitivity]:
-    """The rows with an effect, ranked as in the table."""
+    """Limits and parameters with an effect, ranked as in the table."""
     objective = optimisation.objective_value
     least = LEAST_EFFECT * abs(objective)
     rows = [
@@ -229,7 +235,7 @@ def drawn(optimisation: Optimisation) -> list[Sensitivity]:
 
 
 def _tornado_block(optimisation: Optimisation) -> Block | None:
-    """The tornado with its title, or None where nothing changes anything."""
+    """The tornado with its title; None if no limit or parameter has an effect."""
     rows = drawn(optimisation)
     if not rows:
         return None
@@ -245,8 +251,8 @@ def _tornado_block(optimisation: Optimisation) -> Block | None:
 def tornado(optimisation: Optimisation, *, width: float = 180.0) -> Ink:
     """Bars of the re-solved objective at +10 % (dark) and -10 % (light) of every row.
 
-    A row without a design at an end says so at the right; predictions beyond the frame end at
-    it with an arrow.
+    If no design exists at an end, words at the right say so. A prediction beyond the frame ends
+    there with an arrow.
     """
     objective = optimisation.objective_value
     quantity = text.metric(optimisation.objective_metric)

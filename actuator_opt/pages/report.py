@@ -50,20 +50,22 @@ KEY_FIGURES = (
     "pull_force",
     "closed_length",
 )
-"""Key figures in order: the first five with a value, after the objective."""
+"""Candidates for key figures; after the objective, the first with a value are shown, five in
+total."""
 
 NO_RESERVE = f"No reserve: met, with a margin below {100 * result.NO_RESERVE:g} %"
 FLAG = " (!)"
-"""Mark of a quantity by a model outside its valid range."""
+"""Mark of a quantity whose model is used outside its valid range."""
 FLAGGED = "(!) EXTRAPOLATED: a model was used outside its valid range"
 
 _SHORT_OF = ("missed", "infeasible")
-"""States in which an optimum lacks the required yield."""
+"""States of an optimum with less than the required yield."""
 _MET = ("met", "checks")
-"""States in which every requirement is met: green, and amber."""
+"""States in which every requirement is met: without cautions (green), and with cautions
+(amber)."""
 _BAR = Column("", "left", "22mm", drop=2)
 _MARK = Column("", on="terminal")
-"""A state as its mark alone."""
+"""Column that shows only the mark of a state."""
 
 
 def page(
@@ -78,7 +80,7 @@ def page(
     ----------
     subject : what to report
     extra_tables : further tables and drawings, before the appendix
-    seals : the seals of piston or rod, each with its sheet
+    seals : studies of the piston or rod seals, each on its own sheet
     """
     evaluation, optimisation = parts_of(subject)
     drawing = section.section(evaluation)
@@ -136,9 +138,9 @@ def prices_page(optimisation: Optimisation) -> Page:
 
 
 def parts_of(subject: Evaluation | Optimisation) -> tuple[Evaluation, Optimisation | None]:
-    """The evaluation to show and, if there is one, the optimisation it came from.
+    """The evaluation to show and, if it results from an optimisation, that optimisation.
 
-    An optimisation with sizes shows the design of these sizes: the design to build.
+    If sizes were requested, the evaluation is that of the design with these sizes, which is built.
     """
     if isinstance(subject, Optimisation):
         return subject.best_evaluation, subject
@@ -146,7 +148,7 @@ def parts_of(subject: Evaluation | Optimisation) -> tuple[Evaluation, Optimisati
 
 
 def outcome(subject: Evaluation | Optimisation) -> dict[str, Any]:
-    """The numbers that must repeat in a second run: SI, by metric and by PATH."""
+    """The values that a repeated run must reproduce: SI, by metric and by PATH."""
     evaluation, optimisation = parts_of(subject)
     numbers: dict[str, Any] = {
         "metrics": {metric.name: metric.value for metric in evaluation.metrics.values()},
@@ -163,7 +165,7 @@ def outcome(subject: Evaluation | Optimisation) -> dict[str, Any]:
 def _opening(
     evaluation: Evaluation, optimisation: Optimisation | None, *, labelled: bool = True
 ) -> Iterator[Block]:
-    """The first blocks: limits missed, the reason of infeasibility, the requirements."""
+    """The first blocks: missed limits, reasons of infeasibility, and requirements."""
     missed = [row.name for row in evaluation.requirements if not row.met]
     if missed:
         words = [f"missed: {', '.join(missed)}"]
@@ -178,10 +180,10 @@ def _opening(
 def _with_variables(
     page: Page, hero: float, optimisation: Optimisation
 ) -> tuple[list[Block], list[Block]]:
-    """Requirements and variables of the first sheet, and the tables for which it has no room.
+    """Blocks of the first sheet (requirements, variables), and tables that do not fit on it.
 
-    Where the table does not fit, the requirements go without their words first; then a short
-    list takes its place.
+    If the table of variables does not fit, the labels of the requirements are dropped first. If
+    it still does not fit, a short list of values replaces it.
     """
     table, sizes = optimum.variables(optimisation), optimum.sizes_and_choices(optimisation)
     for labelled in (True, False):
@@ -196,7 +198,7 @@ def _with_variables(
 
 
 def sentences(optimisation: Optimisation) -> list[str]:
-    """The design shown, the outcome of the search, and the remedy."""
+    """Sentences on the design shown, the outcome of the search, and a remedy if it failed."""
     parts, rounding = [optimisation.shown], optimisation.rounding
     if rounding is None or rounding.design is not None:
         parts.append(optimisation.sentence)
@@ -207,7 +209,10 @@ def sentences(optimisation: Optimisation) -> list[str]:
 
 
 def reserve_sentences(subject: Evaluation | Optimisation) -> list[str]:
-    """Limits without reserve and the yield, where requirements are met without a robust search."""
+    """Sentences on limits without reserve and on the yield.
+
+    Empty unless requirements are met and the search was not a robust one.
+    """
     evaluation, optimisation = parts_of(subject)
     robust = optimisation is not None and optimisation.robust is not None
     if robust or verdict(subject).state not in _MET:
@@ -272,7 +277,7 @@ def verdict(subject: Evaluation | Optimisation) -> Verdict:
 
 
 def doubts(evaluation: Evaluation) -> tuple[list[str], list[str]]:
-    """Plain lines and cautions: unverified values, extrapolated results."""
+    """Plain lines and cautions for the badge, on unverified values and extrapolated results."""
     counts = evaluation.counts
     results, models = counts["extrapolated"], counts["extrapolated_models"]
     words = f"{results} result{'' if results == 1 else 's'}"
@@ -286,7 +291,7 @@ def doubts(evaluation: Evaluation) -> tuple[list[str], list[str]]:
 
 
 def _counts(evaluation: Evaluation) -> dict[str, int]:
-    """Checks by their status."""
+    """Number of checks by status."""
     return {
         name: sum(check.status == name for check in evaluation.checks)
         for name in ("met", "missed", "not_checked")
@@ -294,7 +299,7 @@ def _counts(evaluation: Evaluation) -> dict[str, int]:
 
 
 def _misfit(optimisation: Optimisation | None) -> str:
-    """The laws of geometry that no design meets."""
+    """The geometric constraints that no design meets."""
     card = None if optimisation is None else optimisation.infeasibility
     return f"; the geometry does not fit: {', '.join(card.laws)}" if card and card.laws else ""
 
@@ -352,7 +357,10 @@ def _limited(evaluation: Evaluation, name: str) -> Requirement | None:
 
 
 def _before(optimisation: Optimisation | None, name: str) -> tuple[str, float, int] | None:
-    """Reference of a figure, and digits: the optimum before rounding, else the start."""
+    """Words, value and digits of the reference of a key figure.
+
+    It is the optimum before rounding, or else the start.
+    """
     if optimisation is None:
         return None
     words, origin, digits = "start", optimisation.start, 3
@@ -366,7 +374,7 @@ def _before(optimisation: Optimisation | None, name: str) -> tuple[str, float, i
 
 
 def flag(evaluation: Evaluation, name: str | None) -> str:
-    """`FLAG` for a metric by a model outside its valid range; else nothing."""
+    """`FLAG` if the metric's model is used outside its valid range; otherwise empty."""
     known = evaluation.metrics.get(name or "")
     return "" if known is None or known.in_range else FLAG
 
@@ -374,8 +382,8 @@ def flag(evaluation: Evaluation, name: str | None) -> str:
 def requirements(evaluation: Evaluation, *, shown: bool = True, labelled: bool = True) -> Block:
     """Limit, result, margin and status of every requirement.
 
-    `shown`: on the terminal too, where no list of all quantities has them already; `labelled`:
-    with the words of each quantity on paper.
+    `shown`: also on the terminal (unless its list of all quantities shows them). `labelled`: on
+    paper, every quantity has its label in words.
     """
     on: Medium = "both" if shown else "paper"
     rows: list[Row] = []
@@ -419,7 +427,7 @@ def requirements(evaluation: Evaluation, *, shown: bool = True, labelled: bool =
 
 
 def _row_notes(evaluation: Evaluation) -> list[str]:
-    """Meaning of the states and marks that some requirement has."""
+    """Explanations of the states and marks that occur in the table."""
     rows = evaluation.requirements
     notes = [NO_RESERVE] if any(row.state == "no_reserve" for row in rows) else []
     return notes + ([FLAGGED] if any(flag(evaluation, row.metric) for row in rows) else [])
@@ -435,7 +443,7 @@ def _result(evaluation: Evaluation, row: Requirement) -> Cell:
 def quantities(evaluation: Evaluation) -> Iterator[Block]:
     """Every computed quantity with its limits, and what is not computed, for the terminal.
 
-    Beside a limit stands the value that the margin is of.
+    Each limit has beside it the value from which its margin is computed.
     """
     limits: dict[str, list[Requirement]] = {}
     for required in evaluation.requirements:
@@ -488,7 +496,7 @@ def quantities(evaluation: Evaluation) -> Iterator[Block]:
 
 
 def masses(evaluation: Evaluation) -> Block:
-    """Mass per part, adding up, with the oil below."""
+    """Mass of every part with the total; the oil mass is below."""
     quantity = METRICS["mass"]
     parts = evaluation.mass_parts
     total = sum(parts.values())
@@ -528,7 +536,7 @@ def masses(evaluation: Evaluation) -> Block:
 
 
 def checks(evaluation: Evaluation) -> Iterator[Block]:
-    """The check list: on paper every line, on the terminal the open lines."""
+    """The check list: all lines on paper, only the open lines on the terminal."""
     if not evaluation.checks:
         yield Notes("Check list", ["No check list."], on="paper")
         return
@@ -575,7 +583,7 @@ def _check_values(evaluation: Evaluation, check: Check) -> list[str]:
 
 
 def _open_checks(evaluation: Evaluation, title: str) -> Block:
-    """Lines that are missed, without reserve or not checked, the worst first."""
+    """Checks that are missed, without reserve or not checked, worst first."""
     order = ("missed", "no_reserve", "not_checked")
     lines = [check for check in evaluation.checks if check.state in order]
     if not lines:
@@ -606,7 +614,7 @@ def warnings(subject: Evaluation | Optimisation) -> list[str]:
 
 
 def _remarks(evaluation: Evaluation, optimisation: Optimisation | None) -> Iterator[Block]:
-    """Warnings; on the terminal also what paper lists in the appendix, in few words."""
+    """Warnings; the terminal adds a short form of the appendix that paper has."""
     if lines := warnings(optimisation or evaluation):
         yield Notes("Warnings", [text.pretty(line) for line in lines], style="yellow")
     data = []
@@ -664,7 +672,7 @@ def models(evaluation: Evaluation) -> Block:
 
 
 def assumptions(evaluation: Evaluation) -> Block:
-    """Unverified library values, values of test records, waived checks."""
+    """Assumptions: unverified library values, values from test records, and waived checks."""
     title = "Assumptions and unverified data"
     groups: dict[tuple[str, str, str], list[str]] = {}
     for row in evaluation.unverified:

@@ -1,4 +1,4 @@
-"""Recorded runs: the list, a run with its request, result and search; results of `doctor`.
+"""Recorded runs: their list, and the details of a single run; findings of `doctor`.
 
 The table of `doctor` is never cut, so that paths can be copied.
 """
@@ -14,22 +14,22 @@ from ..rendering.blocks import Block, Column, Row, State, Table, short
 from ..rendering.text import DASH, number, pretty
 
 MET = 1e-6
-"""Largest miss of a limit that counts as met (contract)."""
+"""Largest violation with which a limit counts as met, as documented."""
 _STEPS = 8
-"""Most improvements of the search that are shown."""
+"""Largest number of improvements of the search shown."""
 _COMMAND = 600
-"""Most letters of a command that are shown."""
+"""Largest number of letters shown of a command."""
 _VALUES = 8
-"""Most values of an axis that are listed."""
+"""Largest number of values listed of an axis."""
 _DESIGNS = 5
-"""Most designs of a sweep that are shown."""
+"""Largest number of designs shown of a sweep."""
 _BOUNDS = (("value", 5), ("lower", 4), ("upper", 4))
 """Columns of the variables, with their significant digits."""
 Fact = tuple[str, str]
 
 
 def listing(runs: Iterable[tuple[str, Mapping[str, Any]]]) -> Table:
-    """Ids and heads, a run per line."""
+    """Table of runs, one per line: id and summary."""
     columns = [
         Column("run", strong=True),
         Column("command", style="dim", drop=2),
@@ -67,7 +67,7 @@ def outcome(head: Mapping[str, Any]) -> str:
 
 
 def objective(head: Mapping[str, Any]) -> str:
-    """The objective with its value in the display unit; of a front all objectives."""
+    """The objective with its value in the display unit; for a Pareto front, all objectives."""
     if "objectives" in head:
         return ", ".join(f"{goal['metric']} {goal['sense']}" for goal in head["objectives"])
     goal = head.get("objective") or {}
@@ -95,7 +95,7 @@ def blocks(name: str, head: Mapping[str, Any], body: Mapping[str, Any]) -> list[
 
 
 def _facts(head: Mapping[str, Any], body: Mapping[str, Any]) -> list[Fact]:
-    """The request with its origin, and the outcome."""
+    """Facts about a run: the request, its origin, and the outcome."""
     given = body["input"]
     request: list[Fact] = []
     if head["kind"] == "sweep" and "plan" in body:
@@ -117,7 +117,7 @@ def _facts(head: Mapping[str, Any], body: Mapping[str, Any]) -> list[Fact]:
 
 
 def _sweep_facts(body: Mapping[str, Any]) -> list[Fact]:
-    """The axes of a sweep, its order of points, and the place of its rows."""
+    """The axes of a sweep, the order of its points, and the file that contains its rows."""
     plan, request = body["plan"], body["asked"]
     store = request["store"]
     if request["reduce"]:

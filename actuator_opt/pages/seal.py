@@ -1,4 +1,4 @@
-"""The page of a seal study: gland, squeeze, operating point, contact, film, friction, leakage."""
+"""The page of a seal study: gland, squeeze, operating point, contact, oil film, and losses."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ from .seal_sections import (
 )
 
 SPEEDS = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)
-"""Speeds of the curves that the terminal shows [m/s]."""
+"""Speeds at which the terminal shows friction and damping [m/s]."""
 
 
 def page(study: SealStudy) -> Page:
-    """The seals of one place, as a page of their own."""
+    """A separate page for the seals of the piston or of the rod."""
     gland = gland_drawing(study)
     return Page(
         name=study.design.name,
@@ -54,7 +54,7 @@ def page(study: SealStudy) -> Page:
 
 
 def blocks(study: SealStudy) -> list[Block]:
-    """The seals of one place within the report of a design, their gland included."""
+    """Blocks on the seals of piston or rod, with their gland, for the report of a design."""
     note = "Dashed: free sections. Lands between grooves are cut where they are long."
     if study.place == "piston":
         note += " The bore is drawn at its size without pressure."
@@ -67,7 +67,7 @@ def blocks(study: SealStudy) -> list[Block]:
 
 
 def series(film_map: FilmMap) -> list[Series]:
-    """A map as columns, a row per pressure and speed; empty where there is no film."""
+    """A map as columns, with a row per pressure and speed; cells without an oil film are empty."""
     speeds, pressures = film_map.speeds.tolist(), film_map.pressures.tolist()
     return [
         Series("sealed pressure [bar]", [p / 1e5 for p in pressures for _ in speeds], 6),
@@ -112,7 +112,7 @@ def _tiles(study: SealStudy) -> list[Tile]:
 
 
 def _blocks(study: SealStudy, sentences: str) -> list[Block]:
-    """Tables and figures of a place; `sentences` stand below the operating point."""
+    """Tables and figures of a seal study, with `sentences` below the operating point."""
     shown: list[Block] = [
         _gland(study), _squeeze(study), _operating(study, sentences), _contact(study)
     ]  # fmt: skip
@@ -177,7 +177,7 @@ def gland_rows(study: SealStudy) -> list[tuple[str, ...]]:
 
 
 def _ring_size(element: SealElement) -> str:
-    """Axial and radial size of a ring that is not round; back-up rings."""
+    """Axial and radial size of a ring that is not round, and its back-up rings."""
     sizes = element.stated_sizes()
     words = trimmed(1e3 * sizes["width"]) if "width" in sizes else "round"
     if "thickness" in sizes:
@@ -238,7 +238,7 @@ def _operating(study: SealStudy, sentences: str) -> Table:
 
 
 def operating_rows(study: SealStudy) -> list[tuple[str, str, str]]:
-    """Quantities with their values on the driven stroke and on the other."""
+    """Quantities with their values on the driven stroke and on the return stroke."""
 
     def row(name: str, words: Callable[[SealPoint], str]) -> tuple[str, str, str]:
         return name, words(study.drive), words(study.other)
@@ -267,7 +267,7 @@ def operating_rows(study: SealStudy) -> list[tuple[str, str, str]]:
 
 
 def _force(value: float) -> str:
-    """A force in N; none without a film.
+    """A force in N; a dash without an oil film.
 
     >>> _force(119.93), _force(float("nan"))
     ('119.9 N', '–')
@@ -281,12 +281,12 @@ def _damping(value: float) -> str:
 
 
 def _volume(value: float) -> str:
-    """A volume in mm³; none without a film."""
+    """A volume in mm³; a dash without an oil film."""
     return DASH if math.isnan(value) else f"{number(1e9 * value)} mm³"
 
 
 def _flow(value: float) -> str:
-    """A flow in mm³/s; none without a film."""
+    """A flow in mm³/s; a dash without an oil film."""
     return DASH if math.isnan(value) else f"{number(1e9 * value)} mm³/s"
 
 
@@ -296,7 +296,7 @@ def _residual(values: Sequence[float]) -> str:
 
 
 def _scatter(point: SealPoint) -> str:
-    """Least and most friction over the scatter of the moduli; none without a film."""
+    """Least and greatest friction within the scatter of the moduli; a dash without an oil film."""
     known = sorted(value for value in (point.lower, point.upper) if not math.isnan(value))
     return f"{number(known[0])} to {_force(known[-1])}" if known else DASH
 
@@ -328,7 +328,7 @@ def _contact(study: SealStudy) -> Table:
 
 
 def contact_rows(study: SealStudy) -> list[tuple[str, ...]]:
-    """Contact of every ring; both strokes where its pressure differs between them."""
+    """Contact of every ring; both strokes are listed if the pressure differs between them."""
     rows: list[tuple[str, ...]] = []
     names = ("out", "in") if study.place == "rod" else stroke_names(study)
     for index, points in enumerate(zip(study.drive.rings, study.other.rings, strict=True)):
@@ -352,7 +352,7 @@ def contact_rows(study: SealStudy) -> list[tuple[str, ...]]:
 
 
 def _contact_model(point: RingPoint) -> str:
-    """The model behind the contact of a ring."""
+    """The model that the contact of a ring is computed with."""
     element = point.ring.element
     if element.contact:
         return "stated profiles"
@@ -399,7 +399,7 @@ def _elements(study: SealStudy) -> list[Block]:
 
 
 def _element_rows(study: SealStudy) -> list[tuple[str, ...]]:
-    """Contact of the first ring at every pressure, beside the closed form."""
+    """Contact of the first ring at every pressure by finite elements and by the closed form."""
     ring, rows = study.out.rings[0].ring, []
     for contact in study.elements:
         law = closed_form(ring.at(pressure=contact.pressure))
@@ -411,7 +411,10 @@ def _element_rows(study: SealStudy) -> list[tuple[str, ...]]:
 
 
 def elements_sentence(study: SealStudy) -> str:
-    """Width and peak at the operating point against the closed form; empty without elements."""
+    """Contact width and peak pressure by finite elements compared with the closed form.
+
+    At the operating point; empty without finite elements.
+    """
     if not study.elements:
         return ""
     point = study.out.rings[0]
@@ -430,7 +433,7 @@ def elements_sentence(study: SealStudy) -> str:
 
 
 def stress_note(study: SealStudy) -> str:
-    """Contents and limits of the sections."""
+    """Note on what the stress sections show, and on their limitations."""
     words = "Deformed to scale, sealed side left; red: the contact. "
     if study.out.rings[0].ring.element.back_ups:
         words += "The groove is what the back-up rings leave. "
@@ -441,7 +444,7 @@ def stress_note(study: SealStudy) -> str:
 
 
 def contact_note(study: SealStudy) -> str:
-    """Limits of the curves."""
+    """Note on the limitations of the contact curves."""
     words = (
         "Pressures above the outer side's; both without the bore's growth. Between the points of"
         " the elements the line is straight, and so are contacts taken between two pressures."
@@ -471,7 +474,7 @@ def _speeds(study: SealStudy, curves: FilmMap) -> Chart:
 
 
 def _speed_table(study: SealStudy, curves: FilmMap) -> Table:
-    """Friction and damping at a few of the curves' speeds."""
+    """Friction and damping at a few speeds."""
     pressures = [bars(float(pressure)) for pressure in curves.pressures]
     columns = [Column("speed", "right")]
     columns += [Column(f"F, {pressure}", "right") for pressure in pressures]
@@ -496,7 +499,7 @@ def _map(study: SealStudy, film_map: FilmMap) -> Chart:
 
 
 def missing(film_map: FilmMap) -> str:
-    """Number and reasons of the points of a map without a film; empty where all have a film."""
+    """Number of points of a map without an oil film, with reasons; empty if there are none."""
     if not film_map.why:
         return ""
     reasons: dict[str, int] = {}
@@ -521,7 +524,7 @@ def _is_number(word: str) -> bool:
 
 
 def why(study: SealStudy) -> str:
-    """Reason of a missing film at the operating point; empty where both strokes have a film."""
+    """Reason of a missing oil film at the operating point; empty if both strokes have a film."""
     names = stroke_names(study)
     if study.place == "rod":
         names = (f"on the {names[0]}", f"on the {names[1]}")
@@ -534,7 +537,7 @@ def why(study: SealStudy) -> str:
 
 
 def strokes(study: SealStudy) -> str:
-    """Meaning of the two strokes of the place, and the pressure that its seal withstands."""
+    """Sentence on which stroke is driven and which returns, and on the pressure that is sealed."""
     pressure = f"The seal withstands {bars(study.drive.pressure)}"
     if study.place == "rod":
         return f"{pressure} above the atmosphere."
@@ -546,7 +549,10 @@ def strokes(study: SealStudy) -> str:
 
 
 def leakage(study: SealStudy) -> str:
-    """Leakage in a sentence: of a rod's double stroke, or across a piston; empty without a film."""
+    """Sentence on leakage: per double stroke of a rod, or across a piston.
+
+    Empty without an oil film.
+    """
     if not study.converged:
         return ""
     point, oil = study.drive, study.double_stroke
@@ -571,7 +577,7 @@ def _across(value: float, chamber: str) -> str:
 
 
 def notes(study: SealStudy) -> list[str]:
-    """Models, inputs and their limits, for the reader to judge."""
+    """Notes on the models and inputs used, and on their limitations."""
     scatter = f"hardness ±{trimmed(HARDNESS_SCATTER)} Shore A"
     if any("hardness" not in point.ring.numbers for point in study.drive.rings):
         scatter += f", a stated modulus × or ÷ {trimmed(STATED_FACTOR)}"

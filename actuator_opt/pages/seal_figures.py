@@ -23,9 +23,9 @@ _ROW = 5.0
 STATIC, OIL, ASPERITY, OTHER = 5, 0, 1, 2
 """Styles of the curves of contact and film."""
 CLOSED_FORM = 4
-"""Style of the closed form beside the finite elements."""
+"""Line style of the closed form, drawn beside the finite elements."""
 PRESSURES = (0, 2, 4)
-"""Styles of points in the colours of the first curves."""
+"""Styles of points whose colours match the first curves."""
 DAMPING = "Secant damping F/v, kN·s/m"
 
 
@@ -33,9 +33,10 @@ DAMPING = "Secant damping F/v, kN·s/m"
 
 
 def squeeze_figure(study: SealStudy) -> Ink:
-    """Loosest to tightest squeeze of every ring by temperature and pressure, with the limits.
+    """Bars from loosest to tightest squeeze of every ring, with the limits.
 
-    Drawn, not a chart: each row has its numbers beside its bar.
+    There is a bar for each combination of temperature and pressure. Drawn, not a chart: each row
+    has its numbers beside its bar.
     """
     rows = study.squeezes
     labels = 62.0
@@ -81,7 +82,7 @@ def _squeeze_row(axes: Axes, row: SqueezeRow, y: float, columns: Sequence[float]
 
 
 def squeeze_limits(study: SealStudy) -> list[tuple[str, float]]:
-    """Required squeeze: (sense, level) of every limit the design states."""
+    """Required squeeze: sense ("min" or "max") and value of every limit in the design."""
     limits = []
     for metric in ("seal_squeeze", "seal_squeeze_max"):
         limit = study.design.requirements.get(metric)
@@ -109,7 +110,7 @@ def _limit_words(axes: Axes, limits: Sequence[tuple[str, float]]) -> None:
 
 
 def contact_panels(study: SealStudy, index: int) -> list[Panel]:
-    """Pressures of one ring on both strokes, and its film, from the sealed side outwards."""
+    """Pressures and oil film of a ring on both strokes, from the sealed side outwards."""
     strokes = stroke_names(study)
     points = (study.drive.rings[index], study.other.rings[index])
     x = Axis("from the sealed side, mm")
@@ -149,12 +150,12 @@ def _pressures(point: RingPoint) -> tuple[Array, Array, Array]:
 
 
 def drawable(film_map: FilmMap | None) -> bool:
-    """Whether there is anything to draw: two points with a friction above zero."""
+    """Whether a map can be drawn: at least two points have a friction above zero."""
     return film_map is not None and int(np.sum(np.nan_to_num(film_map.friction) > 0)) >= 2
 
 
 def speed_panels(study: SealStudy, curves: FilmMap) -> list[Panel]:
-    """Friction (left) and secant damping (right) over speed by pressure, driven."""
+    """Friction (left) and secant damping (right) of the driven stroke: a curve per pressure."""
     point, x = study.drive, _speed_axis(curves)
     shown = curves.speeds[0] <= point.speed <= curves.speeds[-1]
     marks = [*_breakaways(study, curves), *(_friction_points(study) if shown else [])]
@@ -175,7 +176,7 @@ def _speed_axis(curves: FilmMap) -> Axis:
 def _speed_panel(
     title: str, x: Axis, curves: FilmMap, rows: Array, points: Sequence[Points]
 ) -> Panel:
-    """A curve per pressure, named at its end, and single values."""
+    """A curve per pressure, named at its end, and separate points."""
     values = known(rows.ravel(), log=True)
     for marks in points:
         values += known([*marks.ys, *marks.low, *marks.high], log=True)
@@ -188,9 +189,9 @@ def _speed_panel(
 
 
 def _breakaways(study: SealStudy, curves: FilmMap) -> list[Points]:
-    """Breakaway at the curves' pressures; of two rings at the operating point alone.
+    """Breakaway friction at the pressures of the curves; for two rings, only the operating point.
 
-    Two rings share a pressure by their films; at standstill there is none.
+    The oil films decide how two rings share the pressure; at standstill there is no film.
     """
     point, rim = study.drive, 1e3 * float(curves.speeds[0])
     if len(point.rings) > 1:
@@ -205,7 +206,7 @@ def _breakaways(study: SealStudy, curves: FilmMap) -> list[Points]:
 
 
 def _friction_points(study: SealStudy) -> list[Points]:
-    """The operating point with its band, and the friction by the coefficient instead."""
+    """Operating point with its scatter, and the friction by the coefficient of friction."""
     point = study.drive
     points, speed = [], [1e3 * point.speed]
     if point.coefficient_friction > 0:
@@ -225,7 +226,7 @@ def _friction_points(study: SealStudy) -> list[Points]:
 
 
 def map_panels(study: SealStudy, film_map: FilmMap) -> list[Panel]:
-    """Friction (left) and secant damping (right) over speed and pressure, driven."""
+    """Maps of friction (left) and secant damping (right) of the driven stroke."""
     title = f"Friction, {stroke_names(study)[0]}, N"
     return [
         _map_panel(study, film_map, title, film_map.friction),
@@ -234,7 +235,7 @@ def map_panels(study: SealStudy, film_map: FilmMap) -> list[Panel]:
 
 
 def _map_panel(study: SealStudy, film_map: FilmMap, title: str, values: Array) -> Panel:
-    """A quantity by shades, crosses where there is no film, and the operating point."""
+    """A quantity as shades, with crosses where no oil film exists, and the operating point."""
     speeds, pressures = 1e3 * film_map.speeds, film_map.pressures / 1e5
     rows, columns = np.nonzero(~(np.isfinite(values) & (values > 0)))
     points = []
@@ -257,7 +258,10 @@ def _map_panel(study: SealStudy, film_map: FilmMap, title: str, values: Array) -
 
 
 def elements_panels(study: SealStudy) -> list[list[Panel]]:
-    """Contact pressures by elements and closed form; peak and width of both over the pressure."""
+    """Finite elements compared with the closed form.
+
+    Panels of the contact pressure, and of peak and contact width over the sealed pressure.
+    """
     ring = study.out.rings[0].ring
     pressures = np.linspace(0.0, study.elements[-1].pressure, 41)
     contacts = [closed_form(ring.at(pressure=float(pressure))) for pressure in pressures]
@@ -290,7 +294,7 @@ def elements_panels(study: SealStudy) -> list[list[Panel]]:
 
 
 def _profiles(study: SealStudy, ring: Ring) -> list[Panel]:
-    """Contact pressure over the width at every pressure: by elements, by the closed form."""
+    """Contact pressure over the width, at every pressure: by finite elements and closed form."""
     solved = [(contact.positions, contact.contact_pressure) for contact in study.elements]
     closed = [_closed_profile(ring, contact.pressure) for contact in study.elements]
     highest = max(float(np.max(values)) for _, values in [*solved, *closed]) / 1e6
@@ -310,7 +314,7 @@ def _profiles(study: SealStudy, ring: Ring) -> list[Panel]:
 
 
 def _closed_profile(ring: Ring, pressure: float) -> tuple[Array, Array]:
-    """Places and contact pressures of the closed form."""
+    """Positions and contact pressures by the closed form."""
     contact = closed_form(ring.at(pressure=pressure))
     share = np.linspace(0.0, 1.0, 121)
     return share * float(contact.profile_width), np.asarray(contact.profile(share), dtype=float)

@@ -1,6 +1,6 @@
-"""Sections of seals as ink, true to scale: gland with its rings, stress of finite elements.
+"""Sections of seals as ink, true to scale: gland with its rings, and finite-element stress.
 
-The sealed side lies left.
+The sealed side is on the left.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ METAL, HATCHING = "#eef1f3", "#9aa3ab"
 def stroke_names(study: SealStudy) -> tuple[str, str]:
     """Names of the driven stroke and of its return.
 
-    A load that overruns the piston drives it against the pressure it seals.
+    On the return stroke an overrunning load drives the piston against the pressure it seals.
     """
     return ("outstroke", "instroke") if study.place == "rod" else ("driven", "overrun")
 
@@ -63,17 +63,18 @@ _FILLS = {
     "back-up": ("#d9c9e3", 135.0),
 }
 _BESIDE = (21.0, 28.0)
-"""Paper left and right of the drawing for the words of both sides (mm)."""
+"""Space left and right of the drawing for the words on each side (mm of paper)."""
 _LAND = 7.0
-"""Longest land drawn (mm of paper); a longer one is cut."""
+"""Greatest length of a land as drawn (mm of paper); longer lands are shown interrupted."""
 _GLAND_BAND, _GLAND_WALL, _GLAND_HEIGHT = 7.5, 4.0, 34.0
-"""Paper of the counterface's part, of the housing behind the deepest groove, of that (mm)."""
+"""Drawn height (mm) of the counterface, of the housing behind the deepest groove, and of that
+groove."""
 _LINE = 3.1
 
 
 @dataclass(frozen=True, slots=True)
 class FilledGroove:
-    """A groove and the bodies in it; x from its left side, r from the counterface, in m."""
+    """A groove and the bodies in it; x [m] starts at its left side, r [m] at the counterface."""
 
     groove: Groove
     element: SealElement | None
@@ -84,7 +85,7 @@ class FilledGroove:
 
 @dataclass(frozen=True, slots=True)
 class GlandDrawing:
-    """The drawing, its scale in words, and millimetres of paper per metre."""
+    """The drawing, its scale in words, and its scale in millimetres of paper per metre."""
 
     ink: Ink
     scale: str
@@ -92,7 +93,7 @@ class GlandDrawing:
 
 
 def filled_grooves(design: Design, place: Place) -> tuple[FilledGroove, ...]:
-    """Every groove of a place, from the pressure outwards, with the bodies in it."""
+    """Every groove of piston or rod with the bodies in it, from the pressure side outwards."""
     seal: Seal = getattr(design.seals, place)
     elements = seal.elements()
     filled: list[FilledGroove] = []
@@ -122,7 +123,7 @@ def tolerance_text(value: float, tolerance: float = 0.0) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Gland:
-    """Places on paper; `side` is -1 where the grooves lie above the surface."""
+    """Conversion to positions on paper; `side` is -1 if the grooves lie above the surface."""
 
     study: SealStudy
     grooves: tuple[FilledGroove, ...]
@@ -141,7 +142,7 @@ class _Gland:
         return max(filled.depth for filled in self.grooves)
 
     def y(self, r: float, beyond: float = 0.0) -> float:
-        """Paper of r (m from the counterface), and some mm further away from it."""
+        """Position on paper of r (m from the counterface), moved `beyond` mm further away."""
         return self.surface + self.side * (r * self.factor + beyond)
 
     def right(self, index: int) -> float:
@@ -149,7 +150,7 @@ class _Gland:
 
 
 def gland_drawing(study: SealStudy, *, width: float = 180.0) -> GlandDrawing:
-    """Grooves, rings, counterface and gap of a place, dimensioned: a section, drawn to scale."""
+    """Dimensioned section to scale: grooves, rings, counterface and gap of piston or rod."""
     grooves = filled_grooves(study.design, study.place)
     deepest, wide = max(filled.depth for filled in grooves), sum(filled.width for filled in grooves)
     room = width - sum(_BESIDE) - (len(grooves) + 1) * _LAND
@@ -185,7 +186,7 @@ def gland_drawing(study: SealStudy, *, width: float = 180.0) -> GlandDrawing:
 
 
 def _true_land(study: SealStudy, grooves: Sequence[FilledGroove]) -> float:
-    """Land between two grooves, evenly spread over piston or head [m]."""
+    """Land between two grooves [m], if the grooves are evenly spaced over piston or head."""
     part = study.design.piston if study.place == "piston" else study.design.head
     counts = [float(filled.groove.count) for filled in grooves]
     used = sum(n * filled.width for n, filled in zip(counts, grooves, strict=True))
@@ -195,7 +196,7 @@ def _true_land(study: SealStudy, grooves: Sequence[FilledGroove]) -> float:
 def _drawn_land(
     study: SealStudy, grooves: Sequence[FilledGroove], factor: float
 ) -> tuple[float, float]:
-    """Land as drawn, and the whole length (mm of paper)."""
+    """Drawn length of a land, and of the whole section (mm of paper)."""
     land = min(_true_land(study, grooves) * factor, _LAND)
     return land, sum(filled.width for filled in grooves) * factor + (len(grooves) + 1) * land
 
@@ -214,7 +215,7 @@ def _cut_places(
 
 
 def _bodies(frame: _Gland) -> None:
-    """Oil, the counterface's part, the housing with its grooves."""
+    """Draw the oil, the counterface, and the housing with its grooves."""
     ink, start, end = frame.ink, frame.start, frame.end
     gap, near = frame.y(frame.study.clearance), frame.y(0.0)
     last = max(i for i, s in enumerate(frame.grooves) if s.element is not None)
@@ -246,7 +247,7 @@ def _rectangle(left: float, right: float, low: float, high: float) -> list[Point
 
 
 def _rings(frame: _Gland, filled: FilledGroove, left: float) -> None:
-    """Bodies in a groove; free sections dashed."""
+    """Draw the bodies in a groove; outlines of undeformed rings are dashed."""
     for shape in filled.shapes:
         points = [(left + x * frame.factor, frame.y(r)) for x, r in shape.points]
         if shape.kind == "free":
@@ -261,7 +262,7 @@ def _rings(frame: _Gland, filled: FilledGroove, left: float) -> None:
 
 
 def _breaks(frame: _Gland) -> None:
-    """White stripes between two zigzags, through housing and counterface."""
+    """Draw break lines: white stripes between two zigzags, through housing and counterface."""
     low, high = sorted((frame.y(frame.deepest, _GLAND_WALL), frame.y(0.0, -_GLAND_BAND)))
     steps = max(2, round((high - low) / 3.0))
     ys = [low + (high - low) * k / steps for k in range(steps + 1)]
@@ -274,7 +275,7 @@ def _breaks(frame: _Gland) -> None:
 
 
 def _span(ink: Ink, a: Point, b: Point) -> None:
-    """A dimension line between two places, its arrows outside where there is no room inside."""
+    """A dimension line between two points; if it is too short, its arrows are outside."""
     length = math.dist(a, b)
     ink.line(a, b, pen=THIN)
     if length >= 4.0:
@@ -289,7 +290,7 @@ def _span(ink: Ink, a: Point, b: Point) -> None:
 
 
 def _dimensions(frame: _Gland) -> None:
-    """Groove widths behind the housing; gland depths in the land right of each groove."""
+    """Dimension groove widths behind the housing, and gland depths right of each groove."""
     ink, level = frame.ink, frame.y(frame.deepest, _GLAND_WALL + 2.6)
     words = [trimmed(1e3 * filled.width) for filled in frame.grooves]
     widths = [text_width(text, 6.5) for text in words]
@@ -322,11 +323,11 @@ def _dimensions(frame: _Gland) -> None:
 
 
 _ROOM = 6.5
-"""Land in which a gland depth can be written (mm of paper)."""
+"""Least drawn land into which a gland depth can be written (mm of paper)."""
 
 
 def _caption(study: SealStudy, filled: FilledGroove, *, room: bool) -> list[str]:
-    """Lines that name a groove; its depth where the land has no room for it."""
+    """Lines of words that name a groove, with its depth if the land is too short for it."""
     count = float(filled.groove.count)
     words = filled.groove.place.removeprefix(f"{study.place} ")
     lines = [words if count == 1 else f"{trimmed(count)} × {words}"]
@@ -343,7 +344,7 @@ def _caption(study: SealStudy, filled: FilledGroove, *, room: bool) -> list[str]
 
 
 def _captions(frame: _Gland) -> None:
-    """Names beyond the widths, spread so that none meets another, with leaders."""
+    """Write the names of grooves with leaders beyond the width dimensions, without overlaps."""
     room = frame.land >= _ROOM
     captions = [_caption(frame.study, filled, room=room) for filled in frame.grooves]
     widths = [max(text_width(line, 6.5, bold=True) for line in lines) for lines in captions]
@@ -364,7 +365,7 @@ def _captions(frame: _Gland) -> None:
 
 
 def _sides(frame: _Gland) -> None:
-    """Both sides' pressures, the pressure between two rings, the gap and its growth."""
+    """Write the pressures of both sides and between two rings, and the gap with its growth."""
     study, ink = frame.study, frame.ink
     middle = frame.y(study.clearance / 2)
     held = f"{trimmed(study.drive.pressure / 1e5)} bar"
@@ -417,7 +418,7 @@ def element_shapes(element: SealElement, *, depth: float, width: float) -> tuple
 
 
 def wiper_shapes(wiper: Wiper, *, depth: float, width: float) -> tuple[Shape, ...]:
-    """A wiper: its body on the inner side, its lip towards the outer side."""
+    """Outline of a wiper, with its body on the inner side and its lip towards the outer side."""
     give = max(wiper.section - depth, 0.0) / 2
     tip = min(wiper.width, 0.9 * width)
     root, thick = width - tip, min(wiper.thickness, 0.8 * depth)
@@ -435,22 +436,22 @@ def wiper_shapes(wiper: Wiper, *, depth: float, width: float) -> tuple[Shape, ..
 
 
 def guide_shapes(guide: Guide) -> tuple[Shape, ...]:
-    """A guide ring fills its groove."""
+    """Outline of a guide ring, which fills its groove."""
     return (Shape("polymer", box(0.0, guide.width, 0.0, guide.thickness)),)
 
 
 # ---- finite elements ----
 
 _SECTION_WALL, _SECTION_BAND, _SECTION_GAP, _SECTION_HEIGHT = 2.2, 3.0, 3.0, 46.0
-"""Paper of the groove's walls, of the counterface, between two sections, of the groove (mm)."""
+"""Drawn sizes (mm): groove walls, counterface, distance between two sections, and groove."""
 _PRESSURES, _WORDS, _SCALE = 6.0, 8.0, 9.0
-"""Paper of the pressures above, of the words below, of the colour scale (mm)."""
+"""Drawn heights (mm): pressures above, words below, and colour scale."""
 MOST_BANDS = 12
-"""Bands of stress at most."""
+"""Largest number of stress bands."""
 
 
 def stress_levels(study: SealStudy) -> list[float]:
-    """Round levels from zero to the highest stress of all sections or more [Pa]."""
+    """Round stress levels from zero up to at least the highest stress of all sections [Pa]."""
     top = max(float(np.max(contact.field.von_mises)) for contact in study.elements) / 1e6
     step = ticks(0.0, top, MOST_BANDS - 1)[1]
     return [1e6 * k * step for k in range(math.ceil(top / step - 1e-9) + 1)]
@@ -458,7 +459,7 @@ def stress_levels(study: SealStudy) -> list[float]:
 
 @dataclass(frozen=True, slots=True)
 class GrooveOnPaper:
-    """The groove of one section on paper: its outer wall at `right`, its face at `surface`.
+    """Position on paper of a groove: outer wall at `right`, sliding face at `surface`.
 
     `side` is -1 where the groove lies above the counterface; lengths in mm of paper per m.
     """
@@ -471,12 +472,12 @@ class GrooveOnPaper:
     deep: float
 
     def at(self, x: float, r: float) -> Point:
-        """Paper of a place from the outer wall (negative) and away from the sliding face [m]."""
+        """Point on paper for x from the outer wall (negative) and r from the sliding face [m]."""
         return self.right + x * self.factor, self.surface + self.side * r * self.factor
 
 
 def gland_sizes(ring: Ring) -> tuple[float, float]:
-    """Length that the elements have in the groove, and its depth from the counterface [m]."""
+    """Axial space for the ring in the groove, and the groove's depth from the counterface [m]."""
     return room(ring), float(ring.element.seal_type.groove(ring.numbers).depth)
 
 
@@ -489,7 +490,7 @@ def stress_scale(study: SealStudy) -> tuple[int, int]:
 
 
 def stress_figure(study: SealStudy) -> Ink:
-    """Von Mises stress of the section at every pressure, its contact in red; drawn to scale."""
+    """Von Mises stress of the ring's section at every pressure, to scale; contact is red."""
     wide, deep = gland_sizes(study.out.rings[0].ring)
     paper, real = stress_scale(study)
     factor, rod = 1000.0 * paper / real, study.place == "rod"
@@ -520,7 +521,7 @@ def stress_figure(study: SealStudy) -> Ink:
 
 
 def _groove_walls(ink: Ink, gland: GrooveOnPaper) -> None:
-    """Groove and counterface, cut, the groove's corners closed."""
+    """Draw the cut faces of groove and counterface."""
     left, right = gland.at(-gland.wide, 0.0)[0], gland.right
     floor = gland.at(0.0, gland.deep)[1]
     outside = floor + gland.side * _SECTION_WALL
@@ -543,9 +544,9 @@ def _groove_walls(ink: Ink, gland: GrooveOnPaper) -> None:
 
 
 def _stress_section(ink: Ink, gland: GrooveOnPaper, field: Any, levels: Sequence[float]) -> None:
-    """The bands of stress, then the outline of every body."""
+    """Draw the stress bands, then the outline of every body."""
     fills = shades(len(levels) - 1)
-    wall = float(np.max(field.nodes[:, 0]))  # it leans on the outer wall
+    wall = float(np.max(field.nodes[:, 0]))  # the ring touches the outer wall
     corners = contours.corner_values(field.nodes, field.triangles, field.von_mises)
     banded = contours.mesh_bands(field.nodes, field.triangles, corners, levels)
     for paint, rings in zip(fills, banded, strict=True):
@@ -557,7 +558,7 @@ def _stress_section(ink: Ink, gland: GrooveOnPaper, field: Any, levels: Sequence
 
 
 def _stress_colours(ink: Ink, levels: Sequence[float], y: float) -> None:
-    """The bands with the levels between them."""
+    """Draw the colour scale: the stress bands with the levels between them."""
     count, wide = len(levels) - 1, 9.0
     words = "von Mises stress, MPa"
     ink.text(0.0, y + 1.4, words)

@@ -1,4 +1,4 @@
-"""The longitudinal section: true to an ISO 5455 scale at print width, hatched and dimensioned.
+"""The longitudinal section, hatched and dimensioned, to an ISO 5455 scale at print width.
 
 Layout by rule: item balloons in a row above the parts, diameters in a row below, lengths below
 those. `ink.spread_within` places every label, so that no two touch.
@@ -61,7 +61,7 @@ class SectionDrawing:
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """Places on the paper (mm) of real coordinates (m)."""
+    """Conversion of real coordinates (m) to positions on paper (mm)."""
 
     factor: float
     left: float
@@ -76,7 +76,7 @@ class _Frame:
 
 
 def choose_scale(length: float, height: float, room: float, room_high: float) -> tuple[int, int]:
-    """The largest ISO 5455 scale at which `length` × `height` (m) fits the room (mm).
+    """The largest ISO 5455 scale at which `length` × `height` (m) fits the space (mm).
 
     >>> choose_scale(0.23, 0.03, 150.0, 60.0)
     (1, 2)
@@ -133,7 +133,7 @@ def _mirrored(polygon: Polygon, frame: _Frame) -> list[list[Point]]:
 
 
 def _patterns(outlines: Sequence[Outline]) -> dict[tuple[str, str], tuple[float, float]]:
-    """Angle and spacing of the hatch per material, in order of appearance."""
+    """Angle and spacing of the hatch of each material, assigned in order of appearance."""
     chosen: dict[tuple[str, str], tuple[float, float]] = {}
     for kind, table in (("metal", _METAL), ("composite", _COMPOSITE)):
         names = list(dict.fromkeys(o.material for o in outlines if o.kind == kind))
@@ -160,7 +160,7 @@ def _parts(ink: Ink, frame: _Frame, outlines: Sequence[Outline]) -> None:
 
 
 def _edges(outline: Outline, frame: _Frame) -> list[list[Point]]:
-    """Outline strokes of both halves: not on the axis, nor where a part's polygons meet."""
+    """Outline strokes of both halves; omitted on the axis and where polygons of a part meet."""
     segments = []
     for index, polygon in enumerate(outline.polygons):
         for a, b in zip(polygon, [*polygon[1:], polygon[0]], strict=True):
@@ -266,7 +266,7 @@ def _balloons(ink: Ink, frame: _Frame, outlines: Sequence[Outline], rows: int) -
 def _chamber(
     frame: _Frame, outlines: Sequence[Outline], lengths: Mapping[str, float]
 ) -> tuple[float, float]:
-    """Paper x of both ends of the stroke: the piston's rod-side face, and one stroke further."""
+    """Position x on paper of the piston's rod-side face, and of that face one stroke further."""
     stroke = lengths.get("stroke", 0.0)
     for outline in outlines:
         if outline.part == "piston":
@@ -286,7 +286,7 @@ def _diameters(
 ) -> list[tuple[float, str]]:
     """Rod, bore and barrel diameters, dimensioned across the free part of the chamber.
 
-    Returns the labels and their places on `row`, to be set over the lines drawn later.
+    Returns the labels with their positions on `row`; they are written after the other lines.
     """
     labels = []
     wanted = [
@@ -337,7 +337,7 @@ def _lengths(
     base: float,
     ends: tuple[float, float],
 ) -> None:
-    """Stroke and closed length on their own levels below the parts."""
+    """Dimension the stroke and the closed length, each on its own line below the parts."""
     if "stroke" in lengths:
         start, end = _chamber(frame, outlines, lengths)
         _dimension(

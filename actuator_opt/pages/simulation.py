@@ -1,4 +1,4 @@
-"""The page of a simulation in time: results, controller, step, energies, and their trust."""
+"""The page of a time simulation: results, controller, step, energies, and their accuracy."""
 
 from __future__ import annotations
 
@@ -63,22 +63,23 @@ ZERO_BELOW = {
     "hold_drift": 1e-9,
     "following_error": 1e-9,
 }
-"""Results that read 0 below this, SI: the tolerances of the integration."""
+"""Values (SI) below which results are shown as 0: the tolerances of the integration."""
 CLOSED = 1e-3
-"""Least error of a balance that a page warns of (a choice: one digit of the printed value)."""
+"""Least error of a balance that raises a warning (our choice: one digit of the printed value)."""
 AGREE = 1e-2
-"""Least difference of two integrators, share of a signal's span, that raises a warning (choice)."""
+"""Least difference of two integrators that raises a warning, as a share of a signal's range\n(our
+choice)."""
 MOST_EVENTS = 4
-"""Most events that are listed."""
+"""Largest number of events listed."""
 MOST_PARTS = 3
-"""Most parts of a signal that are listed."""
+"""Largest number of parts listed of a signal."""
 MOST_TILES = 6
 BRIEF = 900
-"""Letters of the notes that fit beside a table (a choice: a quarter of the sheet)."""
+"""Length of notes, in letters, that fits beside a table (our choice: a quarter of the sheet)."""
 POINTS = 240
-"""Points of the step on the terminal."""
+"""Number of points in the step response on the terminal."""
 NEAR = 1e-6
-"""Share of a step within which a sample lies on the grid of the CSV."""
+"""Tolerance, as a share of the grid step, within which a sample counts as lying on the CSV grid."""
 PRESSURE, LENGTH = INPUTS["pressure"], INPUTS["position"]
 _UNITS = r"(?:mm|m|m/s|ms|s|V|bar|k?N|Hz|J|l/min|rpm|rad|N·m|V/m|kN/mm|MPa)(?![\w/])|%|°"
 _TIED = re.compile(rf"(?<=\d) (?={_UNITS})")
@@ -87,7 +88,7 @@ _KEYS = (
     "steady_state_ratio", "following_error", "peak_pressure", "cavitation_margin", "efficiency",
     "supply_energy", "stop_speed", "hold_drift", "lowest_pressure",
 )  # fmt: skip
-"""Results that may be key figures, the most important first."""
+"""Candidates for key figures, the most important first."""
 
 
 def page(
@@ -104,7 +105,7 @@ def page(
     ----------
     simulation : the run
     notes : further sentences for the reader
-    measured : time [s] and values (SI) by the name of a signal, drawn under it
+    measured : time [s] and measured values (SI) by name of the signal that is drawn over them
     static : positions [m] and static stiffness [N/m], drawn beside the dynamic one
     extra : blocks below all others
     """
@@ -124,7 +125,7 @@ def page(
 
 
 def series(simulation: Simulation) -> list[Series]:
-    """Every signal over time, on the grid of the samples."""
+    """Every signal over time, at the sample times."""
     time, samples = _grid(simulation)
     columns = [Series("t [s]", time.tolist(), 9)]
     for name, values in simulation.signals.items():
@@ -135,7 +136,7 @@ def series(simulation: Simulation) -> list[Series]:
 
 
 def _grid(simulation: Simulation) -> tuple[Array, Array]:
-    """Times [s] at even steps with their samples; of an instant with two samples the later one."""
+    """Evenly spaced times [s] with their samples; of two samples at an instant, the later."""
     time, duration = simulation.time, simulation.scenario.duration
     step = simulation.scenario.sample_time or duration / SAMPLES
     count = max(round(duration / step), 1)
@@ -150,7 +151,7 @@ def _grid(simulation: Simulation) -> tuple[Array, Array]:
 
 
 def tied(words: str) -> str:
-    r"""Words whose numbers stay on the line of their unit.
+    r"""Words in which a number and its unit cannot be separated by a line break.
 
     >>> tied("step of 20 mm at 0.5 s, 3 steps")
     'step of 20\xa0mm at 0.5\xa0s, 3 steps'
@@ -189,12 +190,12 @@ def _headed(head: str, words: str) -> str:
 
 
 def _amount(quantity: Quantity, value: float) -> str:
-    """A value as the scenario states it, with its unit."""
+    """A value in the unit in which a scenario states it."""
     return with_unit(trimmed(quantity.to_display(value)), unit_text(quantity.unit))
 
 
 def _signal(parts: Sequence[Any], quantity: Quantity) -> str:
-    """The parts of a signal; empty for a signal that is always zero."""
+    """The parts of a signal in words; empty if the signal is always zero."""
     moving = [part for part in parts if height(part) or "file" in SHAPES[part.shape].needed]
     words = [
         SHAPES[part.shape].words(part, _amount(quantity, height(part)), trimmed)
@@ -215,7 +216,7 @@ def _load_cylinder(scenario: Scenario) -> str:
 
 
 def _machine(simulation: Simulation) -> str:
-    """Ports, supply and friction around the design."""
+    """Sentence on the ports, supply and friction model."""
     scenario, plant = simulation.scenario, simulation.plant
     held = scenario.held_ports
     words = []
@@ -252,7 +253,7 @@ class ShownResult(NamedTuple):
 
     @property
     def quantity(self) -> Quantity:
-        """Its unit and meaning."""
+        """Quantity of the result: unit and meaning."""
         return RESULTS[self.name]
 
     @property
@@ -262,7 +263,7 @@ class ShownResult(NamedTuple):
 
     @property
     def limit(self) -> str:
-        """Limit and unit; empty without one."""
+        """Limit and unit; empty without a limit."""
         if self.requirement is None:
             return ""
         return text.limit_text(self.quantity, self.requirement.sense, self.requirement.limit)
@@ -276,7 +277,7 @@ class ShownResult(NamedTuple):
 
     @property
     def state(self) -> State:
-        """Whether its limit is met; empty without one."""
+        """Whether the limit is met; empty without a limit."""
         return "" if self.requirement is None else self.requirement.state
 
 
@@ -290,13 +291,13 @@ def label(name: str) -> str:
 
 
 def known(name: str, value: float | None) -> float | None:
-    """A result; 0 below the tolerance of the integration."""
+    """Value of a result; 0 if it is below the tolerance of the integration."""
     small = value is not None and abs(value) < ZERO_BELOW.get(name, 0.0)
     return 0.0 if small else value
 
 
 def results(simulation: Simulation) -> list[ShownResult]:
-    """Results that have a value or a limit; every limit has its own row."""
+    """Results that have a value or a limit; a result with several limits has a row for each."""
     shown = []
     for name in RESULTS:
         value = known(name, simulation.values.get(name))
@@ -309,7 +310,7 @@ def results(simulation: Simulation) -> list[ShownResult]:
 
 
 def reasons(simulation: Simulation) -> dict[str, list[str]]:
-    """Reasons of missing values, each with its results; expected reasons are left out."""
+    """Reasons for missing values, each with its results; expected reasons are left out."""
     missing: dict[str, list[str]] = {}
     limited = {requirement.metric for requirement in simulation.requirements}
     bench = simulation.scenario.held_ports is not None
@@ -367,7 +368,7 @@ def controller(simulation: Simulation) -> list[tuple[str, str]]:
 
 
 def duration(value: float) -> str:
-    """A time in ms, or in s from one second on.
+    """A time in ms; from one second upwards in s.
 
     >>> duration(0.0094678), duration(2.5)
     ('9.468 ms', '2.500 s')
@@ -392,14 +393,14 @@ def gain_margin(ratio: float) -> str:
 
 
 def sound(simulation: Simulation) -> bool:
-    """Whether balances close, powers add up, and two integrators agree."""
+    """Whether balances close, powers match the energies, and two integrators agree."""
     balance, second = simulation.balance, simulation.second
     closed = max(balance.mass, balance.energy) < CLOSED and not doubts(simulation)
     return closed and (second is None or second.max_difference < AGREE)
 
 
 def share_words(share: float) -> str:
-    """A small share, short.
+    """A small share as a short number.
 
     >>> share_words(7.8865e-9), share_words(0.0), share_words(0.02)
     ('8×10⁻⁹', '0', '0.02')
@@ -408,13 +409,13 @@ def share_words(share: float) -> str:
 
 
 def trust(simulation: Simulation, more: Sequence[str] = ()) -> list[str]:
-    """Balances, second integrator, events and size of the run in a paragraph; then all remarks."""
+    """A paragraph on balances, second integrator, events and size of the run; then all remarks."""
     first = (_balance, second_words, event_words, _run)
     return [" ".join(words(simulation) for words in first), *remarks(simulation, more)]
 
 
 def _balance(simulation: Simulation) -> str:
-    """Errors of both balances."""
+    """Words on the errors of the volume and energy balances."""
     balance = simulation.balance
     mass, energy = share_words(balance.mass), share_words(balance.energy)
     volumes = "" if balance.mass == 0 else f"mass within {mass} of a volume's content, "
@@ -438,7 +439,7 @@ def second_words(simulation: Simulation) -> str:
 
 
 def event_words(simulation: Simulation) -> str:
-    """The first switches that turned, and the number of all."""
+    """The first events, and the total number of events."""
     events = simulation.events
     if not events:
         return "No switch turned."
@@ -453,7 +454,7 @@ def event_words(simulation: Simulation) -> str:
 
 
 def _run(simulation: Simulation) -> str:
-    """Samples, evaluations and the oil."""
+    """Words on the number of samples and of evaluations, and on the oil."""
     oil = simulation.plant.oil
     count = trimmed(float(np.unique(simulation.time).size), 9)
     calls = simulation.evaluations
@@ -465,7 +466,7 @@ def _run(simulation: Simulation) -> str:
 
 
 def remarks(simulation: Simulation, more: Sequence[str] = ()) -> list[str]:
-    """Doubts, notes of the run, of the caller and of the scenario, as sentences."""
+    """Sentences: doubts, and the notes of the run, of the caller and of the scenario."""
     own = simulation.scenario.notes.strip()
     notes = [*doubts(simulation), *_open(simulation), *simulation.notes, *more]
     notes += [own] if own else []
@@ -473,7 +474,7 @@ def remarks(simulation: Simulation, more: Sequence[str] = ()) -> list[str]:
 
 
 def _open(simulation: Simulation) -> Iterator[str]:
-    """Doubts: a balance that does not close, integrators that do not agree."""
+    """Sentences on balances that do not close, and on integrators that disagree."""
     for name in ("mass", "energy"):
         error = getattr(simulation.balance, name)
         if error >= CLOSED:
@@ -548,7 +549,7 @@ def _meaning(simulation: Simulation, name: str) -> str:
 
 
 def _bench(simulation: Simulation) -> list[Tile]:
-    """Largest flows of a valve with held ports, and its flow at the centre."""
+    """Key figures of a valve test: largest flows, and flow at the centre."""
     if simulation.scenario.held_ports is None:
         return []
     flow, signals = SCENARIOS["flow_value"], simulation.signals
@@ -569,7 +570,7 @@ def _bench(simulation: Simulation) -> list[Tile]:
 
 
 def _blocks(simulation: Simulation, more: Sequence[str]) -> Iterator[Block]:
-    """Results beside the controller, the step and the energies on the terminal, and trust."""
+    """Results beside the controller; on the terminal also step and energies; then accuracy."""
     sentences = trust(simulation, more)
     notes = Notes("What this rests on", [tied(words) for words in sentences])
     tables = [block for block in (_results(simulation), _controller(simulation)) if block]
@@ -600,7 +601,7 @@ def _blocks(simulation: Simulation, more: Sequence[str]) -> Iterator[Block]:
 
 
 def _results(simulation: Simulation) -> Block | None:
-    """Every result with its limit and margin; below it, results without a value."""
+    """Table of every result with its limit and margin; a note lists results without a value."""
     shown = results(simulation)
     missing = [f"{', '.join(names)}: {why}" for why, names in reasons(simulation).items()]
     note = f"No value: {'; '.join(missing)}." if missing else ""
@@ -639,7 +640,7 @@ def _controller(simulation: Simulation) -> Block | None:
 
 
 def _step(simulation: Simulation) -> Iterator[Block]:
-    """The step in per cent of itself, with a line at 100 %."""
+    """The step response on the terminal, in per cent of the step, with a line at 100 %."""
     servo = simulation.servo
     if servo is None:
         return

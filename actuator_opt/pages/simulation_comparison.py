@@ -1,4 +1,4 @@
-"""The page of several simulations side by side: their numbers in a table, their common figure."""
+"""The page that compares several simulations: a table of results, and a common figure."""
 
 from __future__ import annotations
 
@@ -59,15 +59,15 @@ from .simulation_figures import (
 Runs: TypeAlias = Sequence[tuple[str, Simulation]]
 """Runs with their names."""
 LEAST, MOST = 70.0, 150.0
-"""Heights of the whole figure [mm]."""
+"""Least and greatest height of the whole figure [mm]."""
 ROW = 3.6
 """Height of a bar of energy [mm]."""
 TALLEST = 92.0
-"""Height beyond which a curve over the stroke shows no more [mm] (a choice)."""
+"""Greatest height of a curve over the stroke [mm] (our choice: taller curves show no more)."""
 WIDTHS = (93.6, 80.4)
-"""Widths of the columns of a figure of steps [mm]."""
+"""Widths of the two columns of the figure of step responses [mm]."""
 ERROR = 0.1
-"""Errors that are shown enlarged, share of the step (a choice: five bands)."""
+"""Range of the enlarged plot of errors, as a share of the step (our choice: five bands)."""
 SINKS = ("valve edges", "relief valve", "return line", "load", "friction of the seals",
          "losses of the motor", "leakage across the piston")  # fmt: skip
 """Sinks of energy with a colour of their own; all others are "other"."""
@@ -75,9 +75,9 @@ SIGNALS = (
     "position", "speed", "shaft_speed", "shaft_angle", "signal", "pressure_a", "pressure_b",
     "flow_a", "flow_b", "friction",
 )  # fmt: skip
-"""Signals of the figure of runs without a common step or stiffness."""
+"""Signals drawn when the runs have neither a step nor a stiffness in common."""
 Pen: TypeAlias = tuple[int, int]
-"""Numbers of the colour and of the dash of a run."""
+"""Colour and dash of the curves of a run, by number."""
 
 
 def comparison_figure(
@@ -116,7 +116,7 @@ def comparison_figure(
 
 
 def kind_of(simulations: Sequence[Simulation]) -> str:
-    """The common figure of runs: "step", "stiffness" of a shaken rod, or "signals" alone."""
+    """The kind of common figure: "step", "stiffness" (excited rod), or only "signals"."""
     if all(run.shaken is not None and run.shaken.windows for run in simulations):
         return "stiffness"
     loops = {None if run.servo is None else run.servo.loop for run in simulations}
@@ -126,7 +126,7 @@ def kind_of(simulations: Sequence[Simulation]) -> str:
 def styles(names: Sequence[str]) -> list[Pen]:
     """Pen of every run: the words before the last comma choose the colour, those after it the dash.
 
-    Where the names form no such groups, every run has its own colour and dash.
+    If the names form no such groups, every run has a different colour and dash.
 
     >>> styles(["0 %, out", "0 %, in", "50 %, out", "50 %, in"])
     [(0, 0), (0, 1), (1, 0), (1, 1)]
@@ -142,7 +142,7 @@ def styles(names: Sequence[str]) -> list[Pen]:
 
 
 def _steps(runs: Runs, pens: Sequence[Pen], measured: Measured) -> list[Sequence[Panel | Ink]]:
-    """Response and its error at the left, signal and energies at the right."""
+    """Response and its error on the left, valve signal and energies on the right."""
     servos = [run.servo for _, run in runs if run.servo is not None]
     first, servo = runs[0][1], servos[0]
     words, quantity, *_ = LOOPS[servo.loop]
@@ -189,7 +189,7 @@ def _steps(runs: Runs, pens: Sequence[Pen], measured: Measured) -> list[Sequence
 
 
 def _window(runs: Runs) -> tuple[float, float]:
-    """Times after the step that show how all runs settle [s]."""
+    """Start and end of the time after the step in which all runs settle [s]."""
     begin, end, shortest = 0.0, 0.0, np.inf
     for _, run in runs:
         assert run.servo is not None
@@ -201,14 +201,14 @@ def _window(runs: Runs) -> tuple[float, float]:
 
 
 def _least(shown: Curve, span: tuple[float, float]) -> float:
-    """The least value of a curve in a span of time."""
+    """Smallest value of a curve within a time span."""
     time, values = np.asarray(shown.xs), np.asarray(shown.ys)
     inside = values[(time >= span[0]) & (time <= span[1])]
     return float(np.min(inside)) if inside.size else 0.0
 
 
 def _taken(run: Simulation) -> dict[str, float]:
-    """Energy that each of `SINKS` took [J]; all others summed."""
+    """Energy dissipated in each of `SINKS` [J]; all other sinks are summed."""
     taken: dict[str, float] = {}
     for flow in run.balance.flows:
         if flow.energy < 0:
@@ -221,9 +221,9 @@ def _taken(run: Simulation) -> dict[str, float]:
 
 
 def _energies(runs: Runs) -> Ink:
-    """Bars of the sinks of energy, a row for every run.
+    """Stacked bars of the dissipated energies, a row for every run.
 
-    It is no `Chart`: a row is a stack of parts in words, fill and length, without an axis.
+    Drawn, not a `Chart`: a row shows labelled parts of a stack and has no axis.
     """
     width, top = WIDTHS[1], 11.0
     ink = Ink(width, top + ROW * len(runs) + 1.0)
@@ -257,7 +257,7 @@ def _energies(runs: Runs) -> Ink:
 
 
 def _stiffness(runs: Runs, pens: Sequence[Pen], static: Static | None) -> list[Panel]:
-    """Size and phase of all runs side by side."""
+    """Magnitude and phase of the dynamic stiffness of all runs, side by side."""
     moved = [travelled(run.shaken.windows, run.plant.stroke)
              for _, run in runs if run.shaken is not None]  # fmt: skip
     over = "stroke" if any(moved) else "time"
@@ -288,7 +288,7 @@ def _signals(runs: Runs, pens: Sequence[Pen], measured: Measured, height: float)
 
 
 MOST_COLUMNS = 9
-"""Columns that have room beside the names."""
+"""Largest number of columns that fit beside the names."""
 MOST_TILES = 5
 
 
@@ -321,7 +321,7 @@ def comparison(
     Raises
     ------
     InputError
-        no run, a name that stands twice, an unknown column
+        no run, a repeated name, or an unknown column
     """
     if not runs:
         raise InputError(Diagnostic("nothing to compare", "give one simulation or more"))
@@ -349,7 +349,7 @@ def page(
     Parameters
     ----------
     comparison : the runs, by `simulation_comparison.comparison`
-    measured : time [s] and values (SI) by the name of a signal, drawn under the runs
+    measured : time [s] and measured values (SI) by name of the signal, drawn below the runs' curves
     static : positions [m] and static stiffness [N/m], drawn beside the dynamic ones
     extra : blocks below all others
     """
@@ -375,14 +375,14 @@ def page(
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """A number of a run with its unit; None where the run has no such number."""
+    """A result or gain of a run with its unit; None if the run lacks it."""
 
     head: str
     unit: str
     value: Callable[[Simulation], float | None]
 
     def text(self, simulation: Simulation) -> str:
-        """The number as printed, without its unit."""
+        """The value as printed, without its unit."""
         value = self.value(simulation)
         return DASH if value is None else number(value)
 
@@ -444,7 +444,7 @@ _USUAL = {
 
 
 def _usual(simulations: Sequence[Simulation]) -> list[str]:
-    """Columns of this kind of run that have a value in any."""
+    """Usual columns for this kind of run, if at least one run has a value."""
     return [
         name
         for name in _USUAL[kind_of(simulations)]
@@ -453,7 +453,7 @@ def _usual(simulations: Sequence[Simulation]) -> list[str]:
 
 
 def _unit(comparison: RunComparison, name: str) -> str:
-    """Unit of a column; of gains the common unit of all runs, if there is one."""
+    """Unit of a column; for gains, the unit that all runs share, if there is one."""
     if name not in ("gain", "ultimate_gain"):
         return COLUMNS[name].unit
     units = {run.tuned.unit for _, run in comparison.runs if run.tuned is not None}
@@ -484,7 +484,7 @@ def run_table(comparison: RunComparison) -> Table:
 
 
 def _sentence(comparison: RunComparison, designs: Sequence[str]) -> str:
-    """The number of runs and their designs; the scenario where all have the same."""
+    """Sentence on the number of runs and their designs, and on their scenario if it is the same."""
     named = " and ".join(designs) if len(designs) < 3 else f"{len(designs)} designs"
     count = "1 run" if len(comparison.runs) == 1 else f"{len(comparison.runs)} runs"
     first = f"{count} of {named}."
@@ -493,7 +493,7 @@ def _sentence(comparison: RunComparison, designs: Sequence[str]) -> str:
 
 
 def _verdict(comparison: RunComparison) -> Verdict:
-    """Numbers of runs that meet their limits, and of runs in doubt."""
+    """Badge with the number of runs that meet their limits, and of runs with doubts."""
     simulations = [run for _, run in comparison.runs]
     limited = [run for run in simulations if run.requirements]
     met = sum(run.met for run in limited)
@@ -505,7 +505,7 @@ def _verdict(comparison: RunComparison) -> Verdict:
 
 
 def tiles(comparison: RunComparison) -> list[Tile]:
-    """Least and greatest value of the first columns, results before gains."""
+    """Key figures: least and greatest value of the first columns, results before gains."""
     order = sorted(comparison.columns, key=lambda name: name not in RESULTS)
     made: list[Tile] = []
     for name in order:

@@ -1,4 +1,4 @@
-"""Energies of a simulation: the share of each source and sink, and all of them over time."""
+"""Energies of a simulation: the share of each source and sink, and the energies over time."""
 
 from __future__ import annotations
 
@@ -25,32 +25,33 @@ BRIEF = {
     "machine outside": "machine",
     "accumulator neck": "neck",
 }
-"""Short names of energy flows beside a curve."""
+"""Short names of energy flows, written beside their curves."""
 SMALL = 2e-3
-"""Share of all energy below which a flow is summed with others (a choice: a hair on paper)."""
+"""Share of all energy below which a flow is added to "others" (our choice: a hairline on paper)."""
 USEFUL = ("load", "joint")
-"""Energy flows that are shown whatever their share: the purpose of the actuator."""
+"""Energy flows that are always shown, however small, as they are the actuator's purpose."""
 MOST_ROWS = 9
-"""Rows of the energy figure."""
+"""Largest number of rows in the energy figure."""
 MOST_CURVES = 5
-"""Energies shown over time."""
+"""Largest number of energies shown over time."""
 AGREES = 0.01
-"""Share of all energy within which a sampled power must add up to its flow (a choice)."""
+"""Greatest difference between an energy and the integral of its sampled power, as a share of
+all\nenergy (our choice)."""
 ROW, TOP = 3.7, 9.0
 """Height of a row, and of the title above the rows [mm]."""
 GIVEN, TAKEN, KEPT = BLUE, OCHRE, "#7d868e"
-"""Fills of sources, of sinks, and of what is stored."""
+"""Fills of sources, of sinks, and of stored energy."""
 
 
 class EnergyShare(NamedTuple):
-    """A source (positive) or a sink (negative) of energy over the run [J]."""
+    """Total energy from a source (positive) or into a sink (negative) during the run [J]."""
 
     name: str
     energy: float
 
 
 def shares(simulation: Simulation) -> list[EnergyShare]:
-    """Sources of energy, the supply first, then sinks by size; small shares are summed."""
+    """Sources of energy with the supply first, then sinks by size; small shares are summed."""
     flows = [EnergyShare(flow.name, flow.energy) for flow in simulation.balance.flows]
     flows.append(EnergyShare("store", -sum(store.energy for store in simulation.balance.stored)))
     total = sum(share.energy for share in flows if share.energy > 0)
@@ -86,7 +87,7 @@ def _words(share: EnergyShare) -> str:
 def share_picture(simulation: Simulation, width: float) -> Ink | None:
     """Sources as bars from the left, sinks as bars back to zero; None without energy.
 
-    It is no `Chart`: each bar starts where the bar above it ends, and its row is a table line.
+    Drawn, not a `Chart`: each bar starts where the bar above it ends, and has figures beside it.
     """
     shown = shares(simulation)
     if not shown:
@@ -135,7 +136,7 @@ def _product(simulation: Simulation, *names: str) -> Array | None:
 
 
 def _valve(simulation: Simulation) -> Array | None:
-    """Power that the valve edges turn to heat: supply less ports and tank."""
+    """Power dissipated at the valve edges: supply power minus the power to ports and tank."""
     if "flow_supply" not in simulation.signals:
         return None
     held = simulation.scenario.held_ports
@@ -195,14 +196,14 @@ POWERS: dict[str, Callable[[Simulation], Array | None]] = {
     "losses of the motor": _motor,
     "leakage across the piston": _leaked,
 }
-"""Power of an energy flow from the signals [W]; None where signals are missing."""
+"""Power of each energy flow, computed from the signals [W]; None if signals are missing."""
 
 
 def _summed(simulation: Simulation) -> tuple[dict[str, Array], dict[str, float]]:
-    """Energy over time [J] of every flow of known power, and the error of its last value.
+    """Energy over time [J] of every flow of known power, and the error of its final value.
 
-    Energies are positive out of the machine, the supply's into it; the error is a share of all
-    energy.
+    Energies are positive if they leave the machine; for the supply, if they enter it. The error is
+    a share of all energy.
     """
     flows: dict[str, float] = {flow.name: flow.energy for flow in simulation.balance.flows}
     ways = [sum(abs(e) for e in flows.values() if (e > 0) == way) for way in (True, False)]
@@ -221,9 +222,10 @@ def _summed(simulation: Simulation) -> tuple[dict[str, Array], dict[str, float]]
 
 
 def over_time(simulation: Simulation) -> dict[str, Array]:
-    """The largest energies over time [J], positive out of the machine, the supply's into it.
+    """The largest energies over time [J].
 
-    A flow whose sampled power does not add up to its energy is left out.
+    Energies are positive if they leave the machine; for the supply, if they enter it. A flow is
+    left out if the integral of its sampled power differs from its energy.
     """
     curves, off = _summed(simulation)
     curves = {name: energies for name, energies in curves.items() if abs(off[name]) <= AGREES}
@@ -236,7 +238,8 @@ def over_time(simulation: Simulation) -> dict[str, Array]:
 
 
 _LOADED = ("load", "valve edges")
-"""Flows whose power follows from the signals only without lines, joint or machine outside."""
+"""Flows whose power can be computed from the signals only without lines, joint or outside
+machine."""
 
 
 def doubts(simulation: Simulation) -> list[str]:
@@ -272,7 +275,7 @@ def time_panel(simulation: Simulation, energies: Mapping[str, Array]) -> Panel:
 
 
 def table_rows(simulation: Simulation) -> list[list[str]]:
-    """Every share in words: name, energy with its sign, part of all sources."""
+    """Table rows: name of a source or sink, signed energy, and share of all sources."""
     shown = shares(simulation)
     total = sum(share.energy for share in shown if share.energy > 0)
     return [

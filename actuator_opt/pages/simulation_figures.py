@@ -1,4 +1,4 @@
-"""Figures of a simulation: signals over time, and the panels that its kind of run has."""
+"""Figures of a simulation: signals over time, and the panels for its kind of run."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ from ..simulation.result import HarmonicLoad, Servo, Simulation, Window
 from .simulation_energy import over_time, share_picture, time_panel
 
 LEAST, MOST = 92.0, 150.0
-"""Heights of the whole figure [mm]."""
+"""Least and greatest height of the whole figure [mm]."""
 WIDTHS = (96.0, 78.0)
-"""Widths of the signals over time and of the other panels [mm]."""
+"""Widths of the two columns: signals over time, and other panels [mm]."""
 LEAST_STRIP, FOOT = 15.2, 8.4
-"""Least height of a signal over time with its title, and of the time axis [mm]."""
+"""Least height of a panel over time with its title, and height of the time axis below it [mm]."""
 MOST_MARKS = 8
-"""Events that are marked in the signals over time."""
+"""Largest number of events marked in the panels over time."""
 LAG = 0.02
-"""Distance of the spool from its signal, over the largest signal, within which a flow belongs to
-the signal (a choice)."""
+"""Greatest difference between spool position and valve signal, as a share of the largest signal,
+for which a flow is drawn over the signal (our choice)."""
 FLOWS = (("flow_a", "A"), ("flow_b", "B"), ("flow_supply", "supply"), ("flow_tank", "tank"))
 Measured = Mapping[str, tuple[Array, Array]]
 """Time [s] and values (SI) by the name of the signal."""
@@ -64,29 +64,29 @@ _SIGNALS: tuple[tuple[str, int, bool, tuple[tuple[str, str], ...]], ...] = (
     ("Torque on the joint", 8, True, (("joint_torque", ""),)),
     ("Stops and cushions", 5, True, (("stop_force", "stops"), ("cushion_force", "cushions"))),
 )  # fmt: skip
-"""Title, rank, whether its axis includes zero, and signals with their names."""
+"""Panels over time: title, rank, whether the axis includes zero, and signals with their names."""
 _STILL = {"Stops and cushions", "Load", "Supply", "Torque on the joint", "Friction"}
-"""Strips that are left out while none of their signals moves."""
+"""Panels over time that are left out if none of their signals changes."""
 _PUMPED = ("Supply", "Flows of the pump")
-"""Strips that come early where the supply pressure varies."""
+"""Panels over time that move up if the supply pressure varies."""
 LEAST_SHOWN = 0.01
-"""Overshoot from which on it is marked, share of the step: less is in the width of the band."""
+"""Least overshoot that is marked, as a share of the step; less lies within the settling band."""
 ROOM = 0.08
-"""Room for words beyond the peak, share of the axis."""
+"""Space for words beyond the peak, as a share of the axis."""
 REFERENCE, FINE = 4, 2
-"""Style and dash of a reference."""
+"""Line style and dash of a reference signal."""
 EVENT, MARK, CONSTANT, VAPOUR = 2, 1, 5, 3
-"""Styles of an event, of a marked value, of a constant value, and of the vapour pressure."""
+"""Styles: event, marked value, constant value, and vapour pressure."""
 PRESSURE = INPUTS["pressure"]
 STIFFNESS, PHASE = RESULTS["dynamic_stiffness"], RESULTS["dynamic_phase"]
 MOVED = 0.02
-"""Share of the stroke over which windows must spread to be shown along it (a choice)."""
+"""Share of the stroke that evaluation windows must cover to be drawn over position (our choice)."""
 MOST_WINDOWS = 40
-"""Windows that are shown as points with bars; more become a line with a band."""
+"""Most evaluation windows drawn as points with error bars; more are drawn as a line with a band."""
 CYCLES = 3
-"""Cycles of the loop that are drawn."""
+"""Number of cycles drawn of the force-position loop."""
 Static = tuple[Array, Array]
-"""Positions [m] and static stiffness there [N/m]."""
+"""Positions [m], and the static stiffness at each [N/m]."""
 Limits = Sequence[tuple[str, float]]
 """Senses and limits (SI)."""
 
@@ -95,7 +95,7 @@ Limits = Sequence[tuple[str, float]]
 
 
 class FigurePart(NamedTuple):
-    """Panels that belong together, or a picture, with the least height they need [mm]."""
+    """Panels that belong together, or a picture, with the least height required [mm]."""
 
     name: str
     panels: Sequence[Panel | Ink]
@@ -103,14 +103,14 @@ class FigurePart(NamedTuple):
 
 
 class Strip(NamedTuple):
-    """A signal over time; the strips of highest rank are left out where there is no room."""
+    """A panel over time; if space is short, panels with the highest rank are left out."""
 
     rank: int
     panel: Panel
 
 
 def parts(simulation: Simulation, measured: Measured, static: Static | None) -> list[FigurePart]:
-    """The panels of this run beside its signals over time, the most important first."""
+    """Panels for this kind of run, drawn beside its signals; the most important first."""
     made: list[FigurePart] = []
     if simulation.servo is not None:
         panel = step_panel(simulation, simulation.servo, measured)
@@ -141,7 +141,7 @@ def simulation_figure(
     measured: Measured | None = None,
     static: Static | None = None,
 ) -> Ink:
-    """Signals over time at the left, the panels of this run at the right, in one drawing."""
+    """One drawing: signals over time on the left, panels for this kind of run on the right."""
     height = min(max(height, LEAST), MOST)
     known = measured or {}
     left = strips_with_room(strips(simulation, known), height)
@@ -153,7 +153,7 @@ def simulation_figure(
 
 
 def strips_with_room(shown: Sequence[Strip], height: float) -> list[Panel]:
-    """The signals that have room in a height [mm], in their order; the last has the time axis."""
+    """The panels over time that fit a height [mm], in order; the last has the time axis."""
     most = max(2, int((height - FOOT) / LEAST_STRIP))
     order = sorted(range(len(shown)), key=lambda k: (shown[k].rank, k))[:most]
     panels = [shown[k].panel for k in sorted(order)]
@@ -161,7 +161,7 @@ def strips_with_room(shown: Sequence[Strip], height: float) -> list[Panel]:
 
 
 def _parts_with_room(made: Sequence[FigurePart], height: float) -> list[FigurePart]:
-    """The first parts that have room; a later one may fill what a larger one leaves."""
+    """Parts that fit the height, in order; a part that does not fit is skipped."""
     chosen: list[FigurePart] = []
     used = 0.0
     for part in made:
@@ -176,7 +176,7 @@ def _parts_with_room(made: Sequence[FigurePart], height: float) -> list[FigurePa
 
 
 def _stiffness(simulation: Simulation, shaken: HarmonicLoad, static: Static | None) -> list[Panel]:
-    """Size above phase, along the stroke or over time."""
+    """Magnitude of the dynamic stiffness above its phase, over the stroke or over time."""
     over = "stroke" if travelled(shaken.windows, simulation.plant.stroke) else "time"
     limits = (limits_of(simulation, "dynamic_stiffness"), limits_of(simulation, "dynamic_phase"))
     size, phase = stiffness_panels([along(shaken, over)], over, static=static, limits=limits)
@@ -198,7 +198,7 @@ def _friction(simulation: Simulation) -> Panel:
 
 
 def _flows(simulation: Simulation) -> Panel:
-    """Flows of a valve over its signal, at samples where the spool follows the signal."""
+    """Flows of a valve over its signal, from samples at which the spool follows the signal."""
     quantity, volts = simulation.told["flow_a"].quantity, SCENARIOS["signal_value"]
     signal = scaled(volts, simulation.signals["signal"])
     lag = np.abs(scaled(volts, simulation.signals["spool"]) - signal)
@@ -221,7 +221,7 @@ def _flows(simulation: Simulation) -> Panel:
 
 
 def scaled(quantity: Quantity, values: Array) -> Array:
-    """Values in the unit shown."""
+    """Values in the displayed unit."""
     return np.asarray(values, dtype=float) * quantity.to_display(1.0)
 
 
@@ -237,7 +237,7 @@ def curve(
 def overlay(
     simulation: Simulation, name: str, measured: Measured, *, start: float = 0.0
 ) -> list[Curve]:
-    """The measured values of a signal, drawn under it."""
+    """The measured values of a signal, drawn behind the simulated curve."""
     if name not in measured or name not in simulation.told:
         return []
     time, values = measured[name]
@@ -246,7 +246,7 @@ def overlay(
 
 
 def timed(panel: Panel, span: tuple[float, float], words: str = "time") -> Panel:
-    """A panel over seconds with its time axis, in milliseconds where the time is short."""
+    """A panel with its time axis; a short time is converted from seconds to milliseconds."""
     low, high = span
     label, factor = time_words(high - low, words)
     return replace(
@@ -278,7 +278,7 @@ def titled(words: str, quantity: Quantity) -> str:
 
 
 def followed(simulation: Simulation) -> Loop | None:
-    """The signal that a controller follows, else the moving signal; None where nothing moves."""
+    """The controlled signal, else the main moving signal; None if nothing moves."""
     control = simulation.scenario.control
     if control is not None and "reference" in simulation.signals:
         return loop_of(control)
@@ -286,7 +286,7 @@ def followed(simulation: Simulation) -> Loop | None:
 
 
 def response(simulation: Simulation, measured: Measured) -> Panel | None:
-    """The moving signal with its reference and its record; None where nothing moves."""
+    """The moving signal with its reference and its measured record; None if nothing moves."""
     name = followed(simulation)
     if not name:
         return None
@@ -335,7 +335,7 @@ def _strip(
     zero: bool,
     signals: Sequence[tuple[str, str]],
 ) -> list[Strip]:
-    """Signals of one quantity in a panel; none where the run has none of them."""
+    """A panel for signals of one quantity; empty if the run has none of them."""
     here = [(name, words) for name, words in signals if name in simulation.signals]
     if title == "Flows of the line" and simulation.scenario.held_ports is None:
         return []
@@ -379,7 +379,7 @@ def _levels(simulation: Simulation, name: str) -> list[Level]:
     return []
 
 
-# ---- the step of a servo: rise, overshoot and settling where they are read ----
+# ---- step response of a servo: rise, overshoot and settling ----
 
 
 def end_of(simulation: Simulation, servo: Servo) -> float:
@@ -403,7 +403,7 @@ def window(simulation: Simulation, servo: Servo) -> tuple[float, float]:
 
 
 def step_panel(simulation: Simulation, servo: Servo, measured: Measured) -> Panel:
-    """The response about its step, with the band, 10 to 90 %, the peak and the settling."""
+    """Step response with settling band, rise from 10 to 90 %, peak, and settling time."""
     words, quantity, *_ = LOOPS[servo.loop]
     begin, end = window(simulation, servo)
     start, target = quantity.to_display(servo.start), quantity.to_display(servo.target)
@@ -447,7 +447,7 @@ def step_panel(simulation: Simulation, servo: Servo, measured: Measured) -> Pane
 
 
 def _sorted(shown: Curve) -> tuple[Array, Array]:
-    """Times and values of a curve; of an instant with two samples the later one."""
+    """Times and values of a curve; if an instant has two samples, the later is used."""
     time, at = np.unique(np.asarray(shown.xs)[::-1], return_index=True)
     return time, np.asarray(shown.ys)[::-1][at]
 
@@ -455,7 +455,7 @@ def _sorted(shown: Curve) -> tuple[Array, Array]:
 def _rise(
     servo: Servo, own: Curve, start: float, size: float
 ) -> tuple[list[Curve], list[Points], list[Level]]:
-    """The rise from 10 to 90 %, marked at the lower level."""
+    """Marks for the rise time from 10 to 90 %, drawn at the 10 % level."""
     rise = servo.metrics.rise_time
     time, values = np.asarray(own.xs), np.asarray(own.ys)
     late = np.flatnonzero((time > 0) & ((values - start) / size >= 0.9))
@@ -471,12 +471,12 @@ def _rise(
     )
 
 
-# ---- dynamic stiffness: size and phase along the stroke ----
+# ---- dynamic stiffness: magnitude and phase along the stroke ----
 
 
 @dataclass(frozen=True, slots=True)
 class StrokeProfile:
-    """Windows of a run as drawn: place, size and phase with their errors, colour and dash."""
+    """Values of a run's evaluation windows as drawn: position, magnitude and phase with errors."""
 
     place: list[float]
     size: list[float]
@@ -488,7 +488,7 @@ class StrokeProfile:
 
 
 def travelled(windows: Sequence[Window], stroke: float) -> bool:
-    """Whether windows lie along the stroke; otherwise all lie at the same place."""
+    """Whether the evaluation windows spread along the stroke, rather than lie at one position."""
     places = [window.position for window in windows]
     return max(places) - min(places) > MOVED * stroke
 
@@ -496,9 +496,9 @@ def travelled(windows: Sequence[Window], stroke: float) -> bool:
 def along(
     shaken: HarmonicLoad, over: str, style: int = 0, dash: int | None = None
 ) -> StrokeProfile:
-    """Windows over the stroke (mm) or over time (s), in kN/mm and degrees.
+    """Values of the evaluation windows over stroke (mm) or time (s), in kN/mm and degrees.
 
-    A relative error of the stiffness turns its phase by the same angle at most [rad].
+    A relative error of the stiffness changes its phase by at most the same number of radians.
     """
     windows = sorted(
         shaken.windows, key=lambda window: window.position if over == "stroke" else window.time
@@ -520,7 +520,7 @@ def along(
 
 
 def limits_of(simulation: Simulation, metric: str) -> Limits:
-    """Limits of a scenario on a result."""
+    """The scenario's limits on a result."""
     return [(row.sense, row.limit) for row in simulation.requirements if row.metric == metric]
 
 
@@ -531,7 +531,7 @@ def stiffness_panels(
     static: Static | None = None,
     limits: tuple[Limits, Limits] = ((), ()),
 ) -> tuple[Panel, Panel]:
-    """Size and phase of several runs."""
+    """Panels of magnitude and phase of the dynamic stiffness of several runs."""
     places = [place for profile in profiles for place in profile.place]
     low, high = min(places), max(places)
     spare = 0.04 * (high - low) or 0.5
@@ -563,7 +563,7 @@ def _profile_panel(
 ) -> Panel:
     """Values with their errors: points with bars, or a line for many windows.
 
-    A single run has no line between its points, and a band around its line.
+    For a single run, points are not connected, and a line has its error band.
     """
     alone = len(profiles) == 1
     curves, points = [*beside], []
@@ -590,7 +590,7 @@ def _profile_panel(
 
 
 def _ends(values: Sequence[tuple[list[float], list[float]]]) -> list[float]:
-    """Ends of values and bars; long bars are cut, so that values stay distinct."""
+    """Values for the axis range; long error bars are cut, so that values remain distinguishable."""
     ys = [y for column, _ in values for y in column]
     errors = [error for _, column in values for error in column]
     low, high = min(ys), max(ys)
@@ -603,7 +603,7 @@ def _ends(values: Sequence[tuple[list[float], list[float]]]) -> list[float]:
 
 
 def loop_panel(simulation: Simulation, shaken: HarmonicLoad) -> Panel | None:
-    """Force over position in the last cycles, without drift, and the fitted ellipse."""
+    """Force over position in the last cycles, with drift removed, and the fitted ellipse."""
     last = shaken.windows[-1]
     half = min(CYCLES, simulation.scenario.analysis.window_cycles) / shaken.frequency / 2
     time, at = np.unique(simulation.time, return_index=True)
@@ -632,7 +632,7 @@ def loop_panel(simulation: Simulation, shaken: HarmonicLoad) -> Panel | None:
 
 
 def _micro(size: float) -> tuple[str, float]:
-    """Unit in which a swing has whole numbers.
+    """Unit for a small displacement, chosen so that its values are easy to read.
 
     >>> _micro(4e-5), _micro(2e-3)
     (('µm', 1000000.0), ('mm', 1000.0))

@@ -16,7 +16,7 @@ from ..rendering.text import trimmed
 from .dynamics_figures import ALONG, limit_level, minimum
 
 SHARES = ((0.0, "cap end"), (0.25, "25 %"), (0.5, "50 %"), (0.75, "75 %"), (1.0, "rod end"))
-"""Places of the table, as shares of the stroke."""
+"""Positions in the table, as shares of the stroke."""
 _TOPOLOGY = {
     "per_chamber": (
         "Per chamber: a part's share is its part of the strain energy under a unit force, the"
@@ -32,7 +32,7 @@ _TOPOLOGY = {
 
 
 def stiffness_blocks(evaluation: Evaluation, *, curve_shown: bool = True) -> list[Block]:
-    """Figure and table; the figure alone where there is nothing to divide.
+    """Figure and table; only the figure if no part contributes a compliance.
 
     `curve_shown`: the terminal shows a small curve.
     """
@@ -52,7 +52,7 @@ def stiffness_blocks(evaluation: Evaluation, *, curve_shown: bool = True) -> lis
 
 
 def _terminal_curve(curve: StrokeCurve, required: Requirement | None) -> TerminalFigure:
-    """A small curve with the required value, the minimum, and the shares there."""
+    """A small curve with the required stiffness, the minimum, and the shares at the minimum."""
     points = [
         (1000.0 * float(x), float(k) / 1e6)
         for x, k in zip(curve.position, curve.stiffness, strict=True)
@@ -79,7 +79,7 @@ def _usable(curve: StrokeCurve) -> bool:
 
 
 def parts(curve: StrokeCurve) -> list[str]:
-    """Parts that give way at all."""
+    """Parts with a compliance above zero."""
     return [name for name, c in curve.contributions.items() if any(float(x) != 0 for x in c)]
 
 
@@ -94,7 +94,7 @@ def shares(curve: StrokeCurve, position: float) -> dict[str, float]:
 
 
 def weakest(curve: StrokeCurve) -> int:
-    """Index of the least stiffness along the curve."""
+    """Index of the least stiffness on the curve."""
     return int(np.argmin(curve.stiffness))
 
 
@@ -162,7 +162,7 @@ PARTS = (
 
 
 def stiffness_panels(curve: StrokeCurve, requirement: Requirement | None) -> list[Panel]:
-    """Stiffness over the stroke, and the compliances it is made of; none without a stroke."""
+    """Panels of stiffness over the stroke and of its compliances; empty without a stroke."""
     positions = [1000.0 * float(x) for x in curve.position]
     stiffness = [float(k) / 1e6 for k in curve.stiffness]
     usable = [(x, k) for x, k in zip(positions, stiffness, strict=True) if math.isfinite(k)]
@@ -193,13 +193,13 @@ def _stiffness_panel(
 
 
 def fills(parts: Sequence[str]) -> list[int]:
-    """The fill of each part by number; unknown parts get one that no other part has."""
+    """The fill of each part by number; unknown parts get an unused fill."""
     free = [k for k, name in enumerate(PARTS) if name not in parts]
     return [PARTS.index(name) if name in PARTS else free.pop(0) if free else 0 for name in parts]
 
 
 def _compliance_panel(curve: StrokeCurve, positions: Sequence[float]) -> Panel:
-    """Compliances of all parts, stacked; the stiffness is least at the upright line."""
+    """Stacked compliances of all parts; a vertical line marks the least stiffness."""
     parts = {
         name.replace("_", " "): 1e9 * np.asarray(values, dtype=float)
         for name, values in curve.contributions.items()

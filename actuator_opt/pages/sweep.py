@@ -1,4 +1,4 @@
-"""The page of a sweep: counts, the best designs, reasons of failures; its rows as columns."""
+"""The page of a sweep: counts, best designs and reasons of failures; and its columns as files."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ from .sweep_figures.parallel import parallel_figure
 from .sweep_figures.shared import SweepFigureData, chosen
 
 FAILURES = 3
-"""Most reasons of failed designs on the page."""
+"""Largest number of reasons for failed designs on the page."""
 AXES = 7
-"""Parallel axes that fit the width of a sheet."""
+"""Largest number of parallel axes that fit the width of a sheet."""
 
 
 def page(swept: Swept) -> Page:
@@ -48,7 +48,10 @@ def page(swept: Swept) -> Page:
 
 
 def counts(swept: Swept) -> str:
-    """Numbers of designs computed, failed and feasible; of a reduced sweep those ruled out."""
+    """Sentence on how many designs were computed, failed and are feasible.
+
+    For a reduced sweep, also how many were ruled out without being computed.
+    """
     if swept.feasible is None:
         full = swept.computed - swept.screened
         return f"{swept.screened} ruled out early, {full} evaluated in full"
@@ -57,7 +60,7 @@ def counts(swept: Swept) -> str:
 
 
 def _verdict(swept: Swept) -> Verdict:
-    """Whether a design is feasible, and how many of the best have no reserve."""
+    """Badge: whether any design is feasible, and how many of the best have no reserve."""
     if not swept.best:
         words = "NO OBJECTIVE VALUE" if swept.feasible else "NO FEASIBLE DESIGN"
         return Verdict("missed", words)
@@ -68,7 +71,7 @@ def _verdict(swept: Swept) -> Verdict:
 
 
 def _nothing(swept: Swept) -> str:
-    """Reason of a missing best design."""
+    """Why there is no best design."""
     if swept.feasible:
         return f"None of the {swept.feasible} feasible designs has a value of the objective."
     missed = sorted(swept.missed.items(), key=lambda item: (-item[1], item[0]))
@@ -83,7 +86,7 @@ def _nothing(swept: Swept) -> str:
 
 
 def _tiles(swept: Swept) -> Iterator[Tile]:
-    """Counts, and the objective and the least margin of the best design."""
+    """Key figures: counts, and the best design's objective and smallest margin."""
     yield Tile("variants", str(swept.requested))
     if swept.feasible is not None:
         yield Tile("feasible", str(swept.feasible))
@@ -97,7 +100,7 @@ def _tiles(swept: Swept) -> Iterator[Tile]:
 
 
 def _hero(swept: Swept) -> Ink:
-    """Parallel axes of a full sweep with a feasible design."""
+    """Parallel axes; only for a full sweep with at least one feasible design."""
     study = swept.study
     if swept.best and study.full:
         metrics = chosen(study, ())[: max(1, AXES - len(study.plan.axes))]
@@ -127,7 +130,7 @@ def _blocks(swept: Swept) -> Iterator[Block]:
 
 
 def _best(swept: Swept) -> Table:
-    """The best designs: varied inputs, the objective, the least margin."""
+    """The best designs with varied inputs, objective and smallest margin."""
     study = swept.study
     goal = list(study.goal.weights)
     paths = [axis.path for axis in study.plan.axes]
@@ -162,7 +165,7 @@ def _head(name: str, quantity: Quantity | None) -> str:
 
 
 def _short(path: str, paths: list[str]) -> str:
-    """The last words of a path that no other path has."""
+    """The shortest ending of a path that differs from all other paths."""
     parts = path.split(".")
     for count in range(1, len(parts)):
         tail = ".".join(parts[-count:])
@@ -183,7 +186,7 @@ def _cell(value: float | str, quantity: Quantity | None) -> str:
 class SweepColumns:
     """The rows of a study as columns of files, in display units.
 
-    The number of a design, varied inputs, metrics, the least margin; the limit of that margin,
+    The columns: number of the design, varied inputs, metrics, smallest margin and its limit,
     whether all limits are met, and the reason of a failure.
     """
 
@@ -227,7 +230,7 @@ class SweepColumns:
         ]
 
     def _named(self, chunk: Chunk, count: int) -> Iterator[Coded]:
-        """The texts that vary."""
+        """Columns of varied inputs whose values are names."""
         plan = self.study.plan
         if not plan.named:
             return
@@ -238,7 +241,7 @@ class SweepColumns:
             yield Coded(codes[which], axis.texts)
 
     def _numbers(self, chunk: Chunk) -> Iterator[Array]:
-        """The numbers; NaN for a missing number."""
+        """Columns of numbers; NaN for a missing number."""
         for k, quantity in enumerate(self._quantities):
             column = chunk.rows.numbers[:, k]
             yield column if quantity is None else quantity.to_display(column)
@@ -250,7 +253,7 @@ def _number(name: str, label: str, quantity: Quantity | None) -> FileColumn:
 
 
 def about(study: Study) -> dict[str, str]:
-    """Design, plan and version of a sweep, under keys of a file."""
+    """Metadata of a sweep for a file: design, plan and version."""
     plan = study.plan
     points = {
         "method": plan.method,
@@ -270,7 +273,7 @@ def about(study: Study) -> dict[str, str]:
 
 
 def _axis(axis: SweepAxis) -> object:
-    """The values of an axis in SI: a list, or the ends and the steps of a range."""
+    """The values of an axis in SI: a list, or the ends of a range with its number of steps."""
     if axis.values is None:
         return list(axis.texts)
     values = axis.values.tolist()

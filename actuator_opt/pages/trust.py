@@ -1,4 +1,4 @@
-"""Trust in an optimum: the proven bound, the ends of the starts, runners-up, convergence."""
+"""Evidence for an optimum: proven bound, results of all starts, next best designs, convergence."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from ..rendering.ink import BLACK, BLUE, GREY, PALE, Ink, spread_within, text_wi
 from ..rendering.text import number, sentence, unit_text
 
 LEAST_ABOVE = 1e-4
-"""Excess over the optimum that counts as none [%]."""
+"""Smallest excess over the optimum that is drawn [%]; less counts as zero."""
 
 NEAR = 1e-3
-"""Relative difference of objectives up to which two starts reached the same optimum."""
+"""Largest relative difference of objectives at which two starts count as the same optimum."""
 
 WIDTH = 180.0
 """Width of the scale (mm)."""
 
 
 def trust_blocks(optimisation: Optimisation) -> list[Block]:
-    """The statement, the scale of bound and optimum, and the convergence of the search."""
+    """Blocks: statement of the proof, scale with bound and optimum, and convergence."""
     sentences = [*proof(optimisation), *convergence(optimisation)]
     blocks: list[Block] = [Notes("How good is this?", sentences, on="paper")]
     if optimisation.infeasibility is None:
@@ -39,7 +39,7 @@ def trust_blocks(optimisation: Optimisation) -> list[Block]:
 
 
 def brief(optimisation: Optimisation) -> Iterator[Block]:
-    """The same for the terminal, without the limits that the proof covers."""
+    """The statement for the terminal, without the list of limits that the proof covers."""
     for sentences, style in (
         (proof(optimisation, shortened=True), ""),
         (convergence(optimisation), "dim"),
@@ -49,7 +49,7 @@ def brief(optimisation: Optimisation) -> Iterator[Block]:
 
 
 def proof(optimisation: Optimisation, *, shortened: bool = False) -> list[str]:
-    """The statement of the certificate; without a certificate, how to get it.
+    """Sentences on what the certificate proves; without a certificate, on how to get one.
 
     `shortened`: the covered limits are counted, not named.
     """
@@ -76,11 +76,11 @@ def proof(optimisation: Optimisation, *, shortened: bool = False) -> list[str]:
 
 
 def _of_sizes(optimisation: Optimisation) -> list[str]:
-    """Distance of the design of sizes from the bound, which holds for it too."""
+    """Distance from the proven bound of the design with the requested sizes."""
     bound, made = _bound(optimisation), optimisation.made
     if made is None or bound is None or not made.objective_after:
         return []
-    share = math.ceil(1e4 * (1 - bound / made.objective_after)) / 100  # never smaller than it is
+    share = math.ceil(1e4 * (1 - bound / made.objective_after)) / 100  # rounded up
     return [
         "The design found is the continuous optimum here; that of"
         f" {made.name} is within {text.trimmed(share)} % of the bound."
@@ -92,7 +92,7 @@ def _quantity(optimisation: Optimisation) -> Quantity:
 
 
 def _marks(optimisation: Optimisation) -> list[tuple[float, str]]:
-    """Objectives to show beside the optimum: designs of sizes, the start, other optima."""
+    """Objectives shown beside the optimum: design with sizes, start, and other optima."""
     best, marks = optimisation.objective_value, []
     rounding = optimisation.rounding
     if rounding is not None and rounding.objective_after is not None:
@@ -131,7 +131,7 @@ def _bound(optimisation: Optimisation) -> float | None:
 
 
 def scale(optimisation: Optimisation) -> Ink:
-    """The bound, the optimum and other designs on one scale.
+    """The bound, the optimum and other designs on a common scale.
 
     Drawn, not a chart: every value has its name above the scale.
     """
@@ -155,7 +155,7 @@ def scale(optimisation: Optimisation) -> Ink:
 
 
 def _labelled(ink: Ink, axes: Axes, names: Sequence[tuple[float, str, bool]]) -> None:
-    """Strokes at values, with their names above, spread so that they stay apart."""
+    """Strokes at values, with names above that are spread apart so as not to overlap."""
     widths = [text_width(words, 6.5, bold=strong) for _, words, strong in names]
     wanted = [axes.x(value) for value, _, _ in names]
     gaps = [(a + b) / 2 + 2.0 for a, b in pairwise(widths)]
@@ -171,7 +171,7 @@ def _labelled(ink: Ink, axes: Axes, names: Sequence[tuple[float, str, bool]]) ->
 
 
 def _course_block(optimisation: Optimisation) -> list[Block]:
-    """Excess over the optimum of the best design so far, and of the end of every start."""
+    """Chart of the excess over the optimum: best design so far, and result of every start."""
     best = optimisation.objective_value
     steps = [step for step in optimisation.trace if step[0] > 0 and step[2] <= MET]
     if len(steps) < 2 or not best:
@@ -198,12 +198,12 @@ def _course_block(optimisation: Optimisation) -> list[Block]:
 
 
 def _above(value: float, best: float) -> float:
-    """Per cent that an objective lies above the best."""
+    """Excess of an objective over the best [%]."""
     return max(100 * abs(value - best) / abs(best), LEAST_ABOVE)
 
 
 def _decades(values: Sequence[float]) -> Axis:
-    """An axis of per cent in decades."""
+    """A logarithmic axis in per cent that ends at powers of ten."""
     low, high = math.log10(LEAST_ABOVE), max(math.ceil(math.log10(max(values))), 1)
     marks = [
         (10.0**k, f"{text.trimmed(10.0**k)} %" if k > low else "none")
@@ -221,7 +221,10 @@ def _stairs(
 
 
 def convergence(optimisation: Optimisation) -> list[str]:
-    """Algorithm, effort, starts and trace, in sentences. Wall time is left out: same bytes."""
+    """Sentences on algorithm, effort, starts and trace.
+
+    Wall time is left out, so that a repeated run gives the same bytes.
+    """
     objective = text.metric(optimisation.objective_metric)
     lines = [
         f"{optimisation.algorithm}, seed {optimisation.seed},"
@@ -262,13 +265,13 @@ def _missed(violation: float) -> str:
 
 
 LOWEST = 1e-6
-"""Violation at which a limit counts as met, the bottom of the right panel."""
+"""Violation below which a limit counts as met; lower end of the axis in the right panel."""
 
 
 def convergence_figure(
     trace: Sequence[Sequence[float]], metric: str, evaluations: int, title: str
 ) -> Ink:
-    """Improvements (evaluation, objective in SI, worst violation) over the evaluations made."""
+    """Improvements (evaluation, objective in SI, worst violation) over the evaluation count."""
     if not trace:
         return titled(Chart(title, [], height=0.0), ["No search: nothing could move."])
     quantity = of_metric(metric)
@@ -301,7 +304,7 @@ def convergence_figure(
 def _improvements(
     counts: Sequence[float], values: Sequence[float], missed: Sequence[float]
 ) -> list[Points]:
-    """Improvements that miss a limit, and those that meet all."""
+    """Points of improvements that miss a limit, and of improvements that meet all limits."""
     groups = []
     for words, style, met in (("a limit is missed", 2, False), ("all limits are met", 3, True)):
         own = [k for k, miss in enumerate(missed) if (miss <= MET) == met]

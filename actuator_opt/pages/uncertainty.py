@@ -1,4 +1,4 @@
-"""The page of an uncertainty study: yield, requirements over the draws, causes, inputs."""
+"""The page of an uncertainty study: yield, scatter of the requirements, causes, and inputs."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ from ..uncertainties.inputs import TOLERANCE, Input
 from ..uncertainties.result import LimitYield, Swing, Uncertainty
 
 SHOWN = 8
-"""Most inputs shown for one output."""
+"""Largest number of inputs shown for an output."""
 LEAST_SHARE = 0.005
-"""Share of the variance below which an input is not worth a row."""
+"""Share of the variance below which an input gets no row."""
 
 ROW, NAMES, HOLDS = 5.4, 46.0, 22.0
-"""Height of a row, room for names at the left and for probabilities at the right (mm)."""
+"""Height of a row, and widths of the names (left) and of the probabilities (right) (mm)."""
 LOWEST, HIGHEST = -0.6, 1.0
-"""Ends of the axis of margins; a strip beyond them ends at the frame with an arrow."""
+"""Ends of the axis of margins; a strip that extends further ends with an arrow."""
 
 
 def page(study: Uncertainty) -> Page:
@@ -57,7 +57,7 @@ def page(study: Uncertainty) -> Page:
 
 
 def series(study: Uncertainty) -> list[Series]:
-    """The draws as columns: inputs, margins of all limits, whether all requirements are met."""
+    """The random draws as columns: inputs, margins, and whether all requirements are met."""
     inputs = [
         Series(
             f"{x.path} [{x.quantity.unit}]" if x.quantity.unit else x.path,
@@ -94,7 +94,7 @@ def verdict(study: Uncertainty) -> Verdict:
 
 
 def percent(share: float, digits: int = 2) -> str:
-    """A probability in per cent; 0 and 100 only where they are exact.
+    """A probability in per cent; 0 and 100 are only printed if exact.
 
     >>> percent(0.9953), percent(1.0), percent(0.99999999)
     ('99.53 %', '100 %', '> 99.99 %')
@@ -110,7 +110,7 @@ def percent(share: float, digits: int = 2) -> str:
 
 
 def between(rate: Rate) -> str:
-    """The 95 % bounds of a probability."""
+    """The 95 % confidence interval of a probability, in words."""
     return f"{percent(rate.lower)} to {percent(rate.upper)}"
 
 
@@ -141,7 +141,7 @@ def weakest(study: Uncertainty) -> str:
 
 
 def _with_checks(study: Uncertainty) -> str:
-    """The yield with the check list; empty where no draw misses a check."""
+    """Words on the yield including the check list; empty if no draw misses a check."""
     failing = [limit for limit in study.checks if limit.rate.value < 1]
     if not failing:
         return ""
@@ -166,7 +166,10 @@ def value_words(study: Uncertainty, output: str, number: float | None) -> str:
 
 
 def followed(study: Uncertainty) -> list[str]:
-    """Outputs with a table: up to three missed requirements, else the nearest; then metrics."""
+    """Outputs shown in detail: up to three missed requirements, then metrics.
+
+    If all draws meet the requirements, the requirement nearest to its limit is shown.
+    """
     failing = [limit.name for limit in study.required if limit.rate.value < 1][:3]
     nearest = [limit.name for limit in study.required[:1]]
     return [*(failing or nearest), *study.units]
@@ -261,7 +264,7 @@ def _causes(study: Uncertainty, output: str) -> Iterator[Block]:
 
 
 def _indices(study: Uncertainty, output: str) -> list[tuple[str, ...]]:
-    """Sensitivity indices of the inputs that matter, and the output at both ends of each."""
+    """Sensitivity indices of the main inputs, and the output at both ends of each input."""
     ranked, swings = study.of_output(output)
     ends = {swing.path: swing for swing in swings}
     rows = []
@@ -276,7 +279,7 @@ def _indices(study: Uncertainty, output: str) -> list[tuple[str, ...]]:
 
 
 def _share(index: float | None, half: float | None) -> str:
-    """An index with half its interval, in per cent."""
+    """An index with half its confidence interval, in per cent."""
     if index is None or half is None:
         return text.DASH
     return f"{100 * index:.0f} ± {max(100 * half, 0.5):.0f} %".replace("-", text.MINUS)
@@ -305,15 +308,16 @@ def _input(given: Input) -> tuple[str, ...]:
 
 
 def shown(uncertainty: Uncertainty) -> list[LimitYield]:
-    """Requirements and failing checks, the most endangered first."""
+    """Requirements and failing checks, those with the lowest probability first."""
     failing = [check for check in uncertainty.checks if check.rate.value < 1]
     return [*uncertainty.required, *failing][:MOST]
 
 
 def margins_figure(uncertainty: Uncertainty, *, width: float = 180.0) -> Ink:
-    """A strip per requirement: 1 to 99 % as a line, 5 to 95 % as a box, median, design.
+    """Margins of every requirement as a strip.
 
-    Drawn, not a chart: a strip shows five percentiles and has its probability beside it.
+    The line covers 1 to 99 % of draws, the box 5 to 95 %. Marks show the median and the nominal
+    design. Drawn, not a chart: the probability is beside each strip.
     """
     lines = shown(uncertainty)
     top = 9.0
@@ -337,7 +341,7 @@ def margins_figure(uncertainty: Uncertainty, *, width: float = 180.0) -> Ink:
 
 
 def _key(ink: Ink, top: float) -> None:
-    """Names of box, line and circle."""
+    """Draw the key of box, line and circle."""
     y = top - 6.4
     ink.line((0.0, y), (8.0, y), pen=0.3)
     ink.box(2.0, y - 1.1, 4.0, 2.2, fill=LIGHT, pen=0.15)
@@ -385,7 +389,7 @@ def _above(margin: float | None, axes: Axes) -> bool:
 
 
 def tornado(uncertainty: Uncertainty, output: str, *, width: float = 180.0) -> Ink | None:
-    """Bars of an output at the 95 % (dark) and 5 % (light) points of its main inputs."""
+    """Bars of an output with each main input at its 95 % (dark) and 5 % (light) percentile."""
     ranked, swings = uncertainty.of_output(output)
     ends = {swing.path: swing for swing in swings}
     centre = uncertainty.nominal[output]
@@ -414,7 +418,7 @@ def tornado(uncertainty: Uncertainty, output: str, *, width: float = 180.0) -> I
 
 
 def _changes(swing: Swing, centre: float, factor: float) -> tuple[float | None, float | None]:
-    """Changes at the upper and the lower end, in display units."""
+    """Changes of the output at the upper and lower end of an input, in display units."""
 
     def change(value: float | None) -> float | None:
         if value is None or not math.isfinite(value):

@@ -1,4 +1,4 @@
-"""Blocks about requirements checked in time, and about sensitive parameters of a scenario."""
+"""Blocks on requirements checked by time simulation, and on a scenario's sensitive parameters."""
 
 from __future__ import annotations
 
@@ -15,16 +15,17 @@ from .simulation import label, tied
 
 HEADS = ("requirement", "limit", "evaluation", "linear", "in time", "difference", "holds")
 BESIDE = 0.02
-"""Least difference between worst case and place of the experiment that is reported."""
+"""Least relative difference that is reported between the linear model's worst position and
+the\nposition of the time simulation."""
 MEANING = (
     "Evaluation: the linear tier at its worst; linear: the same where the experiment stands, on "
     "the side on which its spool rests; the difference is from that. Beside: the linear tier is "
     "worse on the side that the spool only passes as the load drifts; experiments stand at rest."
 )
 UNSURE = "?"
-"""Behind an effect that half the step does not confirm."""
+"""Mark after an effect that a run with half the parameter step does not confirm."""
 MOST_RESULTS = 6
-"""Results of a table of sensitivities: the most affected ones."""
+"""Largest number of results in a table of sensitivities; the most affected are shown."""
 BRIEF = {
     "rise_time": "rise",
     "settling_time": "settling",
@@ -39,25 +40,25 @@ BRIEF = {
     "dynamic_stiffness": "stiffness",
     "dynamic_phase": "phase",
 }
-"""Results in the head of a column."""
+"""Short names of results for the heads of columns."""
 _HOLDS = {"met": "yes", "missed": "no", "not_checked": "not known"}
 
 
-# ---- requirements in time ----
+# ---- requirements checked by time simulation ----
 
 
 class RequirementLine(NamedTuple):
     """A requirement as printed."""
 
     cells: tuple[str, ...]
-    """Under `HEADS`."""
+    """Cells of the columns `HEADS`."""
     state: State
     experiment: str
-    """Experiment and reason; empty where there is nothing to report."""
+    """Simulated experiment, or reason of a missing value; empty if there is nothing to report."""
 
 
 def blocks(verification: Verification) -> list[Block]:
-    """Every requirement by the linear model and in time, then the experiments, on the terminal."""
+    """Terminal: every requirement by linear model and time simulation, then experiments."""
     lines = [_line(row) for row in verification.rows]
     columns = [Column(HEADS[0], width=1.0, least=20)]
     columns += [
@@ -86,7 +87,7 @@ def blocks(verification: Verification) -> list[Block]:
 
 
 def tables(verification: Verification) -> tuple[Table, ...]:
-    """Requirements and experiments as plain tables, for the report and the record of a run."""
+    """Requirements and experiments as plain tables, for the report and for the run record."""
     if not verification.rows:
         return ()
     lines = [_line(row) for row in verification.rows]
@@ -110,7 +111,7 @@ def tables(verification: Verification) -> tuple[Table, ...]:
 
 
 def verdict(verification: Verification) -> str:
-    """The requirements that hold in time, that are missed, and that are not known."""
+    """Sentence on requirements that are met in the time simulation, missed, or unknown."""
     rows = verification.rows
     if not rows:
         return "No dynamic requirement is stated."
@@ -143,7 +144,7 @@ def _name(row: VerifiedRequirement) -> str:
 
 
 def _beside(row: VerifiedRequirement) -> bool:
-    """Whether the linear model is clearly worse where no experiment can rest."""
+    """Whether the linear model is clearly worse at a position where no simulation can start."""
     if row.stated is None or row.linear is None:
         return False
     return abs(row.stated - row.linear) > BESIDE * abs(row.stated)
@@ -162,7 +163,7 @@ def _percent(value: float) -> str:
 
 
 def sensitivity_blocks(sensitivities: Sensitivities) -> list[Block]:
-    """Parameters ranked by their largest effect, and those left out with the reason."""
+    """Parameters ranked by largest effect, and parameters left out with the reason."""
     results = _affected(sensitivities)
     title = f"Sensitive parameters: {sensitivities.name}"
     note = (
@@ -196,7 +197,7 @@ def sensitivity_blocks(sensitivities: Sensitivities) -> list[Block]:
 
 
 def _affected(sensitivities: Sensitivities) -> list[str]:
-    """The results that parameters move most, in the order of the scenario."""
+    """The results that parameters change most, in the order of the scenario."""
 
     def most(name: str) -> float:
         effects = [x.effects[name] for x in sensitivities.parameters if name in x.effects]
@@ -208,7 +209,7 @@ def _affected(sensitivities: Sensitivities) -> list[str]:
 
 
 def _effect(effect: Effect | None) -> str:
-    """An effect in per cent, with a mark where half the step does not confirm it."""
+    """An effect in per cent, with a mark if a run with half the step does not confirm it."""
     if effect is None or effect.percent is None:
         return DASH
     small = abs(effect.percent) < 5e-3

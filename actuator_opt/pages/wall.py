@@ -1,6 +1,6 @@
-"""The barrel wall in a report: layers, stresses, criteria, the way to burst, alternatives.
+"""The barrel wall in a report: layers, stresses, criteria, steps to burst, and alternatives.
 
-Layers are shaded, with their number above the frame; the bore lies left.
+Layers are shaded, with their number above the frame; the bore is on the left.
 """
 
 from __future__ import annotations
@@ -35,15 +35,15 @@ STEEL = "#4f86a8"
 SHADES = {"composite": 0, "metal": 1, "polymer": 2}
 """Shade of a layer by its kind."""
 AT_REST = 5
-"""Style of the stress without pressure: dotted."""
+"""Line style of the stress without pressure: dotted."""
 _AT_REST = {"cold": "no pressure, coldest", "hot": "no pressure, hottest", "": "no pressure"}
 _NEAR = 0.6
-"""Share of a limit above which a limit is drawn."""
+"""A limit is drawn if a curve reaches this share of it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rung:
-    """A bar of the ladder: name, pressure [Pa], fill, remark, required pressure [Pa]."""
+    """A bar of a step to burst: name, pressure [Pa], fill, remark, required pressure [Pa]."""
 
     name: str
     pressure: float
@@ -72,7 +72,7 @@ def stress_panels(study: WallStudy) -> list[Panel]:
 
 
 def strength_panels(study: WallStudy) -> list[Panel]:
-    """Strength used at supply pressure by the design's criterion, and stress over strength."""
+    """Panels at supply pressure: the design's failure criterion, and stress / strength."""
     used = [(profile.name, profile.used, k) for k, profile in enumerate(study.profiles)]
     known = [(name, values, k) for name, values, k in used if values is not None]
     ratios = []
@@ -105,7 +105,7 @@ def _panel(
     limits: Sequence[float] = (),
     remarks: Sequence[str] = (),
 ) -> Panel:
-    """Curves over the wall, its layers shaded and numbered, and the limits that a curve nears."""
+    """Curves over the wall with shaded, numbered layers; a limit is drawn if a curve nears it."""
     layers = [
         Stretch(
             1e3 * float(radii[0]),
@@ -127,7 +127,7 @@ def _panel(
 
 
 def _curve(words: str, study: WallStudy, values: Array, style: int) -> Curve:
-    """Values of every layer, with a break between the layers."""
+    """A curve through the values of every layer, interrupted between layers."""
     radii = 1e3 * np.asarray(study.radius)
     breaks = np.full((len(radii), 1), np.nan)
     xs, ys = (np.hstack([part, breaks]).ravel() for part in (radii, values))
@@ -135,8 +135,9 @@ def _curve(words: str, study: WallStudy, values: Array, style: int) -> Curve:
 
 
 def ladder_figure(rungs: Sequence[Rung], working: float, *, width: float = 180.0) -> Ink:
-    """Pressures on the way to burst as bars; a red tick is the pressure required.
+    """Bars of the pressures at which parts of the wall fail, up to burst.
 
+    A red tick marks the required pressure.
     Drawn, not a chart: each bar has its numbers and a remark beside it.
     """
     step, top = 4.8, 5.0
@@ -166,7 +167,7 @@ def ladder_figure(rungs: Sequence[Rung], working: float, *, width: float = 180.0
 def wall_figure(layers: Sequence[tuple[str, float, str]], *, width: float = 180.0) -> Ink:
     """The barrel wall enlarged to an ISO scale, layer by layer from the bore (below) outwards.
 
-    A section, drawn. `layers` holds (text, thickness in m, kind).
+    Drawn as a section. Each of the `layers` is (text, thickness in m, kind).
     """
     total = 1000.0 * sum(thickness for _, thickness, _ in layers)
     paper, real = next(
@@ -203,7 +204,7 @@ def wall_figure(layers: Sequence[tuple[str, float, str]], *, width: float = 180.
 
 
 MOST_STEPS = 10
-"""Steps of a ladder drawn; of a longer one the first and the last."""
+"""Most steps to burst that are drawn; if there are more, the last and the first nine are drawn."""
 
 _PLACE = re.compile(r"layup\[(\d+)\] [^\s,]+")
 _SHORT = {
@@ -224,7 +225,7 @@ _DIFFERENCES = {
 
 
 def wall_blocks(evaluation: Evaluation) -> list[Block]:
-    """Every block of the wall; the drawing alone where there is no study."""
+    """Every block on the wall; only the drawing if there is no wall study."""
     study = evaluation.wall
     blocks = [_drawing(evaluation)]
     if study is None:
@@ -249,7 +250,7 @@ def named(criterion: str) -> str:
 
 
 def turned(angle: float, *, balanced: bool) -> str:
-    """An angle (rad) as printed; a pair has a sign where it matters.
+    """A ply angle (rad) as printed; a balanced pair has ± unless the sign has no effect.
 
     >>> turned(0.4363323129985824, balanced=True), turned(1.5707963267948966, balanced=True)
     ('±25°', '90°')
@@ -389,14 +390,14 @@ def _criteria(study: WallStudy) -> Block:
 
 
 def _woven(study: WallStudy, index: int) -> bool:
-    """Whether a ply is nearly as stiff across as along: a fabric."""
+    """Whether a ply is a fabric: nearly as stiff across as along its fibres."""
     layer = study.layers[index]
     first, second = layer.moduli["youngs_modulus_1"], layer.moduli["youngs_modulus_2"]
     return layer.kind == "composite" and min(first, second) > 0.5 * max(first, second)
 
 
 def _place(label: str) -> str:
-    """A place of the metrics in the layer numbers of the page."""
+    """A location in the wall, converted to the layer numbers of the page."""
     label = label.replace("first ply with the liner yielding", "with the liner yielding")
     return _PLACE.sub(lambda m: f"layer {int(m[1]) + 1}", label)
 

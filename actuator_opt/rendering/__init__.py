@@ -1,1 +1,1 @@
-"""Pages on paper, on the terminal, as HTML and as CSV; no subject is known here."""
+"""Rendering of pages on paper, on the terminal, as HTML and as CSV, whatever their subject."""

@@ -19,11 +19,12 @@ MOST_BYTES = 50_000_000
 MOST_FILES = 16
 """Maximum number of attachments (a choice: a report has two, an editor may add some)."""
 NEAR = 4096
-"""Maximum bytes from a dictionary's type to its begin and to its end (a choice; ours have 200)."""
+"""Maximum bytes from a dictionary's type to its start and to its end (our choice; ours need
+200)."""
 _MARK, _OBJECT = b"/EmbeddedFile", b" obj"
 _STREAM = re.compile(rb">>\s{0,16}stream\r?\n")
 _STEP = 1_000_000
-"""Bytes unpacked at once."""
+"""Number of bytes that are unpacked in one step."""
 _DAMAGED = Diagnostic("its attachment is damaged", "use the original file")
 
 _MOST_PDF_BYTES = 200_000_000

@@ -23,15 +23,15 @@ AREAS = (
 )  # fmt: skip
 """Fills of stacked areas: distinct in hue for colour-blind eyes, in lightness on a grey print."""
 Ticks: TypeAlias = Sequence[tuple[float, str]]
-"""Values on an axis with their words."""
+"""Values on an axis with their labels."""
 Box: TypeAlias = tuple[float, float, float, float]
 """Left, top, width and height on the paper [mm]."""
 THINNED = 640
-"""Values of a thinned curve (a choice: two per 0.3 mm of paper)."""
+"""Number of values in a thinned curve (our choice: two per 0.3 mm of paper)."""
 SIZE = 6.2
-"""Type of the names of curves [pt]."""
+"""Type size of the names of curves [pt]."""
 _MILLISECONDS = 0.1
-"""Time below which an axis counts milliseconds [s]."""
+"""Time span below which an axis is in milliseconds [s]."""
 
 
 def ticks(low: float, high: float, count: int = 5) -> list[float]:
@@ -52,7 +52,7 @@ def ticks(low: float, high: float, count: int = 5) -> list[float]:
 
 
 class Axes:
-    """A plot frame on ink; its axes are linear in their values, which may be logarithms."""
+    """A plot frame on ink with linear axes; for a logarithmic axis, pass logarithms."""
 
     def __init__(
         self,
@@ -87,7 +87,7 @@ class Axes:
     def frame_at(
         self, title: str, x_label: str, x_ticks: Ticks, y_ticks: Ticks, *, upright: bool = False
     ) -> None:
-        """The same with stated ticks; `upright` also draws vertical grid lines.
+        """Grid, given ticks and axis labels; `upright` also draws vertical grid lines.
 
         Without an x label the x ticks have no numbers, as another frame follows below.
         """
@@ -146,7 +146,7 @@ def fitted(words: str, room: float, size: float = 6.5) -> str:
 
 
 def per_cent(share: float) -> str:
-    """A share in whole per cent, small ones with a decimal.
+    """A share in whole per cent; small shares have a decimal.
 
     >>> per_cent(0.44), per_cent(0.0031), per_cent(0.0002), per_cent(0.0)
     ('44 %', '0.3 %', '< 0.1 %', '0 %')
@@ -159,7 +159,7 @@ def per_cent(share: float) -> str:
 
 
 def level_words(value: float) -> str:
-    """A power of ten, or a step between two powers, short enough for an axis.
+    """A power of ten or a multiple of it, as a short label for an axis.
 
     >>> level_words(0.01), level_words(2000.0), level_words(1e5), level_words(5e-7)
     ('0.01', '2000', '10⁵', '5×10⁻⁷')
@@ -280,7 +280,7 @@ def thinned(values: Array, most: int = THINNED) -> Array:
 
 
 def time_words(span: float, words: str = "time") -> tuple[str, float]:
-    """Label of a time axis, and its unit per second.
+    """Label of a time axis, and the factor from seconds to its unit.
 
     >>> time_words(5.0), time_words(0.02)
     (('time, s', 1.0), ('time, ms', 1000.0))
@@ -302,7 +302,10 @@ def steady_range(ends: Sequence[float], *, zero: bool = False) -> tuple[float, f
 def names(
     ink: Ink, right: float, y: float, entries: Sequence[tuple[str, dict[str, Any]]], room: float
 ) -> None:
-    """Names of curves in a row that ends at `right`, cut to the room; their lines precede them."""
+    """Draw names of curves, each after a line sample, in a row that ends at `right`.
+
+    Names are cut to the width `room`.
+    """
     if not entries:
         return
     words = [name for name, _ in entries]

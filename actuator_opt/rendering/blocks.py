@@ -1,4 +1,4 @@
-"""A page as data: verdict, key figures, a large figure, and blocks below each other.
+"""A page as data: verdict, key figures, a large figure, and blocks from top to bottom.
 
 `pages` builds a `Page`; `paper`, `terminal` and `html` render it. The field `on` of a block names
 its medium: paper, terminal or both; HTML shows the same blocks as paper.
@@ -25,8 +25,8 @@ class Chart:
     Parameters
     ----------
     title : of the block
-    panels : panels and columns of panels, from the left; an ink stands below the panels of its
-        column
+    panels : panels and columns of panels, from the left; an ink (picture) is placed below the
+        panels of its column
     note : below the chart
     instead : block for the terminal
     height : on paper [mm]
@@ -49,14 +49,14 @@ class Chart:
 
 
 State: TypeAlias = Literal["", "met", "no_reserve", "missed", "not_checked", "checks", "infeasible"]
-"""Result of a requirement, a check or a whole page; empty without a judgement."""
+"""Result of a requirement, a check or a whole page; empty if there is nothing to judge."""
 Medium: TypeAlias = Literal["both", "paper", "terminal"]
 Align: TypeAlias = Literal["left", "center", "right"]
 
 _PIECES = re.compile(r"(?:[^./=\[]|[./=\[]+(?=[0-9]))*(?:[./=\[]+|$)", re.DOTALL)
 _NAMES = re.compile(r"[^_]*(?:_+|$)")
 _NAME = 18
-"""Letters of a single name that fit into any column."""
+"""Length of a name, in letters, that fits into any column."""
 _WORDS = re.compile(r"\s*\S+\s*|\s+")
 _CONTROL = re.compile(rf"[{CONTROLS}]")
 
@@ -102,7 +102,10 @@ def soft(text: str, longest: int = 14, *, name: int = _NAME) -> str | list[str]:
 
 
 def _pieces(word: str, most: int) -> Iterator[str]:
-    """Parts of a word between which a line may break; after ``_`` only beyond `most` letters."""
+    """Parts of a word between which a line may break.
+
+    It may only break after ``_`` if a name has more than `most` letters.
+    """
     for part in filter(None, _PIECES.findall(word)):
         if len(part.rstrip()) <= most:
             yield part
@@ -119,7 +122,7 @@ def short(text: str, length: int) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """A state with its mark and its words; default: those of the state."""
+    """A state with its mark and words; without words, the usual words of the state."""
 
     state: State
     text: str = ""
@@ -147,7 +150,7 @@ class Share:
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """Place of a value between its bounds, from zero to one; `at` names a bound it has reached."""
+    """Position of a value between its bounds, from 0 to 1; `at` names a bound it has reached."""
 
     place: float
     at: str = ""
@@ -170,14 +173,14 @@ class Reach:
 
 @dataclass(frozen=True, slots=True)
 class Flag:
-    """Words, emphasised if `raised`."""
+    """Words that are emphasised if `raised`."""
 
     text: str
     raised: bool
 
 
 Cell: TypeAlias = str | list[str] | Status | Bar | Share | Slot | Reach | Flag
-"""Text, also in pieces between which a line may break, or a mark."""
+"""Content of a table cell: a text, a text in pieces between which a line may break, or a mark."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,7 +189,7 @@ class Column:
 
     Parameters
     ----------
-    head : text above the column; line breaks only apply on paper
+    head : text above the column; its line breaks only apply on paper
     align : of its cells
     width : "auto", a share of the remaining width (number), or ``"12mm"``; a column with a share
         shrinks on a narrow terminal
@@ -227,9 +230,9 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Rows under their heads, plain or with a state; a rule precedes the last `total` rows.
+    """A table whose rows may have a state; a horizontal line precedes the last `total` rows.
 
-    `headless` omits the title on the terminal, as does an empty title. If every head is empty, the
+    On the terminal, `headless` or an empty title omits the title. If every head is empty, the
     terminal shows no line of heads. A table with `repeat` that is too wide is shown in parts; each
     part begins with the first `repeat` columns.
     """
@@ -279,7 +282,7 @@ class Drawing:
 
 @dataclass(frozen=True, slots=True)
 class TerminalFigure:
-    """A curve in a few lines of text: points (x, y), a level, and words below both ends."""
+    """A curve in a few lines of text: points (x, y), a limit line, and words below both ends."""
 
     title: str
     points: Sequence[tuple[float, float]]
@@ -351,7 +354,7 @@ class Page:
     verdict, sentence : the badge, and one or two sentences beside it
     tiles : up to five key figures
     hero : draws the large figure below them, for an available height [mm]
-    blocks : below each other
+    blocks : from top to bottom
     scale : of the large figure, for the title block
     items : numbered parts of the large figure: (number, part, material)
     design : name in the title block; default: `name`

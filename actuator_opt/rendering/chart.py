@@ -1,4 +1,4 @@
-"""A chart as data: panels with axes and their scales, curves, points, limits and shaded maps.
+"""A chart as data: panels with axes, curves, points, limits and shaded maps.
 
 Scales are straight, logarithmic, logarithmic in both directions, or rows by name. A chart contains
 values and words; `chart_ink` places them on paper by rule.
@@ -37,7 +37,7 @@ class Axis:
     zero : the axis includes zero
     range : both ends; default: from the values
     ticks : values and words; default: round values
-    names : of rows, the first at the top; row k is at the value k
+    names : of rows, if the axis has rows instead of values; row k is at the value k, row 0 on top
     """
 
     label: str = ""
@@ -108,17 +108,18 @@ class Points:
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """A horizontal line at a value of y, or an upright line at a value of x.
+    """A horizontal line at a value of y, or a vertical line at a value of x.
 
     Parameters
     ----------
-    value : of y, or of x where `upright`
+    value : of y, or of x if `upright`
     words : its name
-    sense : of a limit, "min" or "max": red, forbidden side hatched, name at the right, of an
-        upright limit above the frame
-    style : of any other line: colour and dash by number
-    between : ends along x of a horizontal line, with its name beside it; default: the whole frame
-    upright : a line at a value of x
+    sense : "min" or "max" for a limit; it is red, with its forbidden side hatched and its name at
+        the right (above the frame if upright)
+    style : colour and dash by number, for a line that is no limit
+    between : ends along x of a short horizontal line, which has its name beside it; default: as
+        wide as the frame
+    upright : vertical, at a value of x
     """
 
     value: float
@@ -197,9 +198,9 @@ class Panel:
 
 
 CORE = 0.35
-"""Decades of the straight core about zero (a choice: it contains no values)."""
+"""Width of the linear core around zero in decades (our choice: it contains no values)."""
 DECADE = 8.0
-"""Ratio of the ends above which a signed axis is logarithmic (a choice: nearly a decade)."""
+"""Ratio of largest to smallest magnitude above which a signed axis is logarithmic (our choice)."""
 LARGEST, SMALLEST = 1e150, 1e-100
 """Larger values are not shown, as their differences overflow; smaller values count as zero."""
 SIZE = 6.5
@@ -216,25 +217,25 @@ def known(values: Iterable[float], *, log: bool = False) -> list[float]:
 
 
 def _sized(values: Array) -> Array:
-    """Values in the range that an axis can show; smaller values are zero, larger NaN."""
+    """Values limited to what an axis can show: smaller values become zero, larger values NaN."""
     sizes = np.abs(values)
     return np.where(sizes <= LARGEST, np.where(sizes < SMALLEST, 0.0, values), np.nan)
 
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """Places of values along an axis, its ends, and candidates for a number of ticks."""
+    """The scale of an axis: positions of values, both ends, and candidate ticks."""
 
     places: Callable[[Array], Array]
     range: tuple[float, float]
     candidates: Callable[[int], Ranked]
 
     def at(self, values: Values) -> Array:
-        """Places of values; NaN for values that are not shown."""
+        """Positions of values along the axis; NaN for values that are not shown."""
         return self.places(_sized(np.asarray(values, dtype=float)))
 
     def place(self, value: float) -> float:
-        """Place of a value."""
+        """Position of a value along the axis."""
         return float(self.at([value])[0])
 
     def ticks(self, room: float, *, across: bool) -> Ticks:
@@ -244,7 +245,7 @@ class Scale:
         ranked = [tick for tick in self.candidates(count) if low - 1e-9 <= tick[0] <= high + 1e-9]
         ranked.sort(key=lambda tick: (tick[2], abs(tick[0])))
         labels = self._spaced(ranked, room, across)
-        if len(labels) < 2:  # both ends rather than zero alone
+        if len(labels) < 2:  # label both ends rather than only zero
             ranked = sorted(ranked, key=lambda tick: -abs(tick[0]))
             labels = self._spaced(ranked, room, across)
         return labels
@@ -266,7 +267,7 @@ class Scale:
 
 
 def scale(axis: Axis, values: Sequence[float], *, exact: bool = False) -> Scale:
-    """The scale of an axis for its values; `exact`: it ends at the values."""
+    """The scale of an axis for its values; with `exact`, it ends at the extreme values."""
     if axis.names:
         return _rows(axis)
     if axis.signed and (speeds := [abs(value) for value in known(values) if value]):
@@ -288,7 +289,7 @@ def scale(axis: Axis, values: Sequence[float], *, exact: bool = False) -> Scale:
 
 
 def _wide(ends: tuple[float, float]) -> tuple[float, float]:
-    """Ends that differ."""
+    """The ends of a range, widened if they coincide."""
     low, high = ends
     least = 1e-9 * max(abs(low), abs(high)) or 1.0
     return ends if high - low >= least else (low - least, low + least)
@@ -308,7 +309,7 @@ def _straight(axis: Axis, ends: tuple[float, float]) -> Scale:
 
 
 def _even(low: float, high: float, count: int) -> Ticks:
-    """Round ticks; very large and very small ones with a power of ten."""
+    """Round ticks; very large and very small values are written with a power of ten."""
     size = max(abs(low), abs(high))
     if 1e-3 <= size < 1e6:
         return even_ticks(low, high, count)
@@ -346,7 +347,7 @@ def _logarithmic(axis: Axis, values: Sequence[float], exact: bool) -> Scale:
 
 
 def _both_ways(low: float, high: float, ways: Sequence[int]) -> Scale:
-    """Logarithmic in both directions from zero; straight in the core, below the least value."""
+    """Scale that is logarithmic in both directions from zero, with a linear core around zero."""
 
     def at(values: Array) -> Array:
         size = np.maximum(np.abs(values), low)  # NaN stays
@@ -368,7 +369,7 @@ def _both_ways(low: float, high: float, ways: Sequence[int]) -> Scale:
 
 
 def _rows(axis: Axis) -> Scale:
-    """Rows by name, the first at the top."""
+    """Scale of named rows, the first at the top."""
     count = len(axis.names)
     ticks: Ranked = [(-float(k), name, 0) for k, name in enumerate(axis.names)]
     return Scale(lambda values: -values, (0.5 - count, 0.5), lambda _: ticks)

@@ -66,34 +66,34 @@ MARKS = (
 )  # fmt: skip
 """Edge and fill of points."""
 STRETCHES = ("#e2e7eb", "#f1f3f5", "#f6efdc")
-"""Fills of stretches of x."""
+"""Fills of shaded stretches of x."""
 THIN, GUIDE = 0.2, {"stroke": GREY, "pen": 0.18}
 BROAD: dict[str, Any] = {"stroke": "#a9b4bc", "pen": 0.7}
 LIMIT: dict[str, Any] = {"stroke": RED, "pen": 0.25, "dash": (1.8, 1.0)}
 DOTS = {"normal": (0.75, 0.3), "guide": (0.55, 0.1), "strong": (1.15, 0.45)}
 """Radius and pen of points by weight [mm]."""
 SKETCH, BETWEEN = 4.6, 2.6
-"""Length of a line in the legend, and gap between its entries [mm]."""
+"""Length of the line samples in the legend, and gap between its entries [mm]."""
 GAP, ROW, BELOW = 6.0, 3.7, 2.2
 """Gap between columns, height of a row of words above a frame, gap between two frames [mm]."""
 FOOT, APART = 8.4, 1.8
-"""Ticks and label below a frame, and from there to the title of the next one [mm]."""
+"""Height of ticks and label below a frame, and gap to the title of the next frame [mm]."""
 OVER = 2.8
-"""Room of a line of words that name a place of x, directly above a frame [mm]."""
+"""Height of a line of words directly above a frame, which name a position on x [mm]."""
 LEAST = 4.0
 """Least height of a frame [mm]."""
 RIGHT, NAMES = 26.0, 36.0
-"""Maximum width of words to the right and to the left of a frame [mm]."""
+"""Greatest width of words to the right and to the left of a frame [mm]."""
 SHADES = 13.0
-"""Width of the scale of shades [mm]."""
+"""Width of the colour scale of a map [mm]."""
 SWATCH = 2.8
 """Width of the swatch before the name of an area [mm]."""
 LOOP = 4
-"""Values of a loop over those of a function (a choice)."""
+"""Number of values kept of a loop, as a multiple of those of a function of x (our choice)."""
 JUMPS = 500
-"""Maximum number of times with two values that a thinned curve keeps."""
+"""Largest number of jumps (x with two values) that a thinned curve keeps."""
 DENSE = 10.0
-"""Values of a curve and cells of points drawn per mm (a choice: finer than the pen)."""
+"""Values of a curve, or points, drawn per mm of paper (our choice: finer than the pen)."""
 TITLE, SIZE, SMALL = 6.8, 6.5, 6.2
 Line: TypeAlias = list[Point]
 
@@ -120,7 +120,7 @@ def drawn(chart: Chart, *, width: float = 180.0, height: float | None = None) ->
 
 
 def _key(ink: Ink, curves: Sequence[Curve]) -> float:
-    """Names of curves in even columns above all panels; the height of their rows."""
+    """Draw names of curves in equal columns above all panels; return the height of their rows."""
     if not curves:
         return 0.0
     entries = [_Entry(curve.words, _line(curve, k)) for k, curve in enumerate(curves)]
@@ -135,7 +135,7 @@ def _key(ink: Ink, curves: Sequence[Curve]) -> float:
 
 
 def titled(chart: Chart, notes: Sequence[str] = (), *, width: float = 180.0) -> Ink:
-    """The chart as a picture of its own: its title and notes above, its note below."""
+    """The chart as a separate picture, with title and notes above and its own note below."""
     ink = Ink(width, 0.0)
     room = width - 4.0
     ink.text(2.0, 3.0, fitted(chart.title, 0.88 * room, 9.0), size=9.0, bold=True)
@@ -177,7 +177,7 @@ class _Entry:
 
 @dataclass(slots=True)
 class _Frame:
-    """A panel with its scales, the words above it, and its place."""
+    """A panel with its scales, the words above it, and its position."""
 
     panel: Panel
     x: Scale
@@ -201,7 +201,7 @@ class _Frame:
 
     @property
     def over(self) -> int:
-        """Lines of words that name places of x."""
+        """Number of lines of words above the frame that name positions on x."""
         if self.why:
             return 0
         named = (part.words for part in self.panel.stretches if part.words)
@@ -270,7 +270,7 @@ class _Column:
 
 
 def _overhang(frame: _Frame, wide: float) -> tuple[float, float]:
-    """Lengths by which the numbers of x extend beyond both ends of a frame."""
+    """Lengths by which the tick labels of x extend beyond the left and right end of a frame."""
     low, high = frame.x.range
     before = after = 0.0
     for place, words in frame.x.ticks(wide, across=True) if frame.label else ():
@@ -280,7 +280,7 @@ def _overhang(frame: _Frame, wide: float) -> tuple[float, float]:
 
 
 def _x_scale(panels: Sequence[Panel]) -> Scale:
-    """The common scale of x; if all panels only show functions of x, it ends at the values."""
+    """The common scale of x; it ends exactly at the values if all panels show functions of x."""
     axis = panels[-1].x
     values = [
         value
@@ -348,7 +348,10 @@ def _near(
     *,
     cut: bool = True,
 ) -> list[float]:
-    """Values at most `most` spans beyond the ends; farther values are cut there, or left out."""
+    """Values that lie at most `most` spans beyond the ends of a range.
+
+    Values farther away are moved to that distance (`cut`), or left out.
+    """
     low, high = (math.log10(f(ends)) if log else f(ends) for f in (min, max))
     spare = most * ((high - low) or max(abs(high), 1.0))
     low, high = (10.0 ** min(max(v, -100), 150) if log else v for v in (low - spare, high + spare))
@@ -391,7 +394,7 @@ def _fit_head(frame: _Frame, wide: float, right: float) -> None:
 
 
 def _entries(frame: _Frame, wide: float) -> Iterator[_Entry]:
-    """Names of points, curves and levels over the whole frame, without duplicates."""
+    """Legend entries of points, curves and full-width levels, without duplicates."""
     panel, entries = frame.panel, dict[str, _Entry]()
 
     def add(words: str, **sketch: Any) -> None:
@@ -449,7 +452,7 @@ def _right_room(frame: _Frame) -> float:
     words = [curve.end for curve in _at_end(frame)]
     limits = [level for level in frame.panel.levels if level.sense and not level.upright]
     words += [level.words + " ↑" for level in limits if level.words]
-    words += [area.words + " " * 3 for area in frame.panel.areas]  # blanks: the swatch
+    words += [area.words + " " * 3 for area in frame.panel.areas]  # blanks leave the swatch space
     room = min(max(text_width(w, SIZE) for w in words), RIGHT) + 2.0 if words else 0.5
     return room + (SHADES if frame.panel.surface is not None and not frame.why else 0.0)
 
@@ -458,7 +461,7 @@ def _right_room(frame: _Frame) -> float:
 
 
 def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
-    """A frame with its content; `edge` is the left end of its column."""
+    """Draw a frame with its content; `edge` is the left end of its column."""
     panel, x, label = frame.panel, frame.x, frame.label
     _head(ink, box, frame, edge)
     axes = Axes(ink, box, x.range, frame.y.range)
@@ -503,7 +506,7 @@ def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
 
 
 def _area(axes: Axes, area: Area, y: Scale, x: Scale) -> None:
-    """A filled area with a white upper edge."""
+    """Draw a filled area with a white upper edge."""
     xs, low, high = (scale.at(v) for scale, v in ((x, area.xs), (y, area.low), (y, area.high)))
     paint = AREAS[area.fill % len(AREAS)]
     places, lower, upper = xs.tolist(), low.tolist(), high.tolist()
@@ -513,7 +516,7 @@ def _area(axes: Axes, area: Area, y: Scale, x: Scale) -> None:
 
 
 def _band(axes: Axes, curve: Curve, y: Scale, x: Scale) -> None:
-    """The band around a curve; a bound at or below zero is drawn at the end of a log axis."""
+    """Draw the band around a curve; on a log axis, bounds at or below zero go to its end."""
     xs, low, high = x.at(curve.xs), y.at(curve.low), y.at(curve.high)
     low = np.where(np.asarray(curve.low) <= 0, np.fmax(low, axes.y_range[0]), low)
     inside = (xs >= axes.x_range[0]) & (xs <= axes.x_range[1])
@@ -522,7 +525,7 @@ def _band(axes: Axes, curve: Curve, y: Scale, x: Scale) -> None:
 
 
 def _head(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
-    """Title, note and legend, from the frame upwards."""
+    """Draw title, note and legend, from the frame upwards."""
     left, wide = box[0] - 1.4, box[2] + frame.right
     title, y = frame.panel.title, box[1] - frame.above + 1.6
     if text_width(title, TITLE, bold=True) > wide:
@@ -563,7 +566,7 @@ def _empty(ink: Ink, box: Box, why: str) -> None:
 
 
 def _zero_lines(axes: Axes, frame: _Frame, x: Scale) -> None:
-    """Lines at zero inside straight and signed axes."""
+    """Draw lines at zero inside linear and signed axes."""
     (left, right), (bottom, top) = axes.x_range, axes.y_range
     own = frame.panel
     if not (own.y.log and not own.y.signed) and not own.y.names and bottom < 0 < top:
@@ -595,9 +598,9 @@ def _curve(axes: Axes, curve: Curve, index: int, y: Scale, x: Scale) -> list[Lin
 
 
 def _kept(xs: Array, ys: Array, most: int) -> Array:
-    """Places of the values that are drawn: extremes of every stretch, and jumps of a function."""
+    """Indices of the values that are drawn: extremes of every stretch, and jumps."""
     steps = np.diff(xs)
-    if np.any(steps < 0):  # a loop: any stretch of it may be long
+    if np.any(steps < 0):  # a loop: any stretch of it may be long on paper
         return np.union1d(*(thinned(values, LOOP * most) for values in (xs, ys)))
     kept = thinned(ys, most)
     jumps = np.flatnonzero(steps == 0)
@@ -638,7 +641,7 @@ def _cut(line: Sequence[Point], axes: Axes) -> list[Line]:
 def _spots(
     axes: Axes, points: Points, index: int, y: Scale, x: Scale, bounds: Sequence[float]
 ) -> list[Point]:
-    """Draw points with their error bars; of many points, one per half millimetre."""
+    """Draw points with error bars; crowded points are thinned."""
     style = index if points.style is None else points.style
     edge, fill = _mark(points, style)
     radius, pen = DOTS[points.weight]
@@ -677,7 +680,10 @@ def _mark(points: Points, style: int) -> tuple[str, str]:
 
 
 def _bar(axes: Axes, points: Points, k: int, at: Point, y: Scale, x: Scale, color: str) -> Line:
-    """Draw an error bar, cut at the frame, with feet at ends inside; returns points along it."""
+    """Draw an error bar, cut at the frame; returns points along it.
+
+    An end inside the frame has a cap.
+    """
     along, on_paper = (x, axes.x) if points.across else (y, axes.y)
     bottom, top = along.range
     ends = (points.low[k], points.high[k])
@@ -714,7 +720,7 @@ def _small(ink: Ink, x: float, y: float, style: int) -> None:
 
 
 def _level(axes: Axes, level: Level, y: Scale, x: Scale) -> None:
-    """A level; the forbidden side of a limit is hatched."""
+    """Draw a horizontal level; the forbidden side of a limit is hatched."""
     place = y.place(level.value)
     if not axes.y_range[0] <= place <= axes.y_range[1]:
         return
@@ -734,7 +740,7 @@ def _upright_limits(panel: Panel) -> list[Level]:
 
 
 def _upright(axes: Axes, level: Level, x: Scale) -> None:
-    """An upright level; the forbidden side of a limit is hatched."""
+    """Draw a vertical level; the forbidden side of a limit is hatched."""
     place = x.place(level.value)
     if not axes.x_range[0] <= place <= axes.x_range[1]:
         return
@@ -748,7 +754,7 @@ def _upright(axes: Axes, level: Level, x: Scale) -> None:
 
 
 def _stretches(axes: Axes, stretches: Sequence[Stretch], x: Scale) -> None:
-    """Shaded stretches of x, with a white line between neighbours."""
+    """Draw shaded stretches of x, with a white line between neighbours."""
     for part in stretches:
         left, right = sorted(_ends(axes, (part.start, part.end), x))
         fill = STRETCHES[part.shade % len(STRETCHES)]
@@ -761,14 +767,14 @@ def _stretches(axes: Axes, stretches: Sequence[Stretch], x: Scale) -> None:
 
 
 def _ends(axes: Axes, between: tuple[float, float], x: Scale) -> tuple[float, float]:
-    """Ends of a short level inside the frame [mm]; one without a place lies at the left."""
+    """Ends of a short level inside the frame [mm]; an end that x cannot show lies at the left."""
     low, high = axes.x_range
     start, end = np.clip(np.nan_to_num(x.at(between), nan=low), low, high)
     return axes.x(float(start)), axes.x(float(end))
 
 
 def _words_over(axes: Axes, panel: Panel, x: Scale) -> None:
-    """Names of stretches and of upright limits above the frame, where they fit."""
+    """Write names of stretches and of vertical limits above the frame, if they fit."""
     y, right = axes.top - 1.7, axes.left + axes.width
     limits = [level for level in _upright_limits(panel) if level.words]
     limits = sorted((level for level in limits if math.isfinite(x.place(level.value))),
@@ -800,7 +806,7 @@ def _words_over(axes: Axes, panel: Panel, x: Scale) -> None:
 
 
 def _right_words(axes: Axes, frame: _Frame, lines: Sequence[Sequence[Line]]) -> None:
-    """Names of curve ends, limits and areas right of the frame, nearest to their places."""
+    """Write names of curve ends, limits and areas right of the frame, near their positions."""
     low, high = axes.top, axes.top + axes.height
     labels: list[tuple[float, str, str]] = []
     paints: dict[str, str] = {}
@@ -840,7 +846,7 @@ def _right_words(axes: Axes, frame: _Frame, lines: Sequence[Sequence[Line]]) -> 
 
 
 def _beside(axes: Axes, level: Level, y: Scale, x: Scale, drawn_points: Sequence[Point]) -> None:
-    """The name of a short level at the side with the fewest crossings, if a side is free."""
+    """Write the name of a short level on the side where it crosses the fewest lines."""
     place = y.place(level.value)
     if level.between is None or not axes.y_range[0] <= place <= axes.y_range[1]:
         return
@@ -866,7 +872,10 @@ def _written(
     *,
     halo: bool = False,
 ) -> None:
-    """Words at the side that crosses the fewest lines; nowhere where no side is free of words."""
+    """Write words on the side where they cross the fewest lines.
+
+    Skip them if other words are on every side.
+    """
     wide = text_width(words, 6.0)
     best: tuple[int, float, Anchor, float] | None = None
     text_boxes = [box[1:] for box in axes.ink.text_boxes()]
@@ -888,7 +897,7 @@ def _written(
 
 
 def _level_lines(axes: Axes, frame: _Frame, x: Scale) -> Iterator[Line]:
-    """Levels on paper."""
+    """Lines of all levels on paper."""
     left, right = axes.left, axes.left + axes.width
     for level in frame.panel.levels:
         place = (x if level.upright else frame.y).place(level.value)
@@ -910,7 +919,7 @@ def _level_lines(axes: Axes, frame: _Frame, x: Scale) -> Iterator[Line]:
 def _labels(
     axes: Axes, points: Points, index: int, y: Scale, x: Scale, drawn_points: Sequence[Point]
 ) -> None:
-    """Words beside points, each at its nearest free side."""
+    """Write words beside points, each on a free side."""
     style = index if points.style is None else points.style
     color = MARKS[style % len(MARKS)][0]
     if points.small:

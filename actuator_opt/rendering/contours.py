@@ -1,4 +1,4 @@
-"""Contours as ink: shaded bands between levels, on a grid or over a mesh of triangles.
+"""Contours as ink: shaded bands between levels, on a grid or on a mesh of triangles.
 
 Small values are light, so that a grey print can be read.
 """
@@ -59,7 +59,10 @@ def shades(count: int) -> list[str]:
 def bands(
     axes: Axes, xs: Sequence[float], ys: Sequence[float], table: Any, bounds: Sequence[float]
 ) -> None:
-    """Bands between levels, bilinear in the logarithm; a thin line at every level."""
+    """Draw bands between levels, with a thin line at every level.
+
+    Between grid points, the logarithm of the value is bilinear.
+    """
     from contourpy import FillType, LineType, contour_generator
 
     maker = contour_generator(
@@ -79,7 +82,7 @@ def bands(
 
 
 def scale(ink: Ink, box: tuple[float, float, float, float], bounds: Sequence[float]) -> None:
-    """Scale of the bands to the right of the frame, with the levels between them."""
+    """Draw the scale of the bands right of the frame, with the levels between them."""
     x, count = box[0] + box[2] + 2.5, len(bounds) - 1
     high = min(box[3] / count, 6.0)
     top = box[1] + box[3] - high * count
@@ -117,7 +120,7 @@ def corner_values(nodes: np.ndarray, triangles: np.ndarray, values: np.ndarray) 
 def mesh_outlines(
     nodes: np.ndarray, triangles: np.ndarray, body: np.ndarray
 ) -> list[list[list[Point]]]:
-    """Outlines of every body, in the mesh's coordinates; `body` is its number by triangle.
+    """Outlines of every body in mesh coordinates; `body` is the body's number of each triangle.
 
     Holes have the opposite orientation.
     """

@@ -1,4 +1,4 @@
-"""Heights of blocks on a sheet of paper, estimated from the widths of their words.
+"""Heights of blocks on paper, estimated from the widths of their words.
 
 `room` is the height of the first sheet that remains for the large figure. The estimate is rather
 too high than too low: a figure may be a few millimetres smaller, but a block must not move to the
@@ -41,8 +41,8 @@ LINE, NOTE_LINE = 3.6, 2.75
 MARKED = 1.06
 """Height of a row with a bar, in lines."""
 FRAME, SPARE = 3.0, 9.0
-"""Height around the large figure, and excess of the estimate on a sheet with a large figure and
-two tables, as measured [mm]."""
+"""Height of the frame around the large figure [mm], and measured excess of the estimate on a sheet
+with a large figure and two tables [mm]."""
 
 
 def joined(cell: Cell) -> str:
@@ -89,7 +89,7 @@ def cells_of(row: Row | Sequence[Cell]) -> Sequence[Cell]:
 
 
 def height(block: Block, width: float = FULL) -> float:
-    """Height of a block on paper [mm]; 0 for blocks of the terminal."""
+    """Height of a block on paper [mm]; 0 for a block that only the terminal shows."""
     if isinstance(block, Pair):
         return max(sum(height(part, HALF) for part in side) for side in block.sides)
     if isinstance(block, Table):
@@ -131,7 +131,7 @@ def room(page: Page) -> float:
 
 
 def rest(page: Page, hero: float) -> float:
-    """Height that remains on the first sheet below a figure of this height and the blocks [mm]."""
+    """Height that remains on the first sheet with the blocks and a figure of height `hero` [mm]."""
     legend = sum(
         text_width(f"{n} {part}, {material}", 5.8) + 4.0 for n, part, material in page.items
     )
@@ -157,7 +157,10 @@ def _widths(table: Table) -> list[float]:
 
 
 def _lines(table: Table, width: float) -> list[float]:
-    """Lines of the heads and of every row; flexible columns share the remaining width."""
+    """Number of text lines of the heads and of every row.
+
+    Flexible columns share the remaining width.
+    """
     columns = [k for k, column in enumerate(table.columns) if column.on != "terminal"]
     body = [cells_of(row) for row in table.rows]
     wides = dict(zip(columns, (_widths(table)[k] for k in columns), strict=True))

@@ -1,8 +1,8 @@
 """A page as a single HTML file, for dark and light screens and for print.
 
 The large figure and all drawings are SVG, from the same ink as on paper. Colours are variables,
-which a dark screen inverts. Without scripts, fonts and addresses, the file can be mailed and opens
-without a network.
+which a dark screen inverts. The file has no scripts, fonts or addresses, so it can be mailed and
+opens without a network.
 """
 
 from __future__ import annotations
@@ -184,7 +184,7 @@ def pieces(blocks: Iterable[Block]) -> str:
 
 
 def listing(words: str) -> str:
-    """Text of a terminal as a piece of HTML."""
+    """Terminal text as a piece of HTML."""
     return f"<pre>{_say(words)}</pre>"
 
 

@@ -30,7 +30,7 @@ class PathMark(TypedDict):
 
 @final
 class TextMark(TypedDict):
-    """A line of text: the middle of its capitals in mm, type size in points, clockwise angle."""
+    """A line of text: mid-height of its capitals [mm], type size [pt], clockwise angle."""
 
     text: str
     at: list[float]
@@ -137,7 +137,7 @@ def spread(targets: Sequence[float], gaps: Sequence[float]) -> list[float]:
 def spread_within(
     targets: Sequence[float], gaps: Sequence[float], lower: float, upper: float
 ) -> list[float]:
-    """`spread` within [lower, upper]; too large gaps are reduced."""
+    """`spread` within [lower, upper]; gaps are reduced if they do not fit."""
     room = upper - lower
     total = sum(gaps[: max(len(targets) - 1, 0)])
     if total > room > 0:
@@ -225,7 +225,7 @@ class Ink:
         self.path([points], **style)
 
     def box(self, x: float, y: float, width: float, height: float, **style: Any) -> None:
-        """A rectangle by its top left corner."""
+        """A rectangle, given its top left corner."""
         corners = ((x, y), (x + width, y), (x + width, y + height), (x, y + height))
         self.path([corners], closed=True, **style)
 
@@ -281,7 +281,7 @@ class Ink:
         )
 
     def paste(self, other: Ink, x: float, y: float) -> None:
-        """Another drawing with its top left corner at a place."""
+        """Copy another drawing, with its top left corner at (x, y)."""
         for mark in other.marks:
             if "text" in mark:
                 at = [round(mark["at"][0] + x, 3), round(mark["at"][1] + y, 3)]

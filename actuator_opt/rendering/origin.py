@@ -1,4 +1,4 @@
-"""Origin of a page: the design as read, the command and the date; and the files of a report."""
+"""Origin of a page (design file, command, date), and the files of a report."""
 
 from __future__ import annotations
 

@@ -49,9 +49,10 @@ from .origin import Origin, ReportFile, with_input
 
 PIXELS_PER_INCH = 150.0
 _SUSPECTS = b"/Suspects false"
-"""Default entry of Typst that Poppler warns of; blanks of the same length keep all offsets."""
+"""Default entry of Typst that makes Poppler warn. It is replaced by as many blanks, so that all
+offsets stay valid."""
 HEAD = 12
-"""Letters of a name in the head of a column, beyond which it may break after ``_``."""
+"""Length in letters above which a name in a column head may break after ``_``."""
 TEMPLATE = Path(__file__).with_name("template.typ")
 
 
@@ -253,7 +254,7 @@ def _reach(change: float, met: bool) -> dict[str, object]:
 
 
 def _printable(data: Any) -> Any:
-    """Data whose texts the typeface can draw."""
+    """Data with every text changed to what the typeface can draw."""
     if isinstance(data, str):
         return printable(data)
     if isinstance(data, dict):
@@ -296,7 +297,7 @@ def _render(data: Mapping[str, Any], timestamp: int) -> tuple[bytes, list[bytes]
 
 
 def sheets(source: bytes, data: Mapping[str, Any], timestamp: int) -> tuple[bytes, list[bytes]]:
-    """A Typst source with its data as PDF/A and an image of every sheet, with our own fonts."""
+    """Compile a Typst source with its data to PDF/A, and to an image of every sheet."""
     import typst
 
     compiler = typst.Compiler(

@@ -1,4 +1,4 @@
-"""A plain report by matplotlib, with a note on it, for installations without Typst."""
+"""A plain report by matplotlib for installations without Typst; a note in it says so."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class _Flow:
         self.y = TOP
 
     def need(self, height: float) -> bool:
-        """Start a new sheet unless `height` mm remain; returns whether it did."""
+        """Start a new sheet unless `height` mm remain; return whether a sheet was started."""
         if self.y + height <= BOTTOM or self.y == TOP:
             return False
         self.turn()
@@ -155,7 +155,7 @@ def _block(flow: _Flow, block: Mapping[str, Any]) -> None:
 
 
 def _widths(block: Mapping[str, Any]) -> list[float]:
-    """Column widths (mm): stated and natural widths first, the remaining width by shares."""
+    """Column widths (mm): given and natural widths first; shares divide the remaining width."""
     columns, rows = block["columns"], block["rows"]
     widths = [0.0] * len(columns)
     room = RIGHT - LEFT

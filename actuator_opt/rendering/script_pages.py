@@ -1,4 +1,4 @@
-"""Sheets of a worked study, and its script: print the tables, write the report.
+"""Report sheets of a worked study, and the main program of its script.
 
 Most studies share a sheet (``script_sheet.typ``) with heading, lead and blocks. Other studies have
 a .typ file beside the script.
@@ -58,7 +58,7 @@ def grid_table(
     title, note : above and below the table
     grid : heads, then rows
     words : columns of words, aligned to the left; negative numbers count from the end
-    widths : of every column, or by number of the column; the others are "auto"
+    widths : of every column, or by column number; columns without a number are "auto"
     """
     heads, *rows = grid
     text_columns = {k if k >= 0 else k + len(heads) for k in words}
@@ -89,7 +89,7 @@ def study_report(
     study : its numbers, attached as JSON
     title, heading : title of the PDF, and printed heading
     lead : paragraphs below the heading
-    blocks : below each other, also as plain data
+    blocks : from top to bottom; plain data is also allowed
     whole : whether tables must not break across sheets
     """
     data = {
@@ -110,7 +110,7 @@ def study_sheets(script: str | Path, study: Numbers, data: Numbers) -> Sheets:
 
 
 def _compiled(sheet: Path, study: Numbers, data: Numbers) -> Sheets:
-    """PDF and images; the same numbers give the same bytes."""
+    """Compile a sheet to PDF and images; the same numbers give the same bytes."""
     definitions, mark, _ = TEMPLATE.read_text("utf-8").partition(_MARK)
     assert mark, "the report template lacks the line that ends its definitions"
     numbers = json.dumps(study, indent=1, allow_nan=False)
@@ -119,7 +119,7 @@ def _compiled(sheet: Path, study: Numbers, data: Numbers) -> Sheets:
 
 
 def _plain(value: Any) -> Any:
-    """Blocks, alone or in lists and records, as plain data for a template."""
+    """Convert blocks, also inside lists and records, to plain data for a template."""
     if isinstance(value, get_args(Block)):
         return plain_blocks([value])[0]
     if isinstance(value, Mapping):

@@ -96,7 +96,7 @@ class FileColumn:
 
 
 class Coded(NamedTuple):
-    """Texts as indices of `words`; a negative code is an empty cell."""
+    """Texts stored as indices into `words`; a negative index is an empty cell."""
 
     codes: Array
     words: Sequence[str]
@@ -151,7 +151,7 @@ def _quoted(text: str) -> str:
 
 
 GROUP = 32_768
-"""Number of rows in memory from which a row group is written."""
+"""Number of rows in memory at which a row group is written."""
 
 
 class ParquetFile(AbstractContextManager["ParquetFile"]):
@@ -241,7 +241,7 @@ class ParquetFile(AbstractContextManager["ParquetFile"]):
         return arrow.array(values == 1.0 if field.kind == "flag" else values, mask=missing)
 
     def _write(self) -> None:
-        """Write the rows in memory as a row group."""
+        """Write the rows that are in memory to the file, as a row group."""
         if self._waiting:
             table = self._arrow.Table.from_batches(self._waiting, self._schema)
             self._waiting = []

@@ -1,4 +1,4 @@
-"""A page on the terminal: verdict, sentence, and its blocks below each other.
+"""A page on the terminal: verdict, sentence, and blocks from top to bottom.
 
 Curves are drawn in a few lines of braille dots. Functions return text and print nothing. Without
 Unicode the text is plain ASCII.
@@ -92,7 +92,7 @@ def curve(
 def _trace(
     points: Sequence[tuple[float, float]], grid_width: int, row_of: Callable[[float], int]
 ) -> dict[int, tuple[int, int]]:
-    """For every dot column, the rows the curve passes through."""
+    """For every column of dots, the first and last row that the curve passes through."""
     first, last = points[0][0], points[-1][0]
     rows = []
     index = 0
@@ -162,7 +162,7 @@ MARKS: dict[str, tuple[str, str]] = {
 }
 """Marks of states, in Unicode and in ASCII."""
 WIDE = 110
-"""Columns from which margin bars are long."""
+"""Terminal width (columns) from which margin bars are long."""
 
 
 def text(page: Page, **style: Unpack[Style]) -> str:
@@ -179,7 +179,7 @@ def text(page: Page, **style: Unpack[Style]) -> str:
 
 
 def blocks_text(blocks: Sequence[Block], **style: Unpack[Style]) -> str:
-    """Blocks below each other, as text that ends in a line break."""
+    """Blocks from top to bottom, as text that ends in a line break."""
     console = Console(**style)
     parts = [block_text(block, console) for block in blocks]
     return "\n\n".join(part for part in parts if part) + "\n"
@@ -201,7 +201,7 @@ def heading(name: str, verdict: Verdict, sentence: str, console: Console) -> lis
 
 
 def block_text(block: Block, console: Console) -> str:
-    """A block as text; empty for blocks of paper."""
+    """A block as text; empty for a block that only paper shows."""
     if isinstance(block, Pair):
         parts = [block_text(part, console) for side in block.sides for part in side]
         return "\n\n".join(part for part in parts if part)
@@ -288,7 +288,7 @@ def _cell(cell: Cell, console: Console) -> str:
 
 
 def slot(console: Console, share: float, size: int = 13) -> str:
-    """A place between two ends as a dot on a line."""
+    """A position between two ends as a dot on a line."""
     place = round(min(max(share, 0.0), 1.0) * (size - 1))
     line, dot = ("─", "●") if console.unicode else ("-", "o")
     return line * place + dot + line * (size - 1 - place)

@@ -1,4 +1,4 @@
-"""Numbers, units and margins in print, equal on paper and on the terminal."""
+"""Numbers, units and margins as printed, the same on paper and on the terminal."""
 
 from __future__ import annotations
 
@@ -282,7 +282,7 @@ _PLACES = (
 
 
 def brief(case: str | None, place: str | None) -> str:
-    """Case and place; places on the stroke are shortened.
+    """Load case and position; positions on the stroke are shortened.
 
     >>> brief("stance", "retracting, 25 % of the stroke"), brief(None, "weakest position")
     ('stance, retract, 25 %', 'weakest')

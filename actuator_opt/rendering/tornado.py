@@ -18,14 +18,14 @@ LABELS, FIGURES = 64.0, 34.0
 LIGHT = "#9ec3da"
 """Fill of the lower end; the upper end is dark, which a grey print also shows."""
 BEYOND = 1.4
-"""Maximum range with predictions, over the range of the re-solved changes."""
+"""Greatest ratio of the axis range with predictions to the range of the re-solved changes."""
 
 
 @dataclass(frozen=True, slots=True)
 class TornadoBar:
-    """An input: changes in display units at its upper, then its lower end.
+    """An input, with the changes (display units) at its upper end and at its lower end.
 
-    A prediction is drawn as a stroke. `words` are at the right, red if the end has no design.
+    A prediction is drawn as a stroke. `words` at the right are red if the end has no design.
     """
 
     name: str
@@ -76,7 +76,7 @@ def bars(
 
 
 def _frame(solved: list[float], predicted: list[float]) -> tuple[float, float]:
-    """Range of the axis: all re-solved changes, and predictions close to them."""
+    """Range of the axis: all re-solved changes, and predictions that are not far beyond."""
     low, high = min([0.0, *solved]), max([0.0, *solved])
     span = (high - low) or max(map(abs, predicted), default=0.0) or 1.0
     room = (BEYOND - 1.0) * span / 2

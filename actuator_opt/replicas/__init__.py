@@ -1,10 +1,10 @@
-"""Three papers re-created: their published numbers beside ours, for the designs of their cylinders.
+"""Three papers re-created: published values beside ours, for designs of the papers' cylinders.
 
 The published values are data with their place in the paper (``notes/``). Everything else in these
 tables is computed when the report is made: the paper's own formula (`*_as_published`) with the
 paper's numbers, and this project's models on the design.
 
-No module imports this package: reports find it by name, and a wheel comes without it.
+No module imports this package. Reports load it by name, and the wheel does not contain it.
 """
 
 from __future__ import annotations

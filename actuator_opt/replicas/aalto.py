@@ -1,9 +1,9 @@
 """Tables that compare [AaltoThesis] with this project's models, and their notes.
 
 The text of the thesis gives ranges and forces; its stiffness curves are in figures without numbers.
-The columns are therefore the printed formula, ours, and measured ranges if it prints them. A
-verdict follows from the numbers of the design at hand; shares are of the static stiffness with
-hoses at mid-stroke.
+Columns are therefore the printed formula's results, ours, and the measured ranges that are printed.
+Verdicts follow from the values of the given design. Shares are relative to the static stiffness
+with hoses at mid-stroke.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ from .papers import (
 
 
 def air_text(content: float) -> str:
-    """Air content, or the end of the searched range if it lies beyond."""
+    """Air content in words; beyond the searched range, the end of that range."""
     if content == 0:
         return f"less than {percent(CONTENTS[0])}"
     return percent(content) if math.isfinite(content) else f"more than {percent(CONTENTS[1])}"
@@ -73,7 +73,7 @@ SAME = 0.1
 
 
 def _moduli(design: Design) -> str:
-    """Young's moduli of rod and barrel; nothing for a laminate."""
+    """Words on Young's moduli of rod and barrel; empty for a laminate."""
     library, moduli = load_library(), []
     names = [design.rod.material, *(layer.material for layer in design.barrel.layup)]
     for name in names:
@@ -85,7 +85,7 @@ def _moduli(design: Design) -> str:
 
 
 def stiffness_note(design: Design, figures: Sequence[Theory]) -> str:
-    """Below figures 5, 29 and 32; `figures` are the last two."""
+    """Note below figures 5, 29 and 32; `figures` are the results of figures 29 and 32."""
     geometry = evaluated(design).geometry
     bore = design.cylinder.bore
     outer = bore + 2 * sum(layer.thickness for layer in design.barrel.layup)
@@ -112,12 +112,12 @@ def stiffness_note(design: Design, figures: Sequence[Theory]) -> str:
 
 
 def static_note(design: Design, test: StaticTest) -> str:
-    """Below the static test."""
+    """Note below the static test."""
     return other_cylinder(design) + " ".join((*_air(test), _pressures(test), _by_pass(test)))
 
 
 def _air(test: StaticTest) -> tuple[str, ...]:
-    """Sentences on the air behind the largest displacements, and on the thesis' bubbles."""
+    """Sentences on the air content that explains the largest displacements, and on the bubbles."""
     up, down = test.air_up[1], test.air_down[1]
     alike = math.isfinite(up * down) and up > 0 and abs(down / up - 1) < SAME
     if alike and test.assumptions[3].down.range[0] > (1 - SAME) * PAPER.moved_down[0]:
@@ -142,7 +142,7 @@ def _air_up(test: StaticTest) -> str:
 
 
 def _air_down(test: StaticTest) -> str:
-    """Sentence on the air for load down, and on its least displacement."""
+    """Sentence on the air content and the least displacement when the load acts downwards."""
     up, down = test.air_up[1], test.air_down[1]
     if math.isinf(down):
         words = f"Load down not even {percent(CONTENTS[1])} does"
@@ -172,7 +172,7 @@ def _fraction(share: float) -> str:
 
 
 def _judged(answer: Answer, measured: tuple[float, float]) -> str:
-    """Verdict on the largest displacement against the largest of each piston direction."""
+    """Verdict on the largest computed displacement against the largest measured one."""
     if answer.cavitating:
         return "into cavitation"
     if answer.range[1] < min(measured):
@@ -181,7 +181,7 @@ def _judged(answer: Answer, measured: tuple[float, float]) -> str:
 
 
 def _bubbles(test: StaticTest) -> str:
-    """The thesis' bubbles in both readings, against the largest displacements."""
+    """Sentence on the air bubbles that the thesis states, in both readings of their volume."""
     fits, words = [], []
     for assumption in test.assumptions[4:6]:
         up, down = _judged(assumption.up, PAPER.most_up), _judged(assumption.down, PAPER.most_down)
@@ -202,12 +202,12 @@ def _bubbles(test: StaticTest) -> str:
 
 
 def softer(loaded: tuple[float, float]) -> float:
-    """Pressure change of the rod chamber over the head chamber's."""
+    """Ratio of the pressure change in the rod chamber to that in the head chamber."""
     return abs((loaded[1] - PAPER.pressure_b) / (loaded[0] - PAPER.pressure_a))
 
 
 def _pressures(test: StaticTest) -> str:
-    """Sentences on the softer chamber by the measured pressures."""
+    """Sentences on which chamber is softer according to the measured pressures."""
     ours = test.assumptions[1]
     even = [softer((answer.pressure_a, answer.pressure_b)) for answer in (ours.up, ours.down)]
     measured = [softer(PAPER.loaded_up), softer(PAPER.loaded_down)]
@@ -248,14 +248,14 @@ def _by_pass(test: StaticTest) -> str:
 
 
 NOTHING = 0.06
-"""Change of a stiffness, over the static one, that counts as none."""
+"""Change of a stiffness, as a share of the static stiffness, that counts as no change."""
 
 OPENINGS_SAY = 1.02
-"""Ratio of two peaks that counts as none."""
+"""Ratio of two peaks up to which they count as equal."""
 
 
 def shares(test: DynamicTest, responses: Sequence[StiffnessResponse]) -> Array:
-    """Dynamic over static stiffness: (openings, tested frequencies)."""
+    """Ratio of dynamic to static stiffness, by (opening, tested frequency)."""
     return np.array([np.abs(response.tested) / test.static for response in responses])
 
 
@@ -265,12 +265,12 @@ def _range(values: Array) -> str:
 
 
 def _times(values: Array) -> str:
-    """First to last throttle."""
+    """Ratios at the first and the last throttle setting, in words."""
     return f"{text.trimmed(float(values[0]), 3)} to {text.trimmed(float(values[-1]), 3)} times"
 
 
 def judged_statements(share: Array) -> tuple[tuple[str, bool, Array], ...]:
-    """Statements of the thesis on the stiffness, whether shares confirm them, and the shares."""
+    """Statements of the thesis on stiffness, whether our values confirm them, and these values."""
     slow, twenty, above, last = share[:, :2], share[:, 2], share[:, 3], share[:, 4]
     return (
         ("soft up to 15 Hz", bool(np.all(slow < 1)), slow),
@@ -285,7 +285,7 @@ def judged_statements(share: Array) -> tuple[tuple[str, bool, Array], ...]:
 
 
 def does_it(test: DynamicTest) -> bool:
-    """Whether the valve confirms every statement with every needle, and is stable.
+    """Whether the model with the valve is stable and confirms every statement for every needle.
 
     Sections 4.2.2, 5.2 and 5.5: soft up to 15 Hz, "more than doubled" at 20 Hz, "slightly higher"
     at 25 Hz, static at 30 Hz.
@@ -320,14 +320,14 @@ def _valve(test: DynamicTest) -> str:
 
 
 def _moves(share: Array, *, more: str, less: str, none: str) -> tuple[str, bool]:
-    """Words for the effect of throttling, and whether there is an effect."""
+    """Words on the effect of throttling, and whether there is an effect."""
     if np.ptp(share) < NOTHING:
         return none, False
     return more if share[-1] > share[0] else less, True
 
 
 def throttle_explained(test: DynamicTest) -> bool:
-    """Whether the needle behind the measured drop throttles as the thesis states.
+    """Whether the needle that explains the measured pressure drop throttles as the thesis states.
 
     It stiffens at 10 Hz, lowers the peak and is "inconsequential" at 30 Hz.
     """
@@ -359,7 +359,11 @@ def _throttle(test: DynamicTest) -> str:
 
 
 def _alike(neighbour: Neighbour) -> bool:
-    """Whether a neighbour behaves alike: stable, soft, about twice static at 20 Hz, then static."""
+    """Whether a valve with slightly different values behaves like ours.
+
+    It must be stable, soft at low frequency, about twice as stiff as static at 20 Hz, and then as
+    stiff as static.
+    """
     return bool(
         neighbour.slowest_decay < 0
         and np.all(neighbour.ratio[:2] < 0.95)
@@ -369,7 +373,7 @@ def _alike(neighbour: Neighbour) -> bool:
 
 
 def _neighbours(test: DynamicTest) -> str:
-    """Sentences on how the result depends on the valve's exact numbers, and on its opening."""
+    """Sentences on how the result depends on the valve's exact values and on its opening."""
     frequencies = [neighbour.valve.natural_frequency for neighbour in test.neighbours]
     dampings = [neighbour.valve.damping_ratio for neighbour in test.neighbours]
     open_needle = shares(test, test.stated["reducing_valve"])[0]
@@ -430,7 +434,7 @@ def _constant(test: DynamicTest) -> str:
 
 
 def dynamic_note(design: Design, test: DynamicTest) -> str:
-    """Below the dynamic tests."""
+    """Note below the dynamic tests."""
     low, high = (float(f(test.peak.ratio)) for f in (np.min, np.max))
     place = 1e3 * float(test.peak.position[int(np.argmax(test.peak.ratio))])
     valve = test.valve
@@ -457,7 +461,7 @@ def dynamic_note(design: Design, test: DynamicTest) -> str:
 
 
 def needles_caption(test: DynamicTest) -> str:
-    """Caption of the curves over frequency: needle of each row, and whether it throttles."""
+    """Caption of the curves over frequency: the needle of each row, and whether it throttles."""
     peaks = shares(test, test.stated["reducing_valve"])[:, 2]
     change = float(np.max(peaks) / np.min(peaks))
     whose = "as the thesis states it"
@@ -473,7 +477,7 @@ def needles_caption(test: DynamicTest) -> str:
 
 
 def _oil(design: Design) -> str:
-    """Name of the oil; the oil of the thesis has the viscosity of a VG 32."""
+    """Name of the design's oil; the thesis' oil is called "a VG 32", as it has this viscosity."""
     name, library = design.fluid.material, load_library()
     if name == "aalto_thesis_oil":
         return "a VG 32"
@@ -481,7 +485,7 @@ def _oil(design: Design) -> str:
 
 
 def peak_note(design: Design, test: DynamicTest) -> str:
-    """Below the orifice and the peak."""
+    """Note below the table on orifice and peak."""
     needle = test.needle
     low, high = PAPER.temperatures
     viscosity = f"ν = {text.trimmed(1e6 * needle.viscosity, 3)} mm²/s"
@@ -504,7 +508,7 @@ def peak_note(design: Design, test: DynamicTest) -> str:
 
 
 def _drop(design: Design, test: DynamicTest) -> str:
-    """Sentence on whether flow, area and pressure drop fit together."""
+    """Sentence on whether the printed flow, area and pressure drop are consistent."""
     less = PAPER.cracking_pressure / test.needle.drop
     theirs = close(test.area, PAPER.throttle) and close(design.cylinder.bore, PAPER.bore)
     if 0.8 < less < 1.25:
@@ -543,7 +547,7 @@ def _row(name: str, theory: Theory) -> tuple[str, ...]:
 
 
 def stiffness_table(evaluation: Evaluation) -> list[Block]:
-    """Figures 5, 29 and 32: eq. 6, 37 and 38 as printed and per chamber."""
+    """Figures 5, 29 and 32: eq. 6, 37 and 38, as printed and with separate chambers."""
     design = evaluation.design
     pipes = aalto_models.pipes(design)
     oil = [
@@ -607,7 +611,7 @@ def _carried(bypass: Bypass, load: float) -> str:
 
 
 def static_table(evaluation: Evaluation) -> list[Block]:
-    """Force step to displacement, in both directions, against the measured ranges."""
+    """Displacement by a force step in both directions, against the measured ranges."""
     design = evaluation.design
     test = static_test(design)
     rows = [

@@ -66,7 +66,7 @@ def curve(xs: Array, ys: Array, style: Style, *label: str) -> LabelledCurve:
 
 
 def _unbroken(curve: LabelledCurve) -> list[tuple[list[float], list[float]]]:
-    """Stretches of a curve without gaps."""
+    """Parts of a curve between its gaps."""
     pairs = [
         list(group)
         for finite, group in itertools.groupby(
@@ -88,7 +88,7 @@ def draw_curves(
     frame: tuple[float, float, float],
     others: Sequence[CurveEnd] = (),
 ) -> None:
-    """Curves with labels to the right of a frame (right, top, bottom), and other labels there."""
+    """Draw curves with labels to the right of a frame, together with labels of `others`."""
     right, top, bottom = frame
     ends = list(others)
     for drawn in curves:
@@ -119,7 +119,7 @@ def _panel(
     band: tuple[float, float] | None = None,
     mark: float | None = None,
 ) -> None:
-    """Curves in a frame at a (row, column), each labelled where it ends or leaves the frame."""
+    """Draw curves in a frame at a (row, column), each labelled at its last visible point."""
     row, column = place
     box = (_COLUMNS[column], _TOP + row * _ROW, _PANEL, _HEIGHT)
     axes = Axes(ink, box, span, (0.0, top))
@@ -155,7 +155,7 @@ def theory_figure(
     *,
     width: float = 180.0,
 ) -> Ink:
-    """Figures 5, 29 and 32 along the stroke, and the excess of the totals in series."""
+    """Figures 5, 29 and 32 along the stroke, and the excess of the printed series totals."""
     ink = Ink(width, 2 * _ROW)
 
     span = (0.0, 1e3 * stroke)
@@ -209,7 +209,7 @@ def theory_figure(
 
 
 def static_figure(stroke: float, test: StaticTest, *, width: float = 180.0) -> Ink:
-    """Displacement over position under every assumption, with the measured range."""
+    """Displacement over position for every assumption, with the measured range."""
     ink = Ink(width, _ROW)
     styles = (FULL, DASHED, THIN, CHAIN, DOTTED)
     for column, words, load, band in (

@@ -3,13 +3,13 @@
 Every curve is an evaluation of the design with the oil, lines and load cell of the figure, so the
 re-creation needs no further formula. All values are in SI.
 
-Static test: walls count as oil of the same compliance, so that `trapped_air_load_step` includes
-them: its volumes are K C of oil and barrel. The compliance of rod and load cell adds to the
-displacement, because the position is measured behind them.
+Static test: `trapped_air_load_step` treats walls as oil of the same compliance. Its volumes are
+the bulk modulus K times the compliance C of oil and barrel. The compliance of rod and load cell is
+added to the displacement, because the position is measured behind them.
 
 Dynamic tests: the linear model leaves friction out. The thesis gives no number of friction, and
-sliding seals only add damping. The numbers of the reducing valve are ours; the thesis only suspects
-it.
+sliding seals only add damping. The values of the reducing valve are ours; the thesis only suspects
+that such a valve acted.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ Topology = Literal["per_chamber", "aalto_as_published"]
 
 @dataclass(frozen=True, slots=True)
 class AaltoThesis:
-    """Numbers the thesis prints, SI; ``notes/aalto.yaml`` has the places."""
+    """Values printed in the thesis, SI; ``notes/aalto.yaml`` states where."""
 
     bore: float
     rod: float
@@ -75,7 +75,7 @@ class AaltoThesis:
 PAPER = published_numbers(AaltoThesis, "aalto")
 
 MARGIN = 0.005
-"""Least distance of the thesis' test runs from the ends of the stroke (m)."""
+"""Distance that the thesis' test runs keep from the ends of the stroke (m)."""
 
 
 def places(design: Design) -> Array:
@@ -117,7 +117,7 @@ def variant(
 
 
 def evaluated(design: Design) -> ModelRun:
-    """The models evaluated once."""
+    """The model run of a single evaluation of the design."""
     subject = prepare(design)
     return compute(subject, subject.values())
 
@@ -148,7 +148,7 @@ def unstretched(springs: Springs) -> Springs:
 
 @dataclass(frozen=True, slots=True)
 class Theory:
-    """A stiffness curve of the thesis [N/m] along `position` [m]: the printed form and ours.
+    """A stiffness curve of the thesis [N/m] along `position` [m]: printed formula and ours.
 
     `per_chamber` includes the compliances of the thesis, `stretched` also the barrel's axial
     stretch. The fields that end in `_at` are values at `places`.
@@ -163,7 +163,7 @@ class Theory:
 
     @property
     def weakest(self) -> tuple[float, float]:
-        """Position and stiffness of the softest place, by the printed form."""
+        """Position and value of the least stiffness, by the printed formula."""
         k = int(np.argmin(self.published))
         return float(self.position[k]), float(self.published[k])
 
@@ -174,7 +174,7 @@ def _along(design: Design) -> Array:
 
 
 def oil_alone(design: Design, lines: Sequence[Line]) -> Theory:
-    """Figure 5: eq. 6 with rigid walls and the volume of some lines; both forms agree."""
+    """Figure 5: eq. 6 with rigid walls and given line volumes; printed and own formula agree."""
     springs = variant(design, lines=lines, bulk_modulus=PAPER.bulk_modulus)
     position = _along(design)
     curve, at = (first(springs.hydraulic(x, springs.oil)) for x in (position, places(design)))
@@ -206,7 +206,7 @@ def total(
 
 
 def air_behind(pressure: float) -> float:
-    """Air content at which eq. 5 turns 1600 MPa into 1300 MPa at a pressure."""
+    """Air content at which eq. 5 reduces the bulk modulus from 1600 to 1300 MPa at a pressure."""
     content = np.linspace(0.0, 0.05, 5001)
     modulus = fluid.effective_bulk_modulus(
         bulk_modulus=PAPER.bulk_modulus, pressure=pressure, air_content=content
@@ -228,7 +228,7 @@ CONTENTS = (0.001, 0.15)
 
 
 class Bypass(NamedTuple):
-    """Force on the chambers by the pressures of figure 41 [N]; by-passing share of the load."""
+    """Force on the chambers from figure 41's pressures [N], and share of the load not on them."""
 
     force: float
     share: float
@@ -244,7 +244,7 @@ class Air:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """Response to a load step under an assumption; arrays along `position`, SI.
+    """Response to a load step for an assumption; arrays along `position`, SI.
 
     Displacements are magnitudes, NaN where no state of the chambers carries the load (cavitation).
     """
@@ -270,7 +270,7 @@ class Answer:
 
 @dataclass(frozen=True, slots=True)
 class Assumption:
-    """A reading of the static test, loaded up and down."""
+    """An interpretation of the static test, with its responses to load upwards and downwards."""
 
     name: str
     up: Answer
@@ -278,7 +278,7 @@ class Assumption:
 
 
 class ClosedCylinder:
-    """The closed cylinder with its pipes, K 1600 MPa, at the thesis' 22 positions."""
+    """The closed cylinder with pipes and 1600 MPa bulk modulus, at the thesis' 22 positions."""
 
     def __init__(self, design: Design) -> None:
         springs = variant(design, lines=pipes(design), bulk_modulus=PAPER.bulk_modulus)
@@ -294,7 +294,7 @@ class ClosedCylinder:
         self.volume = Air(scale * first(walls.a), scale * first(walls.b))
 
     def bypass(self, loaded: tuple[float, float], load: float) -> Bypass:
-        """Force on the chambers by the measured pressures, and the by-passing share of a load."""
+        """Force on the chambers from the measured pressures, and share of a load not on them."""
         a = (loaded[0] - PAPER.pressure_a) * self.geometry.area_a
         b = (loaded[1] - PAPER.pressure_b) * self.geometry.area_b
         force = abs(float(a - b))
@@ -306,7 +306,7 @@ class ClosedCylinder:
         return Air(content * self.oil.a, content * self.oil.b)
 
     def bubbles(self, *, compressed: bool) -> Air:
-        """The thesis' 0.4 and 0.08 ml, read at atmospheric or at the working pressures."""
+        """The thesis' bubbles, 0.4 and 0.08 ml, read at atmospheric or at working pressure."""
         volumes = []
         for bubble, pressure in (
             (PAPER.bubble_a, PAPER.pressure_a),
@@ -317,7 +317,7 @@ class ClosedCylinder:
         return Air(volumes[0], volumes[1])
 
     def step(self, force: float, air: Air) -> LoadStep:
-        """The chambers under a step of the rod's force (> 0: the load pushes it in)."""
+        """The chambers after a step of the force on the rod (> 0: the load pushes the rod in)."""
         return trapped_air_load_step(
             force=force,
             area_a=self.geometry.area_a,
@@ -333,7 +333,7 @@ class ClosedCylinder:
         )
 
     def answer(self, load: float, air: Air, *, share: float = 0.0) -> Answer:
-        """Displacement behind the load cell; `share` of the load by-passes the chambers."""
+        """Displacement including the load cell; the chambers do not carry `share` of the load."""
         step = self.step((1 - share) * load, air)
         moved = np.abs(step.displacement) + abs(load) * self.flexibility
         return Answer(
@@ -360,7 +360,7 @@ class ClosedCylinder:
 
 @dataclass(frozen=True, slots=True)
 class StaticTest:
-    """The static test under every assumption."""
+    """The static test for every assumption."""
 
     position: Array
     place: float
@@ -369,13 +369,13 @@ class StaticTest:
     down: Bypass
     assumptions: tuple[Assumption, ...]
     air_up: tuple[float, float]
-    """Entrained air behind the largest displacement: with the whole load on the chambers, and with
-    the measured by-pass. 0 and infinite beyond `CONTENTS`."""
+    """Entrained air that explains the largest displacement: if the chambers carry the whole load,
+    and if they carry its measured share. 0 or infinite outside `CONTENTS`."""
     air_down: tuple[float, float]
 
 
 def static_test(design: Design) -> StaticTest:
-    """Force step to displacement over position, in both directions."""
+    """Displacement by a force step over position, in both directions."""
     bench = ClosedCylinder(design)
     up, down = bench.bypass(PAPER.loaded_up, UP), bench.bypass(PAPER.loaded_down, DOWN)
     air_up = _needed(bench, -UP, sum(PAPER.most_up) / 2, up)
@@ -423,7 +423,7 @@ def _needed(bench: ClosedCylinder, load: float, most: float, bypass: Bypass) -> 
 End = Literal["constant_pressure", "reducing_valve"]
 
 OPENINGS = (1.0, 0.5, 0.25)
-"""Open share of the needle's area, for a throttle of 0, 50 and 75 %."""
+"""Open share of the needle's area, for throttle settings of 0, 50 and 75 %."""
 
 TESTED = (10.0, 15.0, 20.0, 25.0, 30.0)
 """Loading frequencies of the thesis (Hz)."""
@@ -433,14 +433,14 @@ FREQUENCIES = np.linspace(5.0, 50.0, 361)
 VALVE = ReducingValve(
     conductance=8e-12, passive_conductance=1e-11, natural_frequency=19.0, damping_ratio=0.2
 )
-"""Our valve: the stiffness peaks at 20 Hz at mid-stroke, is low below and near closed ports
-above."""
+"""Our valve. At mid-stroke the stiffness peaks at 20 Hz. It is low at lower frequencies, and close
+to that of closed ports at higher frequencies."""
 
 NEAR = 0.5
 """Difference of the natural frequencies of neighbouring valves (Hz)."""
 
 MORE_DAMPING = (1.0, 1.25)
-"""Damping ratios of neighbouring valves over that of the valve."""
+"""Damping ratios of neighbouring valves, as multiples of that of our valve."""
 
 THROTTLE = Throttle(
     area=one_way_valve.NEEDLE_AREA,
@@ -449,7 +449,8 @@ THROTTLE = Throttle(
 )
 
 EQUAL_ENERGY = 4 / (3 * pi)
-"""Share of a sine's amplitude at which the tangent of a quadratic loss dissipates as the sine."""
+"""Share of a sine's amplitude at which a quadratic pressure loss is linearised, so that the
+tangent\ndissipates as much energy as the sine."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -457,14 +458,14 @@ class Needle:
     """The throttle's needle at the thesis' largest speed amplitude, SI."""
 
     viscosity: float
-    """Kinematic viscosity behind the thesis' Reynolds number."""
+    """Kinematic viscosity that follows from the thesis' Reynolds number."""
     temperature: float
     """Temperature at which the design's oil has this viscosity [K]; NaN without any."""
     reynolds: float
     """Reynolds number with the design's oil."""
     flow_coefficient: float
     flow_coefficient_slow: float
-    """Flow coefficient at the base velocity alone."""
+    """Flow coefficient at the base velocity only."""
     drop: float
     """Pressure drop of the head side, fully open."""
     area: float
@@ -486,7 +487,7 @@ class Neighbour:
 
     valve: ReducingValve
     ratio: Array
-    """Dynamic stiffness at `TESTED` over the static one, mid-stroke."""
+    """Ratio of dynamic to static stiffness at `TESTED`, at mid-stroke."""
     slowest_decay: float
     """Largest real part of the poles, as in `Peak`."""
 
@@ -500,7 +501,7 @@ class Peak:
     [Hz]."""
     position: Array
     ratio: Array
-    """Dynamic stiffness at 20 Hz over the static one along `position`, throttle 0 %."""
+    """Ratio of dynamic stiffness at 20 Hz to static stiffness along `position`, throttle 0 %."""
     slowest_decay: float
     """Largest real part of all poles [1/s], over the stroke and all throttles; < 0 is stable."""
 
@@ -510,9 +511,9 @@ class DynamicTest:
     """All results on the page of the dynamic tests."""
 
     static: float
-    """Closed ports with hoses, mid-stroke [N/m]."""
+    """Stiffness at mid-stroke with closed ports and hoses [N/m]."""
     closed: StiffnessResponse
-    """Throttle 100 %: cylinder and pipes alone."""
+    """Response with a throttle of 100 %: only cylinder and pipes."""
     area: float
     """Area of the needle as stated [m^2]."""
     needle: Needle
@@ -520,7 +521,7 @@ class DynamicTest:
     stated: dict[End, tuple[StiffnessResponse, ...]]
     """Responses by line end for every opening, with the needle that the thesis states."""
     read_back: dict[End, tuple[StiffnessResponse, ...]]
-    """Responses with the needle behind the measured pressure drop."""
+    """Responses with the needle that explains the measured pressure drop."""
     peak: Peak
     neighbours: tuple[Neighbour, ...]
     without_opening: float
@@ -532,7 +533,7 @@ class DynamicTest:
 
 
 class HeldCylinder:
-    """The cylinder between throttles and line ends, without friction."""
+    """The cylinder between its throttles and line ends (boundary conditions), without friction."""
 
     def __init__(self, design: Design, valve: ReducingValve | None = None) -> None:
         self.design = design
@@ -550,16 +551,16 @@ class HeldCylinder:
         self.motion = replace(self.done.motion, damping=0.0)
 
     def ends(self, end: End) -> dict[Chamber, LineEnd]:
-        """Constant pressure, or the reducing valve."""
+        """Boundary conditions of both lines: constant pressure, or a reducing valve."""
         if end == "constant_pressure":
             return dict.fromkeys(CHAMBERS, CONSTANT_PRESSURE)
         return self.motion.held
 
     def model(self, end: End, position: Array, *, area: float) -> linear.LinearActuator:
-        """Linear model; a needle of zero area is closed.
+        """Linear model with a needle of given area; zero area is closed.
 
         Oil leaves both chambers through their needle, as in the half cycle that empties them. The
-        tangent is taken where it dissipates as much as the sine of the thesis' speed amplitude.
+        needle is linearised so that it dissipates as much energy as the thesis' sinusoidal motion.
         """
         throttles = {}
         for chamber in CHAMBERS:
@@ -596,7 +597,7 @@ class HeldCylinder:
 
     @property
     def static(self) -> float:
-        """Closed ports with hoses, mid-stroke [N/m]."""
+        """Stiffness at mid-stroke with closed ports and hoses [N/m]."""
         return float(first(self.motion.springs.stiffness(np.array([self.stroke / 2])))[0])
 
     def needle(self, slow: float) -> Needle:
@@ -657,7 +658,7 @@ class HeldCylinder:
         )
 
     def slowest_decay(self, areas: Sequence[float]) -> float:
-        """Largest real part of all poles, over the stroke, all throttles and some needles."""
+        """Largest real part of all poles, over the stroke, all throttle settings and `areas`."""
         position = np.linspace(MARGIN, self.stroke - MARGIN, 22)
         fastest = [
             loop.poles(model=self.model("reducing_valve", position, area=opening * area)).real.max()

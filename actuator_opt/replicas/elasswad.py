@@ -1,7 +1,7 @@
-"""Tables of the numbers that [ElAsswad2018] prints beside ours, with its contradictions.
+"""Tables of the values printed in [ElAsswad2018] beside ours, with the paper's contradictions.
 
-One table per subject; the columns are what the paper prints, what its own formula gives with the
-paper's numbers, and what this project's models give for the design.
+One table per subject. Its columns are the printed value, the result of the paper's formula with the
+paper's numbers, and the result of this project's models for the design.
 """
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ def bending_table(evaluation: Evaluation) -> list[Block]:
 
 
 def _bending_note(tube: Tube, times: float) -> str:
-    """`times` is the growth by eq. 12 over that of the design."""
+    """Note on bending; `times` is the ratio of bore growth by eq. 12 to that of the design."""
     wound = load_library().get("t700_epoxy").numbers
     wide = wound["youngs_modulus_1"] / wound["youngs_modulus_2"]
     least = min(tube.modulus_between_caps(span) for span in SPANS)
@@ -392,7 +392,7 @@ def _rod(evaluation: Evaluation) -> list[Block]:
 
 
 def _eq_10(pressure: float, *, growth_per_pressure: float) -> float:
-    """The printed k_cyl at a pressure, the bore grown by eq. 12."""
+    """The printed k_cyl at a pressure, with the bore enlarged by eq. 12."""
     wide = forces.piston_area(bore=PAPER.bore + 2 * growth_per_pressure * pressure)
     return float(
         published.cylinder_expansion_as_published(pressure=pressure, area=wide, stroke=PAPER.stroke)

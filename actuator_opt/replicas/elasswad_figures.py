@@ -25,7 +25,7 @@ _LABEL = 6.8
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """A curve over time with its label of two lines, which stands at the level `at`."""
+    """A curve over time with its two-line label, placed at the value `at`."""
 
     values: Sequence[float]
     style: dict[str, Any]
@@ -54,7 +54,7 @@ def _panel(
     time: Sequence[float],
     lines: Sequence[_Line],
 ) -> Axes:
-    """Curves over time in a frame, their labels to its right, the turn of the piston marked."""
+    """Draw curves over time with labels at the right; the piston's reversal is marked."""
     lines = [line for line in lines if all(math.isfinite(v) for v in line.values)]
     top = max([v for line in lines for v in line.values], default=1.0) or 1.0
     axes = Axes(ink, box, (time[0], time[-1]), (0.0, 1.08 * top))
@@ -80,7 +80,7 @@ def _panel(
 
 
 def record_figure(record: CycleRecord, along: Along, *, width: float = 180.0) -> Ink:
-    """Pressure and radial expansion (above), k_eq as published and beside the derived (below)."""
+    """Pressure and radial expansion (above), and k_eq as published and as derived (below)."""
     panel, height, row = 48.0, 33.0, 53.0
     ink = Ink(width, 2 * row)
     time = [float(t) for t in record.time]

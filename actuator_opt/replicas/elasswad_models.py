@@ -1,4 +1,4 @@
-"""The numbers of [ElAsswad2018] in its own formulas and in ours: oil, wall, bending test, record.
+"""The values of [ElAsswad2018] in the paper's formulas and in ours: oil, wall, bending, record.
 
 The paper prints neither span, section, slope nor rollers of its bending test: the spans are the two
 strokes that it prints, the section is the design's, and the other assumptions are named here. It
@@ -36,7 +36,7 @@ POISSONS_RATIO = 0.3
 
 
 def root(function: Callable[[float], float], low: float, high: float) -> float:
-    """Zero of a falling function by bisection; an end of the bracket without a zero inside."""
+    """Zero of a falling function by bisection; without a zero inside, an end of the bracket."""
     for _ in range(60):
         middle = (low + high) / 2
         low, high = (middle, high) if function(middle) > 0 else (low, middle)
@@ -45,7 +45,7 @@ def root(function: Callable[[float], float], low: float, high: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class ElasswadPaper:
-    """Numbers the paper prints, SI; ``notes/elasswad.yaml`` has the places."""
+    """Values printed in the paper, SI; ``notes/elasswad.yaml`` states where."""
 
     bore: float
     piston_diameter: float
@@ -70,7 +70,7 @@ class ElasswadPaper:
 
     @property
     def rod_modulus_per_length(self) -> float:
-        """E/L behind the rod stiffness for the full section, Pa/m."""
+        """Modulus / length [Pa/m] that gives the printed rod stiffness with the full section."""
         return float(self.rod_stiffness / rod.section_area(outer_diameter=self.rod_diameter))
 
     @property
@@ -102,7 +102,7 @@ class ElasswadPaper:
         )
 
     def wall(self, thickness: float) -> dict[str, float]:
-        """The barrel as eq. 12 takes it: the published bore and modulus, an assumed thickness."""
+        """Inputs of eq. 12 for the barrel: published bore and modulus, and an assumed thickness."""
         return {
             "inner_radius": self.bore / 2,
             "outer_radius": self.bore / 2 + thickness,
@@ -116,7 +116,7 @@ class ElasswadPaper:
         return self.bending_modulus * float(correct) / growth
 
     def bending_slope(self, *, span: float, second_moment: float) -> float:
-        """Force over deflection behind the published modulus by eq. 13."""
+        """Slope, force / deflection, that gives the published modulus by eq. 13."""
         return float(
             bending_test.bending_slope(
                 youngs_modulus=self.bending_modulus, span=span, second_moment=second_moment
@@ -124,7 +124,7 @@ class ElasswadPaper:
         )
 
     def pressure(self, *, force: float, contact_width: float) -> float:
-        """Pressure at which eq. 15 to 20 give a friction force, both rings under all of it."""
+        """Pressure at which eq. 15 to 20 give a friction force, if it acts fully on both rings."""
         unit = friction.coulomb_as_published(
             pressure=1.0,
             friction_coefficient=self.friction_coefficient,
@@ -136,7 +136,7 @@ class ElasswadPaper:
         return force / float(unit)
 
     def total(self, barrel_stiffness: float) -> float:
-        """Eq. 7 with the published oil and rod stiffness."""
+        """Total stiffness by eq. 7 with the published oil and rod stiffness."""
         return float(
             published.series_of_totals_as_published(
                 oil=self.oil_stiffness, barrel=barrel_stiffness, rod=self.rod_stiffness
@@ -176,7 +176,10 @@ class Tube:
 
     @property
     def shear_compliance(self) -> float:
-        """1/(kappa G A)."""
+        """Shear compliance per length, 1/(kappa G A).
+
+        kappa is the shear coefficient, G the shear modulus, A the area of the section.
+        """
         outer, inner = self.outer_diameter, self.inner_diameter
         kappa = column.cowper_tube(poissons_ratio=self.poissons_ratio, radius_ratio=inner / outer)
         area = rod.section_area(outer_diameter=outer, inner_diameter=inner)
@@ -197,7 +200,7 @@ class Tube:
     def modulus(
         self, span: float, *, solid: bool = False, shear: bool = False, local: bool = False
     ) -> float:
-        """Modulus of the tube if the published value by eq. 13 left these effects out."""
+        """Modulus of the tube after correcting the published value of eq. 13 for given effects."""
         measured = PAPER.bending_slope(span=span, second_moment=self.second_moment(solid=solid))
         return float(
             bending_test.bending_modulus(
@@ -221,7 +224,7 @@ class Tube:
         )
 
     def hidden(self, span: float) -> tuple[float, float]:
-        """Further compliance for woven carbon to give the published slope; its share of all."""
+        """Compliance missing for woven carbon to give the published slope, and its share of all."""
         even = self.second_moment()
         slope = bending_test.bending_slope(
             youngs_modulus=self.warp_modulus,
@@ -254,7 +257,7 @@ SPEED = 0.1
 
 @dataclass(frozen=True, slots=True)
 class CycleRecord:
-    """Time [s], pressure difference [Pa] and place of the piston as a share of the stroke."""
+    """Time [s], pressure difference [Pa], and piston position as a share of the stroke."""
 
     time: Array
     pressure: Array
@@ -350,7 +353,7 @@ def chambers(place: Array, *, growth_per_pressure: float) -> Array:
 
 
 def along(evaluation: Evaluation, record: CycleRecord) -> Along:
-    """Published and derived values at every time of a record."""
+    """Expansion and stiffness, by the published and derived formulas, at every time of a record."""
     wall = PAPER.wall(wall_thickness(evaluation))
     printed, grown = published.equivalent_stiffness_as_published(
         pressure=record.pressure,
@@ -384,7 +387,7 @@ def value(evaluation: Evaluation, name: str) -> float:
 
 
 def properties(evaluation: Evaluation, name: str) -> Mapping[str, float]:
-    """Numbers of a material from library and design; empty for a material of the user's files."""
+    """Values of a material from library and design; empty for a material from the user's files."""
     library = load_library()
     known = library.get(name).numbers if name in library else {}
     return {**known, **evaluation.design.materials.get(name, {})}

@@ -1,8 +1,8 @@
 """Tables that compare [Huang2017] with this project's films, judge its claims, and their notes.
 
-The text of the paper prints few numbers: table 2, a claimed fall of B and the chamber's shear. Our
-films judge its claims with the seals of the design, which are not fitted to the paper. A verdict
-follows from the numbers of the design at hand.
+The text of the paper prints few numbers: table 2, a claimed fall of the damping B, and the shear
+drag in the chamber. We judge its claims by our film models with the design's seals, without fitting
+them to the paper. Verdicts follow from the values of the given design.
 """
 
 from __future__ import annotations
@@ -72,12 +72,12 @@ def mega(value: float, digits: int = 3) -> str:
 
 
 def megas(values: Sequence[float] | Array, digits: int = 3) -> str:
-    """Dampings of one row in one cell."""
+    """Damping values of a row as text for a single cell."""
     return SLASH.join(mega(float(value), digits) for value in values)
 
 
 def verdict(share: float) -> str:
-    """Verdict by the share of a claim that holds; NaN if no film exists to judge it."""
+    """Verdict by the share of a claim that holds; pass NaN if no film exists to judge it."""
     if not math.isfinite(share):
         return OPEN
     return AGREES if share >= 1 else DISAGREES if share <= 0 else IN_PART
@@ -99,7 +99,7 @@ NEAR = 1.3
 """Factor within which a simulated damping agrees with the measured damping."""
 
 STILL = 1.2
-"""Factor within which a damping no longer falls at twice the speed."""
+"""A damping that falls by less than this factor at twice the speed counts as constant."""
 
 
 def cylinder_table(design: Design, study: HuangStudy) -> list[Block]:
@@ -222,7 +222,7 @@ def _asymptote(study: HuangStudy) -> tuple[str, ...]:
 
 
 def _between_rows(study: HuangStudy) -> list[tuple[str, ...]]:
-    """The claim on the pressure between two seals; empty for a single seal."""
+    """Row on the claim about the pressure between two seals; empty for a single seal."""
     mapped = study.plunger
     share = mapped.between / mapped.pressures[:, None]
     beyond = study.fast.between[0] / PAPER.compared
@@ -285,7 +285,7 @@ def ring_table(_: Design, study: HuangStudy) -> list[Block]:
 
 
 def plunger_table(design: Design, study: HuangStudy) -> list[Block]:
-    """Figure 6: table 2 and our films over speed and pressure."""
+    """Figure 6: damping by table 2 and by our films, over speed and pressure."""
     mapped = study.plunger
     columns = [mapped.at(0.0, v)[1] for v in SHOWN]
     rows = []
@@ -332,7 +332,7 @@ def _quality(fit: LawFit) -> str:
 
 
 def fits_table(_: Design, study: HuangStudy) -> list[Block]:
-    """Figures 7 and 8: both laws through table 2 and through our films."""
+    """Figures 7 and 8: both damping laws, fitted to table 2 and to our films."""
     curves: list[tuple[str, CurveFits]] = [
         (f"table 2, {pressure_text(fits.row.pressure)}", fits) for fits in study.published
     ]
@@ -363,7 +363,7 @@ def fits_table(_: Design, study: HuangStudy) -> list[Block]:
 
 
 def parts_table(_: Design, study: HuangStudy) -> list[Block]:
-    """Equation 26 with every part, figures 19 and 20."""
+    """Equation 26 with each of its parts; figures 19 and 20."""
     rows = []
     for total in study.totals:
         parts = total.parts
@@ -399,7 +399,7 @@ def parts_table(_: Design, study: HuangStudy) -> list[Block]:
 
 
 def kinds_table(_: Design, study: HuangStudy) -> list[Block]:
-    """Why the pressure trends of both cylinders can be opposite, by seal type."""
+    """Seal types, whose damping shows why pressure may act oppositely in the two cylinders."""
     rows = [
         (
             kind.name,
@@ -422,7 +422,7 @@ def kinds_table(_: Design, study: HuangStudy) -> list[Block]:
 
 
 def relief_table(_: Design, study: HuangStudy) -> list[Block]:
-    """Trend over pressure by relief of the step ring."""
+    """Trend of damping over pressure for several reliefs of the step ring."""
     both = list(zip(study.whole, study.drained, strict=True)) or [(math.nan, math.nan)] * len(
         study.reliefs
     )
@@ -475,11 +475,11 @@ TABLES: tuple[Callable[[Design, HuangStudy], list[Block]], ...] = (
     relief_table,
     equations_table,
 )
-"""Every table: test A, test B by its figures, the trends, the equations last."""
+"""Every table: test A, test B in the order of its figures, the trends, and the equations."""
 
 
 def blocks(evaluation: Evaluation) -> list[Block]:
-    """Every table and drawing, of one study."""
+    """Every table and drawing, all from a single study."""
     study = study_of(evaluation.design)
     return [block for table in TABLES for block in table(evaluation.design, study)]
 
@@ -488,7 +488,7 @@ NEGLIGIBLE = 0.05
 """Share of the seals' damping up to which a part can be neglected."""
 
 EVEN = 0.02
-"""Change below which a damping does not change with pressure."""
+"""Relative change below which a damping counts as independent of pressure."""
 
 
 def _dry(viscous: np.ndarray) -> str:
@@ -505,7 +505,7 @@ def _dry(viscous: np.ndarray) -> str:
 
 
 def _reasons(why: tuple[Missing, ...]) -> str:
-    """Points without a film."""
+    """Words on points without a film and the reasons."""
     if not why:
         return ""
     more = f", and {len(why) - 1} more" if len(why) > 1 else ""
@@ -515,7 +515,7 @@ def _reasons(why: tuple[Missing, ...]) -> str:
 
 
 def cylinder_note(design: Design, study: HuangStudy) -> str:
-    """Below figure 3."""
+    """Note below figure 3."""
     mapped = study.cylinder
     i, j = int(np.argmin(np.abs(mapped.pressures - PAPER.shown_pressure))), -1
     piston, rod = float(mapped.piston.friction[i, j]), float(mapped.rod.friction[0, j])
@@ -532,7 +532,7 @@ def cylinder_note(design: Design, study: HuangStudy) -> str:
 
 
 def plunger_note(design: Design, study: HuangStudy) -> str:
-    """Below figure 6."""
+    """Note below figure 6."""
     mapped = study.plunger
     j = mapped.at(0.0, TYPICAL)[1]
     curve = mapped.damping[:, j]
@@ -576,7 +576,7 @@ def _between(study: HuangStudy) -> str:
 
 
 def fits_note(study: HuangStudy) -> str:
-    """Below the fits."""
+    """Note below the fits."""
     exponents = [fits.power.values["exponent"] for fits in study.published]
     exponents += [fits.power.values["exponent"] for _, fits in study.films]
     rates = [
@@ -610,7 +610,7 @@ def fits_note(study: HuangStudy) -> str:
 
 
 def simulated_note(study: HuangStudy) -> str:
-    """Below figures 15 and 16."""
+    """Note below figures 15 and 16."""
     mapped = study.plunger
     i = mapped.at(PAPER.compared, 0.0)[0]
     ours = mapped.friction[i]
@@ -628,7 +628,7 @@ def simulated_note(study: HuangStudy) -> str:
 
 
 def _stribeck(ours: np.ndarray, study: HuangStudy) -> str:
-    """Whether our friction falls over the tested speeds as table 2 does."""
+    """Sentence on whether our friction falls over the tested speeds, as in table 2."""
     if not np.all(np.isfinite(ours)) or ours[-1] < 0.9 * ours[0]:
         return ""
     i = study.plunger.at(PAPER.compared, 0.0)[0]
@@ -640,7 +640,7 @@ def _stribeck(ours: np.ndarray, study: HuangStudy) -> str:
 
 
 def ring_note(study: HuangStudy) -> str:
-    """Below figures 17 and 18."""
+    """Note below figures 17 and 18."""
     ring = study.sealings.plunger.rings[0]
     kind = study.kinds[1]
     words = (
@@ -667,7 +667,7 @@ def ring_note(study: HuangStudy) -> str:
 
 
 def parts_note(study: HuangStudy, dry: float) -> str:
-    """Below the parts of eq. 26."""
+    """Note below the parts of eq. 26."""
     most = max(total.beside_share for total in study.totals)
     chamber = max(total.share(CHAMBER) for total in study.totals)
     member = huang_published.plausible_chamber()
@@ -691,7 +691,7 @@ def parts_note(study: HuangStudy, dry: float) -> str:
 
 
 def kinds_note(study: HuangStudy) -> str:
-    """Reasons why pressure may act both ways."""
+    """Note on why pressure may raise or lower the damping."""
     words = (
         "The balance k is the rise of a face's load with pressure over its width. Oil that falls "
         "evenly across the face carries half of the pressure; where asperities cause the friction, "
@@ -713,7 +713,7 @@ def kinds_note(study: HuangStudy) -> str:
 
 
 def relief_note(study: HuangStudy) -> str:
-    """Note on the relief that turns the trend."""
+    """Note on the relief at which the trend over pressure reverses."""
     turn = study.turn
     if turn is None:
         return "This design's first rod seal is no step ring: nothing turns its trend."
@@ -768,7 +768,7 @@ def _proven(study: HuangStudy) -> str:
 
 
 TRACES = equations("huang")
-"""All of eq. 1 to 31, in order."""
+"""All equations from 1 to 31, in order."""
 
 
 def table(readings: Readings) -> list[Block]:

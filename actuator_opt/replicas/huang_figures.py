@@ -1,7 +1,7 @@
 """Figures 3, 6 to 8 and 15 to 20 of [Huang2017] as ink: curves, contours, surfaces.
 
-Where the paper measured, the curves are its own table 2; its drawn figures carry no numbers in
-their text.
+For measurements of the paper, the curves follow its table 2, because its figures contain no
+numbers.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ _LIFT = 0.4
 
 
 def box(place: tuple[int, int]) -> tuple[float, float, float, float]:
-    """Frame of a (row, column)."""
+    """Frame (left, top, width, height) of a panel at a (row, column)."""
     row, column = place
     return COLUMNS[column], TOP + row * ROW, PANEL, HEIGHT
 
@@ -69,7 +69,7 @@ def panel(
     range_: tuple[float, float],
     level: float | None = None,
 ) -> None:
-    """Curves in a frame, each labelled at its end; `level` is a horizontal line."""
+    """Draw curves in a frame, each labelled at its end; `level` is a horizontal line."""
     left, top, width, height = box(place)
     axes = Axes(ink, (left, top, width, height), span, range_)
     right, bottom = left + width, top + height
@@ -81,7 +81,7 @@ def panel(
 
 @dataclass(frozen=True, slots=True)
 class DampingField:
-    """Damping over speed [mm/s] and pressure [MPa], (p, v) [MN s/m]."""
+    """Damping [MN s/m] over speed [mm/s] and pressure [MPa], as an array (pressure, speed)."""
 
     speeds: Array
     pressures: Array
@@ -91,7 +91,7 @@ class DampingField:
 def contours(
     ink: Ink, place: tuple[int, int], title: str, field: DampingField, levels: Sequence[float]
 ) -> None:
-    """Lines of equal damping; on the logarithmic speed axis they are evenly spaced."""
+    """Draw lines of equal damping; on the logarithmic speed axis they are evenly spaced."""
     logs = np.log10(field.speeds)
     spans = [(float(axis[0]), float(axis[-1])) for axis in (logs, field.pressures)]
     axes = Axes(ink, box(place), spans[0], spans[1])
@@ -124,7 +124,7 @@ def _inside(point: Point, frame: tuple[float, float, float, float]) -> bool:
 
 
 def segments(xs: Array, ys: Array, values: Array, level: float) -> list[tuple[Point, Point]]:
-    """Straight pieces of a level, cell by cell, each cell as two triangles."""
+    """Straight pieces of a contour line, cell by cell; each cell consists of two triangles."""
     pieces = []
     for i, j in itertools.product(range(len(ys) - 1), range(len(xs) - 1)):
         corners = [(i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)]
@@ -144,7 +144,7 @@ def segments(xs: Array, ys: Array, values: Array, level: float) -> list[tuple[Po
 
 
 def surface(ink: Ink, place: tuple[int, int], title: str, field: DampingField) -> None:
-    """The damping as a net in space: speed to the right, pressure to the back, values upwards."""
+    """Draw the damping as a net in space: speed rightwards, pressure backwards, values upwards."""
     left, top, width, height = box(place)
     deep, wide = _LIFT * height, _LIFT * width
     speeds, pressures = field.speeds, field.pressures
@@ -198,7 +198,7 @@ def surface(ink: Ink, place: tuple[int, int], title: str, field: DampingField) -
 
 
 LEVELS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0)
-"""Lines of equal damping, MN s/m."""
+"""Values of the lines of equal damping, MN s/m."""
 
 _SPEED, _PRESSURE = "speed, mm/s", "sealed pressure, MPa"
 
@@ -207,7 +207,7 @@ _UNIT = "MN·s/m"
 SPEED_RANGE = (0.0, 1e3 * PAPER.speeds[1])
 
 SHOWN = (0.5e-3, 2.1e-3, 5e-3, 10e-3)
-"""Speeds of the curves over pressure, figure 8."""
+"""Speeds for which figure 8 has a curve over pressure."""
 
 
 def _field(speeds: Array, pressures: Array, damping: Array) -> DampingField:
@@ -217,14 +217,14 @@ def _field(speeds: Array, pressures: Array, damping: Array) -> DampingField:
 
 
 def published_field() -> DampingField:
-    """Table 2 over the tested speeds."""
+    """Damping by table 2 over the tested speeds."""
     pressures = np.array([row.pressure for row in HUANG_TABLE_2])
     damping = np.array([huang_published.secant_of(row, SPEEDS) for row in HUANG_TABLE_2])
     return _field(SPEEDS, pressures, damping)
 
 
 def cylinder_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
-    """Figure 3(c) and (d): the piston cylinder on its films."""
+    """Figure 3(c) and (d): the piston cylinder, computed with oil films."""
     ink = Ink(width, ROW)
     cylinder = study.cylinder
     field = _field(cylinder.piston.speeds, cylinder.pressures, cylinder.damping)
@@ -234,7 +234,7 @@ def cylinder_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
 
 
 def plunger_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
-    """Figure 6: table 2 above, our films below."""
+    """Figure 6: damping by table 2 (above) and by our films (below)."""
     ink = Ink(width, 2 * ROW)
     ours = _field(study.plunger.speeds, study.plunger.pressures, study.plunger.damping)
     for row, words, field in ((0, "table 2", published_field()), (1, "our films", ours)):
@@ -261,7 +261,7 @@ def _over_speed(speeds: Array, rows: list[tuple[float, Array]]) -> list[Labelled
 
 
 def speed_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
-    """Figures 7 and 8: over speed and over pressure, table 2 and our films."""
+    """Figures 7 and 8: damping over speed and over pressure, by table 2 and by our films."""
     ink = Ink(width, 2 * ROW)
     mapped = study.plunger
     table = [(row.pressure, huang_published.secant_of(row, SPEEDS)) for row in HUANG_TABLE_2]
@@ -299,7 +299,7 @@ def _row_at(mapped: FilmMap, pressure: float) -> Array:
 
 
 def simulated_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
-    """Figures 15 and 16: 6 MPa measured and on films, 8 and 10 MPa on films."""
+    """Figures 15 and 16: measured and film results at 6 MPa, film results at 8 and 10 MPa."""
     ink = Ink(width, ROW)
     mapped = study.plunger
     table = huang_published.secant_of(HUANG_TABLE_2[-1], SPEEDS)
@@ -322,7 +322,7 @@ def simulated_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
 
 
 def ring_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
-    """Figures 17 and 18: stress and length of the step ring's contact, and its film."""
+    """Figures 17 and 18: contact stress and contact length of the step ring, and its film."""
     ink = Ink(width, 2 * ROW)
     stress = study.stress
     pressures = stress.pressures / 1e6
@@ -393,7 +393,7 @@ def back_up_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
 
 
 def relief_figure(study: HuangStudy, *, width: float = 180.0) -> Ink | None:
-    """Trend over pressure by relief of the step ring; None without a step ring."""
+    """Trend of damping over pressure for several reliefs; None without a step ring."""
     if not study.reliefs:
         return None
     ink = Ink(width, ROW)

@@ -4,13 +4,13 @@ Test A is the design itself. Test B, the plunger, has the tandem of the design's
 plunger's diameter: the standard housings of both diameters are equal. All values are in SI;
 pressures are gauge unless called absolute.
 
-The trends of the two cylinders over pressure may be opposite. The load of a face rises with the
-sealed pressure by its balance k = (df/dp)/b. Oil pressure that falls evenly across the face carries
-half of p b. Asperities cause the friction at these speeds; at higher pressure they carry more if
-k > 1/2, and less if k < 1/2.
+The damping of the two cylinders may change oppositely with pressure. The load f per length of a
+face rises with the sealed pressure p by its balance k = (df/dp)/b, where b is the contact width.
+Oil pressure that falls evenly across the face carries half of p b. At these speeds, asperities
+cause the friction. At higher pressure they carry more load if k > 1/2, and less if k < 1/2.
 
-Equation 26: of the back-up ring the paper states only the material, PTFE with copper; the numbers
-used here are assumed and stated.
+Equation 26: of the back-up ring the paper states only the material, PTFE with copper; the values
+used here are assumed; the constants below state them.
 
 Eq. 14 and 15 lack the rigid shift of the seal, though the balance of loads in eq. 12 requires a
 shift. The text below eq. 4 calls "a" the seal and gives it the rod's speed. `readings` computes the
@@ -46,19 +46,20 @@ from . import huang_published
 from .huang_published import PAPER, CurveFits, plausible_chamber, secant_of
 
 CASE = 0
-"""Load case of the design that gives oil and return pressure."""
+"""Index of the design's load case from which oil and return pressure are taken."""
 
 SPEEDS = (0.5e-3, 0.8e-3, 1.3e-3, 2.1e-3, 3.3e-3, 5e-3, 7e-3, 10e-3)
-"""Speeds of the maps: the tested range, and 2.1 mm/s where the printed fall holds."""
+"""Speeds of the maps: the tested range, and 2.1 mm/s, at which the printed fall of damping
+holds."""
 
 FAST = (10e-3, 20e-3, 40e-3, 80e-3, 0.16, 0.32)
-"""Speeds beyond the tests, at which oil begins to carry the seals."""
+"""Speeds above the tested range, at which the oil film begins to carry the seals."""
 
 TYPICAL = 2.1e-3
-"""Speed at which pressures are compared."""
+"""Speed at which dampings at different pressures are compared."""
 
 PRESSURES = (0.6e6, 2e6, 4e6, 6e6, 8e6, 10e6)
-"""Pressures of the plunger's map: those of table 2, and of figure 16."""
+"""Pressures of the plunger's map: pressures of table 2 and of figure 16."""
 
 PISTON_PRESSURES = (1e6, 2e6, 4e6, 6e6, 7.15e6, 8e6, 10e6)
 """Pressures of the driven chamber of the piston cylinder; 7.15 MPa is the paper's."""
@@ -85,7 +86,7 @@ class Sealings:
 
 
 def sealings(design: Design) -> Sealings:
-    """The rings of both tests, each on its oil film, whatever friction law the design states."""
+    """The rings of both tests on oil films, whatever friction model the design states."""
     subject = prepare(_on_films(design))
     v = subject.values()
     state = base(subject, v)
@@ -119,7 +120,7 @@ def _on_films(design: Design) -> Design:
 
 @dataclass(frozen=True, slots=True)
 class CylinderMap:
-    """Damping of the piston cylinder over the driven chamber's pressure and the speed.
+    """Damping of the piston cylinder, as an array over driven-chamber pressure and speed.
 
     Parameters
     ----------
@@ -149,7 +150,7 @@ def cylinder_map(seals: Sealings, speeds: Sequence[float] = SPEEDS) -> CylinderM
 
 
 def fast_map(seals: Sealings) -> FilmMap:
-    """The plunger at 6 MPa beyond the tested speeds."""
+    """Map of the plunger at 6 MPa, for speeds above the tested range."""
     return film_map(seals.plunger, [PAPER.compared], FAST)
 
 
@@ -159,25 +160,26 @@ def plunger_map(seals: Sealings, speeds: Sequence[float] = SPEEDS) -> FilmMap:
 
 
 ENDS = (0.6e6, 6e6)
-"""Pressures whose dampings are compared: those of the printed fall."""
+"""Pressures between which dampings are compared: those of the fall that the paper prints."""
 
 STRESS_PRESSURES = tuple(float(p) for p in np.linspace(0.0, 10e6, 41))
 
 FILM_PRESSURES = (2e6, 6e6, 10e6)
 
 FILM_SPEED = 5e-3
-"""Pressures and speed of the film profiles; the paper's figure 18 names none in its text."""
+"""Speed of the film profiles; the text of the paper's figure 18 states no speed and no
+pressures."""
 
 
 def balance(ring: Ring, pressure: float) -> float:
-    """Rise of a ring's load with pressure over its width, (df/dp)/b."""
+    """Pressure balance (df/dp)/b of a ring: load per length f, pressure p, contact width b."""
     contact = seal_contact(ring.at(pressure=complex(pressure, STEP)))
     return float(np.imag(contact.line_load) / STEP / np.real(contact.width))
 
 
 @dataclass(frozen=True, slots=True)
 class SealArrangement:
-    """One seal, or several, between the two pressures at the typical speed.
+    """One or several seals, compared at two pressures and the typical speed.
 
     Parameters
     ----------
@@ -192,14 +194,14 @@ class SealArrangement:
 
     @property
     def rise(self) -> float:
-        """Damping at the higher over that at the lower pressure."""
+        """Ratio of the damping at the higher pressure to that at the lower."""
         return self.damping[1] / self.damping[0]
 
 
 BOTH, DRAINED = "plunger, both seals", "plunger, no pressure between"
 
 _NAMES = {u_cup.TYPE.name: "Yx", compact.TYPE.name: "compact (DAS)"}
-"""Names the paper has for seals of these types."""
+"""Names that the paper uses for these types of seal."""
 
 
 def kind_name(ring: Ring) -> str:
@@ -208,7 +210,7 @@ def kind_name(ring: Ring) -> str:
 
 
 def single(name: str, sealing: Sealing) -> SealArrangement:
-    """A seal alone, the whole pressure across it."""
+    """A single seal with the full pressure difference across it."""
     (ring,) = sealing.rings
     damping = film_map(sealing, ENDS, (TYPICAL,)).damping[:, 0]
     return SealArrangement(
@@ -217,7 +219,7 @@ def single(name: str, sealing: Sealing) -> SealArrangement:
 
 
 def kinds(seals: Sealings, mapped: FilmMap) -> tuple[SealArrangement, ...]:
-    """Every seal type of both cylinders, the tandem, and the tandem with drained room between."""
+    """Every seal type of both cylinders, the tandem, and the tandem drained between its seals."""
     plunger = seals.plunger
     arrangements = [single(f"{kind_name(seals.piston.rings[0])}, piston", seals.piston.alone(0))]
     arrangements += [
@@ -236,7 +238,7 @@ def kinds(seals: Sealings, mapped: FilmMap) -> tuple[SealArrangement, ...]:
 
 
 def drained(seals: Sealings, pressure: float, speed: float = TYPICAL, **changes: float) -> float:
-    """Damping of the plunger with the room between its seals at the outer pressure."""
+    """Damping of the plunger if the space between its seals is drained to the outer pressure."""
     first = solve(seals.plunger.alone(0).row(pressure, speed, **changes))
     second = solve(seals.plunger.alone(1).row(0.0, speed))
     return sum((*ring_friction(first), *ring_friction(second))) / speed
@@ -244,13 +246,14 @@ def drained(seals: Sealings, pressure: float, speed: float = TYPICAL, **changes:
 
 @dataclass(frozen=True, slots=True)
 class ReliefVariant:
-    """A step ring with another relief.
+    """A step ring with a different relief (recess of its face).
 
     Parameters
     ----------
-    relief, land : [m]; the land is the design's while there is room for it
+    relief, land : [m]; the land is that of the design, or shorter if the relief takes its space
     balance : at the mean pressure
-    pressures, damping : alone at the typical speed (p,) [Pa], [N s/m]; NaN where it lifts off
+    pressures, damping : of the ring alone at the typical speed (p,) [Pa], [N s/m]; NaN where the
+        ring lifts off
     """
 
     relief: float
@@ -261,20 +264,20 @@ class ReliefVariant:
 
     @property
     def rise(self) -> float:
-        """Damping at 6 MPa over that at 0.6 MPa."""
+        """Ratio of the damping at 6 MPa to that at 0.6 MPa."""
         low, high = (int(np.argmin(np.abs(self.pressures - p))) for p in ENDS)
         return float(self.damping[high] / self.damping[low])
 
 
 def reshaped(ring: Ring, relief: float) -> dict[str, float]:
-    """Relief, and the land that it leaves room for."""
+    """Sizes of a ring with a given relief: relief, and the land that still fits."""
     return {"relief": relief, "land": min(ring["land"], ring["width"] - relief)}
 
 
 def with_relief(
     seals: Sealings, relief: float, pressures: Sequence[float] = PRESSURES
 ) -> ReliefVariant:
-    """The plunger's step ring alone with a relief."""
+    """The plunger's step ring as the only seal, with a given relief."""
     alone = seals.plunger.alone(0)
     ring = alone.rings[0]
     changes = reshaped(ring, relief)
@@ -293,7 +296,7 @@ class Turn:
 
     Parameters
     ----------
-    relief, land, balance : there; NaN where no relief turns it
+    relief, land, balance : at this point; NaN if no relief reverses the trend
     share : of the ring's width that the relief takes
     """
 
@@ -304,13 +307,13 @@ class Turn:
 
 
 def turn(seals: Sealings) -> Turn:
-    """Relief at which the step ring alone turns from rising to falling between 0.6 and 6 MPa."""
+    """Relief above which the damping of the step ring alone falls from 0.6 to 6 MPa."""
     ring = seals.plunger.rings[0]
 
     def excess(relief: float) -> float:
         return with_relief(seals, relief, ENDS).rise - 1
 
-    # above a relief of nine tenths almost no land is left
+    # above a relief of nine tenths of the width, almost no land remains
     relief = _root(excess, 0.05 * ring["width"], 0.9 * ring["width"])
     if not isfinite(relief):
         return Turn(nan, nan, nan, nan)
@@ -321,7 +324,7 @@ def turn(seals: Sealings) -> Turn:
 def _root(excess: Callable[[float], float], low: float, high: float) -> float:
     """Zero of a falling function, to 1 um; NaN without a zero.
 
-    A missing value means that the ring has lifted off, which is beyond the root.
+    A missing value means that the ring has lifted off; such a point lies beyond the zero.
     """
     if not excess(low) > 0:
         return nan
@@ -332,14 +335,14 @@ def _root(excess: Callable[[float], float], low: float, high: float) -> float:
 
 
 def tandem_rise(seals: Sealings, relief: float) -> float:
-    """Damping of the whole plunger at 6 over that at 0.6 MPa with a relief of its step ring."""
+    """Ratio of the whole plunger's damping at 6 MPa to that at 0.6 MPa, for a given relief."""
     changes = reshaped(seals.plunger.rings[0], relief)
     ends = film_map(seals.plunger, ENDS, (TYPICAL,), **changes).damping[:, 0]
     return float(ends[1] / ends[0])
 
 
 def drained_rise(seals: Sealings, relief: float) -> float:
-    """Ratio as `tandem_rise`, with the room between the seals at the outer pressure."""
+    """Ratio as in `tandem_rise`, with the space between the seals drained to outer pressure."""
     changes = reshaped(seals.plunger.rings[0], relief)
     low, high = (drained(seals, p, **changes) for p in ENDS)
     return high / low
@@ -352,8 +355,8 @@ class Stress:
     Parameters
     ----------
     pressures : [Pa]
-    peak : highest contact pressure over the outer side [Pa]
-    excess : contact pressure over the oil pressure [Pa]
+    peak : highest contact pressure, relative to the pressure of the outer side [Pa]
+    excess : highest contact pressure minus the oil pressure [Pa]
     width : of the contact [m]
     """
 
@@ -392,7 +395,7 @@ class StepRingFilm:
 
 
 def profiles(seals: Sealings) -> tuple[StepRingFilm, ...]:
-    """Figure 18, without the pressures that have no film."""
+    """Figure 18: film profiles at the pressures at which a film exists."""
     films = []
     for pressure in FILM_PRESSURES:
         solved = solve(seals.plunger.row(pressure, FILM_SPEED))
@@ -406,31 +409,32 @@ CONTACT_PRESSURE = 0.1e6
 """Mean pressure of the back-up ring on the plunger: the "low contact stress" of section 3 (Pa)."""
 
 CONTACT_PRESSURES = (0.02e6, 0.2e6)
-"""Least and largest contact pressure tried beside it."""
+"""Least and largest contact pressure tried besides `CONTACT_PRESSURE`."""
 
 WIDTH = 15e-3
 """Width of the ring: the ISO 10766 housing of the standards the paper names, GB/T 15242 (m)."""
 
 EDGE = 5e-6
-"""Rounding of the ring's edges (m): worn in, assumed."""
+"""Height by which the ring's worn-in edges are rounded (m): assumed."""
 
 EDGE_POWER = 8
-"""The face rises with this power of the distance from its middle: flat but for the edges."""
+"""The face recedes with this power of the distance from its middle: it is flat except at the
+edges."""
 
 NODES = 241
 
 RING_SPEEDS = (0.5e-3, 0.7e-3, 1e-3, 1.5e-3, 2e-3, 3e-3)
-"""Speeds of figure 20, and some between its own three."""
+"""Speeds of figure 20: its three speeds, and some between them."""
 
 
 @dataclass(frozen=True, slots=True)
 class BackupRingFilm:
-    """The smooth film of the back-up ring at a speed.
+    """The oil film of the back-up ring, with smooth surfaces, at a speed.
 
     Parameters
     ----------
     speed : [m/s]
-    film : solved, or why not
+    film : the solved film, or the reason why it could not be solved
     drag : on the plunger [N]
     """
 
@@ -450,10 +454,10 @@ def back_up_ring(
     speed: float,
     contact_pressure: float = CONTACT_PRESSURE,
 ) -> BackupRingFilm:
-    """Equations 19 to 22, with density and viscosity for the printed symbols.
+    """Film of the back-up ring by equations 19 to 22.
 
-    The pressure around the ring is equal on both sides and bends nothing, so it is taken as that of
-    the atmosphere; a higher pressure would only keep the film from rupturing.
+    The ring has the same pressure on both sides, which does not deform it. Atmospheric pressure is
+    assumed; a higher pressure would only prevent cavitation of the film.
     """
     place = np.linspace(-1.0, 1.0, NODES)
     around = ATMOSPHERIC_PRESSURE
@@ -478,7 +482,7 @@ def ring_elastic(seals: Sealings) -> Elastic:
 
 
 def ring_films(seals: Sealings) -> tuple[BackupRingFilm, ...]:
-    """Figures 19 and 20."""
+    """Figures 19 and 20: films of the back-up ring at several speeds."""
     elastic = ring_elastic(seals)
     return tuple(back_up_ring(seals.lubricant, elastic, v) for v in RING_SPEEDS)
 
@@ -501,7 +505,7 @@ class Total:
 
     @property
     def damping(self) -> float:
-        """B = (seals + back-up rings + chamber)/U [N s/m]."""
+        """Damping B = (seals + back-up rings + chamber)/U [N s/m]: sum of drag forces / speed U."""
         return sum(self.parts.values())
 
     @property
@@ -515,7 +519,7 @@ class Total:
 
     @property
     def beside_share(self) -> float:
-        """Damping of the back-up ring, at its largest, and the chamber over that of the seals."""
+        """Largest damping of back-up ring plus chamber, as a share of that of the seals."""
         return (max(self.ring_range) + self.parts[CHAMBER]) / self.seals
 
 
@@ -536,13 +540,13 @@ def total(seals: Sealings, mapped: FilmMap, pressure: float, speed: float) -> To
 
 
 def dry_ring(seals: Sealings) -> float:
-    """Friction of the back-up ring without oil, by the PTFE's dry coefficient [N]."""
+    """Friction of the back-up ring without oil, by the dry friction coefficient of PTFE [N]."""
     coefficient = seals.plunger.rings[0]["asperity_friction"]
     return float(pi * PAPER.plunger * WIDTH * CONTACT_PRESSURE * coefficient)
 
 
 def chamber_drag(speed: float) -> float:
-    """Equations 24 and 25 with `huang_published.plausible_chamber`."""
+    """Drag of the oil in the chamber by equations 24 and 25 (`plausible_chamber`)."""
     member = plausible_chamber()
     coefficient = flat_gap(
         dynamic_viscosity=member.viscosity,
@@ -559,15 +563,15 @@ PRESSURE = 6e6
 
 @dataclass(frozen=True, slots=True)
 class Readings:
-    """The step ring of the plunger, alone; NaN without a film.
+    """Effects of errors in print on the plunger's step ring; NaN without a film.
 
     Parameters
     ----------
     shift : rigid shift of the solved film [m]
     mean : its mean film [m]
-    excess : relative excess of the carried over the given load if the film were thinner by the
-        shift
-    flow, swapped : oil dragged outwards with the rough side the seal, or the rod [m^3/s]
+    excess : relative excess of the load capacity over the given load, if leaving out the shift made
+        the film thinner
+    flow, swapped : oil dragged outwards if the seal is the rough side, or if the rod is [m^3/s]
     """
 
     shift: float
@@ -578,7 +582,7 @@ class Readings:
 
 
 def readings(seals: Sealings) -> Readings:
-    """Effect of the missing shift and of the swapped sides on the plunger's first seal."""
+    """Effect of the missing shift and of the swapped surfaces on the plunger's first seal."""
     row = seals.plunger.alone(0).row(PRESSURE, FILM_SPEED)
     solved, other = solve(row), solve(_swapped(row))
     if solved.why or other.why:
@@ -608,7 +612,7 @@ def readings(seals: Sealings) -> Readings:
 
 
 def _swapped(row: FilmRow) -> FilmRow:
-    """The same surfaces, the rough one on the rod: the composite roughness stays."""
+    """The same film with the rough surface on the rod; the composite roughness is unchanged."""
     rings = [
         ring.at(
             seal_roughness=ring["counterface_roughness"],
@@ -620,10 +624,10 @@ def _swapped(row: FilmRow) -> FilmRow:
 
 
 RELIEFS = (3e-3, 3.7e-3)
-"""Reliefs drawn beside that of the design, the turning relief and longer reliefs (m)."""
+"""Reliefs (m) drawn besides the design's relief, the relief of `Turn` and `BEYOND`."""
 
 BEYOND = (1.08, 1.16)
-"""Reliefs beyond the turning relief, over it."""
+"""Longer reliefs that are drawn, as multiples of the relief at which the trend reverses."""
 
 TOTALS = tuple((p, v) for p in ENDS for v in (0.5e-3, 10e-3))
 """Pressures and speeds at which every part of eq. 26 is shown."""
@@ -643,7 +647,8 @@ class HuangStudy:
     kinds, stress, profiles : of the seal types and of the step ring
     turn, reliefs : None and empty where the first rod seal is no step ring
     readings : effect of two equations as printed
-    whole, drained : rise of the plunger's damping by relief, tandem and without pressure between
+    whole, drained : rise of the plunger's damping for each relief, for the whole tandem and for one
+        drained between its seals
     """
 
     sealings: Sealings
@@ -690,7 +695,7 @@ def study_of(design: Design) -> HuangStudy:
 
 
 def _fitted(mapped: FilmMap) -> tuple[tuple[float, CurveFits], ...]:
-    """Both laws through every pressure of a map."""
+    """Both damping laws, fitted to a map at each of its pressures."""
     fits = []
     for row in HUANG_TABLE_2:
         i, _ = mapped.at(row.pressure, PAPER.speeds[0])
@@ -705,7 +710,7 @@ def _fitted(mapped: FilmMap) -> tuple[tuple[float, CurveFits], ...]:
 def _reliefs(
     seals: Sealings,
 ) -> tuple[Turn | None, tuple[ReliefVariant, ...], tuple[float, ...], tuple[float, ...]]:
-    """Trend over pressure with other reliefs of the step ring."""
+    """Trend of damping over pressure with other reliefs of the step ring."""
     ring = seals.plunger.rings[0]
     if "relief" not in ring.numbers:
         return None, (), (), ()

@@ -23,7 +23,7 @@ from .papers import published_numbers
 
 @dataclass(frozen=True, slots=True)
 class HuangPaper:
-    """Numbers the paper prints beside table 2, SI; ``notes/huang.yaml`` has the places."""
+    """Values printed in the paper besides table 2, SI; ``notes/huang.yaml`` states where."""
 
     bore: float
     rod: float
@@ -51,42 +51,42 @@ class HuangPaper:
 PAPER = published_numbers(HuangPaper, "huang")
 
 SPEEDS = np.linspace(*PAPER.speeds, 20)
-"""Speeds at which the curves of figures 7 and 15 are drawn and fitted: our points of its range."""
+"""Speeds of the curves in figures 7 and 15, chosen by us within the paper's range."""
 
 TOLERANCE = 0.15
-"""Relative error up to which a printed value counts as met."""
+"""Relative error up to which a printed value counts as confirmed."""
 
 SEAL_VISCOSITY = 0.043
 """Viscosity in the rod-seal studies from which the paper takes its friction (Pa s)."""
 
 
 def friction_of(row: StribeckParameters, speed: Array) -> Array:
-    """Friction of the plunger at a pressure of table 2 and speeds > 0."""
+    """Friction of the plunger at one of table 2's pressures and at speeds > 0."""
     curve = {key: value for key, value in asdict(row).items() if key != "pressure"}
     return friction.stribeck(speed=speed, **curve)
 
 
 def secant_of(row: StribeckParameters, speed: Array) -> Array:
-    """Secant VDC of the plunger, eq. 31."""
+    """Secant viscous damping coefficient of the plunger, eq. 31."""
     return damping.secant(friction=friction_of(row, speed), speed=speed)
 
 
 class DampingClaim(NamedTuple):
-    """The printed 0.65 to 0.2 MN s/m set against table 2 at one speed."""
+    """The printed fall from 0.65 to 0.2 MN s/m, compared with table 2 at a speed."""
 
     speed: float
     low: float
-    """B at 0.6 MPa."""
+    """Damping B at 0.6 MPa."""
     high: float
-    """B at 6 MPa."""
+    """Damping B at 6 MPa."""
     errors: tuple[float, float]
-    """`low` and `high` over the claimed values, less 1."""
+    """Relative errors of the claimed values: `low` and `high` / claimed value - 1."""
     bend: float
-    """Largest distance of B at 2 and 4 MPa from the straight line, over its B."""
+    """Largest relative deviation of B at 2 and 4 MPa from the straight line."""
 
 
 def claim_at(speed: float) -> DampingClaim:
-    """The printed linear fall against table 2 at a speed."""
+    """Compare the printed linear fall of damping with table 2 at a speed."""
     pressures = np.array([row.pressure for row in HUANG_TABLE_2])
     dampings = np.array([float(secant_of(row, speed)) for row in HUANG_TABLE_2])
     line = np.interp(pressures, pressures[[0, -1]], dampings[[0, -1]])
@@ -101,10 +101,10 @@ def claim_at(speed: float) -> DampingClaim:
 
 
 def claim_speeds(tolerance: float = TOLERANCE) -> tuple[float, float]:
-    """Least and largest speed at which both printed values hold within a tolerance.
+    """Least and largest speed at which both printed values agree with table 2, within a tolerance.
 
-    B falls with speed, so each value holds between the speeds of its two limits; in the wrong order
-    where the two have no speed in common.
+    B falls with speed, so each value agrees between two speeds. If these two ranges do not overlap,
+    the result is in descending order.
     """
     speeds = np.geomspace(1e-4, 0.1, 200_001)
     slowest, fastest = 0.0, np.inf
@@ -117,7 +117,10 @@ def claim_speeds(tolerance: float = TOLERANCE) -> tuple[float, float]:
 
 
 def asymptote_speed(row: StribeckParameters, excess: float = 0.1) -> float:
-    """Speed from which B <= (1 + excess) sigma2, F_C/(excess sigma2): the Stribeck part is gone."""
+    """Speed F_C/(excess sigma2) above which B <= (1 + excess) sigma2.
+
+    F_C is the Coulomb friction, sigma2 the viscous coefficient; the Stribeck part has decayed.
+    """
     return row.coulomb / (excess * row.viscous)
 
 
@@ -127,10 +130,10 @@ def viscous_share(row: StribeckParameters, speed: float) -> float:
 
 
 def balance_error(speed: float) -> float:
-    """Share of the change of pressure force that is as large as the fall of friction.
+    """Fall of friction from 0.6 to 6 MPa, as a share of the change of pressure force.
 
-    Friction is the chamber's pressure force less the load's (eq. 1). An error of this share from
-    0.6 to 6 MPa would look like the whole fall.
+    Friction is measured as the chamber's pressure force minus the load's (eq. 1). A relative error
+    of this size in the pressure force would look like the whole fall.
     """
     first, last = HUANG_TABLE_2[0], HUANG_TABLE_2[-1]
     fall = float(friction_of(first, speed) - friction_of(last, speed))
@@ -146,7 +149,7 @@ class CurveFits(NamedTuple):
 
 
 def fitted(row: StribeckParameters, *, relative: bool = False) -> CurveFits:
-    """Fits over the tested speeds, by equal weights or by relative errors."""
+    """Fits over the tested speeds, with equal weights or (`relative`) with relative errors."""
     curve = secant_of(row, SPEEDS)
     weights = 1 / curve**2 if relative else None
     return CurveFits(
@@ -163,13 +166,16 @@ class Chamber(NamedTuple):
     length: float
     """Length of the plunger inside the chamber's oil."""
     gap: float
-    """h_v of a thin gap."""
+    """Height h_v of a thin gap."""
     gap_annular: float
-    """The gap r_o - r_i if its curvature counts."""
+    """The gap r_o - r_i (outer minus inner radius) if its curvature is included."""
 
 
 def chamber(*, length: float, viscosity: float = SEAL_VISCOSITY) -> Chamber:
-    """The member of the family L eta/h_v = B/(pi d) with a length and a viscosity."""
+    """Gap that gives the printed shear for a given length and viscosity.
+
+    It satisfies L eta/h_v = B/(pi d): length L, viscosity eta, gap h_v, damping B, diameter d.
+    """
     thin = damping.flat_gap(
         dynamic_viscosity=viscosity, diameter=PAPER.plunger, length=length, gap=1.0
     )
@@ -180,12 +186,12 @@ def chamber(*, length: float, viscosity: float = SEAL_VISCOSITY) -> Chamber:
 
 
 def chamber_length(*, gap: float, viscosity: float = SEAL_VISCOSITY) -> float:
-    """Length of plunger in oil that a gap needs for the printed shear."""
+    """Length of plunger in oil that gives the printed shear for a given gap."""
     return gap / chamber(length=1.0, viscosity=viscosity).gap
 
 
 def plausible_chamber() -> Chamber:
-    """A plausible member: 560 mm, the only stroke the paper prints, at 0.043 Pa s.
+    """A plausible chamber: length 560 mm, the only printed stroke, and viscosity 0.043 Pa s.
 
     The paper gives no length, viscosity or gap of the plunger's chamber; only the gap is fitted.
     """

@@ -1,8 +1,8 @@
-"""Common to all papers: the reader of their data in ``notes/PAPER.yaml``, and words of tables.
+"""Common parts for all papers: reader of their data in ``notes/PAPER.yaml``, words of tables.
 
-The data of a paper are its published numbers with their places in the paper, its claims, its
+The data of a paper are its published numbers with their locations in the paper, its claims, its
 numbered equations with the functions that compute them, and reasons in words. The reader is strict:
-each number needs a unit and a place, and the code must know each name.
+each number needs a unit and its location in the paper, and the code must know each name.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ SLASH = " / "
 
 
 def scaled(values: Sequence[float] | Array, scale: float, digits: int = 3) -> str:
-    """Numbers of one row in one cell."""
+    """Values of a row as text for a single cell."""
     return SLASH.join(text.trimmed(float(v) * scale, digits) for v in values)
 
 
@@ -43,7 +43,7 @@ def listed(words: Sequence[str]) -> str:
 
 @cache
 def _data(paper: str) -> Mapping[str, Any]:
-    """The file of a paper, its scalars as they are written."""
+    """The data file of a paper; its scalars are kept as strings."""
     name = f"notes/{paper}.yaml"
     data = parse((files(__package__) / name).read_text("utf-8"), name).data
     if not isinstance(data, dict):
@@ -55,7 +55,7 @@ def _data(paper: str) -> Mapping[str, Any]:
 def _known(
     where: str, entry: Mapping[str, Any], required: Sequence[str], optional: Sequence[str] = ()
 ) -> None:
-    """Refuse an entry with a missing or an unknown name."""
+    """Raise an error if a name in an entry is missing or unknown."""
     missing = [name for name in required if name not in entry]
     strange = [name for name in entry if name not in (*required, *optional)]
     if missing or strange:
@@ -77,7 +77,7 @@ def published_numbers(numbers: type[Numbers], paper: str) -> Numbers:
 
 
 Reasons = Mapping[str, Mapping[str, str]]
-"""Reasons by factor and verdict."""
+"""Reasons in words, by factor and verdict."""
 
 
 def reasons(paper: str, model: str) -> Reasons:
@@ -87,7 +87,7 @@ def reasons(paper: str, model: str) -> Reasons:
 
 
 def claim(paper: str, name: str, **values: str) -> tuple[str, str]:
-    """A claim of a paper and its place; `values` fill the fields of the place."""
+    """A claim of a paper and where it is printed; `values` fill the placeholders of the latter."""
     entry = _data(paper)["claims"][name]
     _known(f"{paper}: {name}:", entry, ("claim", "place"))
     return entry["claim"], entry["place"].format(**values)
@@ -105,11 +105,11 @@ class Trace(NamedTuple):
 
 
 def equations(paper: str) -> tuple[Trace, ...]:
-    """Every numbered equation of a paper, in order, each once.
+    """All numbered equations of a paper, in order and without repetition.
 
     Raises
     ------
-    ValueError : a number is missing, stands twice or out of order
+    ValueError : a number is missing, repeated or out of order
     """
     traces, following = [], 1
     for entry in _data(paper)["equations"]:
@@ -133,7 +133,7 @@ TRACE_COLUMNS = ("equation", "subject", "function", "remark")
 
 
 def trace_rows(traces: Iterable[Trace]) -> tuple[tuple[str, ...], ...]:
-    """A row per trace, of `TRACE_COLUMNS`."""
+    """A table row for each trace, with the columns `TRACE_COLUMNS`."""
     return tuple(
         (
             f"{trace.first}" if trace.first == trace.last else f"{trace.first}–{trace.last}",
@@ -146,7 +146,7 @@ def trace_rows(traces: Iterable[Trace]) -> tuple[tuple[str, ...], ...]:
 
 
 def close(a: float, b: float) -> bool:
-    """Whether two lengths or areas are equal to rounding."""
+    """Whether two lengths or areas are equal except for rounding."""
     return math.isclose(a, b, rel_tol=1e-6)
 
 
@@ -173,7 +173,7 @@ def rounded(value: float) -> str:
 
 
 def newtons(value: float) -> str:
-    """A force."""
+    """A force in N."""
     return text.with_unit(rounded(value), "N")
 
 

@@ -1,10 +1,10 @@
-"""[AaltoThesis] Table 1 on a design's O-rings: sign of the effect of ten factors on friction.
+"""[AaltoThesis] Table 1 applied to a design's O-rings: sign of ten factors' effect on friction.
 
 Table 1 lists what raises the friction of an O-ring, from an O-ring handbook. Here every factor of a
-design moves by a little and the friction of its two rings is evaluated again: with coefficients of
-friction, and on the oil film. The elasticity, relative change of friction over that of the factor,
-gives the verdict. The film responds to first order by its exact slopes, as in every evaluation.
-Where a contact law has a kink, as at a squeeze of 15 %, the slope is that of one side.
+design is changed slightly, and the friction of its two rings is evaluated again: with coefficients
+of friction, and on the oil film. The verdict follows from the elasticity: the relative change of
+friction, divided by that of the factor. The film responds to first order by its exact slopes, as in
+every evaluation. At a kink of a contact law, as at a squeeze of 15 %, the slope on one side counts.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ Verdict = Literal["agrees", "disagrees", "no effect", "no answer"]
 PLACES: tuple[Place, ...] = ("piston", "rod")
 
 STEP = 1e-3
-"""Relative step of a factor, both ways (absolute temperature: 0.3 K)."""
+"""Relative step of a factor, up and down (absolute temperature: 0.3 K)."""
 
 NEGLIGIBLE = 1e-3
 """Elasticity below which a factor has no effect: doubling it moves friction by 0.1 % (a choice,
 below the uncertainty from the nodes of the film)."""
 
 ELASTOMER = "nbr_70"
-"""Compound of the O-rings that replace other seals of the design: the thesis names none."""
+"""Compound of O-rings that replace other seals of the design; the thesis names no compound."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +55,9 @@ class Factor:
     ----------
     name : as printed
     direction : +1 where the column "to increase friction" prints Increase, -1 where Decrease
-    handbook : the same in the table of the handbook ([ORingFriction], table A6-1)
-    paths : PATHs of a design that are moved together; {place}, {compound} and {case} filled in
+    handbook : the direction in the handbook's table ([ORingFriction], table A6-1)
+    paths : PATHs of a design that are changed together, with placeholders {place}, {compound} and
+        {case}
     """
 
     name: str
@@ -99,12 +100,12 @@ Both surface finishes are read as RMS roughness, as the metal's is printed.
 """
 
 Elasticities: TypeAlias = tuple[float, ...]
-"""d ln friction/d ln factor of every factor, in the order of `FACTORS`."""
+"""Elasticity d ln(friction)/d ln(factor) of every factor, in the order of `FACTORS`."""
 
 
 @dataclass(frozen=True, slots=True)
 class FrictionTrend:
-    """One friction model at the design's point.
+    """Results of one friction model for the design.
 
     Parameters
     ----------
@@ -119,18 +120,18 @@ class FrictionTrend:
     why: str = ""
 
     def verdict(self, index: int) -> Verdict:
-        """Whether a factor moves friction the way Table 1 prints."""
+        """Whether a factor changes friction in the direction that Table 1 prints."""
         return verdict(self.elasticities[index], FACTORS[index].direction)
 
 
 @dataclass(frozen=True, slots=True)
 class Trends:
-    """Table 1 on a design.
+    """Table 1 applied to a design.
 
     Parameters
     ----------
     case : the moving load case with the highest friction
-    replaced : places where the design has no elastomer O-ring, and an O-ring replaces its seal
+    replaced : places (piston, rod) at which an O-ring replaces a seal of another kind
     rings : the evaluated rings, with numbers of that case
     coefficient, film : the two models
     """
@@ -143,17 +144,17 @@ class Trends:
 
     @property
     def stribeck_ratio(self) -> float:
-        """Speed over Stribeck speed, the lowest of both rings."""
+        """Ratio of speed to Stribeck speed, the lower value of both rings."""
         return min(float(ring["speed"] / ring["stribeck_speed"]) for ring in self.rings)
 
     @property
     def contact_share(self) -> float:
-        """Contact over groove width, the larger of both rings; 1 if the groove is full."""
+        """Ratio of contact width to groove width, larger value of both rings; 1: groove is full."""
         return max(float(seal_contact(ring).width / ring["groove_width"]) for ring in self.rings)
 
     @property
     def roughness_ratio(self) -> float:
-        """Roughness of the ring over that of the metal, the smaller of both rings."""
+        """Ratio of ring roughness to metal roughness, the smaller value of both rings."""
         return min(
             float(ring["seal_roughness"] / ring["counterface_roughness"]) for ring in self.rings
         )
@@ -178,10 +179,10 @@ def verdict(elasticity: float, direction: int) -> Verdict:
 
 
 def trends(design: Design) -> Trends | None:
-    """Table 1 on a design; None where no load case moves.
+    """Table 1 applied to a design; None if no load case has a speed.
 
-    All other values are those of the design: the barrel grows with bore and pressure, and the gland
-    is cut anew for every section and squeeze.
+    All other values are those of the design. The barrel grows with bore and pressure, and the gland
+    is redesigned for every section and squeeze.
     """
     numbers = prepare(design).numbers
     replaced = tuple(place for place in PLACES if not _elastomer_o_ring(design, place, numbers))
@@ -206,7 +207,7 @@ def trends(design: Design) -> Trends | None:
 
 
 def _elastomer_o_ring(design: Design, place: Place, numbers: Container[str]) -> bool:
-    """Whether the seal of a place is an O-ring whose modulus follows from its hardness."""
+    """Whether the seal of piston or rod is an O-ring whose modulus follows from its hardness."""
     seal: Seal = getattr(design.seals, place)
     stated = f"materials.{seal.compound}.youngs_modulus" in numbers
     return seal.type == o_ring.TYPE.name and not seal.contact and not stated
@@ -220,7 +221,7 @@ _OF_ANOTHER = (
     "back_up_material",
     "back_up_thickness",
 )
-"""Fields of another type of seal that do not apply to the O-ring in its place."""
+"""Fields of other seal types that do not apply to the O-ring that replaces them."""
 
 
 def _fitted(design: Design, replaced: Sequence[Place], model: str) -> Design:
@@ -239,7 +240,7 @@ def _fitted(design: Design, replaced: Sequence[Place], model: str) -> Design:
 
 
 def _model(subject: PreparedDesign) -> FrictionTrend:
-    """Friction of a design of one load case, and how every factor moves it."""
+    """Friction of a design with a single load case, and the effect of every factor on it."""
     nothing = (math.nan,) * len(FACTORS)
     try:
         metrics = compute(subject, subject.values(_moved(subject))).computed.metrics
@@ -262,7 +263,7 @@ def _model(subject: PreparedDesign) -> FrictionTrend:
 
 
 def _moved(subject: PreparedDesign) -> dict[str, np.ndarray]:
-    """PATHs with a column for the design and one for each factor a step up and a step down."""
+    """Values by PATH: a column for the design, and two for each factor (a step up, a step down)."""
     v = subject.values()
     widths = {f"seals.{r.name}.groove_width": r["groove_width"] for r in base(subject, v).rings}
     varied: dict[str, np.ndarray] = {}
@@ -276,7 +277,7 @@ def _moved(subject: PreparedDesign) -> dict[str, np.ndarray]:
 
 
 def _paths(subject: PreparedDesign, factor: Factor, v: Values) -> Sequence[str]:
-    """PATHs of a factor in a design; a groove's width may be left to its default."""
+    """PATHs of a factor in a design, without a groove width that is left to its default."""
     paths = [
         path.format(
             place=place,
@@ -297,18 +298,18 @@ PRINTED = {1: "increase", -1: "decrease"}
 """Words of the column "to increase friction"."""
 
 COEFFICIENT, FILM = reasons("aalto", "coefficient"), reasons("aalto", "film")
-"""Reasons for the signs of friction by coefficients, and on the oil film."""
+"""Reasons for the signs: friction by coefficients, and friction on the oil film."""
 
 OTHERWISE: Mapping[Verdict, str] = {
     "agrees": "as printed",
     "disagrees": "we do not know why",
     "no effect": "it does not enter",
 }
-"""Words for a verdict without a stated reason."""
+"""Words for a verdict for which the notes state no reason."""
 
 
 def trends_table(evaluation: Evaluation) -> Table:
-    """Table 1 beside the design's friction by coefficient and on the film."""
+    """Table 1 beside the trends of the design's friction, by coefficient and on the oil film."""
     table_1 = trends(evaluation.design)
     printed = [f"{PRINTED[factor.direction]} {factor.name}" for factor in FACTORS]
     if table_1 is None:
@@ -392,7 +393,7 @@ def _pressure(table_1: Trends) -> str:
 
 
 def _rest(table_1: Trends) -> str:
-    """Note on ambiguous words in print, and on the order of significance."""
+    """Note on ambiguous words in the thesis, and on the order of significance."""
     model = table_1.coefficient if table_1.film.why else table_1.film
     order = table_1.order(model)
     significance = (

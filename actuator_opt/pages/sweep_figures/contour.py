@@ -1,4 +1,4 @@
-"""A metric over two numbers of a sweep as contours, with the boundary of every limit."""
+"""Contours of a metric over two varied inputs of a sweep, with the boundary of every limit."""
 
 from __future__ import annotations
 
@@ -49,17 +49,17 @@ _HATCH: dict[str, Any] = {"stroke": "#98a3ab", "pen": 0.1}
 
 @dataclass
 class _Labels:
-    """Places of words on lines that do not touch one another."""
+    """Positions for words on lines, chosen so that words do not touch each other."""
 
     axes: Axes
     boxes: list[tuple[float, float, float, float]] = field(default_factory=list)
     crowd: Array = field(default_factory=lambda: np.empty((0, 2)))
-    """Points of all lines: words stand where few of them lie."""
+    """Points of all lines; words are placed where few of these points are."""
 
     def place(
         self, lines: Sequence[Sequence[Point]], words: str, *, bold: bool = False
     ) -> Point | None:
-        """The freest place for words on a line; None without room."""
+        """The least crowded position for words on a line; None without enough space."""
         half, tall = text_width(words, _SIZE, bold=bold) / 2 + 0.8, 0.5 * _SIZE * POINT + 0.7
         axes, best = self.axes, None
         for share, (x, y) in _beside(lines, half + 0.4):
@@ -81,7 +81,7 @@ class _Labels:
 
 
 def _beside(lines: Sequence[Sequence[Point]], aside: float) -> Iterator[tuple[float, Point]]:
-    """Places on lines and, less good, to their right and left."""
+    """Positions on lines and, with a penalty, to their right and left."""
     for share, (x, y) in _candidates(lines):
         yield share, (x, y)
         yield share + 0.4, (x + aside, y)
@@ -93,7 +93,7 @@ def _touch(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
 
 
 def _candidates(lines: Sequence[Sequence[Point]]) -> Iterator[tuple[float, Point]]:
-    """Places along lines, with their distance from the middle of the longest line."""
+    """Positions along lines, with their distance from the middle of the longest line."""
     sized = []
     for line in lines:
         points = np.array(line)
@@ -108,7 +108,7 @@ def _candidates(lines: Sequence[Sequence[Point]]) -> Iterator[tuple[float, Point
 
 
 def _even(line: Sequence[Point]) -> Array:
-    """Points of a line a millimetre apart."""
+    """Points along a line at intervals of a millimetre."""
     points = np.array(line)
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     at = np.arange(0.0, along[-1], 1.0)
@@ -118,9 +118,9 @@ def _even(line: Sequence[Point]) -> Array:
 def contour_figure(
     drawn: SweepFigureData, field: Field, boundaries: Sequence[Boundary], metric: str
 ) -> Ink:
-    """Contours of a metric, the lines where limits are just met, the missed side hatched.
+    """Contours of a metric, and lines on which limits are just met, hatched on the missed side.
 
-    Drawn, not a chart: names stand on the lines, and areas where a limit is missed are hatched.
+    Drawn, not a chart: lines carry their names, and areas are hatched.
 
     Raises
     ------
@@ -175,13 +175,13 @@ def _notes(drawn: SweepFigureData, field: Field) -> str:
 
 
 def _paper(axes: Axes, points: Array, scale: Sequence[Any]) -> list[Point]:
-    """Points in SI on the paper."""
+    """Positions on paper of points in SI."""
     shown = [convert(points[:, k]).tolist() for k, convert in enumerate(scale)]
     return [(axes.x(x), axes.y(y)) for x, y in zip(*shown, strict=True)]
 
 
 def _missed(axes: Axes, field: Field, boundaries: Sequence[Boundary], scale: Sequence[Any]) -> None:
-    """Hatching where a limit is missed; crossed where there is no design."""
+    """Hatch areas in which a limit is missed; cross-hatch areas without a design."""
     whole = [
         (axes.left, axes.top), (axes.left + axes.width, axes.top),
         (axes.left + axes.width, axes.top + axes.height), (axes.left, axes.top + axes.height),
@@ -206,7 +206,7 @@ def _missed(axes: Axes, field: Field, boundaries: Sequence[Boundary], scale: Seq
 
 
 def _hatched(areas: Sequence[Sequence[Sequence[Point]]], angle: float, spacing: float) -> Any:
-    """Hatching of areas that may lie over one another, each line once."""
+    """Hatch areas that may overlap; each hatch line is drawn only once."""
     cosine, sine = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     rows: dict[int, list[tuple[float, float]]] = {}
     for area in areas:
@@ -234,7 +234,7 @@ def _nowhere(field: Field) -> list[int]:
 
 
 def _metric_lines(axes: Axes, xs: Array, ys: Array, table: Array) -> dict[float, list[list[Point]]]:
-    """Contours at round values, each as lines on the paper."""
+    """Contours at round values, each as lines on paper."""
     from contourpy import LineType, contour_generator
 
     known = table[np.isfinite(table)]
@@ -274,7 +274,10 @@ def _name(
     edges: dict[int, list[list[Point]]],
     styles: dict[int, dict[str, Any]],
 ) -> list[tuple[str, str]]:
-    """Name every boundary at its line, by a letter where there is no room; the letters' key."""
+    """Name every boundary beside its line; return the key of names replaced by a letter.
+
+    A letter is used if there is no space for the name.
+    """
     key: list[tuple[str, str]] = []
     rooms = {k: sum(len(line) for line in lines) for k, lines in edges.items()}
     for number in sorted(edges, key=lambda k: (rooms[k], k)):
@@ -292,7 +295,7 @@ def _name(
 
 
 def _say(ink: Ink, at: Point, words: str, color: str, *, bold: bool = False) -> None:
-    """Words on white, so that no dash beside them reads as a minus or a point."""
+    """Words on a white background, so that no dash beside them looks like a minus sign."""
     wide = text_width(words, _SIZE, bold=bold) + 1.6
     ink.box(at[0] - wide / 2, at[1] - 1.3, wide, 2.6, fill=WHITE, stroke=None)
     ink.text(*at, words, size=_SIZE, anchor="center", color=color, bold=bold)
@@ -301,7 +304,7 @@ def _say(ink: Ink, at: Point, words: str, color: str, *, bold: bool = False) -> 
 def _below(
     ink: Ink, drawn: SweepFigureData, field: Field, key: Sequence[tuple[str, str]], y: float
 ) -> float:
-    """Key of the marks, and the limits without a line; the height of the figure."""
+    """Write the key of the marks and the limits without a line; return the figure's height."""
     x = 2.0
     marks = [("contour", _METRIC), ("limit just met", STYLES[0])]
     for words, style in marks:
@@ -346,7 +349,7 @@ def _everywhere(drawn: SweepFigureData, field: Field) -> list[str]:
 
 
 def _draw(drawn: SweepFigureData, metrics: Sequence[str], chosen: bool) -> dict[str, Ink]:
-    """A picture of every metric that the user names, else of the first."""
+    """A picture for every metric that the user named; without names, for the first metric."""
     grid = field_of(drawn.study)
     lines = list(grid.boundaries())
     return {

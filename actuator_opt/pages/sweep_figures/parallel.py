@@ -24,14 +24,14 @@ from .shared import (
 )
 
 MOST = 1000
-"""Most feasible designs drawn, and most others (a choice: more lines are a blot)."""
+"""Largest number of feasible designs drawn, and of others (our choice: more lines merge)."""
 _LEFT, _RIGHT, _GAP, _TALL, _SIZE = 16.0, 14.0, 25.0, 82.0, 6.3
 
 
 def parallel_figure(drawn: SweepFigureData, metrics: Sequence[str]) -> Ink:
-    """Inputs, objective and metrics; every design a line, the best design bold.
+    """Parallel axes for inputs, objective and metrics; each design is a line, the best is bold.
 
-    Drawn, not a chart: every upright axis has a scale of its own.
+    Drawn, not a chart: every vertical axis has a separate scale.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def _ranges(tracks: Sequence[Track], values: Sequence[Array]) -> list[tuple[floa
 def _lines(
     table: Array, ranges: Sequence[tuple[float, float]], places: Sequence[float], top: float
 ) -> list[list[list[Point]]]:
-    """Every design's line in parts, cut where it has no value."""
+    """The line of every design in parts, interrupted where a value is missing."""
     low, high = (np.array(side)[:, None] for side in zip(*ranges, strict=True))
     heights = top + (high - table) / (high - low) * _TALL
     lines = []

@@ -1,4 +1,4 @@
-"""Every pair of some metrics of a sweep, with the Pareto line of each."""
+"""Scatter plots for every pair of selected metrics of a sweep, each with its Pareto line."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from ...sweeps.result import better
 from .shared import BETTER, INFEASIBLE, SweepFigure, SweepFigureData, heading
 
 MOST = 2000
-"""Designs drawn of the feasible, and of the others, in a panel (a choice)."""
+"""Largest number of feasible designs, and of other designs, drawn in a panel (our choice)."""
 WIDEST = 8
-"""Most metrics (a choice: panels of 20 mm)."""
+"""Largest number of metrics (our choice: panels are then 20 mm wide)."""
 LEAST = 0.1
-"""Room about the feasible designs, of the range of all (a choice)."""
+"""Least margin around the feasible designs, as a share of the range of all designs (our choice)."""
 BESIDE = 28.0
-"""Least height of a panel that has the legend beside it [mm]."""
+"""Least height of a panel for which the legend is placed beside it [mm]."""
 _LEFT, _RIGHT, _GAP, _FOOT, _WIDTH = 20.0, 4.0, 4.0, 10.0, 180.0
 PARETO: dict[str, Any] = {"stroke": RED, "pen": 0.4}
 LIMIT: dict[str, Any] = {"stroke": BLACK, "pen": 0.2, "dash": (1.6, 0.9)}
@@ -31,7 +31,7 @@ def scatter_figure(drawn: SweepFigureData, metrics: Sequence[str]) -> Ink:
     """A panel for every pair of metrics.
 
     Drawn, not a chart: frames share their axes along rows and columns of a triangle, and
-    thousands of designs of a colour are a single mark.
+    thousands of designs of the same colour are drawn as a single path.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def _front(drawn: SweepFigureData, first: str, second: str) -> tuple[Array, bool
 def _directions(
     drawn: SweepFigureData, metrics: Sequence[str], lines: dict[tuple[str, str], tuple[Array, bool]]
 ) -> str:
-    """The better direction of each metric, and the designs behind the Pareto lines."""
+    """Words on the better direction of each metric, and on the designs used for Pareto lines."""
     ways = {name: better(drawn.study, name) for name in metrics}
     parts = ["frames about the feasible designs"] if len(drawn.swept.sample.others.rows) else []
     parts += [
@@ -122,7 +122,7 @@ def _directions(
 
 
 def _span(feasible: Array, every: Sequence[Array]) -> tuple[float, float]:
-    """The range of the feasible designs and as much again about it, as far as there are designs."""
+    """Axis range: feasible designs with a margin as wide again, limited to where designs lie."""
     known = np.concatenate(list(every))
     known = known[np.isfinite(known)]
     low, high = float(known.min()), float(known.max())
@@ -136,7 +136,7 @@ def _span(feasible: Array, every: Sequence[Array]) -> tuple[float, float]:
 def _frame(
     drawn: SweepFigureData, axes: Axes, across: str, up: str, first: bool, last: bool
 ) -> None:
-    """Grid and ticks; names and numbers on the outside of the matrix alone."""
+    """Draw grid and ticks; names and numbers are only at the outer edges of the matrix."""
     ink, bottom, right = axes.ink, axes.top + axes.height, axes.left + axes.width
     small = axes.height < 30
     for value, words in even_ticks(*axes.y_range, 3 if small else 5):
@@ -161,7 +161,7 @@ def _frame(
 
 
 def _points(axes: Axes, values: Array, fill: str, half: float) -> None:
-    """Designs as small lozenges, one mark of all of them."""
+    """Draw designs as small diamonds, all in a single path."""
     (left, right), (low, high) = axes.x_range, axes.y_range
     known = values[:, (values[0] >= left) & (values[0] <= right)]
     known = known[:, (known[1] >= low) & (known[1] <= high)].T.tolist()
@@ -190,7 +190,7 @@ def _limits(drawn: SweepFigureData, axes: Axes, metric: str, *, upright: bool) -
 def _line(
     drawn: SweepFigureData, axes: Axes, pair: tuple[str, str], values: Array, exact: bool
 ) -> None:
-    """The Pareto line as stairs: what is worse than some design in both metrics lies behind it."""
+    """Pareto line as a staircase; points behind it are worse than some design in both metrics."""
     if not values.shape[1]:
         return
     xs, ys = (
@@ -207,7 +207,7 @@ def _line(
 
 
 def _legend(ink: Ink, x: float, y: float, *, across: bool = False) -> None:
-    """Names of the marks, one below the other or in one line."""
+    """Draw the legend, with entries below each other or in one line."""
     for words, fill in (
         ("infeasible", INFEASIBLE), ("feasible, worst third by the objective", BETTER[0]),
         ("middle third", BETTER[1]), ("best third", BETTER[2]), ("best design", None),

@@ -1,4 +1,4 @@
-"""Common parts of the figures of a sweep: columns with units, limits in words, headings, files."""
+"""Common parts of sweep figures: quantities with units, limits in words, headings, files."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ from ...sweeps import Best, Swept
 from ...sweeps.chunk import Study
 
 BETTER = ("#7fb0cf", "#3f7aa3", "#0b3c5d")
-"""Feasible designs by thirds of the objective, the best third last: darker on a grey print too."""
+"""Colours of feasible designs by thirds of the objective; the best third is last and darkest."""
 INFEASIBLE = PALE
 ORIGINS = ("requirement", "case")
-"""Origins of limits in the design file."""
+"""Origins of a limit that is stated in the design file."""
 
 
 @dataclass(frozen=True)
 class DrawnRows:
-    """Designs to draw: their variants (combinations of names), rows, and the step between them."""
+    """Designs to draw: variants (combinations of names), rows, and sampling step of the rows."""
 
     variants: Array
     rows: Array
@@ -44,7 +44,7 @@ class DrawnRows:
 
 @dataclass(frozen=True)
 class Track:
-    """A quantity that every design has: a number, or a name out of `names`."""
+    """A quantity that every design has: either a number, or one of the `names`."""
 
     words: str
     quantity: Quantity | None = None
@@ -52,16 +52,16 @@ class Track:
 
     @property
     def unit(self) -> str:
-        """The unit people read."""
+        """The display unit."""
         return "" if self.quantity is None else unit_text(self.quantity.unit)
 
     @property
     def label(self) -> str:
-        """Words with the unit."""
+        """Label with the unit."""
         return f"{self.words}, {self.unit}" if self.unit else self.words
 
     def shown(self, values: Array) -> Array:
-        """SI values in the unit people read."""
+        """SI values converted to the display unit."""
         if self.quantity is None:
             return values
         displayed: Array = self.quantity.to_display(values)
@@ -76,7 +76,7 @@ class SweepFigureData:
 
     @cached_property
     def limits(self) -> list[tuple[MetricLimit, float]]:
-        """Binding limits with their value (SI); not those that vary."""
+        """Required limits with their value (SI), without limits that the sweep varies."""
         study = self.study
         v = prepare(study.design, plugins=study.plugins).values({})
         varied = {axis.path for axis in study.plan.axes}
@@ -87,7 +87,7 @@ class SweepFigureData:
         ]
 
     def limits_on(self, metric: str) -> list[tuple[str, float]]:
-        """Senses and values (SI) of the limits on a metric, the strictest of each sense."""
+        """The strictest lower and the strictest upper limit on a metric: senses and values (SI)."""
         strictest: dict[str, float] = {}
         for limit, value in self.limits:
             if limit.metric == metric:
@@ -125,7 +125,7 @@ class SweepFigureData:
         return track.shown(drawn.rows[:, self.study.place(name)])
 
     def objective(self, drawn: DrawnRows) -> Array:
-        """The objective of designs, to be minimised."""
+        """The objective of designs, with its sign such that less is better."""
         total = np.zeros(len(drawn.rows))
         for name, weight in self.study.goal.weights.items():
             total += weight / self.study.goal.scales[name] * drawn.rows[:, self.study.place(name)]
@@ -133,7 +133,7 @@ class SweepFigureData:
 
     @property
     def goal(self) -> Track:
-        """The objective in its own unit."""
+        """The objective as a quantity, with its name and unit."""
         single = self.study.goal.single
         return Track("objective") if single is None else self.metric(single)
 
@@ -157,31 +157,31 @@ class SweepFigureData:
         return DrawnRows(variant, np.array([best.row]))
 
     def bests(self) -> list[Best]:
-        """The best designs; raises `InputError` where none is feasible."""
+        """The best designs; raises `InputError` if no design is feasible."""
         if not self.swept.best:
             message = f"no feasible design among {self.swept.requested} variants"
             raise InputError(Diagnostic(message, "widen what varies, or draw a contour of a grid"))
         return self.swept.best
 
     def feasible(self, most: int) -> tuple[DrawnRows, list[str]]:
-        """At most so many feasible designs, the best last, each with its fill."""
+        """At most `most` feasible designs, the best last, each with its fill colour."""
         kept = DrawnRows(*self.swept.sample.feasible.thinned(most))
         order = np.argsort(-self.objective(kept), kind="stable")
         fills = [BETTER[3 * k // max(len(order), 1)] for k in range(len(order))]
         return DrawnRows(kept.variants[order], kept.rows[order], kept.every), fills
 
     def others(self, most: int) -> DrawnRows:
-        """At most so many designs that miss something."""
+        """At most `most` designs that miss a limit."""
         return DrawnRows(*self.swept.sample.others.thinned(most))
 
     def require(self, metric: str, *drawn: DrawnRows) -> None:
-        """Refuse a metric that no design has a value of; raises `InputError`."""
+        """Raise `InputError` if no design has a value for a metric."""
         if not any(np.isfinite(self.values(metric, x)).any() for x in drawn if len(x.rows)):
             message = f"--show {metric}: no design of this sweep has a value of it"
             raise InputError(Diagnostic(message, "show another metric"))
 
     def counts(self, *drawn: tuple[str, int]) -> str:
-        """Number of designs, and the share of them that is drawn."""
+        """Words on the number of designs, and on how many of them are drawn."""
         swept = self.swept
         words = f"{_many(swept.requested)} variants, "
         if swept.feasible is None:
@@ -205,7 +205,7 @@ def _nth(step: int) -> str:
 
 
 def heading(ink: Ink, drawn: SweepFigureData, words: str, notes: str) -> float:
-    """Title with the name of the design, and notes; the height they take."""
+    """Draw the title with the design's name, and the notes; return the height they take up."""
     room = ink.width - 4.0
     title = fitted(f"{drawn.study.design.name}: {words}", room * 0.88, 9.0)
     ink.text(2.0, 3.0, title, size=9.0, bold=True)
@@ -237,11 +237,11 @@ class SweepFigure:
 
     Attributes
     ----------
-    every : whether it needs every design, not the best alone
+    every : whether it needs every design, rather than only the best
     lines : whether it draws Pareto lines of its metrics
     check : raises `UsageError` for a sweep or metrics that do not fit
     draw : pictures by the end of their file's name, from the sweep, the metrics, and whether
-        the user names these
+        the user named these
     """
 
     every: bool
@@ -255,7 +255,7 @@ def fits(study: Study, metrics: Sequence[str]) -> None:
 
 
 USUAL = 5
-"""Metrics shown where none is chosen, at most."""
+"""Largest number of metrics shown if the user chooses none."""
 
 
 def chosen(study: Study, show: Sequence[str]) -> tuple[str, ...]:
@@ -278,7 +278,7 @@ def chosen(study: Study, show: Sequence[str]) -> tuple[str, ...]:
 
 
 def watched(study: Study, kinds: Sequence[str], show: Sequence[str]) -> tuple[str, ...]:
-    """Refuse figures that cannot be; the metrics whose Pareto lines they need.
+    """Check that figures can be drawn; return the metrics for which they need Pareto lines.
 
     Raises
     ------
@@ -297,7 +297,7 @@ def watched(study: Study, kinds: Sequence[str], show: Sequence[str]) -> tuple[st
 
 
 def sweep_figures(swept: Swept, kinds: Sequence[str], show: Sequence[str] = ()) -> dict[str, Ink]:
-    """The figures of a sweep by the end of their file's name.
+    """The figures of a sweep, by the ending of their file names.
 
     Raises
     ------
@@ -320,7 +320,7 @@ def sweep_figures(swept: Swept, kinds: Sequence[str], show: Sequence[str] = ()) 
 def write_figures(
     swept: Swept, kinds: Sequence[str], show: Sequence[str], folder: Path, stem: str
 ) -> list[Path]:
-    """Write STEM-sweep-FIGURE.png and .svg of every figure, whole or not at all."""
+    """Write STEM-sweep-FIGURE.png and .svg of every figure, completely or not at all."""
     contents: dict[str, bytes] = {}
     for name, ink in sweep_figures(swept, kinds, show).items():
         contents |= images(ink, f"{stem}-sweep-{name}")
@@ -329,7 +329,7 @@ def write_figures(
 
 
 def figure(kind: str) -> SweepFigure:
-    """The figure of a word.
+    """The figure with a given name.
 
     Raises
     ------

@@ -19,9 +19,9 @@ from ...rendering.text import margin_text, trimmed
 from .shared import SweepFigure, SweepFigureData, fits, value_words
 
 MOST = 6
-"""Most curves (a choice: more are hard to distinguish)."""
+"""Largest number of curves (our choice: more are hard to distinguish)."""
 SHARE = 0.3
-"""Height of the differences, of the whole chart."""
+"""Height of the panel of differences, as a share of the chart."""
 
 
 class Required(NamedTuple):
@@ -59,12 +59,12 @@ def stiffness_panels(
 
 
 def has_points(curve: StrokeCurve) -> bool:
-    """Whether there is anything to draw of a curve."""
+    """Whether a curve has any finite point."""
     return bool(np.isfinite(curve.stiffness).any())
 
 
 def differences(curves: Sequence[tuple[Array, Array]]) -> list[Curve]:
-    """Difference of each curve from the first, where both are [%]."""
+    """Difference of each curve from the first [%], at positions that both have."""
     places, stiffness = curves[0]
     compared = []
     for k, (xs, ys) in enumerate(curves):
@@ -77,13 +77,13 @@ def differences(curves: Sequence[tuple[Array, Array]]) -> list[Curve]:
 
 
 def _points(curve: StrokeCurve) -> tuple[Array, Array]:
-    """Positions [mm] and stiffness [kN/mm] where it is finite."""
+    """Positions [mm] and stiffness [kN/mm] of the points with a finite stiffness."""
     known = np.isfinite(curve.stiffness)
     return 1e3 * np.asarray(curve.position)[known], np.asarray(curve.stiffness)[known] / 1e6
 
 
 def _range(curves: Sequence[tuple[Array, Array]], limits: Sequence[float]) -> tuple[float, float]:
-    """Ends of an axis that holds the bottom of every curve, and the limits."""
+    """Range of an axis that shows the minimum of every curve, and the limits."""
     lows = [float(ys.min()) for _, ys in curves if len(ys)] + [*limits]
     high = min(max(float(ys.max()) for _, ys in curves if len(ys)), 3.0 * max(lows)) * 1.06
     return max(0.0, min(lows) - 0.12 * (high - min(lows))), high
@@ -93,7 +93,7 @@ NBSP = "\N{NO-BREAK SPACE}"
 
 
 def ucurves_figure(drawn: SweepFigureData) -> Ink:
-    """The U-curves of the best designs with the stiffness required, and what each of them is.
+    """Stiffness curves of the best designs with the required stiffness, and a key of designs.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def ucurves_figure(drawn: SweepFigureData) -> Ink:
 
 
 def _key(drawn: SweepFigureData, k: int) -> str:
-    """Number of a design, its values of what varies, and its least margin."""
+    """Number of a design, its varied inputs, and its smallest margin."""
     tracks = [drawn.axis(axis.path) for axis in drawn.study.plan.axes]
     rows = drawn.best(k)
     values = [value_words(track, float(drawn.values(track.words, rows)[0])) for track in tracks]
