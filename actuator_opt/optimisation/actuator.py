@@ -64,7 +64,7 @@ class Goal:
 
     @property
     def aim(self) -> Sense:
-        """ "minimise" or "maximise"."""
+        """Sense of the objective: "min" or "max"."""
         return "min" if self.sign > 0 else "max"
 
     @property

@@ -269,7 +269,7 @@ class CurveFunctions:
         return lowest, highest
 
     def secant_errors(self, low: Vector, high: Vector, slope: Vector) -> tuple[Vector, Vector]:
-        """How far each function lies below and above its secant (0 or more)."""
+        """Least and largest distance of functions from their secants; 0 if curved to one side."""
         lowest, highest = np.zeros_like(low), np.zeros_like(low)
         if self.tables is not None:
             indices, curves = self.tables.non_convex, self.table_curves
