@@ -61,6 +61,5 @@ class Evidence:
 
 
 def _distance(rows: Vector, slopes: Vector) -> Vector:
-    """Distance from a point to the limit of each row, in solver coordinates, from values and
-    slopes."""
+    """Distance of each row from its limit in solver coordinates, from value and slope."""
     return np.asarray(rows / np.maximum(np.sqrt((slopes**2).sum(axis=1)), 1e-300))

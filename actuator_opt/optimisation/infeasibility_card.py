@@ -31,8 +31,7 @@ _ORIGINS = {"requirement": "requirement", "case": "load case", "check": "check l
 def explained(
     actuator: ActuatorProblem, solution: Solution
 ) -> tuple[Infeasibility | None, Solution]:
-    """Explain an infeasible result; return the explanation and the solution of the joint
-    relaxation.
+    """Explain an infeasible result; return explanation and solution of the joint relaxation.
 
     There is no explanation for a feasible result, or for a search that was stopped by a limit.
     """
@@ -189,7 +188,7 @@ def _bound_entry(actuator: ActuatorProblem, bound: Opening) -> dict[str, Any]:
 def _texts(
     quantity: Quantity, limit: float, needed: float | None, *, upwards: bool
 ) -> dict[str, str]:
-    """Both limits as text in the display unit; `needed` is rounded so that it is enough as printed."""
+    """Both limits in the display unit; `needed` is rounded so that it suffices as printed."""
     texts = {"limit_text": quantity.text(limit, MORE_DIGITS), "needed_text": ""}
     if needed is not None:
         fine = abs(needed - limit) < 0.01 * abs(limit)

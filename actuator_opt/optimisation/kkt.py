@@ -137,9 +137,7 @@ def _lawson_hanson(matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_
             room = result[falling] - trial[falling]
             shares = np.where(room > 0, result[falling] / np.where(room > 0, room, 1.0), 0.0)
             result = result + shares.min() * (trial - result)
-            passive[falling[shares <= shares.min() * (1 + 1e-12)]] = (
-                False  # removes at least one column
-            )
+            passive[falling[shares <= shares.min() * (1 + 1e-12)]] = False  # at least one
             result[~passive] = 0.0
             if not passive.any():
                 trial = result
@@ -221,9 +219,10 @@ def multipliers(
 
 
 def slope_scale(evaluator: Evaluator, point: Point, objective_scale: float = 0.0) -> float:
-    """The residual is divided by this number: |grad f|, the norm of the objective's gradient.
+    """Divisor of the residual: |grad f|, the norm of the objective's gradient.
 
-    If |grad f| vanishes at a stationary point, a thousandth of the objective's magnitude is used.
+    The divisor is at least a thousandth of the objective's magnitude, since |grad f| vanishes where
+    the objective is stationary.
     """
     slope = float(np.linalg.norm(evaluator.jacobian(point)[0]))
     floor = max(1e-3 * abs(point.objective), 1e-6 * objective_scale)

@@ -401,7 +401,7 @@ def _pick(evaluator: Evaluator, guard: _Guard, end: Vector | None, start: Point)
 
 
 def _rank(point: Point) -> tuple[float, float]:
-    """Sort key: feasible points by objective, then others by violation, then points without values."""
+    """Sort key: feasible points by objective, others by violation, then without values."""
     if not point.valid:
         return (np.inf, np.inf)
     missed = point.violation if point.violation > 1e-6 else 0.0

@@ -59,7 +59,7 @@ class FrontPoint:
 
 @dataclass(frozen=True, slots=True)
 class Knee:
-    """The design where the front bends most, and its normalised distance from the anchors' plane."""
+    """The design where the front bends most; its normalised distance to the anchors' plane."""
 
     index: int
     depth: float
@@ -223,7 +223,7 @@ class _ManyObjectives:
     goals: tuple[Goal, ...]
     wished: tuple[Wish, ...]
     subject: PreparedDesign
-    """The design, with its own objective replaced by each of the requested metrics."""
+    """The design, with the objective of its file."""
 
     def evaluate(self, points: Array) -> PointValues:
         """Objectives, in the form to be minimised, and margins."""

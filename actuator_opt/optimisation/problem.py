@@ -178,8 +178,7 @@ ON_BOUND = 1e-12
 
 @dataclass(frozen=True)
 class Space:
-    """The solver's coordinates: the free variables, as logarithms where the lower bound is
-    positive."""
+    """The solver's coordinates: free variables, as logarithms if the lower bound is positive."""
 
     problem: BoxProblem
     free: npt.NDArray[np.intp] = field(init=False)

@@ -198,7 +198,7 @@ def branch(node: Symbol) -> Any:
 
 
 def extreme(node: Symbol) -> str | None:
-    """ "max" if a choice takes the larger of its branches, "min" if the smaller, else None."""
+    """Whether a choice takes the larger ("max") or the smaller ("min") branch; else None."""
     condition, yes, no = node.args
     if getattr(condition, "op", None) not in ("lt", "le"):
         return None
