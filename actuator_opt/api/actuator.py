@@ -74,7 +74,8 @@ def read(
 
     Raises
     ------
-    InputError lists every fault of the file, each with its line and remedy
+    InputError
+        lists every fault of the file, each with its line and remedy
     """
     loaded_plugins = plugins_of(plugins)
     pairs = set.items() if isinstance(set, Mapping) else set

@@ -63,8 +63,9 @@ def read_record(
 
     Raises
     ------
-    InputError the file does not exist; a column is unknown or repeated; a unit is missing; or a
-        cell is not a number
+    InputError
+    the file does not exist; a column is unknown or repeated; a unit is missing; or a cell is not a
+        number
     """
     from ..base.files import read_bytes
     from ..identification import column_units, decode_record, parse_record
@@ -119,7 +120,8 @@ def identify(
 
     Raises
     ------
-    InputError a channel is missing, the record is too short, signs are wrong, or nothing moves
+    InputError
+        a channel is missing, the record is too short, signs are wrong, or nothing moves
     """
     from ..identification import Settings, identify as run
     from ..studies.bench import bench
@@ -165,8 +167,7 @@ def bending(
     columns: Mapping[str, str] | None = None,
     units: Units = None,
 ) -> BendingResult:
-    """Modulus of a part from a three-point bending test with the channels F_L (force) and w
-    (deflection).
+    """Modulus of a part from a three-point bending test (force F_L, deflection w).
 
     Parameters
     ----------
@@ -179,7 +180,8 @@ def bending(
 
     Raises
     ------
-    InputError a channel is missing, the curve has no straight part, or no section is given
+    InputError
+        a channel is missing, the curve has no straight part, or no section is given
     """
     from ..identification import bending as run
     from ..identification.bending import specimen_of
@@ -254,8 +256,9 @@ def calibrate(
 
     Raises
     ------
-    InputError as for `identify`; the record has no steady sliding; the design computes friction
-        from an oil film; or the record was identified with another actuator
+    InputError
+    as for `identify`; the record has no steady sliding; the design computes friction from an oil
+        film; or the record was identified with another actuator
     """
     from ..identification import Identification, calibration as learn
     from ..identification.calibration import refuse_films

@@ -56,7 +56,7 @@ class Rerun(Displayed):
     sentence: str
 
     def to_dict(self) -> dict[str, Any]:
-        """The object of `rerun --json`: that of the repeated command, with the key `rerun` added."""
+        """The object of `rerun --json`: that of the repeated command, with the key `rerun`."""
         return self.subject.to_dict() | {
             "rerun": {
                 "report": str(self.file),
@@ -99,8 +99,9 @@ def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
 
     Raises
     ------
-    InputError the PDF is no report of this program, is encrypted or damaged, or comes from a newer
-        version; or its command needs more input than the design
+    InputError
+    the PDF is no report of this program, is encrypted or damaged, or comes from a newer version; or
+        its command needs more input than the design
     """
     from ..pages import read_attachment
 

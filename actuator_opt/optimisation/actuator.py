@@ -271,7 +271,8 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
 
     Raises
     ------
-    InputError the design has no variables, or a variable that no model reads
+    InputError
+        the design has no variables, or a variable that no model reads
     """
     design = subject.design
     if not design.variables:
@@ -348,7 +349,8 @@ def require_movable_objective(actuator: ActuatorProblem) -> None:
 
     Raises
     ------
-    InputError no variable changes the objective
+    InputError
+        no variable changes the objective
     """
     goal = actuator.goal
     if len(idle_metrics(actuator)) == len(goal.weights):

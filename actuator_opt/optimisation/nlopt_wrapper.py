@@ -122,7 +122,8 @@ def find(text: str) -> tuple[Algorithm, Algorithm | None]:
 
     Raises
     ------
-    UsageError the algorithm does not exist; the message suggests the nearest names
+    UsageError
+        the algorithm does not exist; the message suggests the nearest names
     """
     name = OLDER.get(text.strip().upper(), text.strip().upper())
     outer, _, inner = name.partition("+")
@@ -163,7 +164,8 @@ def suit(text: str, problem: BoxProblem) -> str:
 
     Raises
     ------
-    UsageError it cannot solve this kind of problem; the message suggests another algorithm
+    UsageError
+        it cannot solve this kind of problem; the message suggests another algorithm
     """
     outer, inner = find(text)
     inequalities, equalities = bool(problem.constraint_names), bool(problem.equality_names)

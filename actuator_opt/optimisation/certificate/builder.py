@@ -80,7 +80,8 @@ class Builder:
 
         Raises
         ------
-        Unknown the value's sign is not known, or one of its models has no relaxation
+        Unknown
+            the value's sign is not known, or one of its models has no relaxation
         """
         if not isinstance(value, Symbol):
             number = float(value)
@@ -250,7 +251,8 @@ class Builder:
 
         Raises
         ------
-        Unknown one of the value's models has no relaxation
+        Unknown
+            one of the value's models has no relaxation
         """
         try:
             return Signomial.monomial(*self.form(value))
@@ -279,7 +281,8 @@ class Builder:
 
         Raises
         ------
-        Unknown a model of either value has no relaxation
+        Unknown
+            a model of either value has no relaxation
         """
         plus, minus = self.signomial(value).plus(self.signomial(bound), -1.0).sides()
         if minus and not plus:
