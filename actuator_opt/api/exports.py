@@ -116,7 +116,7 @@ def explore(
     UsageError
         `rows` is less than 1
     InputError
-    the file, study or run does not exist; the file is not a sweep's database, or has moved; the
+        the file, study or run does not exist; the file is not a sweep's database, or has moved; the
         sweep used other models, materials or custom metrics; or the page cannot be written
     """
     from ..explorer import write_explorer

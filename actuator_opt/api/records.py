@@ -64,8 +64,8 @@ def read_record(
     Raises
     ------
     InputError
-    the file does not exist; a column is unknown or repeated; a unit is missing; or a cell is not a
-        number
+        the file does not exist; a column is unknown or repeated; a unit is missing; or a cell is
+        not a number
     """
     from ..base.files import read_bytes
     from ..identification import column_units, decode_record, parse_record
@@ -257,8 +257,8 @@ def calibrate(
     Raises
     ------
     InputError
-    as for `identify`; the record has no steady sliding; the design computes friction from an oil
-        film; or the record was identified with another actuator
+        as for `identify`; the record has no steady sliding; the design computes friction from an
+        oil film; or the record was identified with another actuator
     """
     from ..identification import Identification, calibration as learn
     from ..identification.calibration import refuse_films

@@ -100,8 +100,8 @@ def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
     Raises
     ------
     InputError
-    the PDF is no report of this program, is encrypted or damaged, or comes from a newer version; or
-        its command needs more input than the design
+        the PDF is no report of this program, is encrypted or damaged, or comes from a newer
+        version; or its command needs more input than the design
     """
     from ..pages import read_attachment
 
@@ -273,7 +273,7 @@ def _again(
 def _differences(
     then: Mapping[str, Any], subject: Evaluation | Optimisation | ParetoFront
 ) -> dict[str, tuple[Any, Any]]:
-    """What differs from the report: status, variables by PATH, metrics by name."""
+    """Differences from the report: status, variables by PATH, metrics by name."""
     from ..optimisation.pareto import ParetoFront
     from ..pages.pareto import front_outcome
     from ..pages.report import outcome

@@ -184,7 +184,7 @@ def file_name(design: Design, source: FileSource | None) -> str:
 def origin(
     design: Design, source: FileSource | None, *, command: str = "", date: str | None = None
 ) -> Origin:
-    """What a page states as its origin: the file as read, or else the design's text."""
+    """The origin stated on a page: the file as read, or else the design's text."""
     from ..design.writer import to_yaml
     from ..evaluation.build import spec_hash
     from ..rendering.origin import Origin

@@ -142,7 +142,7 @@ def report_run(
     """Write the report of a recorded run, identical to that of its command.
 
     For a Pareto front, this writes its page, figure and CSV file (``NAME_pareto.csv``), or nothing
-    if no front was found. For a sweep see `report_sweep`.
+    without a front. For a sweep see `report_sweep`.
 
     Parameters
     ----------

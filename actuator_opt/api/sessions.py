@@ -30,7 +30,7 @@ NUDGE = 1e-4
 """Relative change of a number that tests whether it affects other numbers."""
 
 ROUNDING = 1e-9
-"""This share of a change, or of a number, counts as zero."""
+"""Share of a change, or of a number, that counts as zero."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +116,7 @@ class OptimumCurve:
 
     @property
     def found(self) -> tuple[bool, ...]:
-        """For each value, whether a feasible design was found."""
+        """For each value, whether it has a feasible design."""
         return tuple(objective is not None for objective in self.objectives)
 
     def columns(self) -> dict[str, list[float]]:
@@ -297,7 +297,7 @@ class Session:
         InputError
             the PATH is unknown or names a word
         UsageError
-        the PATH names a free dimension, or a number without derivative, such as a bound of a
+            the PATH names a free dimension, or a number without derivative, such as a bound of a
             variable
         """
         return self.prices([path])[0]

@@ -120,7 +120,7 @@ def seal(
     InputError
         the speed is not positive, or the pressure lies beyond the stated contact profiles
     ActuatorError
-        this seal has no finite-element model, or no equilibrium was found
+        this seal has no finite-element model, or no equilibrium
     """
     from ..friction import film
     from ..studies.seal import study, with_elements

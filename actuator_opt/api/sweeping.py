@@ -80,8 +80,8 @@ def sweep(
     Raises
     ------
     UsageError
-    nothing varies, a range is written in an invalid form, the size must be confirmed, or a figure
-        does not fit the sweep
+        nothing varies, a range is written in an invalid form, the size must be confirmed, or a
+        figure does not fit the sweep
     InputError
         a PATH or value is invalid, the objective has no value, or the store cannot be used
     """

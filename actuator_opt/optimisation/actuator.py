@@ -546,7 +546,7 @@ MET = 1e-6
 
 
 class Outcome(Enum):
-    """How a run ended: a status word, a sentence and a remedy."""
+    """End of a run: a status word, a sentence and a remedy."""
 
     OPTIMUM = (
         "optimal",
@@ -617,7 +617,7 @@ class Outcome(Enum):
 
     @property
     def remedy(self) -> str:
-        """What the user should do next; empty if nothing."""
+        """The next step recommended to the user; empty if none."""
         return str(self.value[2])
 
     @property

@@ -383,7 +383,7 @@ def record(choice_search: ChoiceSearch, design: Design) -> Choices:
 
 
 def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
-    """How a combination was searched and with what outcome, in words."""
+    """Search method and outcome of a combination, in words."""
     if look.fault:
         return f"not possible: {look.fault}"
     if look.how == "not tried":

@@ -167,7 +167,7 @@ def _dimensions(
 
 
 def _limit(quantity: Quantity, now: float, gain: float) -> float:
-    """How far a dimension may change in the helpful direction within its valid range."""
+    """Limit to which a dimension may change in the helpful direction within its valid range."""
     limit = now * repairs.WIDEST if gain > 0 else now / repairs.WIDEST
     limit = limit if quantity.lower is None else max(limit, quantity.lower)
     return float(limit if quantity.upper is None else min(limit, quantity.upper))

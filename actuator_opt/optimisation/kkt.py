@@ -63,7 +63,7 @@ class Active:
 
 @dataclass(frozen=True)
 class KktResidual:
-    """How accurately a point satisfies the optimality conditions.
+    """Accuracy with which a point satisfies the optimality conditions.
 
     Parameters
     ----------

@@ -84,7 +84,7 @@ class ParetoFront(Displayed):
     checked, improved : number of checking searches between designs, and how many improved the front
     failed : number of levels without a design nearby
     infeasibility : explanation of why there is no front
-    unsolved : the objective for which no best design was found, and the outcome of its search
+    unsolved : the objective without a best design, and the outcome of its search
     """
 
     subject: Design

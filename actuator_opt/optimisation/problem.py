@@ -269,7 +269,7 @@ class Round:
 
 @dataclass(frozen=True, slots=True)
 class Robust:
-    """How robust an optimum is if inputs are uncertain.
+    """Robustness of an optimum against uncertain inputs.
 
     Parameters
     ----------

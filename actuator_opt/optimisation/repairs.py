@@ -191,7 +191,7 @@ WIDEST = 2.0
 """Largest factor on a bound or dimension; with a larger factor it would be another actuator."""
 
 _FREED = 1e9
-"""Margin granted to a requirement that is to be ignored, larger than any violation."""
+"""Margin granted to a requirement that must be ignored; larger than any violation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -309,7 +309,7 @@ def without_each(
     """For each group, a point that meets all rows of the other groups.
 
     The group's own violation may be up to `granted`; None permits any violation. The result is None
-    if no such point is found.
+    without such a point.
     """
     evaluator = Evaluator(problem)
     point = evaluator.point(evaluator.space.to_z(x))

@@ -90,7 +90,7 @@ class Infeasibility:
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """How far a design is from the best possible design: the proof, and the evidence.
+    """Distance of a design from the best possible design: the proof, and the evidence.
 
     No design that meets the covered limits has an objective below `lower_bound` (SI). `gap` is the
     distance of this design's objective from that bound, as a share of the objective. Without a
@@ -221,7 +221,7 @@ class Rounding:
 
 
 How: TypeAlias = Literal["multistart", "quick", "evaluated", "not possible", "not tried"]
-"""How a combination of choices was searched."""
+"""Search method of a combination of choices."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -336,7 +336,7 @@ class Optimisation(Displayed):
 
     @property
     def best(self) -> Design:
-        """The design to build: the one with listed sizes, or else the continuous optimum."""
+        """The design to build: with listed sizes if it exists, or else the continuous optimum."""
         return self.design if self.made is None or self.made.design is None else self.made.design
 
     @property

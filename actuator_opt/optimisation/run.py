@@ -122,7 +122,7 @@ def _unsuited(actuator: ActuatorProblem, solution: Solution) -> str:
 
 
 def _evidence(solution: Solution) -> str:
-    """How strongly the starts suggest that there is no better optimum."""
+    """Sentence: how strongly the starts suggest that no optimum is better."""
     count = len(solution.starts)
     if count == 0:
         return ""

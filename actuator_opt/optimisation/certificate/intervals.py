@@ -187,7 +187,7 @@ def decided(condition: Any) -> bool | None:
 
 
 def branch(node: Symbol) -> Any:
-    """The branch that a choice takes in all designs that have a value; None if not known."""
+    """The branch that a choice takes for every design that has a value; None if not known."""
     condition, yes, no = node.args
     if _is_nan(yes):
         return no

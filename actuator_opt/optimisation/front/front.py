@@ -73,7 +73,7 @@ class Anchors:
 
 
 class NoAnchor(NamedTuple):
-    """Number of an objective for which no best design was found, and its failed search."""
+    """Number of an objective without a best design, and its failed search."""
 
     objective: int
     solution: Solution
@@ -317,7 +317,7 @@ class Front:
     knee : index of the design where the front bends most, and how far it bulges; or None
     passed : values (objectives, p) of designs that the search found but that are dominated
     checked, improved : number of checking searches, and how many of them improved a design
-    failed : number of levels at which, or near which, no design was found
+    failed : number of levels without a design at or near them
     wide : with two objectives, gaps wider than `plane.WIDEST` and the reason for them
     """
 

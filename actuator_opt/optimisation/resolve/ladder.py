@@ -225,7 +225,7 @@ def search_near(
     evaluator, point : evaluator and optimum of the unchanged problem
     guess : predicted optimum (nf,)
     feasible_z : coordinates of a known feasible point. Without it, the problem counts as infeasible
-        if no feasible point is found near the unchanged optimum
+        if the search near the unchanged optimum finds none
     """
     changed = Evaluator(problem)
     if changed.space.size != len(guess):  # the changed bound fixes a variable
