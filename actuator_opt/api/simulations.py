@@ -123,7 +123,7 @@ def simulate(
 
     Parameters
     ----------
-    scenario : as read, or its path
+    scenario : the scenario as read, or the path of its file
     set : values to replace, by PATH in the scenario, or else in its design; a number without a unit
         is SI
     verify : whether to integrate again by another method and compare
@@ -236,7 +236,7 @@ def compare_measured(
 
     Parameters
     ----------
-    scenario : as read, or its path
+    scenario : the scenario as read, or the path of its file
     record : CSV file with t and any of p1, p2, x, v, F_L, ...
     fit : names of the parameters to fit, such as ``air_content``; see
         `simulation.measured.parameters`
@@ -280,7 +280,7 @@ def servo_sensitivities(
 
     Parameters
     ----------
-    scenario : as read, or its path
+    scenario : the scenario as read, or the path of its file
     names : PATHs of the parameters; default: those that matter for a servo
     """
     from ..simulation.sensitivity import sensitivities
@@ -297,7 +297,7 @@ def verify_dynamics(
 
     Parameters
     ----------
-    scenario : as read, or its path
+    scenario : the scenario as read, or the path of its file
     design : a design in place of the scenario's own; it gets the values that the scenario sets
     """
     from ..simulation.verification import verify
@@ -345,7 +345,7 @@ def write_simulation(
     Parameters
     ----------
     simulation : result of `simulate`
-    scenario : as read
+    scenario : the scenario as read
     measured, sensitivities : further results to show
     paper : as for `report`; the page is named after the scenario's file
 
@@ -385,7 +385,7 @@ def write_comparison(
         colour
     scenario : scenario of the simulations, which is attached
     title, notes : title and notes of the page
-    paper : as `report`; the name is the scenario file's with "-compared"
+    paper : as for `report`; the page is named after the scenario's file, with "-compared" added
 
     Raises
     ------

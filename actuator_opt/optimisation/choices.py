@@ -163,7 +163,7 @@ def search_choices(
     Parameters
     ----------
     subject : the design with its choices
-    settings : of the full searches
+    settings : settings of the full searches
     max_solved : maximum number of combinations solved from many starts
 
     Raises

@@ -99,7 +99,7 @@ def look_quickly(
     ----------
     look : the combination, in which the best point is stored
     starts : the most reliable first
-    seed : of the sweep
+    seed : seed of the sweep
     seconds : time limit
     """
     assert look.actuator is not None

@@ -199,7 +199,7 @@ def redesign(
     ----------
     before, after : the design with the old and the new values
     learned : groups of measured values that vary together: lower and upper bounds by PATH
-    seed : of the searches
+    seed : seed of the searches
     search : whether to optimise
     """
     evaluation_before, evaluation_after = evaluate(before), evaluate(after)

@@ -327,7 +327,7 @@ def sizes_of(
     ----------
     design : the design with its variables
     requested : sizes in addition to those of the file
-    materials : of the design, by name
+    materials : materials of the design, by name
     fault : builds the Diagnostic of a faulty variable; default: one with the PATH but no line
 
     Raises

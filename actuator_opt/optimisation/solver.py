@@ -85,7 +85,7 @@ class Sweep:
     Parameters
     ----------
     z : candidates (nf, k), sorted by violation, then by objective
-    violation, objective : of the candidates (k,)
+    violation, objective : violation and objective of the candidates (k,)
     count, valid, feasible : numbers of all points, points with finite values, and feasible points
     spread : range of the objective within the sweep, relative to its largest magnitude
     scale : largest magnitude among the candidates' objectives

@@ -294,7 +294,7 @@ class FrontSettings:
     count : requested number of designs
     starts, samples : numbers of starts and sweep points in the search for each anchor
     checks : number of full searches that check designs between the anchors
-    seed : of the searches
+    seed : seed of the searches
     """
 
     count: int

@@ -38,7 +38,7 @@ class ChangedProblems:
     Parameters
     ----------
     parametric : the problem with its parameters
-    evaluator : of the solved problem, with exact gradients
+    evaluator : evaluator of the solved problem, with exact gradients
     parameters : values of the parameters of each changed problem (q, K)
     """
 
