@@ -144,7 +144,7 @@ class SizeSearch:
 
     Parameters
     ----------
-    x, objective, assignment : variables, objective and assignment of the best point; None without a feasible point
+    x, objective, assignment : those of the best point; None if no point is feasible
     tried : objective of each assignment, infinite if infeasible
     solves : number of boxes and assignments re-optimised
     complete : whether the search finished before reaching a limit
