@@ -1,4 +1,4 @@
-"""The public functions of the library, named as in the terminal."""
+"""The library's public functions, named like the commands of the terminal."""
 
 from ..evaluation.comparison import Comparison
 from .actuator import Actuator, read

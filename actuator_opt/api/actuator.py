@@ -1,7 +1,8 @@
-"""A design as read, with its faults, and the stamp of a saved optimum.
+"""A design as read, its faults, and the stamp that marks a saved optimum.
 
-The stamp is the first line of the file. It has a hash of the design, its material values and the
-version. After any change the hash no longer matches, and the file is an ordinary design.
+The stamp is the first line of the file. It contains a hash of the design and its material values,
+and the program's version. After any change of the design the hash no longer matches, and the file
+counts as an ordinary design.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ Plugins = Iterable["Plugin | Callable[[View], object] | str | Path"]
 
 @dataclass(frozen=True, slots=True)
 class Actuator:
-    """A design as read, with the locations of its values and the user's own metrics."""
+    """A design as read, with the line of every value in its file, and the user's own metrics."""
 
     design: Design
     source: FileSource | None = None
@@ -35,14 +36,14 @@ class Actuator:
         return prepare(self.design, plugins=self.plugins)
 
     def changed(self, values: Mapping[str, float | str]) -> Actuator:
-        """The same actuator with other numbers by PATH (SI, or text with a unit)."""
+        """The same actuator with other values by PATH (a number in SI, or text with a unit)."""
         quantities = with_own(self.plugins)
         design = with_values(self.design, dict(values), metrics=quantities)
         return Actuator(design, self.source, self.plugins)
 
 
 def plugins_of(sources: Plugins) -> tuple[Plugin, ...]:
-    """Plugins from functions and Python files."""
+    """The plugins defined by functions and Python files."""
     plugins: list[Plugin] = []
     for item in sources:
         if isinstance(item, Plugin):
@@ -69,13 +70,13 @@ def read(
     Parameters
     ----------
     source : path or text
-    set : values to replace, by PATH; a bare number is SI
+    set : values to replace, by PATH; a number without a unit is SI
     plugins : the user's metrics and constraints: decorated functions or Python files
 
     Raises
     ------
     InputError
-        with every fault of the file, each with its place and remedy
+        lists every fault of the file, each with its line and remedy
     """
     loaded_plugins = plugins_of(plugins)
     pairs = set.items() if isinstance(set, Mapping) else set
@@ -94,7 +95,7 @@ def read_as(
     set: Sequence[tuple[str, str]] = (),
     plugins: Plugins = (),
 ) -> Actuator:
-    """The design in a file's text, as if read from a file of that name; parameters as `read`."""
+    """The design in a text, as if read from a file with that name; parameters as for `read`."""
     try:
         actuator = read(f"{text}\n", set=set, plugins=plugins)
     except InputError as error:
@@ -108,7 +109,7 @@ def read_as(
 
 
 def as_actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -> Actuator:
-    """Any form of a design as an actuator."""
+    """Turn a design in any form into an actuator."""
     if isinstance(design, Actuator):
         return design
     if isinstance(design, Design):
@@ -117,13 +118,13 @@ def as_actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -
 
 
 def fault_of(actuator: Actuator) -> Callable[[str, str, str], Diagnostic] | None:
-    """A function that builds a fault of a variable's PATH, with its place in the file."""
+    """A function that builds the Diagnostic of a faulty variable from its PATH, with its line."""
     return None if actuator.source is None else actuator.source.of_variable
 
 
 @contextmanager
 def located(actuator: Actuator) -> Iterator[None]:
-    """Add the place in the file to faults that only have a PATH."""
+    """Add the line in the file to faults that only state a PATH."""
     try:
         yield
     except InputError as error:
@@ -142,11 +143,11 @@ def located(actuator: Actuator) -> Iterator[None]:
 def checked_design(
     design: Actuator | Design | str | Path, plugins: Plugins
 ) -> tuple[Actuator, PreparedDesign]:
-    """Any form of a design, ready for the models.
+    """Turn a design in any form into the form that the models take.
 
     Raises
     ------
-    InputError : a requirement on a metric that this design does not have
+    InputError : the design has a requirement on a metric that does not exist for it
     """
     actuator = as_actuator(design, plugins)
     subject = actuator.subject()
@@ -157,7 +158,7 @@ def checked_design(
 
 
 def requirement_faults(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
-    """Requirements on metrics that this design does not have."""
+    """Faults for requirements on metrics that do not exist for this design."""
     if not actuator.design.requirements:
         return []
     computed = compute(subject, subject.values()).computed
@@ -181,11 +182,11 @@ _LINE = re.compile(re.escape(_STAMP) + r"([0-9a-f]{16})\n")
 
 
 def stamped(text: str, spec_hash: str) -> str:
-    """A design file with the stamp; an older stamp is replaced."""
+    """The text of a design file with the stamp at its top; an older stamp is replaced."""
     return f"{_STAMP}{spec_hash}\n{_LINE.sub('', text, count=1)}"
 
 
 def is_optimum(text: str, spec_hash: str) -> bool:
-    """Whether a design file is an optimum, unchanged since it was saved."""
+    """Whether a design file was saved as an optimum and is unchanged since."""
     stamp = _LINE.match(text)
     return stamp is not None and stamp[1] == spec_hash

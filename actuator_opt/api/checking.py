@@ -1,4 +1,4 @@
-"""Faults of a design or scenario file."""
+"""Finds the faults of a design or scenario file."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .simulations import read_scenario
 
 
 class Examined(NamedTuple):
-    """Result of examining a file: its faults or, without any, implausible values."""
+    """Result of examining a file: its faults; if there are none, values that are implausible."""
 
     faults: list[Diagnostic]
     warnings: list[str]
@@ -28,10 +28,10 @@ def check(
     set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
     plugins: Plugins = (),
 ) -> list[Diagnostic]:
-    """All faults of a design or scenario, empty if it has none. Parameters as `read`.
+    """Find all faults of a design or scenario; empty if there are none. Parameters as for `read`.
 
-    Includes variables that no model reads and requirements on missing metrics. This runs the
-    models, but solves no oil film.
+    The faults include variables that no model reads, and requirements on metrics that do not exist.
+    Finding them runs the models, but solves no oil film.
     """
     return examine(source, set=set, plugins=plugins).faults
 
@@ -42,7 +42,7 @@ def examine(
     set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
     plugins: Plugins = (),
 ) -> Examined:
-    """All faults as `check`; without faults, a warning for every implausible value."""
+    """Find all faults as `check` does; if there are none, warn of every implausible value."""
     if source == "-":  # standard input can only be read once
         text, name = opened(source)
         examined = examine(f"{text}\n", set=set, plugins=plugins)
@@ -62,13 +62,13 @@ def examine(
     except InputError as error:
         return Examined(error.diagnostics, [])
     faults = _of_models(actuator, without_films(subject))
-    if faults and actuator.plugins:  # plugins may reject the NaN of an unsolved film
+    if faults and actuator.plugins:  # a plugin may reject the NaN of a film that is not solved
         faults = _of_models(actuator, subject)
     return Examined(faults, [] if faults else _out_of_proportion(subject))
 
 
 def _of_models(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
-    """Requirements on missing metrics, variables that no model reads, impossible choices."""
+    """Faults that the models reveal: missing metrics, unread variables, impossible choices."""
     try:
         faults = requirement_faults(actuator, subject)
         if faults:

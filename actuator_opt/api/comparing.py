@@ -1,4 +1,4 @@
-"""`compare`: designs and recorded runs side by side."""
+"""`compare`: shows designs and recorded runs side by side."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..pages import ReportFile
 
 MOST = 12
-"""Maximum number of designs to compare: a choice."""
+"""Maximum number of designs to compare: our choice."""
 
 
 def compare(
@@ -32,7 +32,7 @@ def compare(
     optimise: bool = False,
     seed: int = 0,
 ) -> Comparison:
-    """Compare designs: differences of the inputs, and the parts that make a design better.
+    """Compare designs: how their inputs differ, and which parts make a design better.
 
     Parameters
     ----------
@@ -40,13 +40,13 @@ def compare(
         first is the reference
     set : values to replace in every file
     plugins : the user's own metrics
-    optimise : first optimise every design with variables that is not an optimum
-    seed : of these searches
+    optimise : whether to optimise first every design that has variables and is not yet an optimum
+    seed : seed of these optimisations
 
     Raises
     ------
-    UsageError : fewer than two, or too many
-    InputError : a design cannot be read, or two are the same; every fault of every file
+    UsageError : fewer than two designs, or more than `MOST`
+    InputError : a design cannot be read, or two are the same; lists every fault of every file
     """
     if len(designs) < 2:
         message = "one design cannot be compared" if designs else "no design is named"
@@ -73,7 +73,7 @@ def compare(
 
 
 def _numbered(origins: Sequence[str]) -> list[str]:
-    """Origins; repeated origins get a number."""
+    """The origins of the designs; origins that occur several times get a number."""
     return [
         f"{origin} ({origins[: k + 1].count(origin)})" if origins.count(origin) > 1 else origin
         for k, origin in enumerate(origins)
@@ -114,7 +114,7 @@ def _resolved(
 
 
 def _file(source: str | Path, set: Any, plugins: Plugins) -> tuple[Actuator, str]:
-    """A design read from a file or a text, and its origin."""
+    """A design read from a file or a text, and where it came from."""
     actuator = read(source, set=set, plugins=plugins)
     name = str(source) if "\n" not in str(source) else file_name(actuator.design, actuator.source)
     return actuator, "<stdin>" if name == "-" else name
@@ -140,7 +140,7 @@ def comparison_json(comparison: Comparison) -> dict[str, Any]:
 
 
 def report_comparison(comparison: Comparison, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
-    """Draw a comparison as its report: PNG and SVG carry no title block."""
+    """Draw the report of a comparison; its PNG and SVG have no title block."""
     folder, form = Path(paper.get("folder", "reports")), paper.get("format", "pdf")
     files = [] if form == "html" else report_files(draw_comparison(comparison, folder))
     if form == "pdf":
@@ -152,10 +152,11 @@ def report_comparison(comparison: Comparison, **paper: Unpack[ReportArguments]) 
 
 
 def draw_comparison(comparison: Comparison, folder: str | Path = "reports") -> list[Path]:
-    """Write PNG and SVG of a comparison.
+    """Write the figures of a comparison as PNG and SVG.
 
-    ``comparison``: mass, compliance and friction part by part; ``comparison-stiffness``: the
-    stiffness over the stroke of the first six designs, where any has it.
+    The figure ``comparison`` shows mass, compliance and friction part by part. The figure
+    ``comparison-stiffness`` shows the stiffness along the stroke for the first six designs, if at
+    least one design has a stiffness.
     """
     from ..pages.comparison import comparison_figure, comparison_ucurves
     from ..rendering.paper import write_ink

@@ -1,4 +1,4 @@
-"""Exports of a design to other programs."""
+"""Exports a design to files for other programs."""
 
 from __future__ import annotations
 
@@ -37,19 +37,20 @@ def export(
 ) -> list[ExportFile]:
     """Write a design as STEP, DXF or XLSX files.
 
-    STEP has the turned parts as solids, in mm, placed as in the section drawing of the retracted
-    actuator; their volumes are those of the mass breakdown. It lacks parts whose shape the models
-    do not define: threads, studs and plugs of the rod, eyes, seals and guides, ports, and the holes
-    of tie rods in the plates. DXF is the section with true dimensions and one layer per part. XLSX
-    has the requirements with live margins, the section as a picture, the variables and the masses.
+    STEP contains the turned parts as solids, in mm, positioned as in the section drawing of the
+    retracted actuator; their volumes agree with the mass breakdown. It lacks parts whose shape the
+    models do not define: threads, studs and plugs of the rod, eyes, seals and guides, ports, and
+    the holes for tie rods in the plates. DXF contains the section with true dimensions and one
+    layer per part. XLSX contains the requirements with margins as live formulas, the section as a
+    picture, the variables and the masses.
 
     Parameters
     ----------
     subject : a design in any form, an evaluation, or an optimisation (its best design)
-    formats : any of "step", "dxf" (extra ``cad``), "xlsx" (extra ``excel``)
-    folder, stem : target; default: the design's name in ``reports/``
+    formats : any of "step", "dxf" (both need the extra ``cad``), "xlsx" (extra ``excel``)
+    folder, stem : folder and name of the files; default: the design's name in ``reports/``
     actuator : the design as read, if `subject` is its evaluation: its file names the exports
-    date : ISO date in the files; default: SOURCE_DATE_EPOCH, else none
+    date : ISO date in the files; default: that of SOURCE_DATE_EPOCH, or else none
     plugins : the user's metrics and constraints, for a design that is not an `Actuator` yet
 
     Returns
@@ -58,9 +59,9 @@ def export(
 
     Raises
     ------
-    UsageError : no such format, or not an ISO date
+    UsageError : an unknown format, or a date that is not an ISO date
     InputError : a part cannot be drawn, or the folder cannot be written
-    ActuatorError : the format's extra is not installed
+    ActuatorError : the extra that the format needs is not installed
     """
     from ..exports import require_formats, write_exports
 
@@ -83,7 +84,7 @@ def export(
 
 
 ROWS = 5000
-"""Designs of a page; larger sets are sampled evenly."""
+"""Number of designs on a page; of a larger set, an even sample is shown."""
 
 
 def explore(
@@ -94,28 +95,29 @@ def explore(
     rows: int = ROWS,
     plugins: Sequence[str | Path] = (),
 ) -> list[ExplorerFile]:
-    """Write an interactive page of a stored sweep or a front, and its base design beside it.
+    """Write an interactive page of a stored sweep or a Pareto front, with its base design.
 
     Parameters
     ----------
-    store : database of `sweep`, or a recorded run of `sweep` or `pareto`, as for `read_run`
+    store : database written by `sweep`, or a recorded run of `sweep` or `pareto`, named as for
+        `read_run`
     out : the page's file (``.html``), or a folder
-    study : number of the study; default: the newest, or that of the run
-    rows : maximum designs shown; of a larger sweep, an even sample and the best
-    plugins : files with the user's metrics and constraints, as in the sweep; a record names these
-        programs, but alone never runs them
+    study : number of the study in the database; default: that of the run, or else the newest
+    rows : maximum number of designs shown; of a larger sweep, an even sample and the best designs
+    plugins : files with the user's metrics and constraints, the same as for the sweep. The record
+        names these files, but they only run if given here
 
     Returns
     -------
-    The page and the design, with their hashes.
+    the files of the page and the design, each with its hash
 
     Raises
     ------
     UsageError
-        fewer than one row
+        `rows` is less than 1
     InputError
-        no such file, study or run; not a store, or a store that has moved; a store with other
-        models, materials or custom metrics; or a target that cannot be written
+        the file, study or run does not exist; the file is not a sweep's database, or has moved; the
+        sweep used other models, materials or custom metrics; or the page cannot be written
     """
     from ..explorer import write_explorer
     from ..sweeps.explored import explored
@@ -151,7 +153,7 @@ def explore(
 
 
 def _require(target: Path, source: Path) -> None:
-    """Reject a target that cannot be written or is the source itself."""
+    """Reject an output file that cannot be written, or that is the source itself."""
     from ..explorer import design_beside
 
     files.require_folder(target.parent)
@@ -160,7 +162,7 @@ def _require(target: Path, source: Path) -> None:
 
 
 def _front(run: Run, plugins: Plugins) -> Explored:
-    """The designs of a recorded front."""
+    """The designs of a recorded Pareto front."""
     from ..optimisation.pareto import ParetoFront
     from ..sweeps.explored import explored_designs
 

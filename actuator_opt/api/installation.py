@@ -1,4 +1,4 @@
-"""`doctor`: the state of this installation."""
+"""`doctor`: checks the state of this installation."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from ..rendering.console import Style
 
 Status: TypeAlias = Literal["ok", "missing", "fault"]
-"""State of an item: as required; an extra not installed; a cause for commands to fail."""
+"""State of an item: as required; an optional package is not installed; commands will fail."""
 
 _NAME = "actuator-opt"
 _OLDEST = (3, 11)
 _FONTS = ("DejaVuSans.ttf", "DejaVuSans-Bold.ttf", "DejaVuSansMono.ttf")
-"""Fonts of pages and figures, included in matplotlib."""
+"""Fonts used in pages and figures; matplotlib includes them."""
 _REQUIREMENT = re.compile(r"([A-Za-z0-9][\w.-]*)\s*(\[[^\]]*\])?\s*([^;]*)")
 _EXTRA = re.compile(r"extra\s*==\s*['\"]([\w.-]+)['\"]")
 _BOUND = re.compile(r"(>=|<=|==|!=|~=|<|>)\s*([\d.]+)")
@@ -36,7 +36,7 @@ _BOUND = re.compile(r"(>=|<=|==|!=|~=|<|>)\s*([\d.]+)")
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """An item examined; `remedy` says how to correct it."""
+    """An item that was examined; `remedy` says how to correct its fault."""
 
     group: str
     name: str
@@ -47,7 +47,7 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Installation(Displayed):
-    """Items examined; `ok` if no command will fail."""
+    """The items that were examined; `ok` is True if no command will fail."""
 
     findings: tuple[Finding, ...]
 
@@ -57,7 +57,7 @@ class Installation(Displayed):
         return all(finding.status != "fault" for finding in self.findings)
 
     def to_dict(self) -> dict[str, Any]:
-        """The `doctor --json` object."""
+        """The object of `doctor --json`."""
         return {
             "version": VERSION,
             "python": platform.python_version(),
@@ -83,7 +83,7 @@ def doctor(
     ----------
     out : folder for reports
     runs : folder of run records; None if no runs are recorded
-    terminal : capabilities of the terminal, in words; "": not listed
+    terminal : capabilities of the terminal, in words; "" leaves them out of the list
     """
     program = Finding("program", _NAME, "ok", f"{VERSION}, {Path(__file__).parents[1]}")
     findings = [_python(), program, *_packages(), _fonts(), _materials()]
@@ -106,7 +106,7 @@ def _python() -> Finding:
 
 
 def _requirements() -> tuple[list[str], dict[str, list[str]]]:
-    """Requirements of the project, and of each extra."""
+    """Packages that the project requires, and packages that each extra requires."""
     project = Path(__file__).parents[2] / "pyproject.toml"
     if project.is_file():
         project_table = tomllib.loads(project.read_text("utf-8")).get("project", {})
@@ -124,7 +124,7 @@ def _requirements() -> tuple[list[str], dict[str, list[str]]]:
 
 
 def _packages() -> Iterator[Finding]:
-    """Every dependency, and every extra except those for developers."""
+    """Examine every required package, and every extra except those for developers."""
     core, extras = _requirements()
     modules: dict[str, list[str]] = {}
     for module, names in metadata.packages_distributions().items():
@@ -149,7 +149,7 @@ def _packages() -> Iterator[Finding]:
 
 
 def _package(text: str, modules: dict[str, list[str]]) -> tuple[str, str, str]:
-    """Name, version and problem of a required package; imports it to check."""
+    """Name, version and problem of a required package, which is imported for the check."""
     match = _REQUIREMENT.match(text.strip())
     assert match is not None, text
     name = match[1]
@@ -232,7 +232,7 @@ def _folder(name: str, folder: Path, remedy: str) -> Finding:
 def _machine() -> Finding:
     try:
         usable = len(os.sched_getaffinity(0))
-    except AttributeError:  # not on every system
+    except AttributeError:  # not available on every system
         usable = os.cpu_count() or 1
     words = f"{usable} of {os.cpu_count() or usable} to be used; {_system()}"
     return Finding("machine", "cores", "ok", words)

@@ -1,4 +1,4 @@
-"""Evaluate, optimise and price a design; search a Pareto front."""
+"""Evaluates, optimises and prices a design, and searches for a Pareto front."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def evaluate(
     ----------
     design : the design
     plugins : the user's own metrics and constraints
-    seed : of the samples of a quick yield estimate (`with_yield`); None: no estimate
+    seed : seed of the samples for a quick yield estimate (`with_yield`); None: no estimate
     """
     actuator = as_actuator(design, plugins)
     evaluation = evaluate_subject(actuator.subject())
@@ -49,9 +49,9 @@ def with_yield(
 
     Parameters
     ----------
-    evaluation : of a design
-    plugins : the user's own metrics in the evaluation
-    seed : of the samples
+    evaluation : evaluation of a design
+    plugins : the user's own metrics that the evaluation contains
+    seed : seed of the samples
     """
     from ..uncertainties.study import quick_yield
 
@@ -74,11 +74,11 @@ def optimise(
     certify: bool = False,
     yield_target: float | None = None,
 ) -> Optimisation:
-    """Find the best design; parameters as `optimisation.run.optimise`.
+    """Find the best design; parameters as for `optimisation.run.optimise`.
 
-    With a `yield_target`, all limits are met with that probability under the design's uncertain
-    inputs (`uncertainties.robust`); `robust` of the result has the details. Without a target,
-    `best_evaluation` has a quick estimate of its yield.
+    With a `yield_target`, the optimum meets all limits with that probability under the design's
+    uncertain inputs (`uncertainties.robust`); the result's `robust` has the details. Without a
+    target, `best_evaluation` contains a quick estimate of the yield.
     """
     from ..optimisation.run import optimise as run
 
@@ -109,7 +109,7 @@ def optimise(
 
 
 def estimated(optimisation: Optimisation, plugins: tuple[Plugin, ...]) -> Optimisation:
-    """An optimum with its yield: from the sample of `robust`, else a quick estimate."""
+    """Add the yield to an optimum: from the sample of `robust`, or else a quick estimate."""
     best, sample = optimisation.best_evaluation, optimisation.robust
     if sample is not None:
         yield_estimate = YieldEstimate(
@@ -132,31 +132,31 @@ def estimated(optimisation: Optimisation, plugins: tuple[Plugin, ...]) -> Optimi
 def sensitivity(
     design: Actuator | Design | str | Path, *, seed: int = 0, plugins: Plugins = ()
 ) -> tuple[Sensitivity, ...]:
-    """Prices of requirements and parameters at the design's optimum."""
+    """Compute the prices of requirements and parameters at the design's optimum."""
     return optimise(design, seed=seed, plugins=plugins).sensitivities
 
 
 @dataclass(frozen=True, slots=True)
 class Prices(Displayed):
-    """The prices of an optimum, as shown by `sensitivity`."""
+    """The prices at an optimum, as shown by `sensitivity`."""
 
     optimisation: Optimisation
 
     def to_dict(self) -> dict[str, Any]:
-        """The `sensitivity --json` object; prices are of the continuous optimum."""
+        """The object of `sensitivity --json`; its prices are those of the continuous optimum."""
         data = replace(self.optimisation, rounding=None).to_dict()
         keys = ["name", "version", "status", "outcome", "objective", "sensitivities"]
         keys += ["what_buys_most", "kkt", "infeasibility"]
         return {key: data[key] for key in keys if key in data}
 
     def page(self) -> Page:
-        """Prices and movements, or the reason for a missing optimum."""
+        """The page: prices and movements, or the reason why there is no optimum."""
         from ..pages.report import prices_page
 
         return prices_page(self.optimisation)
 
     def report(self, **paper: Any) -> list[ReportFile]:
-        """Write the report of the optimum."""
+        """Write the report of the optimum that is priced."""
         from .reports import report_design
 
         return report_design(self.optimisation, **paper)
@@ -171,15 +171,16 @@ def pareto(
     checks: int = 3,
     plugins: Plugins = (),
 ) -> ParetoFront:
-    """Search evenly spread designs of the Pareto front, and its knee.
+    """Search for evenly spread designs on the Pareto front, and for its knee.
 
     Parameters
     ----------
-    design : as `optimise`
+    design : as for `optimise`
     objectives : two to four of ``METRIC:min`` or ``METRIC:max``
-    n : designs requested
-    seed : the same seed gives the same front
-    checks : independent searches between designs, which reveal local optima
+    n : number of designs requested
+    seed : seed of the search; the same seed gives the same front
+    checks : number of independent searches between designs, which reveal designs that are only
+        locally best
     plugins : the user's metrics and constraints
     """
     from ..optimisation.pareto import pareto as run
@@ -190,7 +191,7 @@ def pareto(
 
 
 def write_front_csv(front: ParetoFront, path: str | Path) -> ReportFile:
-    """Write the designs of a front as CSV, units in the header."""
+    """Write the designs of a front as CSV, with units in the header."""
     from ..pages.pareto import series
     from ..rendering.series import write_csv
 
@@ -200,7 +201,7 @@ def write_front_csv(front: ParetoFront, path: str | Path) -> ReportFile:
 def write_front(front: ParetoFront, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
     """Write the page of a front (PDF and PNG) and its figure (PNG and SVG).
 
-    A front without designs writes nothing. Parameters as `report`.
+    Nothing is written for a front without designs. Parameters as for `report`.
     """
     from ..pages.pareto import front_figure, front_outcome, page
     from ..rendering import paper as printed

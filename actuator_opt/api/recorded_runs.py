@@ -1,7 +1,7 @@
-"""Run records: write, list, read and delete them.
+"""Writes, lists, reads and deletes the records of runs.
 
-Records and the attachments of reports may be damaged or foreign, so their fields are checked
-against a required form first.
+A record, or the data attached to a report, may be damaged or come from another program. So its
+fields are first checked against a required form.
 """
 
 from __future__ import annotations
@@ -37,9 +37,10 @@ if TYPE_CHECKING:
 
 
 Form = Any
-"""A type, a tuple of alternative forms, ``[form]`` for a list of any length, or an object: fields
-by name (``name?`` is optional, others are allowed), or ``{"*": form}`` for any names. ``float``
-also accepts whole numbers, None is null, ``object`` is anything."""
+"""Required form of a value: a type, a tuple of alternative forms, or ``[form]`` for a list of any
+length. An object's form is a dictionary of fields by name; ``name?`` is optional, and further
+fields are allowed. ``{"*": form}`` permits any names. ``float`` also accepts whole numbers, None is
+null, and ``object`` is anything."""
 _OBJECTIVE = {"metric?": (str, None), "value?": (float, None)}
 _HEAD: Form = {
     "kind": str,
@@ -142,12 +143,12 @@ _RUN: Form = {
 
 
 def run_fault(run: object) -> str:
-    """The fault of the data attached to a report; "" without a fault."""
+    """The fault of the data attached to a report, in words; "" if there is none."""
     return _fault(run, _RUN)
 
 
 def head_fault(head: object) -> str:
-    """The fault of the head of a record; "" without a fault.
+    """The fault of the head of a record, in words; "" if there is none.
 
     >>> head_fault({"kind": 3})
     'kind must be text'
@@ -159,7 +160,7 @@ def head_fault(head: object) -> str:
 
 
 def body_fault(kind: str, body: object) -> str:
-    """The fault of the body of a record of this kind; "" without a fault."""
+    """The fault of the body of a record of this kind, in words; "" if there is none."""
     return _fault(body, _BODY) or _fault(body, _BODIES.get(kind, {}))
 
 
@@ -167,7 +168,7 @@ _WORDS = {str: "text", int: "a whole number", bool: "true or false", float: "a n
 
 
 def _fault(value: object, form: Form, path: str = "") -> str:
-    """Where a value deviates from a form, and what is expected; "" if it fits."""
+    """Where a value deviates from a form, and what was expected there; "" if it fits."""
     if isinstance(form, tuple):
         faults = [_fault(value, alternative, path) for alternative in form]
         return "" if "" in faults else faults[0]
@@ -188,7 +189,7 @@ def _fault(value: object, form: Form, path: str = "") -> str:
 
 
 def _object_fault(value: object, form: dict[str, Form], path: str) -> str:
-    """`_fault` for an object."""
+    """The result of `_fault` for an object."""
     if not isinstance(value, dict):
         return f"{path or 'it'} must be an object"
     head = f"{path}." if path else ""
@@ -208,12 +209,12 @@ def _object_fault(value: object, form: dict[str, Form], path: str) -> str:
 
 _VERSION = re.compile(r"^Version: *(\S+)", re.MULTILINE)
 CLOSE = 1e-9
-"""Relative difference up to which a number counts as reproduced: a choice, far above rounding."""
+"""A number counts as reproduced up to this relative difference: our choice, far above rounding."""
 
 
 @dataclass(frozen=True, slots=True)
 class Run(Displayed):
-    """A recorded run: lists show its `head`; its `body` has input, versions and result."""
+    """A recorded run: `head` is shown in lists; `body` has input, versions and result."""
 
     id: str
     path: Path
@@ -221,12 +222,12 @@ class Run(Displayed):
     body: Mapping[str, Any]
 
     def to_dict(self) -> dict[str, Any]:
-        """The `runs show --json` object."""
+        """The object of `runs show --json`."""
         body = {key: value for key, value in self.body.items() if key not in ("state", "tables")}
         return {"id": self.id, "path": str(self.path)} | dict(self.head) | body
 
     def text(self, **style: Unpack[Style]) -> str:
-        """Return the terminal text."""
+        """The text for the terminal."""
         from ..pages.runs import blocks
         from ..rendering.terminal import blocks_text
 
@@ -236,7 +237,7 @@ class Run(Displayed):
 
 @contextmanager
 def damage_reported(run: Run) -> Iterator[None]:
-    """Report missing or malformed parts of a record in one line."""
+    """Report missing or malformed parts of a record as an error in one line."""
     try:
         yield
     except (
@@ -271,18 +272,18 @@ def record_run(
     Parameters
     ----------
     kind : the command
-    head : its outcome in a few plain numbers and words, which lists show
-    body : the other data of the run, as plain data
-    actuator, command, date, folder : as `record`
-    seed : of the run
+    head : outcome of the run, as a few plain numbers and words that lists show
+    body : all other results of the run, as plain data
+    actuator, command, date, folder : as for `record`
+    seed : seed of the run
 
     Returns
     -------
-    the record; None if recording is switched off (ACTUATOR_OPT_NO_RECORD)
+    the recorded run; None if recording is switched off (ACTUATOR_OPT_NO_RECORD)
 
     Raises
     ------
-    InputError : it cannot be written
+    InputError : the record cannot be written
     """
     from ..design.writer import to_yaml
     from ..evaluation.build import spec_hash
@@ -318,19 +319,19 @@ def record_run(
 
 
 def _folder(folder: str | Path | None) -> Path | None:
-    """Folder of the records; None if recording is switched off."""
+    """Folder of the run records; None if recording is switched off."""
     return run_store.folder() if folder is None else Path(folder)
 
 
 def _started() -> datetime:
-    """Now, or the time of SOURCE_DATE_EPOCH; whole seconds of UTC."""
+    """The present time, or that of SOURCE_DATE_EPOCH, in whole seconds of UTC."""
     if date_from_environment() is not None:
         return datetime.fromtimestamp(int(os.environ["SOURCE_DATE_EPOCH"]), UTC)
     return datetime.now(UTC).replace(microsecond=0)
 
 
 def _plugins(plugins: Sequence[Plugin]) -> list[dict[str, str]]:
-    """The Python files of plugins without duplicates; "" means functions of a script."""
+    """The Python files of plugins, each once; "" represents functions defined in a script."""
     files = dict.fromkeys(plugin.file for plugin in plugins)
     return [{"file": os.path.abspath(x) if x else x, "sha256": sha256(x)} for x in files]
 
@@ -361,13 +362,13 @@ def runs(
     command: str | None = None,
     folder: str | Path | None = None,
 ) -> tuple[list[run_store.StoredRun], list[Diagnostic]]:
-    """Recorded runs, newest first, and faults of records that cannot be read.
+    """Recorded runs, newest first, and faults of the records that cannot be read.
 
     Parameters
     ----------
     design : only runs of a design with this name or file
     command : only runs of this command (``optimise``, ``pareto``, ``sweep``)
-    folder : location of the records; default as `record`
+    folder : folder of the records; default as for `record`
     """
     place = _folder(folder)
     if place is None:
@@ -394,11 +395,11 @@ def _names(head: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def read_run(name: str | Path, *, folder: str | Path | None = None) -> Run:
-    """A recorded run by its id or the start of its id, ``last``, or its file.
+    """Read a recorded run, given its id, the start of its id, ``last``, or its file.
 
     Raises
     ------
-    InputError : no such run, several, a damaged record, or a record of a newer version
+    InputError : no run or several runs match, or the record is damaged or from a newer version
     """
     path = run_store.find(_folder(folder), str(name))
     head, body = run_store.read(path)
@@ -409,7 +410,7 @@ def read_run(name: str | Path, *, folder: str | Path | None = None) -> Run:
 
 
 def delete_run(name: str, *, folder: str | Path | None = None) -> str:
-    """Delete a recorded run and return its id. Parameters as `read_run`."""
+    """Delete a recorded run and return its id. Parameters as for `read_run`."""
     path = run_store.find(_folder(folder), name)
     if not run_store.is_record(path):
         remedy = "write its id"
@@ -420,7 +421,7 @@ def delete_run(name: str, *, folder: str | Path | None = None) -> str:
 
 
 def prune_runs(*, keep: int, folder: str | Path | None = None) -> list[str]:
-    """Delete all runs except the newest `keep`; returns the ids of the deleted runs."""
+    """Delete all runs except the newest `keep` runs; return the ids of the deleted runs."""
     place = _folder(folder)
     if place is None:
         return []
@@ -429,22 +430,22 @@ def prune_runs(*, keep: int, folder: str | Path | None = None) -> list[str]:
 
 
 def differing(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """Names whose numbers differ by more than `CLOSE`, or that either side lacks."""
+    """Names of values that differ by more than `CLOSE`, or that exist on one side only."""
     names = dict.fromkeys([*then, *now])
     return [name for name in names if not same(then.get(name), now.get(name))]
 
 
 def same(a: Any, b: Any) -> bool:
-    """Whether two values are equal, numbers within `CLOSE`."""
+    """Whether two values are equal; numbers may differ by `CLOSE`."""
     if isinstance(a, (int, float)) and isinstance(b, (int, float)):
         return abs(a - b) <= CLOSE * max(abs(a), abs(b))
     return bool(a == b)
 
 
 BEST = 10
-"""Maximum number of best designs in the record of a sweep; the store has all rows."""
+"""Maximum number of best designs in the record of a sweep; the database has all rows."""
 REASONS = 20
-"""Number of failure reasons recorded, most frequent first."""
+"""Maximum number of failure reasons that are recorded, the most frequent first."""
 
 
 def record(
@@ -457,22 +458,22 @@ def record(
     dynamics_verified: Verification | None = None,
     folder: str | Path | None = None,
 ) -> Run | None:
-    """Record an optimisation with its input, to show and report it later.
+    """Record an optimisation with its input, so that it can be shown and reported later.
 
     Parameters
     ----------
-    result : of `optimise`
-    actuator : the design optimised
-    command, date, extra_tables, dynamics_verified : of its report
-    folder : target; default: ACTUATOR_OPT_RUNS, else the user's data folder
+    result : result of `optimise`
+    actuator : the design that was optimised
+    command, date, extra_tables, dynamics_verified : as given for its report
+    folder : folder of the records; default: ACTUATOR_OPT_RUNS, or else the user's data folder
 
     Returns
     -------
-    the record; None if recording is switched off (ACTUATOR_OPT_NO_RECORD)
+    the recorded run; None if recording is switched off (ACTUATOR_OPT_NO_RECORD)
 
     Raises
     ------
-    InputError : it cannot be written
+    InputError : the record cannot be written
     """
     from ..optimisation.recorded import to_plain
 
@@ -501,7 +502,7 @@ def record(
 
 
 def _plain_table(table: Table) -> dict[str, object]:
-    """A table of a report in the form of a record: texts under their heads."""
+    """A report's table in the form that records use: lists of texts under their column heads."""
     from ..rendering.heights import cells_of, joined
 
     flexible = all(column.flexible for column in table.columns)
@@ -522,7 +523,7 @@ def record_front(
     date: str | None = None,
     folder: str | Path | None = None,
 ) -> Run | None:
-    """Record a Pareto front, to show and report it later; parameters as `record`."""
+    """Record a Pareto front, so that it can be shown and reported later; parameters as `record`."""
     from ..optimisation.recorded import to_plain
 
     objectives, knee = front.objectives, None
@@ -559,12 +560,12 @@ def record_sweep(
     date: str | None = None,
     folder: str | Path | None = None,
 ) -> Run | None:
-    """Record a sweep: plan, counts, best designs, and the location of its rows without the rows.
+    """Record a sweep: its plan, counts, best designs, and where its rows are stored.
 
     Parameters
     ----------
-    swept : of `sweep`
-    actuator, command, date, folder : as `record`
+    swept : result of `sweep`
+    actuator, command, date, folder : as for `record`
     store, csv, parquet, keep, figures, show : as given to `sweep`
     """
     from ..pages.sweep import counts
@@ -608,7 +609,7 @@ def record_sweep(
 
 
 def _plan(swept: Swept) -> dict[str, Any]:
-    """The points of a sweep as plain data, values in SI; `quantity` is null for texts."""
+    """The points of a sweep as plain data, values in SI; for texts, `quantity` is null."""
     from ..design import quantity_of
 
     plan, design = swept.study.plan, swept.study.design

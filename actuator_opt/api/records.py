@@ -1,4 +1,4 @@
-"""Test records: read them, identify parameters, and calibrate the design tested."""
+"""Test records: reads them, identifies parameters, and calibrates the design that was tested."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..rendering.blocks import Page
 
 MOST_BYTES = 1_000_000_000
-"""Largest file of a record (a choice: memory must hold it several times)."""
+"""Largest permitted file of a record, as memory must hold it several times: our choice."""
 _NOT_TESTED = (
     "name",
     "notes",
@@ -33,9 +33,9 @@ _NOT_TESTED = (
     "objective",
     "measured",
 )
-"""Keys of a design that do not describe the tested actuator."""
+"""Keys of a design that are left out because they do not describe the tested actuator."""
 Units = str | Path | Mapping[str, str] | None
-"""Units of columns whose header states none: ``"SI"``, a file, or by column."""
+"""Units of columns without a unit in their header: ``"SI"``, a file, or a mapping by column."""
 
 
 def read_record(
@@ -50,13 +50,13 @@ def read_record(
     Parameters
     ----------
     source : path, ``"-"`` for standard input
-    columns : header by channel if it is not a known name, with a unit if the file lacks it:
-        ``{"p1": "Channel 3 [bar]"}``
-    units : of columns without a unit in their header: ``"SI"`` (m, s, Pa, N, m/s, K), a file with
-        lines ``p1: bar`` (YAML) or ``p1,bar``, or a mapping; a unit in the header takes precedence
-        over ``"SI"`` and must agree with a unit stated for its column
-    needed : channels that must have a unit; default: all except v and T. Other channels without a
-        unit are left out and noted
+    columns : for a channel whose header is not a known name, this header, with a unit if the file
+        states none: ``{"p1": "Channel 3 [bar]"}``
+    units : units of columns without a unit in their header: ``"SI"`` (m, s, Pa, N, m/s, K), a file
+        with lines ``p1: bar`` (YAML) or ``p1,bar``, or a mapping. A unit in the header takes
+        precedence over ``"SI"`` and must agree with a unit stated for its column
+    needed : channels that must have a unit; default: all except v and T. Any other channel without
+        a unit is left out, with a note
 
     Returns
     -------
@@ -65,7 +65,8 @@ def read_record(
     Raises
     ------
     InputError
-        no such file, an unknown or repeated column, a missing unit, a cell that is not a number
+        the file does not exist; a column is unknown or repeated; a unit is missing; or a cell is
+        not a number
     """
     from ..base.files import read_bytes
     from ..identification import column_units, decode_record, parse_record
@@ -95,21 +96,24 @@ def identify(
 ) -> Identification:
     """Identify friction and damping from a test record of the actuator.
 
-    F_r = p_1 A_1 - p_2 A_2 - F_L - m a, areas in the bore as grown.
+    Friction follows from F_r = p_1 A_1 - p_2 A_2 - F_L - m a: chamber pressures p_1 and p_2 times
+    areas A_1 and A_2, load force F_L, and mass m times acceleration a. The areas include the growth
+    of the bore.
 
     Parameters
     ----------
-    record : as read, or its path
+    record : the record as read, or the path of its file
     design : the actuator as tested
-    columns, units : as `read_record`
-    cutoff, order, compensated : of the zero-phase Butterworth filter [Hz]; compensated: both
-        passes together are -3 dB at the cut-off
-    mass : moving inside the force sensor [kg]; default: rod, piston and fastening, without a
-        force channel also the design's load
-    load_force : against extension if no channel measures it [N]
-    pressure_lag : of the pressures [s]; None fits it to the record
-    bootstrap : resampled records for the bounds; 0 for those of the linearised model
-    seed : of the resampling
+    columns, units : as for `read_record`
+    cutoff, order, compensated : cut-off frequency [Hz] and order of the zero-phase Butterworth
+        filter. If compensated, both passes together have -3 dB at the cut-off; otherwise each pass
+    mass : mass that moves between the piston and the force sensor [kg]; default: rod, piston and
+        fastening, and without a force channel also the design's load
+    load_force : load force against extension [N], if no channel measures it
+    pressure_lag : time by which the pressure signals lag [s]; None: fitted to the record
+    bootstrap : number of resampled records for the confidence intervals; 0: intervals of the
+        linearised model
+    seed : seed of the resampling
 
     Returns
     -------
@@ -118,7 +122,7 @@ def identify(
     Raises
     ------
     InputError
-        a missing channel, a record too short, wrong signs, no motion
+        a channel is missing, the record is too short, signs are wrong, or nothing moves
     """
     from ..identification import Settings, identify as run
     from ..studies.bench import bench
@@ -144,7 +148,7 @@ def _record(
     units: Units,
     needed: Collection[str],
 ) -> Record:
-    """A record as read; options of reading are refused for a record that is already read."""
+    """The record as read; rejects options of reading for a record that is already read."""
     if isinstance(record, (str, Path)):
         return read_record(record, columns=columns, units=units, needed=needed)
     for option, fault in ((columns, "columns are named"), (units, "units are stated")):
@@ -164,21 +168,21 @@ def bending(
     columns: Mapping[str, str] | None = None,
     units: Units = None,
 ) -> BendingResult:
-    """Modulus of a part from a three-point bending test, channels F_L and w.
+    """Modulus of a part from a three-point bending test (force F_L, deflection w).
 
     Parameters
     ----------
-    record : as read, or its path
-    span : between the supports [m]
-    design, part : the design and its part, "rod" or "barrel", whose section is tested; a metal part
-        also gives its shear modulus
-    specimen : in place of span, design and part
-    columns, units : as `read_record`
+    record : the record as read, or the path of its file
+    span : distance between the supports [m]
+    design, part : the design, and which of its parts is tested, "rod" or "barrel". A metal part
+        also supplies its shear modulus
+    specimen : the specimen, in place of span, design and part
+    columns, units : as for `read_record`
 
     Raises
     ------
     InputError
-        a missing channel, no straight part, or no section
+        a channel is missing, the curve has no straight part, or no section is given
     """
     from ..identification import bending as run
     from ..identification.bending import specimen_of
@@ -193,13 +197,13 @@ def bending(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Calibrated(Displayed):
-    """A design with measured seal friction, and the effect on its requirements.
+    """A design with measured seal friction, and how this changes its requirements.
 
     Parameters
     ----------
-    actuator : with the new values and their bounds
-    calibration : parameters from the record
-    redesign : before and after, as tested and at the optimum
+    actuator : the design with the new values and their uncertainties
+    calibration : the parameters found from the record
+    redesign : requirements with old and new values, for the design as tested and for the optimum
     """
 
     actuator: Actuator
@@ -240,21 +244,22 @@ def calibrate(
     """Set the seal friction of a design from its test record.
 
     Determines coefficients of friction, breakaway ratio, Stribeck speed and viscous friction of the
-    seals, with bounds under ``measured``, and compares requirements and optimum before and after.
+    seals. Their uncertainties are written under ``measured``. Requirements and optimum are compared
+    before and after.
 
     Parameters
     ----------
-    record : as read or identified, or its path
+    record : the record as read or identified, or the path of its file
     design : the actuator as tested
-    columns, units, settings : as `identify`, for a record that is not identified yet
-    search : whether to optimise before and after
-    seed : of the searches and the resampling
+    columns, units, settings : as for `identify`, for a record that is not identified yet
+    search : whether to optimise with the old and the new values
+    seed : seed of the searches and the resampling
 
     Raises
     ------
     InputError
-        as `identify`; no steady sliding; friction that the design takes from an oil film; a record
-        identified with another actuator
+        as for `identify`; the record has no steady sliding; the design computes friction from an
+        oil film; or the record was identified with another actuator
     """
     from ..identification import Identification, calibration as learn
     from ..identification.calibration import refuse_films
@@ -278,7 +283,7 @@ def calibrate(
 
 
 def _with_values(before: Actuator, calibration: Calibration) -> tuple[Actuator, list[str]]:
-    """The actuator with measured values, fixed if they were free; and caveats."""
+    """The actuator with the measured values, no longer as variables; and warnings."""
     design, values = before.design, calibration.values()
     variables = {path: x for path, x in design.variables.items() if path not in values}
     choices = {path: x for path, x in design.choices.items() if path not in values}
@@ -309,7 +314,7 @@ def _require_use(
     reading: Mapping[str, object],
     settings: Mapping[str, Any],
 ) -> None:
-    """Reject settings that an identified record ignores, and records of another actuator."""
+    """Reject settings that an identified record would ignore, and records of another actuator."""
     unused = [*(name for name, argument in reading.items() if argument), *settings]
     if unused:
         message = f"{', '.join(unused)}: without effect, as the record is already identified"
@@ -326,7 +331,7 @@ def _require_use(
 def write_identification(
     identification: Identification, **paper: Unpack[ReportArguments]
 ) -> list[ReportFile]:
-    """Write the page of an identification (PDF and PNG); parameters as `report`."""
+    """Write the page of an identification (PDF and PNG); parameters as for `report`."""
     from ..pages.identification import page, samples_hash
     from ..rendering import paper as writer
 
@@ -347,9 +352,9 @@ def write_series(identification: Identification, path: str | Path) -> ReportFile
 
 
 def write_calibration(calibrated: Calibrated, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
-    """Write the page of a calibration (PDF and PNG), the new design attached.
+    """Write the page of a calibration (PDF and PNG) and attach the new design.
 
-    Parameters as `report`; the attached design is the calibrated one.
+    Parameters as for `report`; the attached design contains the calibrated values.
     """
     from ..design.writer import to_yaml
     from ..pages.identification import samples_hash

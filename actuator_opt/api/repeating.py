@@ -1,4 +1,4 @@
-"""`rerun`: repeat the command of a report from the input attached to its PDF."""
+"""`rerun`: repeats the command of a report, with the input attached to its PDF."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ FRONTS = ("pareto",)
 _VALUES = ("--algorithm", "--verify-dynamics", "--date")
 _FLAGS = ("--whole-plies", "--standard-sizes", "--certify")
 _LONGEST = 100_000
-"""Maximum length of a command, below the system's limit for one argument."""
+"""Maximum length of a command line, below the system's limit for one argument."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rerun(Displayed):
-    """The repeated result of a report's command, compared with the original.
+    """The repeated result of a report's command, and its differences from the original result.
 
-    `repeats` is None if the report has no result to compare. `differences` has the values then and
-    now by name.
+    `repeats` says whether the result is the same; it is None if the report has no result to
+    compare. `differences` has the values then and now, by name.
     """
 
     file: Path
@@ -57,7 +57,7 @@ class Rerun(Displayed):
     sentence: str
 
     def to_dict(self) -> dict[str, Any]:
-        """The `rerun --json` object: that of the command, with `rerun`."""
+        """The object of `rerun --json`: that of the repeated command, with the key `rerun`."""
         return self.subject.to_dict() | {
             "rerun": {
                 "report": str(self.file),
@@ -77,32 +77,32 @@ class Rerun(Displayed):
         return results.text(self.subject, **style)
 
     def report(self, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
-        """Write the report again, with the original command and date."""
+        """Write the report again, with the command and date of the original."""
         return results.report(self.subject, **{**paper, **self._origin()})
 
     def record(self, **paper: Any) -> Run | None:
-        """Record the run, if its command does so."""
+        """Record the run, if the repeated command is one that records its runs."""
         return results.keep(self.subject, **paper | self._origin())
 
     def _origin(self) -> dict[str, Any]:
-        """Origin and further tables of the original report."""
+        """Origin and additional tables of the original report."""
         data = {"actuator": self.actuator, "command": self.command, "date": self.date}
         return data | ({"extra_tables": self.tables} if self.tables else {})
 
 
 def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
-    """Repeat the command of a report, from the input attached to its PDF.
+    """Repeat the command of a report, with the input attached to its PDF.
 
     Parameters
     ----------
     report : the PDF
-    plugins : the Python files it was made with; as programs, they are never run unless named
+    plugins : the Python files with which the report was made; they only run if given here
 
     Raises
     ------
     InputError
-        not a report of this program; encrypted, damaged or of a newer version; or a report whose
-        command needs more input than the design
+        the PDF is no report of this program, is encrypted or damaged, or comes from a newer
+        version; or its command needs more input than the design
     """
     from ..pages import read_attachment
 
@@ -131,7 +131,7 @@ def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
     differences: dict[str, tuple[Any, Any]] | None
     if isinstance(recorded, dict):
         differences = _differences(recorded, subject)
-    else:  # an older report: compare the hash of its content
+    else:  # in an older report, compare the hash of its content
         same = run.get("spec_hash", "") == _hash(subject)
         differences = {} if same else None
     return Rerun(
@@ -156,7 +156,7 @@ def _text(run: Mapping[str, Any], key: str) -> str:
 
 
 def _require_form(run: Mapping[str, Any]) -> str | None:
-    """The date in the data attached to a report; rejects data of another form."""
+    """Check the form of the data attached to a report, and return its date."""
     fault, date = run_fault(run), run.get("date")
     if not fault and date is not None and not is_date(date):
         fault = "date is invalid"
@@ -167,12 +167,12 @@ def _require_form(run: Mapping[str, Any]) -> str | None:
 
 
 def _order(version: str) -> tuple[int, ...]:
-    """A version as numbers, for comparison."""
+    """A version as a tuple of numbers, so that versions can be compared."""
     return tuple(int(part) for part in re.findall(r"\d{1,9}", version)[:3])
 
 
 class _Parser(argparse.ArgumentParser):
-    """Options of a report's command; other options are reported as a fault."""
+    """Parser for the options of a report's command; reports other options as a fault."""
 
     def error(self, message: str) -> NoReturn:
         fault = f"its command cannot be repeated: {shown(message, 200)}"
@@ -180,7 +180,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def parser() -> argparse.ArgumentParser:
-    """A parser of the options that affect a result, for the commands that can be repeated."""
+    """A parser for the options that affect a result, of every command that can be repeated."""
     options = _Parser(prog="actuator-opt", add_help=False, allow_abbrev=False)
     options.add_argument("design")
     options.add_argument("--set", action="append", default=[])
@@ -199,7 +199,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def parsed(command: str) -> tuple[str, argparse.Namespace]:
-    """Command and options of the command line in a report."""
+    """Command and options, parsed from the command line in a report."""
     if len(command) > _LONGEST:
         message = f"its command has more than {_LONGEST} letters"
         raise InputError(Diagnostic(message, "run it by hand"))
@@ -224,7 +224,7 @@ def parsed(command: str) -> tuple[str, argparse.Namespace]:
 
 
 def _within(bounds: IntegerRange) -> Callable[[str], int]:
-    """A function that reads a whole number within bounds, as the terminal does."""
+    """A function that parses a whole number between two bounds, as in the terminal."""
 
     def whole(text: str) -> int:
         if not re.fullmatch(r"[+-]?\d{1,19}", text):
@@ -245,7 +245,7 @@ def _pair(text: str) -> tuple[str, str]:
 def _again(
     verb: str, options: argparse.Namespace, actuator: Actuator
 ) -> tuple[Evaluation | Optimisation | ParetoFront, Sequence[Table]]:
-    """The result of the command, and the further tables of its report."""
+    """The result of the repeated command, and the additional tables of its report."""
     if verb in EVALUATED:
         return evaluate(actuator, seed=options.seed), []
     if verb in FRONTS:
@@ -274,7 +274,7 @@ def _again(
 def _differences(
     then: Mapping[str, Any], subject: Evaluation | Optimisation | ParetoFront
 ) -> dict[str, tuple[Any, Any]]:
-    """Changes: status, variables by PATH, metrics by name."""
+    """Differences from the report: status, variables by PATH, metrics by name."""
     from ..optimisation.pareto import ParetoFront
     from ..pages.pareto import front_outcome
     from ..pages.report import outcome
@@ -291,7 +291,7 @@ def _differences(
 
 
 def _hash(subject: Evaluation | Optimisation | ParetoFront) -> str | None:
-    """The hash in its report; None if that only covers the input."""
+    """The hash in the subject's report; None if it only covers the input."""
     from ..optimisation.pareto import ParetoFront
     from ..pages.report import parts_of
 
@@ -299,7 +299,7 @@ def _hash(subject: Evaluation | Optimisation | ParetoFront) -> str | None:
 
 
 def _sentence(differences: Mapping[str, tuple[Any, Any]] | None, version: str) -> str:
-    """Whether the result is reproduced, in words."""
+    """Sentence on whether the result is reproduced."""
     origin = f"the report was made by actuator-opt {version}"
     if version == VERSION:
         origin += ", the same as this one"
@@ -316,7 +316,7 @@ def _sentence(differences: Mapping[str, tuple[Any, Any]] | None, version: str) -
 
 
 def _change(name: str, then: Any, now: Any) -> tuple[float, str]:
-    """Relative change of a value, with the change in words."""
+    """Relative change of a value, and the change in words."""
     if isinstance(then, (int, float)) and isinstance(now, (int, float)) and then:
         change = abs(now / then - 1)
         return change, f"{shown(name)} {100 * (now / then - 1):+.3g} %"

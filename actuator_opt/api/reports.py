@@ -1,4 +1,4 @@
-"""Reports of designs, saving of designs, and arguments common to all reports."""
+"""Reports of designs, saving of designs, and the arguments that all reports have in common."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ if TYPE_CHECKING:
     from ..studies.seal import SealStudy
 
 REPLICAS = "actuator_opt.replicas"
-"""Package of the papers' tables, imported by name."""
+"""Package with the tables of published papers; imported by name, since a wheel lacks it."""
 ABSENT = (
     "Caution: the tables that compare this design with {paper} are not part of this installation. "
     "The source distribution and the repository contain them, in actuator_opt/replicas."
 )
 FORMATS = ("pdf", "html", "both")
-"""Formats of a report; PDF comes with PNG."""
+"""Formats of a report; "pdf" also writes PNG."""
 _LAST_SECOND = 253_402_300_799
-"""End of the year 9999, the latest date."""
+"""End of the year 9999, the latest date that can be written."""
 
 
 def _seal_studies(subject: PreparedDesign) -> list[SealStudy]:
-    """Seal studies of a report, for every place with an oil film in the design."""
+    """Seal studies for a report, one for every seal location of the design with an oil film."""
     from ..studies.seal import study
 
     if not any(case.moves for case in subject.design.load_cases):
@@ -50,7 +50,7 @@ def _seal_studies(subject: PreparedDesign) -> list[SealStudy]:
 
 
 class ReportArguments(TypedDict, total=False):
-    """Arguments common to all reports; see `report`."""
+    """Arguments that all reports have in common; see `report`."""
 
     folder: str | Path
     stem: str | None
@@ -62,7 +62,7 @@ class ReportArguments(TypedDict, total=False):
 
 
 class ReportPlace(TypedDict, total=False):
-    """Folder and name of the files of a page, without suffix, and the selection of files."""
+    """Folder and file name (without suffix) of a page, and which of its files to write."""
 
     folder: Required[Path]
     stem: Required[str]
@@ -83,18 +83,18 @@ def page_of(
     all_pages: bool = False,
     format: str = "pdf",
 ) -> tuple[Origin, ReportPlace]:
-    """Title block of a page, and its target.
+    """The title block of a page, and where the page is written.
 
     Parameters
     ----------
-    design : subject of the page
-    tail : added to the name of the design's file
-    beside : a file that gives the name instead
-    folder, stem, actuator, command, date, all_pages, format : as `report`
+    design : design that the page shows
+    tail : text added to the name of the design's file
+    beside : file whose name is used instead
+    folder, stem, actuator, command, date, all_pages, format : as for `report`
 
     Raises
     ------
-    UsageError : not an ISO date, an unknown format
+    UsageError : the date is not an ISO date, or the format is unknown
     """
     require_format(format)
     if date is not None:
@@ -111,7 +111,7 @@ def page_of(
 
 
 def require_format(format: str, option: str = "format") -> None:
-    """Refuse an unknown format of a report; raises `UsageError`."""
+    """Reject an unknown format of a report; raises `UsageError`."""
     if format not in FORMATS:
         message = f'{option} "{shown(format)}" is not a format of reports'
         raise UsageError(Diagnostic(message, remedy(format, FORMATS)))
@@ -124,7 +124,7 @@ def report_design(
     dynamics_verified: Verification | None = None,
     **paper: Unpack[ReportArguments],
 ) -> list[ReportFile]:
-    """Write the report of an evaluation or an optimisation; parameters as `report`."""
+    """Write the report of an evaluation or an optimisation; parameters as for `report`."""
     from ..pages.report import outcome, page
     from ..rendering.paper import write
 
@@ -138,10 +138,10 @@ def report_design(
 
 
 def published(evaluation: Evaluation) -> list[Block]:
-    """The numbers of the paper that a design reproduces, beside ours.
+    """The published numbers of the paper that a design reproduces, beside our numbers.
 
-    The package of these tables is imported by name, as a wheel lacks it; the report then names the
-    distributions that have the tables.
+    The package with these tables is imported by name, because a wheel lacks it. In that case the
+    report names the distributions that contain the tables.
     """
     from ..rendering.blocks import Notes
 
@@ -158,7 +158,7 @@ def published(evaluation: Evaluation) -> list[Block]:
 
 
 def verification_tables(verification: Verification | None) -> list[Table]:
-    """Requirements verified by simulation, as tables of a report."""
+    """Requirements that a simulation verified, as tables of a report."""
     if verification is None:
         return []
     from ..pages.verification import tables
@@ -167,7 +167,7 @@ def verification_tables(verification: Verification | None) -> list[Table]:
 
 
 def report_files(paths: Iterable[Path]) -> list[ReportFile]:
-    """Files that are already written, each with its hash."""
+    """Files that have been written, each with its hash."""
     from ..pages import ReportFile
 
     return [ReportFile(path, hashlib.sha256(path.read_bytes()).hexdigest(), 1) for path in paths]
@@ -184,7 +184,7 @@ def file_name(design: Design, source: FileSource | None) -> str:
 def origin(
     design: Design, source: FileSource | None, *, command: str = "", date: str | None = None
 ) -> Origin:
-    """Origin of a page about a design: the file as read, else the design's text."""
+    """The origin stated on a page: the file as read, or else the design's text."""
     from ..design.writer import to_yaml
     from ..evaluation.build import spec_hash
     from ..rendering.origin import Origin
@@ -219,11 +219,11 @@ def require_date(text: str, option: str = "date") -> None:
 
 
 def date_from_environment() -> str | None:
-    """The date of SOURCE_DATE_EPOCH (UTC), or None.
+    """The date (UTC) of SOURCE_DATE_EPOCH, or None if that is not set.
 
     Raises
     ------
-    UsageError : not a count of seconds
+    UsageError : it is not a count of seconds
     """
     stamp = os.environ.get("SOURCE_DATE_EPOCH", "").strip()
     if not stamp:
@@ -243,10 +243,11 @@ def save(
     *,
     source: FileSource | None = None,
 ) -> Path:
-    """Write a design file with full precision, keeping comments and order if possible.
+    """Write a design file with full precision; comments and order are kept if possible.
 
-    For an optimisation, this is the design to build. The first line of the file marks an optimum,
-    unless it has custom metrics, which may change independently of the file.
+    For an optimisation, the design to build is written, and the first line marks the file as an
+    optimum. This mark is omitted for a design with custom metrics, which may change independently
+    of the file.
     """
     from ..base.files import write_text
     from ..design.writer import to_yaml

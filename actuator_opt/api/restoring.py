@@ -1,4 +1,4 @@
-"""Restore the result of a recorded run, and its report, without solving again."""
+"""Restores the result of a recorded run, and its report, without solving again."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Restored(Displayed):
-    """A result from its record, with differences between the models then and now."""
+    """A result restored from its record, and how today's models differ from the record."""
 
     run: Run
     result: Optimisation | ParetoFront | KeptSweep
@@ -36,7 +36,7 @@ class Restored(Displayed):
 
     @property
     def optimisation(self) -> Optimisation:
-        """The result of `optimise`; raises `InputError` for another command's."""
+        """The result, if the command was `optimise`; raises `InputError` for other commands."""
         from ..optimisation.result import Optimisation
 
         if not isinstance(self.result, Optimisation):
@@ -48,18 +48,18 @@ class Restored(Displayed):
 def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
     """Restore the result of a recorded run without solving again.
 
-    Designs are exactly those of the record; their evaluations come from the present models.
-    `doubts` lists differences from the recorded values. For a sweep, the result is the location of
-    its rows.
+    Designs are exactly those of the record, but they are evaluated with the present models.
+    `doubts` lists where the values differ from the record. For a sweep, the result says where its
+    rows are stored.
 
     Parameters
     ----------
     of : the run, or its name as for `read_run`
-    plugins : the Python files of its own metrics; as programs, they are never run unless named
+    plugins : the Python files with the run's custom metrics; they only run if given here
 
     Raises
     ------
-    InputError : a run of another command, a damaged record, or unnamed plugins
+    InputError : the run is of another command, its record is damaged, or its plugins are not given
     """
     run = of if isinstance(of, Run) else read_run(of)
     kind = run.head.get("kind")
@@ -84,7 +84,7 @@ def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
 
 
 def _solved(run: Run, plugins: tuple[Plugin, ...]) -> tuple[Optimisation | ParetoFront, Evaluation]:
-    """The recorded optimisation or front, and its evaluation."""
+    """The recorded optimisation or Pareto front, and its evaluation."""
     from ..optimisation.pareto import ParetoFront
     from ..optimisation.recorded import from_plain
     from ..optimisation.result import Optimisation
@@ -97,11 +97,11 @@ def _solved(run: Run, plugins: tuple[Plugin, ...]) -> tuple[Optimisation | Paret
 
 
 def named_plugins(run: Run, plugins: Plugins) -> tuple[Plugin, ...]:
-    """The plugins that this call names for a run; a record alone never runs a program.
+    """The plugins that the caller names for a run; a record alone never runs a program.
 
     Raises
     ------
-    InputError : the run had custom metrics, and no plugin is named
+    InputError : the run had custom metrics, but the caller names no plugin
     """
     loaded_plugins = plugins_of(plugins)
     files = [plugin["file"] or "a function of a script" for plugin in run.body["input"]["plugins"]]
@@ -112,7 +112,7 @@ def named_plugins(run: Run, plugins: Plugins) -> tuple[Plugin, ...]:
 
 
 def changed_plugins(run: Run, loaded_plugins: Sequence[Plugin]) -> list[str]:
-    """List files of custom metrics that differ from those recorded."""
+    """List the plugin files that differ from those recorded."""
     hashes = {sha256(file) for file in {plugin.file for plugin in loaded_plugins} if file}
     return [
         f"run {run.id} was made with another version of {plugin['file']} (its SHA-256 differs)"
@@ -142,14 +142,15 @@ def report_run(
 ) -> list[ReportFile]:
     """Write the report of a recorded run, identical to that of its command.
 
-    For a front these are its page, figure and CSV (``NAME_pareto.csv``), or nothing if no front was
-    found. For a sweep see `report_sweep`.
+    For a Pareto front, this writes its page, figure and CSV file (``NAME_pareto.csv``), or nothing
+    without a front. For a sweep see `report_sweep`.
 
     Parameters
     ----------
-    of : argument or result of `restore`
-    plugins : as `restore`
-    paper : as `report`; design and command are those of the run, and its date unless one is given
+    of : a run as for `restore`, or the result of `restore`
+    plugins : as for `restore`
+    paper : as for `report`; design and command are those of the run, and so is the date if none is
+        given
     """
     restored = of if isinstance(of, Restored) else restore(of, plugins=plugins)
     with damage_reported(restored.run):
@@ -182,11 +183,11 @@ def _reported(restored: Restored, paper: ReportArguments) -> list[ReportFile]:
 
 
 def draw_run(of: Run, folder: str | Path) -> list[Path]:
-    """Draw the convergence of a run's search: ID-convergence.png and .svg.
+    """Draw how a run's search converged, in the files ID-convergence.png and .svg.
 
     Raises
     ------
-    InputError : a run of another command than optimise
+    InputError : the run is not a run of `optimise`
     """
     from ..pages.trust import convergence_figure
     from ..rendering.paper import write_ink

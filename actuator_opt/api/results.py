@@ -1,8 +1,9 @@
-"""Output functions of every type of result, declared once.
+"""Declares, once for every type of result, the functions that output it.
 
-The terminal and the library look up a result by its type: text and JSON, report, CSV, record and
-exit code. A function is named "module:function" below `actuator_opt` and imported on use, or is a
-method of the result. None means that a type lacks it; an omitted function fails at import.
+The terminal and the library look up a result by its type to find its text and JSON, report, CSV,
+record and exit code. A function is named "module:function" below `actuator_opt` and imported when
+it is used, or it is a method of the result. None means that the type does not have this output. A
+function that is not declared raises an error at import.
 """
 
 from __future__ import annotations
@@ -34,21 +35,22 @@ _PACKAGE = f"{__package__.rpartition('.')[0]}."
 
 @dataclass(frozen=True)
 class ResultKind:
-    """The output functions of one type of result.
+    """The functions that output one type of result.
 
     Parameters
     ----------
-    type : of the result, "module:class"
-    exit_code : of a command that gives this result
-    page : builds the `Page` of a result: its text, its report and its HTML
-    blocks : builds the blocks of a result without a page: its text
-    text : lines for the terminal of (result, colour=, unicode=, width=), without page and blocks
+    type : type of the result, as "module:class"
+    exit_code : gives the exit code of a command with this result
+    page : builds the `Page` of a result, which gives its text, report and HTML
+    blocks : for a result without a page, builds the blocks of its text
+    text : for a result without page and blocks, gives the terminal text of (result, colour=,
+        unicode=, width=)
     report : writes the report of (result, **`ReportArguments`); some kinds need more keywords
     csv : writes the result to a path
     record : records the run of (result, actuator=, command=, date=)
-    data : plain data for JSON, SI
-    remarks : lines for standard error below the text
-    writes : whether there is a report or CSV to write; None: always
+    data : gives plain data for JSON, SI
+    remarks : gives lines that follow the text on standard error
+    writes : whether a report or CSV can be written; None: always
     """
 
     type: str
@@ -65,7 +67,7 @@ class ResultKind:
 
 
 def _always(result: object) -> ExitCode:
-    """Exit code of a result without requirements."""
+    """Exit code of a result that has no requirements to miss."""
     return ExitCode.MET
 
 
@@ -110,7 +112,7 @@ def _unrounded(result: Any) -> list[str]:
 
 
 def kinds(*declared: ResultKind) -> dict[str, ResultKind]:
-    """Kinds by their type; rejects a type declared twice."""
+    """The kinds by their type; rejects a type that is declared twice."""
     by_type = {kind.type: kind for kind in declared}
     if len(by_type) != len(declared):
         raise TypeError("a type of result is declared twice")
@@ -150,7 +152,7 @@ KINDS = kinds(
         "sweeps.result:Swept", lambda swept: _missed(not swept.best),
         page="pages.sweep:page",
         report=None, csv=None, record="api:record_sweep",
-        writes=lambda swept: False,  # rows are written as they come, figures by draw_sweep
+        writes=lambda swept: False,  # rows are written during the sweep, figures by draw_sweep
     ),
     ResultKind(
         "studies.seal:SealStudy", _converged, page="pages.seal:page",
@@ -219,7 +221,7 @@ def kind_of(result: object) -> ResultKind:
 
 
 def piece(name: str, result: object) -> Callable[..., Any]:
-    """A function of a kind, called without the result."""
+    """A function of the result's kind, ready to call; the result is its first argument."""
     module, _, function = name.rpartition(":")
     if not module:
         return getattr(result, name)  # type: ignore[no-any-return]
@@ -227,12 +229,12 @@ def piece(name: str, result: object) -> Callable[..., Any]:
 
 
 def exit_code(result: object) -> ExitCode:
-    """The exit code of a command that gives this result."""
+    """The exit code of a command that ends with this result."""
     return kind_of(result).exit_code(result)
 
 
 def text(result: object, **style: Unpack[Style]) -> str:
-    """The terminal text of a result; "" if it has none."""
+    """The terminal text of a result; "" if its kind has none."""
     kind = kind_of(result)
     if kind.page is not None:
         from ..rendering import terminal
@@ -246,7 +248,7 @@ def text(result: object, **style: Unpack[Style]) -> str:
 
 
 def html(result: object) -> str:
-    """A result as a piece of HTML, for notebooks; "" for a result without text."""
+    """A result as HTML for notebooks; "" for a result without text."""
     from ..rendering import html as markup
 
     kind = kind_of(result)
@@ -268,13 +270,13 @@ def data(result: object) -> dict[str, Any]:
 
 
 def remarks(result: object) -> list[str]:
-    """Lines for standard error below the text of a result."""
+    """Lines that follow the text of a result on standard error."""
     lines_of = kind_of(result).remarks
     return [] if lines_of is None else lines_of(result)
 
 
 def writes(result: object) -> bool:
-    """Whether there is a report or CSV to write."""
+    """Whether a report or CSV can be written for this result."""
     condition = kind_of(result).writes
     return condition is None or condition(result)
 
@@ -289,7 +291,7 @@ def write_csv(result: object, path: str | Path) -> ReportFile:
 
 
 def keep(result: object, **context: Any) -> Run | None:
-    """Record the run of a result; None if its kind has no records. Parameters as `record`."""
+    """Record the run of a result, if such results are recorded. Parameters as for `record`."""
     name = kind_of(result).record
     return None if name is None else piece(name, result)(**context)
 
@@ -308,28 +310,28 @@ def report(
     plugins: Plugins = (),
     **more: Any,
 ) -> list[ReportFile]:
-    """Write the report of a design or a result, identical to that of the terminal.
+    """Write the report of a design or a result, identical to that of the terminal command.
 
-    A design is evaluated first, as by ``actuator-opt report``. An evaluation without a yield
-    estimate gets one (`with_yield`).
+    A design is evaluated first, as by ``actuator-opt report``. If an evaluation has no yield
+    estimate, it gets one (`with_yield`).
 
     Parameters
     ----------
     subject : a design in any form, a run (id, ``last``, `Run`, `Restored`), or a result: of
         `evaluate`, `optimise`, `pareto`, `uncertainty`, `seal`, `simulate`, `compare_measured`,
         `identify`, `calibrate`, `compare`, `rerun`
-    folder, stem : target; default: the design's name in ``reports/``
-    actuator : the design as read, for its listing and attachment
-    command : command that made the report, printed on it
-    date : ISO date; default: SOURCE_DATE_EPOCH, else none
-    all_pages : an image of every sheet instead of only the first
+    folder, stem : folder and name of the files; default: the design's name in ``reports/``
+    actuator : the design as read, which the report lists and attaches
+    command : command that made the report; it is printed on the report
+    date : ISO date; default: that of SOURCE_DATE_EPOCH, or else none
+    all_pages : whether to write an image of every sheet, not only of the first
     format : "pdf" (with PNG), "html" (a file that needs no network), or "both"
-    seed : of the samples of the estimate
+    seed : seed of the samples for the yield estimate
     plugins : the user's metrics and constraints, for a design that is not an `Actuator` yet, or a
         run
-    more : `dynamics_verified` (of `verify_dynamics`) and `extra_tables` of an evaluation or an
-        optimisation; `scenario` as read, `measured` and `sensitivities` of a simulation; `sheet`
-        (False: only the map) of a seal
+    more : for an evaluation or an optimisation, `dynamics_verified` (from `verify_dynamics`) and
+        `extra_tables`; for a simulation, `scenario` as read, `measured` and `sensitivities`; for a
+        seal, `sheet` (False: only the map)
 
     Returns
     -------
@@ -337,8 +339,9 @@ def report(
 
     Raises
     ------
-    UsageError : not an ISO date, a result without a report, or a missing `actuator` or `scenario`
-    InputError : the folder cannot be written; no partial file is left
+    UsageError : the date is not an ISO date, the result has no report, or `actuator` or `scenario`
+        is missing
+    InputError : the folder cannot be written; partial files are removed
     """
     paper: dict[str, Any] = {"folder": folder, "stem": stem, "command": command, "date": date}
     require_format(format)

@@ -1,4 +1,4 @@
-"""A warm session: solve a design once, then re-solve, predict and price changes of its numbers."""
+"""A session: solves a design once, then quickly re-solves, predicts and prices changes."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     from ..optimisation.result import Optimisation
 
 Changes = Mapping[str, float | str]
-"""New numbers by PATH: SI, or text with a unit."""
+"""New values of numbers by PATH: in SI, or as text with a unit."""
 
 STARTS, SAMPLES = 6, 2048
-"""Effort of the single cold solve: that of `optimise`."""
+"""Effort of the first solution of a session, the same as that of `optimise`."""
 
 NUDGE = 1e-4
-"""Relative change of a number for testing its effect on others."""
+"""Relative change of a number that tests whether it affects other numbers."""
 
 ROUNDING = 1e-9
 """Share of a change, or of a number, that counts as zero."""
@@ -36,17 +36,20 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Prediction:
-    """An optimum extrapolated linearly from the session's, in SI.
+    """An optimum predicted by linear extrapolation from the session's optimum, in SI.
 
-    f(p + d) = f(p) + s(d), x(p + d) = x(p) + J d, with the one-sided slope s and the derivative J
-    of the optimum, solution of its linearised optimality conditions [Fiacco1983].
+    The prediction is f(p + d) = f(p) + s(d), x(p + d) = x(p) + J d: for a change d of the numbers
+    p, s is the slope of the objective f for changes in this direction, and J is the derivative of
+    the free dimensions x. J solves the linearised optimality conditions [Fiacco1983].
 
     Parameters
     ----------
-    objective : predicted objective; infinite (the worst) if the first step leaves no design
+    objective : predicted objective; infinite (the worst value) if even the smallest change leaves
+        no feasible design
     variables : predicted free dimensions by PATH
-    valid : whether the same limits stay active over the whole change, to first order
-    why : if not, the first change of the active limits, and the share of the change before it
+    valid : whether, to first order, the same limits stay active during the whole change
+    why : if not valid, which limit first becomes active or inactive, and after what share of the
+        change
     """
 
     objective: float
@@ -61,17 +64,17 @@ class Prediction:
 
 @dataclass(frozen=True, slots=True)
 class Price:
-    """Price of a number at the session's optimum: objective per unit of the number, both SI.
+    """Price of a number at the session's optimum: change of the objective per unit, both in SI.
 
     Parameters
     ----------
-    path, value : the number and its value
-    slope_down, slope_up : change of the objective per unit, with the sign of a derivative, for a
-        falling and a rising number. They differ only at a degenerate vertex. None if the next step
-        in this direction leaves no design
-    holds : lowest and highest value between which the same limits stay active, to first order; None
-        on a side without a change within ±100 %
-    changes : change of the active limits at these values
+    path, value : PATH of the number, and its value
+    slope_down, slope_up : derivative of the objective by the number, for a decrease and for an
+        increase of the number. Both differ only at a degenerate vertex. None if even the smallest
+        change in this direction leaves no feasible design
+    holds : lowest and highest value between which, to first order, the same limits stay active;
+        None on a side where they stay active up to a change of 100 %
+    changes : which limit becomes active or inactive at these values
     movement : change of each free dimension per unit, by PATH
     """
 
@@ -90,15 +93,15 @@ class Price:
 
 @dataclass(frozen=True, slots=True)
 class OptimumCurve:
-    """Optima along values of one number, in SI.
+    """Optima for a series of values of one number, in SI.
 
     Parameters
     ----------
-    path, quantity : the number
+    path, quantity : PATH of the number, and its quantity
     values : its values, in the requested order
-    objectives : at the optima; None without a design
+    objectives : objective of each optimum; None if there is no feasible design
     variables : the free dimensions of each optimum by PATH; empty without a design
-    objective : quantity of the objective; None for weighted terms
+    objective : quantity of the objective; None for a weighted sum
     """
 
     path: str
@@ -114,11 +117,11 @@ class OptimumCurve:
 
     @property
     def found(self) -> tuple[bool, ...]:
-        """Whether there is a design at each value."""
+        """For each value, whether it has a feasible design."""
         return tuple(objective is not None for objective in self.objectives)
 
     def columns(self) -> dict[str, list[float]]:
-        """Value, objective and free dimensions as columns of SI; NaN without a design."""
+        """Value, objective and free dimensions as columns in SI; NaN where there is no design."""
         names = dict.fromkeys(name for row in self.variables for name in row)
         result = {
             self.path: list(self.values),
@@ -154,11 +157,11 @@ class OptimumCurve:
 
 
 class Session:
-    """A design's optimum, prepared for fast re-solving.
+    """A design's optimum, prepared so that changed problems can be re-solved quickly.
 
-    Every call takes its changes relative to the design as read; no call affects a later call. An
-    objective of weighted terms divides each term by its value in the design as read. `solve`
-    divides by its value in the changed design, as `optimise` does.
+    Every call states its changes relative to the design as read; no call affects a later call. If
+    the objective is a weighted sum, each term is divided by its value in the design as read.
+    `solve` divides by its value in the changed design, as `optimise` does.
 
     Attributes
     ----------
@@ -201,7 +204,7 @@ class Session:
         self._warm = WarmStart(problem, solution, SearchEffort(STARTS, SAMPLES, seed))
 
     def __repr__(self) -> str:
-        """Name and objective of the design."""
+        """Name and objective of the design, as text."""
         optimum = self.optimum
         name, metric = optimum.design.name, optimum.objective_metric
         return f"<Session {name!r}: {metric} {self._objective_text()}>"
@@ -213,22 +216,23 @@ class Session:
 
         Full steps start from the session's optimum. If they do not converge, restoration and
         descent follow, then a search; only the search can report that no design exists. The
-        optimality conditions are checked to 1e-6. `start` of the result is the session's optimum,
-        `samples` is 0 without a search. For the reason of an infeasible result use `optimise`.
+        optimality conditions are checked to 1e-6. In the result, `start` is the session's optimum,
+        and `samples` is 0 if no search was needed. To learn why a result is infeasible, use
+        `optimise`.
 
         Parameters
         ----------
         changes : new numbers by PATH, SI or text with a unit, relative to the design as read
-        prices : whether to price requirements and parameters, as `optimise`
+        prices : whether to compute prices of requirements and parameters, as for `optimise`
         stop : called between steps; once it returns True, the result has the status "interrupted"
             or "interrupted_infeasible", and the best design so far
 
         Raises
         ------
         InputError
-            an unknown PATH, a word, or a value that is not finite or does not fit the design
+            the PATH is unknown or names a word, or a value is not finite or does not fit the design
         UsageError
-            a PATH of a free dimension
+            the PATH names a free dimension
         """
         from ..optimisation.run import result_of
 
@@ -255,10 +259,10 @@ class Session:
         )
 
     def predict(self, changes: Changes) -> Prediction:
-        """Predict the optimum with some numbers changed, linearly, without evaluating models.
+        """Predict the optimum after a change of some numbers, linearly, without running models.
 
-        The first prediction with a number computes its derivatives. Parameters and errors as
-        `solve`; a number without a derivative raises `UsageError`.
+        The first prediction with a number computes its derivatives, which runs the models once.
+        Parameters and errors as for `solve`; a number without a derivative raises `UsageError`.
         """
         _, numbers = self._changed(changes)
         present = {path: self._priced(path) for path in numbers}
@@ -282,24 +286,25 @@ class Session:
     def price(self, path: str) -> Price:
         """Price a number at the session's optimum.
 
-        The slope is the derivative of the Lagrangian by the number [Fiacco1983], one-sided at a
-        degenerate vertex [Gauvin1982].
+        The slope is the derivative of the Lagrangian by the number [Fiacco1983]; at a degenerate
+        vertex it differs for an increase and a decrease [Gauvin1982].
 
         Parameters
         ----------
-        path : of a fixed number
+        path : PATH of a fixed number
 
         Raises
         ------
         InputError
-            an unknown PATH, or a word
+            the PATH is unknown or names a word
         UsageError
-            a free dimension, or a number without derivative, such as a bound of a variable
+            the PATH names a free dimension, or a number without derivative, such as a bound of a
+            variable
         """
         return self.prices([path])[0]
 
     def prices(self, paths: Sequence[str]) -> tuple[Price, ...]:
-        """Price several numbers, with their derivatives computed together; as `price`."""
+        """Price several numbers as `price` does, computing their derivatives together."""
         names = [self._path(path) for path in paths]
         values = {path: self._priced(path) for path in names}
         self._warm.differentiate(names)
@@ -325,20 +330,21 @@ class Session:
         *,
         stop: Callable[[], bool] | None = None,
     ) -> OptimumCurve:
-        """Compute the optima along values of one number, together, outwards from the optimum.
+        """Compute the optima at several values of a number together, outwards from the optimum.
 
-        The search stops at the first value without a design.
+        On each side, the search stops at the first value without a feasible design.
 
         Parameters
         ----------
-        path : the number
-        values : SI, or text with a unit
-        stop : called between steps; values not solved by then have no design
+        path : PATH of the number
+        values : values in SI, or text with a unit
+        stop : called between steps; True ends the search, and values not solved by then have no
+            design
 
         Raises
         ------
         InputError, UsageError
-            as `solve`; no values
+            as for `solve`; or `values` is empty
         """
         if isinstance(values, str) or not len(values):
             raise UsageError(Diagnostic("a curve needs a list of values", 'e.g. [0.1, "112 mm"]'))
@@ -393,7 +399,7 @@ class Session:
         return changed, numbers
 
     def _path(self, path: str) -> str:
-        """The canonical PATH of a number."""
+        """The canonical form of a number's PATH."""
         if not isinstance(path, str):
             raise InputError(Diagnostic(f"need a PATH, not {type(path).__name__}", "write a text"))
         design = self._actuator.design
@@ -425,7 +431,7 @@ class Session:
         return subject, problem
 
     def _priced(self, path: str) -> float:
-        """The present value of a number with a price."""
+        """The present value of a number; rejects a number that has no price."""
         numbers = self._warm.actuator.subject.numbers
         if path in self._actuator.design.variables:
             raise UsageError(
@@ -454,9 +460,9 @@ class Session:
         return float(numbers[path])
 
     def _only_read(self, path: str, value: float) -> bool:
-        """Whether a small change of a number affects no other number and no factor.
+        """Whether a number only enters the models directly, and no other number or factor.
 
-        Temperatures, for example, change the factors on strengths.
+        Counter-example: a temperature also changes the factors on strengths.
         """
         own = self._warm.actuator.subject
         for share in (NUDGE, -NUDGE):
@@ -470,20 +476,20 @@ class Session:
         return False
 
     def _shown(self, slope: float) -> float:
-        """A change of the objective with the user's sign."""
+        """A change of the objective with the sign that the user sees."""
         return self._warm.actuator.goal.shown(slope)
 
     def _slope(self, slope: float) -> float | None:
         return self._shown(slope) if math.isfinite(slope) else None
 
     def _end(self, end: tuple[float, str] | None, value: float) -> tuple[float | None, str | None]:
-        """The value at a change of the active set, within ±100 %."""
+        """The number's value at a change of the active limits, if within ±100 %."""
         if end is None or abs(end[0]) > (abs(value) or 1.0):
             return None, None
         return value + end[0], end[1]
 
     def _named(self, x: Iterable[float]) -> dict[str, float]:
-        """Numbers of the free dimensions by PATH."""
+        """The values of the free dimensions by PATH."""
         return dict(zip(self._warm.actuator.paths, map(float, x), strict=True))
 
     def _objective_text(self) -> str:
@@ -493,7 +499,7 @@ class Session:
 
 
 def _require_continuous(actuator: Actuator, sizes: object) -> None:
-    """Reject choices and listed sizes: a session only re-solves continuous dimensions."""
+    """Reject choices and listed sizes, because a session only re-solves continuous dimensions."""
     design = actuator.design
     if design.choices:
         raise UsageError(
@@ -520,21 +526,21 @@ def session(
     plugins: Plugins = (),
     seed: int = 0,
 ) -> Session:
-    """Solve a design once, to re-solve changes fast.
+    """Solve a design once, so that changed designs can be re-solved quickly.
 
     Parameters
     ----------
-    design : as `optimise`
-    set : values to replace first, by PATH; a bare number is SI
+    design : as for `optimise`
+    set : values to replace first, by PATH; a number without a unit is SI
     plugins : the user's metrics and constraints
-    seed : of the search
+    seed : seed of the search
 
     Raises
     ------
     InputError
-        a fault of the design, no variables, or no design that meets all requirements
+        the design has a fault or no variables, or no design meets all requirements
     UsageError
-        a design with choices, or with variables of listed sizes
+        the design has choices, or variables with listed sizes
     """
     if isinstance(design, (str, Path)):
         return Session(read(design, set=set, plugins=plugins), seed=seed)

@@ -1,4 +1,4 @@
-"""Read scenarios with their design and records, simulate them, write reports."""
+"""Reads scenarios with their designs and records, simulates them, and writes reports."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ if TYPE_CHECKING:
     from ..simulation.verification import Verification
 
 MOST_BYTES = 200_000_000
-"""Largest file of a recorded input (a choice)."""
+"""Largest permitted file of a recorded input: our choice."""
 _TABLES = (".csv", ".txt", ".tsv")
 
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """A scenario as read, with its records and its design, which has the scenario's values."""
+    """A scenario as read, with its records, and its design with the scenario's values."""
 
     scenario: Scenario
     actuator: Actuator
@@ -46,7 +46,7 @@ class Trial:
 
     @property
     def files(self) -> list[Path]:
-        """Files of the design and of the records."""
+        """The files of the design and of all records."""
         records = [self.loaded.folder / file for file, _ in self.records]
         return [self.loaded.design_file, *records]
 
@@ -62,13 +62,14 @@ def read_scenario(
     Parameters
     ----------
     source : path or text
-    set : values to replace, by PATH of the scenario, else of its design; a bare number is SI
-    units : of columns of recorded inputs without a unit in their header, as `read_record`
+    set : values to replace, by PATH in the scenario, or else in its design; a number without a unit
+        is SI
+    units : units of columns of recorded inputs whose header states none, as for `read_record`
 
     Raises
     ------
     InputError
-        with every fault of scenario, design and records, each with its place and remedy
+        lists every fault of scenario, design and records, each with its line and remedy
     """
     from ..design.scenario import read_design_of, read_scenario as read
 
@@ -80,7 +81,7 @@ def read_scenario(
 
 
 def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tuple[Array, Array]]:
-    """Columns of records that signals of the scenario name, by file and column."""
+    """Columns of the records that the scenario's signals use, by file and column."""
     from ..base.files import read_bytes
     from ..design.scenario import recorded_parts
     from ..identification import column_units, decode_record, parse_column
@@ -106,7 +107,7 @@ def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tupl
 
 
 def _where(fault: Diagnostic, path: str, loaded: LoadedScenario) -> Diagnostic:
-    """A fault of a record without a line, placed where the scenario names the file."""
+    """Give a fault of a record that has no line the line on which the scenario names the file."""
     if fault.line is not None:
         return fault
     return loaded.diagnostic(path, f"{fault.file}: {fault.message}", fault.remedy)
@@ -119,27 +120,29 @@ def simulate(
     verify: bool = False,
     method: Method = "lsoda",
 ) -> Simulation:
-    """Simulate a scenario around its design.
+    """Simulate a scenario with its design.
 
     Parameters
     ----------
-    scenario : as read, or its path
-    set : values to replace, by PATH of the scenario, else of its design; a bare number is SI
-    verify : integrate again by another method and compare
+    scenario : the scenario as read, or the path of its file
+    set : values to replace, by PATH in the scenario, or else in its design; a number without a unit
+        is SI
+    verify : whether to integrate again by another method and compare
     method : "lsoda"; "cvodes" is faster (extra ``fast``); "radau"
 
     Returns
     -------
     the results, SI: `signals` by name over `time`, `told` (label and quantity of each signal),
-    `values` by the names of `quantities.RESULTS` (None with a reason in `why`), `requirements`,
+    `values` by the names in `quantities.RESULTS` (a value may be None; `why` has the reason),
+        `requirements`,
     `servo`, `balance`, `events`, `notes`; printed, a table
 
     Raises
     ------
     InputError
-        as `read_scenario`; a gain without a tuning rule
+        as for `read_scenario`; or a gain has no tuning rule
     Unsolvable
-        the integration fails; states the time
+        the integration fails; the message states the time
     """
     from ..simulation import simulate as run
 
@@ -156,7 +159,7 @@ def simulate(
 
 @contextmanager
 def placed(trial: Trial) -> Iterator[None]:
-    """Add the place in the file to faults of a scenario's values."""
+    """Add the line in the file to faults of a scenario's values."""
     try:
         yield
     except InputError as error:
@@ -174,7 +177,7 @@ def as_trial(
     scenario: Trial | str | Path,
     set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
 ) -> Trial:
-    """Any form of a scenario as read."""
+    """Turn a scenario in any form into a scenario as read."""
     if not isinstance(scenario, Trial):
         return read_scenario(scenario, set=set)
     if set:
@@ -193,15 +196,15 @@ def write_signals(simulation: Simulation, path: str | Path) -> ReportFile:
 
 @dataclass(frozen=True, slots=True)
 class Compared(Displayed):
-    """A simulation compared with a measured record, and the parameters fitted to it."""
+    """A simulation compared with a measured record, and the parameters fitted to that record."""
 
     overlay: Overlay
-    """The simulation with the record, after the fit, if any."""
+    """The simulation with the record; if parameters were fitted, with their fitted values."""
     fit: Fit | None = None
 
     @property
     def simulation(self) -> Simulation:
-        """The simulation compared with the record."""
+        """The simulation that is compared with the record."""
         return self.overlay.simulation
 
     def to_dict(self) -> dict[str, Any]:
@@ -209,13 +212,13 @@ class Compared(Displayed):
         return self.overlay.to_dict() if self.fit is None else self.fit.to_dict()
 
     def blocks(self) -> list[Block]:
-        """Blocks below those of the simulation."""
+        """Blocks of text that follow those of the simulation."""
         from ..pages.measured import blocks
 
         return blocks(self.overlay, self.fit)
 
     def report(self, **paper: Any) -> list[ReportFile]:
-        """Write the page of the simulation with the record; parameters as `write_simulation`."""
+        """Write the page of simulation and record; parameters as for `write_simulation`."""
         return write_simulation(self.simulation, measured=self, **paper)
 
 
@@ -230,22 +233,23 @@ def compare_measured(
     method: Method = "lsoda",
     simulation: Simulation | None = None,
 ) -> Compared:
-    """Compare a measured record with a scenario: residuals, and fitted parameters.
+    """Compare a scenario with a measured record: residuals, and parameters fitted to the record.
 
     Parameters
     ----------
-    scenario : as read, or its path
+    scenario : the scenario as read, or the path of its file
     record : CSV file with t and any of p1, p2, x, v, F_L, ...
-    fit : names of parameters, as ``air_content``; see `simulation.measured.parameters`
-    columns : header by channel if it is not a known name
-    units : of columns without a unit in their header, as `read_record`
-    verify, method : as `simulate`; with a fit, of the run with the fitted values
-    simulation : of the scenario, if already run
+    fit : names of the parameters to fit, such as ``air_content``; see
+        `simulation.measured.parameters`
+    columns : for a channel whose header is not a known name, this header
+    units : units of columns without a unit in their header, as for `read_record`
+    verify, method : as for `simulate`; with a fit, for the run with the fitted values
+    simulation : result of the scenario, if it has been run already
 
     Raises
     ------
     InputError
-        as `read_scenario`; no overlap, or an unknown parameter
+        as for `read_scenario`; or record and simulation do not overlap, or a parameter is unknown
     """
     from ..base.files import read_bytes
     from ..identification import column_units, decode_record
@@ -273,12 +277,12 @@ def compare_measured(
 def servo_sensitivities(
     scenario: Trial | str | Path, names: Sequence[str] | None = None
 ) -> Sensitivities:
-    """Rank parameters of a scenario and its design by their effect on its results.
+    """Rank parameters of a scenario and its design by their effect on the results.
 
     Parameters
     ----------
-    scenario : as read, or its path
-    names : PATHs; default: those relevant for a servo
+    scenario : the scenario as read, or the path of its file
+    names : PATHs of the parameters; default: those that matter for a servo
     """
     from ..simulation.sensitivity import sensitivities
 
@@ -290,12 +294,12 @@ def servo_sensitivities(
 def verify_dynamics(
     scenario: Trial | str | Path, design: Actuator | Design | str | Path | None = None
 ) -> Verification:
-    """Verify every dynamic requirement of a design and of a scenario by simulation.
+    """Verify by simulation every dynamic requirement of a design and of a scenario.
 
     Parameters
     ----------
-    scenario : as read, or its path
-    design : in place of the scenario's own, with the values that the scenario sets
+    scenario : the scenario as read, or the path of its file
+    design : a design in place of the scenario's own; it gets the values that the scenario sets
     """
     from ..simulation.verification import verify
 
@@ -306,12 +310,12 @@ def verify_dynamics(
 
 
 def fitting(trial: Trial, design: Actuator | Design | str | Path) -> Actuator:
-    """Another design for a scenario, with the values that the scenario sets.
+    """Put another design into a scenario, with the values that the scenario sets.
 
     Raises
     ------
     InputError
-        a scenario that does not fit this design, or has no cylinder to verify
+        the scenario does not fit this design, or has no cylinder to verify
     """
     from ..design.scenario import design_faults
 
@@ -337,18 +341,18 @@ def write_simulation(
     sensitivities: Sensitivities | None = None,
     **paper: Unpack[ReportArguments],
 ) -> list[ReportFile]:
-    """Write the page of a simulation (PDF and PNG); the scenario is attached.
+    """Write the page of a simulation (PDF and PNG) and attach the scenario.
 
     Parameters
     ----------
-    simulation : of `simulate`
-    scenario : as read
+    simulation : result of `simulate`
+    scenario : the scenario as read
     measured, sensitivities : further results to show
-    paper : as `report`; the name is the scenario file's
+    paper : as for `report`; the page is named after the scenario's file
 
     Raises
     ------
-    UsageError : no `scenario`, as a simulation does not contain its file
+    UsageError : `scenario` is missing; the simulation itself does not contain the file
     """
     from ..pages.measured import drawn
     from ..pages.simulation import page
@@ -378,15 +382,16 @@ def write_comparison(
 
     Parameters
     ----------
-    runs : name and simulation of each; "50 %, extending" and "50 %, retracting" share a colour
-    scenario : of the simulations, attached
-    title, notes : of the page
-    paper : as `report`; the name is the scenario file's with "-compared"
+    runs : simulations by name; names such as "50 %, extending" and "50 %, retracting" get the same
+        colour
+    scenario : scenario of the simulations, which is attached
+    title, notes : title and notes of the page
+    paper : as for `report`; the page is named after the scenario's file, with "-compared" added
 
     Raises
     ------
     InputError
-        no run, or a repeated name
+        there is no run, or a name is repeated
     """
     from ..pages.simulation_comparison import comparison, page
     from ..rendering import paper as printed
@@ -399,7 +404,7 @@ def write_comparison(
 def _page(
     scenario: Trial, simulation: Simulation, tail: str, paper: ReportArguments
 ) -> tuple[Origin, ReportPlace]:
-    """`page_of` for a scenario: its file is attached and names the page."""
+    """The result of `page_of` for a scenario, whose file is attached and names the page."""
     source = scenario.loaded.source
     name = "scenario.yaml" if source.file.startswith("<") else Path(source.file).name
     paper["actuator"] = scenario.actuator

@@ -1,4 +1,4 @@
-"""Run uncertainty studies and detailed studies of a seal, and write their reports."""
+"""Runs uncertainty studies, and detailed studies of a seal; writes their reports."""
 
 from __future__ import annotations
 
@@ -31,25 +31,26 @@ def uncertainty(
     metrics: Sequence[str] = (),
     plugins: Plugins = (),
 ) -> Uncertainty:
-    """Return yield, sensitivity indices and tornado of a design with uncertain inputs.
+    """Compute yield, sensitivity indices and tornado of a design with uncertain inputs.
 
-    Uncertain inputs come from the design (``uncertainty:``, ``measured:``), the libraries, ISO 286
-    and common practice.
+    The uncertain inputs come from the design (``uncertainty:``, ``measured:``), the libraries, ISO
+    286 and common practice.
 
     Parameters
     ----------
     design : the design
-    count : draws for the yield
-    seed : the same seed gives the same result
-    quasi_random : draw scrambled Sobol points, with 16 randomisations, instead of independent ones
-    rows : rows for the indices, (inputs + 2) evaluations each; 0: no indices
-    metrics : analysed beside the margins of all limits; default: the metrics of the objective
+    count : number of draws for the yield
+    seed : seed of the draws; the same seed gives the same result
+    quasi_random : whether to draw scrambled Sobol points, with 16 randomisations, instead of
+        independent points
+    rows : number of sample rows for the indices; each takes (inputs + 2) evaluations. 0: no indices
+    metrics : metrics to analyse besides the margins of all limits; default: those of the objective
     plugins : the user's own metrics and constraints
 
     Raises
     ------
     InputError
-        a distribution that does not fit its value, or belongs to a number that no model reads
+        a distribution does not fit its value, or belongs to a number that no model reads
     """
     from ..uncertainties import uncertainty as run
 
@@ -64,11 +65,11 @@ def uncertainty(
 
 
 def write_uncertainty(study: Uncertainty, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
-    """Write the page of an uncertainty study as PDF and PNG; parameters as `report`.
+    """Write the page of an uncertainty study as PDF and PNG; parameters as for `report`.
 
     Raises
     ------
-    UsageError : no `actuator`, as the study does not contain its design
+    UsageError : `actuator` is missing; the study itself does not contain its design
     """
     from ..pages.uncertainty import page
     from ..rendering import paper as printed
@@ -82,7 +83,7 @@ def write_uncertainty(study: Uncertainty, **paper: Unpack[ReportArguments]) -> l
 
 
 def write_draws(study: Uncertainty, path: str | Path) -> ReportFile:
-    """Write the stored draws as CSV: inputs, margins of all limits, whether all are met."""
+    """Write the stored draws as CSV: inputs, margins of all limits, and whether all are met."""
     from ..pages.uncertainty import series
     from ..rendering.series import write_csv
 
@@ -99,27 +100,27 @@ def seal(
     mapped: bool = False,
     finite_elements: bool = False,
 ) -> SealStudy:
-    """Contact, oil film, friction, leakage and damping of the seals of piston or rod.
+    """Study the seals of piston or rod: contact, oil film, friction, leakage and damping.
 
-    The film is solved even if the design uses a coefficient of friction.
+    The film is solved even if the design states a coefficient of friction instead.
 
     Parameters
     ----------
-    design : as `evaluate`
+    design : as for `evaluate`
     place : "piston" or "rod"
-    speed, pressure : of the counterface [m/s], sealed gauge [Pa]; default: from the moving load
-        case with the highest pressure
-    curves : compute friction over speed at three pressures
-    mapped : compute a map over speed and pressure
-    finite_elements : compute the contact profiles of O-rings and step rings (extra ``fem``); the
-        study's design states them
+    speed, pressure : speed of the counterface [m/s] and sealed gauge pressure [Pa]; default: those
+        of the moving load case with the highest pressure
+    curves : whether to compute friction against speed at three pressures
+    mapped : whether to compute a map of speed and pressure
+    finite_elements : whether to compute the contact profiles of O-rings and step rings (extra
+        ``fem``); the design of the study then states them
 
     Raises
     ------
     InputError
-        no positive speed, or a pressure beyond the stated contact profiles
+        the speed is not positive, or the pressure lies beyond the stated contact profiles
     ActuatorError
-        no finite elements for this seal, or no equilibrium
+        this seal has no finite-element model, or no equilibrium
     """
     from ..friction import film
     from ..studies.seal import study, with_elements
@@ -141,7 +142,7 @@ def seal(
 
 
 def with_contact(actuator: Actuator, study: SealStudy) -> Actuator:
-    """The actuator as read, with the contact profiles of its seal study."""
+    """The actuator as read, with the contact profiles that its seal study computed."""
     seals = actuator.design.seals
     contact = getattr(study.design.seals, study.place).contact
     seal = getattr(seals, study.place).model_copy(update={"contact": contact})
@@ -153,13 +154,13 @@ def with_contact(actuator: Actuator, study: SealStudy) -> Actuator:
 def write_seal(
     study: SealStudy, *, sheet: bool = True, **paper: Unpack[ReportArguments]
 ) -> list[ReportFile]:
-    """Write the sheet of a seal (PDF and PNG), and its map, if any, as CSV.
+    """Write the sheet of a seal study (PDF and PNG) and its map, if there is one, as CSV.
 
     Parameters
     ----------
-    study : of `seal`
-    sheet : whether to write the sheet, or only the map
-    paper : as `report`
+    study : result of `seal`
+    sheet : whether to write the sheet; if False, only the map is written
+    paper : as for `report`
     """
     from ..pages.seal import page, series
     from ..rendering.paper import write

@@ -1,4 +1,4 @@
-"""Sweep a design: evaluate many variants; draw or list a recorded sweep again."""
+"""Sweeps a design (evaluates many variants), and draws or lists a recorded sweep again."""
 
 from __future__ import annotations
 
@@ -25,10 +25,11 @@ if TYPE_CHECKING:
     from ..sweeps.screen import Engine
 
 LARGE = 1_000_000
-"""Number of points from which a full sweep needs confirmation."""
+"""A full sweep of this many points or more must be confirmed by the user."""
 
 MOST_WORKERS = 1024
-"""Maximum processes on a machine (a choice: more are probably a slip, and may overload it)."""
+"""Maximum number of processes on a machine: our choice; more are probably a slip and may overload
+it."""
 
 
 def sweep(
@@ -59,30 +60,30 @@ def sweep(
     design : the base design
     vary : ``"PATH=A..B:N"`` or ``"PATH=a,b,c"``, or a mapping of PATH to ``"A..B:N"``
     method : "grid" (full factorial), "sobol" or "lhs" (Latin hypercube)
-    n : points of "sobol" and "lhs"
-    seed : of "sobol" and "lhs"
-    store : database to read rows from and write them to
+    n : number of points for "sobol" and "lhs"
+    seed : seed for "sobol" and "lhs"
+    store : database in which rows are looked up and stored
     csv : file for every row
     parquet : the same as Apache Parquet, typed and with metadata (extra `parquet`)
-    keep : best feasible designs to return
-    reduce : compute only what is needed to find the best
-    workers : processes; default: one per core
+    keep : number of best feasible designs to return
+    reduce : whether to compute only the designs needed to find the best
+    workers : number of processes; default: one per core
     scheduler : address of a Dask scheduler, used instead of local processes (extra `cluster`)
-    engine : array library of the screen of `reduce`, "numpy" or "jax" (extra `gpu`); NumPy if JAX
-        is missing
-    yes : confirms a full sweep of a million points or more
+    engine : array library with which `reduce` rules out designs, "numpy" or "jax" (extra `gpu`);
+        NumPy is used if JAX is missing
+    yes : whether a full sweep of a million points or more is confirmed
     plugins : the user's metrics and constraints
-    figures : "parallel", "scatter", "contour", "ucurves", drawn as PNG and SVG
-    show : metrics of the figures; default: the objective and the requirements
-    out : folder of the figures; without it they are only prepared for `draw_sweep`
+    figures : figures to draw as PNG and SVG: "parallel", "scatter", "contour", "ucurves"
+    show : metrics in the figures; default: the objective and the requirements
+    out : folder of the figures; if missing, they are only prepared for `draw_sweep`
 
     Raises
     ------
     UsageError
-        nothing to vary, an invalid form, a size that must be confirmed, or a figure that does not
-        fit the sweep
+        nothing varies, a range is written in an invalid form, the size must be confirmed, or a
+        figure does not fit the sweep
     InputError
-        an invalid PATH or value, an objective without a value, or a store that cannot be used
+        a PATH or value is invalid, the objective has no value, or the store cannot be used
     """
     from ..sweeps import sweep as run
     from ..sweeps.screen import usable_engine
@@ -127,7 +128,7 @@ def sweep(
 def writing(
     study: Study, csv: str | Path | None, parquet: str | Path | None
 ) -> Iterator[Callable[[Chunk], None]]:
-    """Write chunks to all requested files, which appear once all are complete."""
+    """Write chunks of rows to all requested files, which only appear when all are complete."""
     from ..pages.sweep import SweepColumns, about
     from ..rendering.series import CsvFile, ParquetFile
 
@@ -149,11 +150,11 @@ def writing(
 
 
 def _sweepable(actuator: Actuator) -> PreparedDesign:
-    """The design, ready for the models.
+    """The design in the form that the models take.
 
     Raises
     ------
-    InputError : a requirement on a missing metric, or an objective without a value
+    InputError : a requirement is on a metric that does not exist, or the objective has no value
     """
     from ..optimisation.actuator import goal_of
 
@@ -173,7 +174,7 @@ def _points(
     count: int | None,
     seed: int,
 ) -> Plan:
-    """The points of a sweep; arguments as `sweep`."""
+    """The points of a sweep; arguments as for `sweep`."""
     from ..sweeps import plan, read_axis
 
     base = without_variables(actuator)
@@ -183,7 +184,7 @@ def _points(
 
 
 def _require_distinct(files: Sequence[Path]) -> None:
-    """Reject a file for two purposes, and standard output; raises `UsageError`."""
+    """Reject standard output, and a file that is given twice; raises `UsageError`."""
     if Path("-") in files:
         message = "-: standard output is used for the results"
         raise UsageError(Diagnostic(message, "name a file for --store, --csv or --parquet"))
@@ -198,20 +199,20 @@ def _require_distinct(files: Sequence[Path]) -> None:
 
 
 def _read_from(actuator: Actuator) -> list[str]:
-    """The files of a design and of its custom metrics."""
+    """The files from which a design and its custom metrics are read."""
     design = [] if actuator.source is None else [actuator.source.file]
     return [*design, *(plugin.file for plugin in actuator.plugins if plugin.file)]
 
 
 def without_variables(actuator: Actuator) -> Design:
-    """The design without variables and choices."""
+    """The design with its variables and choices removed."""
     return actuator.design.model_copy(update={"variables": {}, "choices": {}})
 
 
 def study_of(
     actuator: Actuator, plan: Plan, *, full: bool, show: Sequence[str], engine: Engine = "numpy"
 ) -> Study:
-    """The study of a sweep: the design, its points and the requested metrics."""
+    """The study behind a sweep: the design, its points and the requested metrics."""
     from ..sweeps.chunk import Study
 
     return Study(
@@ -225,7 +226,7 @@ def study_of(
 
 
 def _watched(study: Study, figures: Sequence[str], show: Sequence[str]) -> tuple[str, ...]:
-    """Metrics for the Pareto lines of the figures; refuses an invalid figure before the sweep."""
+    """Metrics for the figures' Pareto lines; rejects an invalid figure before the sweep starts."""
     if not figures:
         return ()
     from ..pages.sweep_figures.shared import watched
@@ -246,11 +247,11 @@ def draw_sweep(
     Parameters
     ----------
     swept : result of `sweep`
-    figures : "parallel" (varied inputs, objective, metrics), "scatter" (metrics in pairs with
-        their Pareto lines), "contour" (metrics over the two numbers of a grid, with the boundary
-        of every limit), "ucurves" (stiffness over the stroke of the best designs)
-    show : metrics; default: the objective and the requirements, in a contour the objective
-    out, stem : target; default: the design's name in ``reports/``
+    figures : "parallel" (varied inputs, objective, metrics), "scatter" (metrics in pairs with their
+        Pareto lines), "contour" (metrics against the two numbers of a grid, with the boundary of
+        every limit), "ucurves" (stiffness along the stroke, for the best designs)
+    show : metrics to draw; default: the objective and the requirements, for a contour the objective
+    out, stem : folder and name of the files; default: the design's name in ``reports/``
 
     Returns
     -------
@@ -259,9 +260,9 @@ def draw_sweep(
     Raises
     ------
     UsageError
-        no such figure or metric, or a sweep that does not fit it
+        a figure or metric is unknown or does not fit the sweep
     InputError
-        no feasible design, a metric without values, or a folder that cannot be written
+        no design is feasible, a metric has no values, or the folder cannot be written
 
     Notes
     -----
@@ -277,21 +278,21 @@ def draw_sweep(
 
 @dataclass(frozen=True, slots=True)
 class KeptSweep(Displayed):
-    """A sweep from its record: the study, and the run, which has the location of the rows."""
+    """A sweep as its record gives it: the study, and the run, which states where the rows are."""
 
     run: Run
     study: Study
 
 
 def kept_sweep(run: Run, actuator: Actuator) -> KeptSweep:
-    """The sweep of a record, without reading its rows yet."""
+    """The sweep of a record; its rows are not read yet."""
     options = run.body["asked"]
     study = study_of(actuator, _plan(run), full=not options["reduce"], show=options["show"])
     return KeptSweep(run, study)
 
 
 def _plan(run: Run) -> Plan:
-    """The recorded points; raises `ValueError` for a damaged record."""
+    """The points that a record states; raises `ValueError` if the record is damaged."""
     import numpy as np
 
     from ..sweeps.plan import SweepAxis, plan
@@ -323,11 +324,11 @@ def _plan(run: Run) -> Plan:
 
 
 def store_of(run: Run) -> tuple[Path, str]:
-    """The database of a sweep's rows, and the hash of its study there.
+    """The database with a sweep's rows, and the hash of its study there.
 
     Raises
     ------
-    InputError : the sweep has no store, or the file has moved
+    InputError : the sweep has no database, or the file has moved
     """
     if run.head.get("kind") != "sweep":
         message = f"is a run of {run.head.get('kind')}, which has no stored rows"
@@ -346,16 +347,17 @@ def store_of(run: Run) -> tuple[Path, str]:
 
 
 def report_sweep(sweep_record: KeptSweep, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
-    """Write the figures and tables of a recorded sweep again, from the rows in its store.
+    """Write the figures and tables of a recorded sweep again, from the rows in its database.
 
-    The figures are those of the sweep, else parallel axes if a design is feasible. The CSV file
-    (``NAME-sweep.csv``) is omitted for a sweep of over a million points without a CSV file. A
-    Parquet file is written if the sweep wrote one. Only folder and stem of `paper` are used (see
-    `report`).
+    The figures are those of the sweep, or else parallel axes if a design is feasible. The CSV file
+    (``NAME-sweep.csv``) is omitted if the sweep has more than a million points and wrote no CSV
+    file itself. A Parquet file is written if the sweep wrote one. Only folder and stem of `paper`
+    are used (see `report`).
 
     Raises
     ------
-    InputError : the store is missing, lacks rows or has other rows, or the folder cannot be written
+    InputError : the database is missing, lacks rows or has other rows, or the folder cannot be
+        written
     """
     from ..base.files import require_folder
     from ..pages.sweep_figures.shared import watched

@@ -1,9 +1,10 @@
 """The actuator as an optimisation problem, and the derivatives of its results by parameters.
 
-The variables are numbers of the design by PATH. Each limit gives one margin per load case and
-place. Derivatives of values by a parameter use the complex step; derivatives of gradients use
-central differences of complex-step gradients. A parameter whose complex step disagrees with a
-finite difference, as in a look-up table, uses differences. Bounds of variables count as parameters.
+The variables are the design's free numbers, named by PATH. Each limit gives one margin per load
+case and location. Derivatives of values by a parameter use the complex step. Derivatives of
+gradients use central differences of complex-step gradients. A parameter whose complex step
+disagrees with a finite difference (as in a look-up table) uses differences. Bounds of variables
+count as parameters.
 """
 
 from __future__ import annotations
@@ -32,11 +33,12 @@ from .kkt import KktResidual
 from .problem import BoxProblem, ParametricProblem, PointValues, Vector
 
 Fault = Callable[[str, str, str], Diagnostic]
-"""Builds the Diagnostic of a variable with its place in the file: path, message, remedy."""
+"""Builds the Diagnostic for a faulty variable, with its line in the file; takes PATH, message,
+remedy."""
 
 
 def variant(subject: PreparedDesign, values: Mapping[str, Any], library: Library) -> PreparedDesign:
-    """The prepared design with other values by PATH, with new materials from the library.
+    """Prepare the design with other values by PATH; a new material is taken from the library.
 
     Raises
     ------
@@ -55,7 +57,7 @@ def variant(subject: PreparedDesign, values: Mapping[str, Any], library: Library
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """The objective: weighted metrics, each divided by its scale; sign −1 maximises."""
+    """The objective: a weighted sum of metrics, each divided by its scale; sign −1 maximises."""
 
     weights: Mapping[str, float]
     scales: Mapping[str, float]
@@ -63,16 +65,16 @@ class Goal:
 
     @property
     def aim(self) -> Sense:
-        """Whether the metrics are minimised or maximised."""
+        """Sense of the objective: "min" or "max"."""
         return "min" if self.sign > 0 else "max"
 
     @property
     def single(self) -> str | None:
-        """The metric of an objective with a single metric, else None."""
+        """The metric, if the objective consists of a single metric; else None."""
         return next(iter(self.weights)) if len(self.weights) == 1 else None
 
     def value(self, computed: MetricArrays, cases: tuple[str, ...]) -> Array:
-        """The objective of every design, to be minimised."""
+        """The objective of every design, in the form to be minimised."""
         total: Array = 0.0
         for metric, weight in self.weights.items():
             value = worst_value(computed, metric, cases, self.aim)
@@ -80,12 +82,12 @@ class Goal:
         return self.sign * total
 
     def shown(self, objective: float) -> float:
-        """The objective as the user states it (a maximised metric with its own sign)."""
+        """The objective as the user states it: a maximised metric gets its own sign back."""
         return self.sign * objective
 
 
 def worst_value(computed: MetricArrays, metric: str, cases: tuple[str, ...], aim: Sense) -> Array:
-    """The worst value of an objective over load cases and places, (designs,).
+    """The worst value of an objective among load cases and locations, for each design (designs,).
 
     Raises
     ------
@@ -106,7 +108,7 @@ def worst_value(computed: MetricArrays, metric: str, cases: tuple[str, ...], aim
 
 
 def goal_of(subject: PreparedDesign) -> Goal:
-    """The objective of a design; each weighted metric is divided by its present value."""
+    """The objective of a design file; a weighted metric is divided by its present value."""
     objective = subject.design.objective
     sign = 1.0 if objective.aim == "min" else -1.0
     weights = objective.minimise if objective.minimise is not None else objective.maximise
@@ -123,7 +125,7 @@ def goal_of(subject: PreparedDesign) -> Goal:
 
 @dataclass
 class Refusals:
-    """Counts points where metrics of the user have no value although the mass has one."""
+    """Counts the designs that have a mass but no value of a custom metric."""
 
     names: frozenset[str] = frozenset()
     points: int = 0
@@ -131,7 +133,7 @@ class Refusals:
     raised: dict[str, str] = field(default_factory=dict)
 
     def add(self, computed: MetricArrays, count: int) -> None:
-        """Count the points of one evaluation."""
+        """Count the designs of one evaluation that lack a value."""
         self.points += count
         sound = np.isfinite(np.broadcast_to(computed.metrics["mass"][""], (count,)))
         for name in self.names:
@@ -142,7 +144,7 @@ class Refusals:
                 self.raised.setdefault(name, computed.why[name])
 
     def warnings(self) -> tuple[str, ...]:
-        """One warning for each metric without a value at some point."""
+        """One warning for each metric that had no value at some design."""
         return tuple(
             f"{name} gave no value at {100 * lost / self.points:.3g} % of the points tried, "
             "which count as infeasible" + (f": {self.raised[name]}" if name in self.raised else "")
@@ -153,19 +155,20 @@ class Refusals:
 
 @dataclass(frozen=True)
 class ActuatorProblem:
-    """A design with variables as a problem of the generic solver."""
+    """A design with free variables, formulated as a problem for the generic solver."""
 
     subject: PreparedDesign
     goal: Goal
     paths: tuple[str, ...]
     rows: tuple[LimitRow, ...]
     fixed: tuple[LimitRow, ...]
-    """Rows that no variable affects: always met, or always missed."""
+    """Limits that no variable affects: always met, or always missed."""
     problem: BoxProblem
     metrics: frozenset[str] | None
-    """Metrics of objective and rows; None if a custom metric may read any metric."""
+    """Names of the metrics to compute, for objective and limits; None (all) if a custom metric may
+    read any."""
     refusals: Refusals = field(default_factory=Refusals)
-    """Count of points without a value of a custom metric."""
+    """Counts the designs where a custom metric has no value."""
 
     def parametric(self, parameters: tuple[str, ...]) -> ParametricProblem:
         """The problem with the numbers at the PATHs `parameters` as parameters."""
@@ -178,7 +181,7 @@ class ActuatorProblem:
         return ParametricProblem(self.problem, parameters, present, evaluate)
 
     def fixed_numbers(self, x: Vector) -> list[str]:
-        """PATHs of the positive numbers, other than variables, that the models read at x (n,)."""
+        """PATHs of the positive fixed numbers that the models read at the point x (n,)."""
         values = self.subject.values(dict(zip(self.paths, x[:, None], strict=True)))
         self.subject.touch(values)
         return [
@@ -188,7 +191,7 @@ class ActuatorProblem:
         ]
 
     def number_steps(self, x: Vector, paths: Sequence[str]) -> PointValues:
-        """Values at x (n,) with a relative complex step in each of the numbers at `paths`."""
+        """Values of the numbers at `paths` at the point x (n,), each with a complex step."""
         present = np.array([self.subject.numbers[path] for path in paths])
         varied = np.repeat(present[:, None].astype(complex), len(paths), axis=1)
         varied += np.diag(1j * STEP * present)
@@ -201,7 +204,7 @@ class ActuatorProblem:
         parameters: Mapping[str, Array] | None = None,
         outputs: list[MetricArrays] | None = None,
     ) -> PointValues:
-        """Objective and constraint margins of points (variables, designs).
+        """Objective and constraint margins at points (variables, designs).
 
         Adds the computed metrics to `outputs`.
         """
@@ -220,9 +223,9 @@ class ActuatorProblem:
 
 
 def _bounded(margin: Array) -> Array:
-    """A margin scaled for the solver: m below 0, m/(1 + m) above, 1 for infinity.
+    """Compress a margin m for the solver: m below 0, m/(1 + m) above 0, 1 for infinity.
 
-    The scaling changes neither the sign nor, at a margin of 0, value and slope.
+    This keeps the sign of the margin and, at a margin of 0, its value and slope.
     """
     large = real(margin) > 1e9
     finite = where(large, 0.0, margin)
@@ -237,7 +240,7 @@ def _margins(
     count: int,
     reserves: Mapping[str, float],
 ) -> Array:
-    """Margins (rows, designs) of the rows less their reserves, in one vectorised operation."""
+    """Margins (rows, designs) of the limits, less their reserves, in one vectorised operation."""
     if not rows:
         return np.empty((0, count))
     complex_ = any(np.iscomplexobj(value) for value in numbers.varied.values())
@@ -265,12 +268,12 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
     Parameters
     ----------
     subject : the prepared design
-    fault : locates a variable's fault in the file; default: by PATH only
+    fault : builds the Diagnostic of a faulty variable; default: one with the PATH but no line
 
     Raises
     ------
     InputError
-        no variables, or a variable that no model reads
+        the design has no variables, or a variable that no model reads
     """
     design = subject.design
     if not design.variables:
@@ -330,7 +333,7 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
 
 
 def idle_metrics(actuator: ActuatorProblem) -> tuple[str, ...]:
-    """Metrics of the objective that no variable affects."""
+    """Metrics of the objective that no variable changes."""
     start = actuator.problem.start
     assert start is not None
     points = {path: np.array([x, x]) for path, x in zip(actuator.paths, start, strict=True)}
@@ -343,12 +346,12 @@ def idle_metrics(actuator: ActuatorProblem) -> tuple[str, ...]:
 
 
 def require_movable_objective(actuator: ActuatorProblem) -> None:
-    """Reject an objective that no variable affects.
+    """Reject an objective that no variable changes.
 
     Raises
     ------
     InputError
-        no variable affects it
+        no variable changes the objective
     """
     goal = actuator.goal
     if len(idle_metrics(actuator)) == len(goal.weights):
@@ -375,20 +378,20 @@ def _check_read(numbers: Numbers, paths: tuple[str, ...], fault: Fault | None) -
 
 
 RELATIVE_STEP = 1e-5
-"""Step of central differences, relative to the parameter (absolute where it is 0)."""
+"""Step of central differences: relative to the parameter, or absolute for a parameter of 0."""
 
 
 @dataclass(frozen=True)
 class Responses:
-    """Derivatives by each of q parameters, bounds included, at one point.
+    """Derivatives at one point with respect to q parameters, bounds included.
 
     Parameters
     ----------
-    names, values : of the parameters
-    rows : (rows, q), derivative of objective, constraints and equalities
-    mixed : (nf, q), derivative of the gradient of the Lagrangian
-    bounds : (2 nf, q), derivative of the distance to lower, then upper bounds
-    differences : labels of parameters with finite differences
+    names, values : names and values of the parameters
+    rows : (rows, q), derivatives of objective, constraints and equalities
+    mixed : (nf, q), derivatives of the Lagrangian's gradient
+    bounds : (2 nf, q), derivatives of the distances to all lower, then all upper bounds
+    differences : labels of parameters whose derivatives are finite differences
     """
 
     names: tuple[str, ...]
@@ -399,14 +402,14 @@ class Responses:
     differences: tuple[str, ...]
 
     def matters(self, k: int) -> bool:
-        """Whether parameter k changes anything at the point."""
+        """Whether any result changes with parameter k."""
         return bool(self.rows[:, k].any() or self.bounds[:, k].any())
 
 
 def responses(
     parametric: ParametricProblem, evaluator: Evaluator, point: Point, weights: Vector
 ) -> Responses:
-    """Derivatives by the parameters; `weights` (rows,) form the Lagrangian from the rows."""
+    """Derivatives by the parameters; `weights` (rows,) combine the rows into the Lagrangian."""
     count, nf = len(parametric.parameters), evaluator.space.size
     steps = RELATIVE_STEP * np.where(parametric.parameters == 0, 1.0, parametric.parameters)
     rows, fallen = _row_slopes(parametric, point, steps)
@@ -424,7 +427,7 @@ def responses(
 def with_bounds(derivatives: Responses, evaluator: Evaluator, multipliers: Vector) -> Responses:
     """Add a parameter "NAME lower" or "NAME upper" for each bound with a positive multiplier.
 
-    `multipliers` (2 nf,) are those of the lower, then of the upper bounds.
+    `multipliers` (2 nf,) has those of all lower bounds first, then those of all upper bounds.
     """
     space, problem = evaluator.space, evaluator.problem
     nf = space.size
@@ -449,9 +452,9 @@ def with_bounds(derivatives: Responses, evaluator: Evaluator, multipliers: Vecto
 
 
 def perturbed(parametric: ParametricProblem, name: str, k: int, value: float) -> BoxProblem | None:
-    """The problem with parameter k at `value`; None if the bounds would cross.
+    """The problem with parameter k set to `value`; None if a lower bound would exceed its upper.
 
-    Beyond the parameters, k is a bound with the label `name`.
+    If k is beyond the last parameter, it means the bound labelled `name`.
     """
     if k < len(parametric.parameters):
         parameters = parametric.parameters.copy()
@@ -478,7 +481,7 @@ def _rows(parametric: ParametricProblem, points: Vector, parameters: Vector) -> 
 def _row_slopes(
     parametric: ParametricProblem, point: Point, steps: Vector
 ) -> tuple[Vector, tuple[str, ...]]:
-    """Derivative of the rows (rows, q), and the labels of parameters with finite differences."""
+    """Derivatives of the rows (rows, q); labels of parameters that need finite differences."""
     count = len(steps)
     if count == 0:
         return np.zeros((len(point.rows), 0)), ()
@@ -513,7 +516,7 @@ def _mixed(
     weights: Vector,
     steps: Vector,
 ) -> Vector:
-    """Derivative of the Lagrangian's gradient (nf, q); one model call per side where exact."""
+    """Derivatives of the Lagrangian's gradient (nf, q), in one model call per side where exact."""
     count, nf = len(steps), evaluator.space.size
     if count == 0 or nf == 0:
         return np.zeros((nf, count))
@@ -540,11 +543,11 @@ def _mixed(
 
 
 MET = 1e-6
-"""Largest violation that counts as met (contract)."""
+"""Largest violation at which a constraint still counts as met; part of the documented interface."""
 
 
 class Outcome(Enum):
-    """Outcome of a run: status word, sentence, remedy."""
+    """End of a run: a status word, a sentence and a remedy."""
 
     OPTIMUM = (
         "optimal",
@@ -610,17 +613,17 @@ class Outcome(Enum):
 
     @property
     def sentence(self) -> str:
-        """The outcome in plain words."""
+        """The outcome as a sentence."""
         return str(self.value[1])
 
     @property
     def remedy(self) -> str:
-        """The recommended action; empty if none is needed."""
+        """The next step recommended to the user; empty if none."""
         return str(self.value[2])
 
     @property
     def feasible(self) -> bool:
-        """Whether the outcome implies that the point meets every constraint."""
+        """Whether a run with this outcome found a point that meets every constraint."""
         return self in (
             Outcome.OPTIMUM,
             Outcome.NOT_STATIONARY,
@@ -633,7 +636,7 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, slots=True)
 class LocalOptimum:
-    """An end point of local runs, and the number of starts that reached it."""
+    """A point where local runs ended, and how many starts reached it."""
 
     x: Vector
     objective: float
@@ -668,18 +671,19 @@ class Solution:
     outcome : how the run ended
     x : variables (n,)
     objective, constraints, equalities : values at x
-    violation : largest missed margin, 0 if all are met
+    violation : largest violation of any limit, 0 if all limits are met
     kkt : optimality conditions at x; None if the model is undefined at x
-    evaluations, gradients : points evaluated and gradients computed in the local phase
-    samples, feasible_samples : points of the global sweep, and how many were feasible
-    undefined : share of the sweep where the model has no finite values
+    evaluations, gradients : numbers of points evaluated and gradients computed after the sweep
+    samples, feasible_samples : number of points in the global sweep, and how many of them were
+        feasible
+    undefined : share of the sweep's points at which the model has no finite values
     starts : result of each start, in order
     optima : distinct local optima, the best first
-    trace : (evaluation, objective, violation) of each improvement
+    trace : (evaluation number, objective, violation) at each improvement
     algorithm : the algorithm that reached x
     without_effect : labels of variables that affected no value at any point
     warnings : messages for the user
-    seed, seconds : of the run
+    seed, seconds : seed and duration of the run
     """
 
     problem: BoxProblem
@@ -715,7 +719,7 @@ class Solution:
         return self.outcome in (Outcome.INTERRUPTED, Outcome.INTERRUPTED_INFEASIBLE)
 
     def at_bound(self, index: int) -> str | None:
-        """``"lower"``, ``"upper"`` or None for variable `index`."""
+        """Which bound variable `index` has reached: ``"lower"``, ``"upper"`` or None."""
         low, high = self.problem.lower[index], self.problem.upper[index]
         room = 1e-6 * max(abs(low), abs(high), high - low)
         if self.x[index] - low <= room:

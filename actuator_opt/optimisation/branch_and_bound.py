@@ -1,10 +1,10 @@
 """Branch and bound for variables that only take listed values, singly or in groups.
 
-The search first tries all roundings of the continuous optimum, together. Then the most promising
-box comes first; among nearly equal boxes the newest, which is the deepest. The bound of a box is
-its continuous optimum, re-optimised from that of the enclosing box. This optimum is local, so the
-result is the best point reached, without proof. A small box without other free variables is
-evaluated completely, in one model call.
+The search first re-optimises all roundings of the continuous optimum together. It then splits the
+most promising box; among nearly equal boxes, it takes the newest, which is the most divided. The
+bound of a box is its continuous optimum, re-optimised from that of the enclosing box. This optimum
+is local, so the best point of the search is not proven to be the best of all. If a small box has no
+other free variables, all its points are evaluated in one model call.
 """
 
 from __future__ import annotations
@@ -29,44 +29,45 @@ from .resolve.changed import ChangedProblems, applicable
 from .resolve.steps import ScaledHessian, hessian_at, valley_at
 
 ON = 1e-7
-"""Distance from a listed value, relative to the spacing, that counts as zero."""
+"""Distance from a listed value up to which a variable counts as having it, relative to the spacing.
+"""
 
 
 SAME = 1e-9
-"""Relative difference of objectives that counts as zero."""
+"""Relative difference up to which two objectives count as equal."""
 
 
 Rows: TypeAlias = tuple[int, ...]
-"""Selected rows of a group of listed variables, ascending."""
+"""Numbers of the combinations that remain for a group of listed variables, ascending."""
 
 
 Box: TypeAlias = tuple[Rows, ...]
-"""The remaining rows of every group."""
+"""A part of the search space: for every group, the combinations that remain."""
 
 
 Assignment: TypeAlias = tuple[int, ...]
-"""One row of every group."""
+"""One combination chosen for every group."""
 
 
 @dataclass(frozen=True, eq=False)
 class Listed:
-    """A group of variables with listed values; a row is an allowed combination.
+    """Variables whose values are listed together; each row of the list is an allowed combination.
 
     Parameters
     ----------
-    index : of the variables (k,)
-    rows : values (c, k) within their bounds, all different
+    index : numbers of the variables (k,)
+    rows : the c allowed combinations (c, k), all different and within the bounds
     """
 
     index: tuple[int, ...]
     rows: Vector
 
     def values(self, column: int, rows: Rows) -> Vector:
-        """The distinct values of a column in some rows, ascending."""
+        """The distinct values of one variable among the given rows, ascending."""
         return np.unique(self.rows[list(rows), column])
 
     def parts(self, rows: Rows, row: int) -> list[Rows]:
-        """The other rows, split by bounds of single variables that exclude this row."""
+        """Split all rows but `row` into parts; in each, a variable's bounds exclude `row`."""
         parts: list[Rows] = []
         for column, value in enumerate(self.rows[row]):
             of = self.rows[:, column]
@@ -78,14 +79,14 @@ class Listed:
         return [part for part in parts if part]
 
     def at(self, x: Vector, rows: Rows) -> int | None:
-        """The row among `rows` at a point (k,), or None."""
+        """The row among `rows` that a point (k,) has reached, or None."""
         span = np.ptp(self.rows, axis=0)
         matches = np.abs(self.rows[list(rows)] - x) <= ON * span + SAME * np.abs(x)
         positions = np.flatnonzero(matches.all(axis=1))
         return rows[int(positions[0])] if len(positions) else None
 
     def around(self, x: Vector) -> list[int]:
-        """The nearest row to a point (k,) for each rounding; only its own row if it is listed."""
+        """The nearest row for every rounding of a point (k,); only its row if on one."""
         all_rows = tuple(range(len(self.rows)))
         own_row = self.at(x, all_rows)
         if own_row is not None:
@@ -103,12 +104,12 @@ class Listed:
 
 
 def with_rows(box: Box, k: int, rows: Rows) -> Box:
-    """A box with the rows of one group replaced."""
+    """A box in which the rows of group k are replaced."""
     return (*box[:k], rows, *box[k + 1 :])
 
 
 def between(values: Vector, value: float) -> tuple[float, float, float]:
-    """The neighbouring values, and the relative distance to the nearest (0 to 0.5)."""
+    """The two listed values around a value, and its relative distance to the nearer."""
     if len(values) == 1:
         return float(values[0]), float(values[0]), 0.0
     k = int(np.clip(np.searchsorted(values, value), 1, len(values) - 1))
@@ -118,23 +119,24 @@ def between(values: Vector, value: float) -> tuple[float, float, float]:
 
 
 MOST_SOLVES = 400
-"""Maximum re-optimisations of one search."""
+"""Maximum number of re-optimisations in one search."""
 
 MOST_NEIGHBOURS = 256
 """Maximum number of roundings tried at once: all roundings of eight listed variables."""
 
 MOST_MISSED = 4
-"""Maximum assignments examined for the least infeasible assignment."""
+"""Maximum number of assignments examined to find the least infeasible assignment."""
 
 MOST_LISTED = 1024
-"""Maximum assignments of a box for a joint evaluation, if no other variable is free."""
+"""Maximum number of assignments in a box that are evaluated together, if no other variable is free.
+"""
 
 TIE = 0.01
-"""Difference of equally promising bounds, relative to the distance from the lowest bound to the
-best design. A choice."""
+"""Bounds this close count as equally promising. The difference is relative to the distance between
+the lowest bound and the best design's objective. Our choice."""
 
 CLOSE = 1e-7
-"""Relative difference of bounds that counts as zero: the accuracy of the bounds."""
+"""Relative difference up to which two bounds count as equal: the accuracy of the bounds."""
 
 
 @dataclass
@@ -143,13 +145,13 @@ class SizeSearch:
 
     Parameters
     ----------
-    x, objective, assignment : of the best point; None without a feasible point
+    x, objective, assignment : those of the best point; None if no point is feasible
     tried : objective of each assignment, infinite if infeasible
-    solves : number of re-optimisations, of boxes and of assignments
+    solves : number of boxes and assignments re-optimised
     complete : whether the search finished before reaching a limit
-    nearest, missed : the least infeasible assignment and its point, if no point is feasible
-    ends : evaluator and optimum, or least infeasible point, of every box; empty if a box has
-        neither
+    nearest, missed : if no point is feasible, the least infeasible assignment and its point
+    ends : for every box its evaluator, and its optimum or least infeasible point; empty if some box
+        has neither
     """
 
     x: Vector | None
@@ -173,7 +175,7 @@ def search(
     cutoff: float = np.inf,
     memory: Memory | None = None,
 ) -> SizeSearch:
-    """The best point with every listed variable at one of its values.
+    """Find the best point at which every listed variable has one of its listed values.
 
     Parameters
     ----------
@@ -182,8 +184,8 @@ def search(
     x : the continuous optimum (n,)
     most : maximum number of re-optimisations
     deadline : time of `time.perf_counter` at which the search stops
-    cutoff : objectives that are not better than this are ignored
-    memory : results of searches of similar problems with the same rows; extended by this search
+    cutoff : the search ignores designs whose objective is not better than this
+    memory : results from similar problems with the same rows; this search adds its own
     """
     remembered = memory is not None and memory.hessian is not None
     run = _Run(problem, listed, x, most, deadline, cutoff, memory or Memory())
@@ -207,7 +209,7 @@ def search(
 
 
 class _Boxes:
-    """Boxes that wait for the search, by bound and by age."""
+    """Boxes that wait to be searched, with their bounds and their age."""
 
     def __init__(self) -> None:
         self._entries: dict[int, tuple[float, Box, Vector]] = {}
@@ -218,7 +220,7 @@ class _Boxes:
         return bool(self._entries)
 
     def bounds(self) -> list[float]:
-        """The bound of every waiting box."""
+        """The bounds of all waiting boxes."""
         return [bound for bound, *_ in self._entries.values()]
 
     def add(self, bound: float, box: Box, x: Vector) -> None:
@@ -228,7 +230,7 @@ class _Boxes:
         heapq.heappush(self._lowest, (bound, number))
 
     def pop(self, best: float) -> tuple[float, Box, Vector]:
-        """Remove and return the newest of the most promising boxes."""
+        """Remove the newest of the most promising boxes, and return it."""
         while self._lowest[0][1] not in self._entries:
             heapq.heappop(self._lowest)
         lowest_bound, number = self._lowest[0]
@@ -242,25 +244,25 @@ class _Boxes:
 def at(
     problem: BoxProblem, listed: Sequence[Listed], assignment: Assignment, x: Vector, memory: Memory
 ) -> float | None:
-    """The re-optimised objective of one assignment; None if it is infeasible."""
+    """Re-optimise one assignment and return its objective; None if it is infeasible."""
     objective = _Run(problem, listed, x, 1, None, np.inf, memory).reoptimised(assignment, x)
     return objective if objective < np.inf else None
 
 
 @dataclass
 class Memory:
-    """Results of the boxes of a search: starts for similar problems."""
+    """Results for each box, stored as starting points for similar problems."""
 
     hessian: ScaledHessian | None = None
     ends: dict[Box, tuple[Evaluator, Point]] = field(default_factory=dict)
     hessians: dict[Box, ScaledHessian | None] = field(default_factory=dict)
     missed: dict[Box, Vector] = field(default_factory=dict)
-    """The least infeasible points of boxes without a feasible point."""
+    """The least infeasible point of each box that has no feasible point."""
     visited: tuple[Box, ...] = ()
     """Boxes that the last search re-optimised."""
 
     def warm_start(self, box: Box) -> tuple[Vector, ScaledHessian | None] | None:
-        """The optimum in the same box of another problem, and its Hessian."""
+        """The optimum and its Hessian that another problem had in the same box."""
         end = self.ends.get(box)
         if end is None:
             return None
@@ -269,7 +271,7 @@ class Memory:
         return end[1].x, self.hessians[box]
 
     def note(self, box: Box, evaluator: Evaluator, end: Nearest) -> None:
-        """Store the result of a box, unless steps from a stored result reach it easily."""
+        """Store the result of a box, unless a few steps from a stored result reach it."""
         if end.optimum is not None and not (end.followed and box in self.ends):
             self.ends[box] = evaluator, end.optimum
             self.hessians.pop(box, None)
@@ -316,17 +318,17 @@ class _Run:
 
     @property
     def best(self) -> float:
-        """The objective to beat."""
+        """The objective that a further design must improve on."""
         return min(self.cutoff, self.lowest)
 
     def note(self, assignment: Assignment, objective: float) -> None:
-        """Store the objective of an assignment, or replace it by a more exact value."""
+        """Store an assignment's objective, or replace the stored value by a more accurate value."""
         worse = self.tried.get(assignment, np.inf) <= self.lowest < objective
         self.tried[assignment] = objective
         self.lowest = min(self.tried.values()) if worse else min(self.lowest, objective)
 
     def beaten(self, bound: float) -> bool:
-        """Whether no design above a bound can improve on the best design."""
+        """Whether a box with this bound cannot contain a design better than the best design."""
         best = self.best
         return best < np.inf and bound >= best - CLOSE * abs(best)
 
@@ -336,7 +338,7 @@ class _Run:
         return np.concatenate([group.rows[row] for group, row in pairs])
 
     def try_neighbours(self) -> None:
-        """Try every rounding up and down, all at once if the problem allows."""
+        """Try all roundings of the listed variables; together, if the problem allows."""
         sides = [group.around(self.x[list(group.index)]) for group in self.listed]
         assignments = list(itertools.islice(itertools.product(*sides), MOST_NEIGHBOURS))
         for assignment, start in self.reoptimised_together(assignments):
@@ -349,7 +351,7 @@ class _Run:
     def reoptimised_together(
         self, assignments: list[Assignment]
     ) -> list[tuple[Assignment, Vector | None]]:
-        """Re-optimise assignments at once; returns those not solved, with a start or None."""
+        """Re-optimise assignments together; return those not solved, each with a start or None."""
         present = self.x[self.index]
         point, evaluator = self._nearest_point(present, present, self.x)
         names = [self.problem.names[i] for i in self.index]
@@ -380,7 +382,7 @@ class _Run:
         ]
 
     def reoptimised(self, assignment: Assignment, start: Vector) -> float:
-        """Re-optimised objective of an assignment; infinite if it is infeasible."""
+        """The objective of an assignment after re-optimisation; infinite if it is infeasible."""
         if assignment not in self.points:
             values = self.values(assignment)
             box = tuple((row,) for row in assignment)
@@ -391,7 +393,7 @@ class _Run:
         return self.tried[assignment]
 
     def confirmed_best(self) -> Assignment | None:
-        """The best assignment, with its point verified; None without a feasible one."""
+        """The best assignment, with its point verified; None if none is feasible."""
         while True:
             best = min(self.tried, key=lambda assignment: self.tried[assignment], default=None)
             if best is None or not self.tried[best] < self.cutoff:
@@ -401,7 +403,7 @@ class _Run:
             self.reoptimised(best, self.starts.get(best, self.x))
 
     def precompute(self) -> None:
-        """Re-optimise the boxes of the last search at once, as most are needed again."""
+        """Re-optimise the last search's boxes together, as most are needed again."""
         tasks = [self._task(box, *self._bounds(box), self.x, ROUGH) for box in self.memory.visited]
         ends = resolve_boxes(tasks)
         self.precomputed = dict(
@@ -409,7 +411,7 @@ class _Run:
         )
 
     def can_evaluate(self, box: Box) -> bool:
-        """Whether every assignment of a box can be evaluated at once."""
+        """Whether all assignments of a box can be evaluated in one model call."""
         return self.only_listed and math.prod(map(len, box)) <= MOST_LISTED
 
     def evaluate(self, box: Box) -> None:
@@ -425,10 +427,10 @@ class _Run:
             self.tried.setdefault(assignment, objective)
         self.lowest = min(self.lowest, *objectives)
         self.solves += 1
-        self.ends.append((self.reference, None))  # the box has no optimum to compare with
+        self.ends.append((self.reference, None))  # the box has no optimum for comparison
 
     def relax(self, parts: Sequence[Box], x: Vector, boxes: _Boxes) -> None:
-        """Add the boxes whose continuous optimum may improve on the best design."""
+        """Keep the boxes whose continuous optimum is good enough to improve on the best design."""
         large = []
         for box in parts:
             if self.can_evaluate(box):
@@ -448,7 +450,7 @@ class _Run:
         return lower, np.concatenate([rows.max(axis=0) for rows in values])
 
     def parts(self, box: Box, x: Vector, objective: float) -> list[Box]:
-        """The parts of a box that may contain a better point, given its continuous optimum."""
+        """Split a box at its continuous optimum; return the parts that may be better."""
         widest: float = ON
         halves: tuple[int, list[list[int]]] | None = None
         for k, (group, rows) in enumerate(zip(self.listed, box, strict=True)):
@@ -463,13 +465,13 @@ class _Run:
                         [r for r in rows if column_values[r] >= above],
                     ]
                     halves = k, parts if x[index] - below > above - x[index] else parts[::-1]
-        if halves is not None:  # the nearer part last
+        if halves is not None:  # put the nearer part last
             return [with_rows(box, halves[0], tuple(half)) for half in halves[1]]
         rows_at = [
             group.at(x[list(group.index)], rows)
             for group, rows in zip(self.listed, box, strict=True)
         ]
-        if None in rows_at:  # each value is listed, but their combination is not
+        if None in rows_at:  # each variable has a listed value, but not in an allowed combination
             k = rows_at.index(None)
             group, rows = self.listed[k], box[k]
             nearest = min(
@@ -501,7 +503,7 @@ class _Run:
         return SizeSearch(x, objective, best, tried, solves, complete, nearest, missed, ends)
 
     def nearest(self) -> tuple[Assignment, Point] | tuple[None, None]:
-        """The least infeasible of the first assignments, and its point."""
+        """Among the first assignments, the least infeasible and its point."""
         candidates = []
         for assignment in list(self.tried)[:MOST_MISSED]:
             box = tuple((row,) for row in assignment)
@@ -519,7 +521,7 @@ class _Run:
         return assignment, point
 
     def _restricted(self, lower: Vector, upper: Vector) -> Evaluator:
-        """The problem with bounds on its listed variables."""
+        """The problem with these bounds on its listed variables."""
         lowest, highest = self.problem.lower.copy(), self.problem.upper.copy()
         lowest[self.index], highest[self.index] = lower, upper
         evaluator = Evaluator(replace(self.problem, lower=lowest, upper=highest, start=None))
@@ -530,14 +532,14 @@ class _Run:
     def _nearest_point(
         self, lower: Vector, upper: Vector, start: Vector
     ) -> tuple[Point, Evaluator]:
-        """The point nearest to another, within bounds of the listed variables."""
+        """The point within the bounds of the listed variables that is nearest to `start`."""
         evaluator = self._restricted(lower, upper)
         return evaluator.point(evaluator.space.to_z(evaluator.problem.inside(start))), evaluator
 
     def _task(
         self, box: Box, lower: Vector, upper: Vector, start: Vector, criteria: Criteria
     ) -> BoxTask:
-        """A box to re-optimise, from a nearby point or the result of a similar problem."""
+        """The task to re-optimise a box, from a nearby point or the result of a similar problem."""
         warm_start = self.memory.warm_start(box)
         hopeless = warm_start is None and box in self.memory.missed
         x, hessian = warm_start or (self.memory.missed.get(box, start), self.memory.hessian)
@@ -549,7 +551,7 @@ class _Run:
     def _optima(
         self, bounds: Sequence[tuple[Box, Vector, Vector]], start: Vector, criteria: Criteria
     ) -> list[Point | None]:
-        """The optimum of each box, from a nearby point or a similar problem, or None."""
+        """The optimum of each box, reached from a nearby or stored point, or None."""
         precomputed = self.precomputed if criteria is ROUGH else {}
         tasks = {
             box: self._task(box, lower, upper, start, criteria)

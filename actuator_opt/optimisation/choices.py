@@ -1,13 +1,13 @@
-"""The best combination of the design's choices: quick look at each, full solution of the best.
+"""Finds the best combination of the design's choices: a quick look at each, then full solutions.
 
 A quick look descends from the nearest known design. It usually finds the optimum of a combination
 but proves nothing. The best combination, and combinations close to it, are then solved from many
 starts. The record of each combination states how it was searched.
 
-If variables take listed sizes, the sizes of each combination are searched, best combination first.
-The continuous optimum bounds the result with sizes. Combinations whose bound does not beat the best
-sized design are skipped. The bounds are local optima, mostly of a quick look, so they prove
-nothing.
+If variables take listed sizes, the sizes of each combination are searched, starting with the best
+combination. The continuous optimum bounds the result with sizes, so a combination is skipped if
+this bound does not beat the best design with sizes. The bounds are local optima, mostly of a quick
+look, so they prove nothing.
 """
 
 from __future__ import annotations
@@ -35,27 +35,30 @@ from .rounding import RUNNERS_UP, ListedSizes, Wanted, sizes_of
 from .solver import solve
 
 NEAR = 0.05
-"""Relative loss to the best up to which a combination is solved from many starts."""
+"""A combination worse than the best by at most this relative amount is solved from many starts."""
 
 MOST_DOUBTFUL = 2
-"""Maximum combinations solved from many starts without success; these searches take long."""
+"""Maximum number of combinations solved from many starts without success; these searches take long.
+"""
 
 MOST_SOLVED = 6
-"""Maximum combinations solved from many starts."""
+"""Maximum number of combinations solved from many starts."""
 
 BETTER = 1e-3
-"""Relative gain by many starts that triggers a second quick look at all feasible combinations."""
+"""If many starts improve a design by this relative amount, all feasible combinations get a second
+quick look."""
 
 LEAST_SECONDS = 0.1
-"""Least time for the first look and the winner, whatever the limit."""
+"""Minimum time for the first look and for the best combination, whatever the time limit."""
 
 EQUAL = 1e-6
-"""Relative difference of equal objectives, of which the first in the file wins."""
+"""Relative difference up to which objectives count as equal; the first in the file is then
+preferred."""
 
 
 @dataclass(frozen=True, slots=True)
 class ChoiceSettings:
-    """Settings of the full search; `until` is a time of `time.perf_counter`."""
+    """Settings of the full search; `until` is the time of `time.perf_counter` at which it stops."""
 
     algorithm: str
     starts: int
@@ -78,14 +81,14 @@ class ChoiceSearch:
     looks: list[Look] = field(default_factory=list)
 
     def mendable(self) -> frozenset[str]:
-        """Missed checks that another combination meets."""
+        """Checks that the design misses but that another combination meets."""
         lists = [
             look.checks for look in self.looks if look.how not in ("not tried", "not possible")
         ]
         return frozenset().union(*lists) - frozenset.intersection(*lists) if lists else frozenset()
 
     def ranked(self) -> list[Look]:
-        """The looks by requirements, then checks, then objective; ties in file order."""
+        """The looks by requirements met, checks met, then objective; ties in file order."""
         mendable = self.mendable()
 
         def rank(look: Look) -> tuple[bool, float, int, float, int]:
@@ -113,7 +116,7 @@ class ChoiceSearch:
 
 
 def possible(subject: PreparedDesign) -> list[Look]:
-    """All combinations of the choices, each with its design or the reason why it is impossible.
+    """All combinations of the choices, each with its design or why it is impossible.
 
     Raises
     ------
@@ -152,7 +155,7 @@ def _require_one(looks: Sequence[Look]) -> None:
         raise InputError(Diagnostic(message, "change the values listed there", path="choices"))
 
 
-@np.errstate(all="ignore")  # designs without finite values rank last
+@np.errstate(all="ignore")  # designs without finite values come last
 def search_choices(
     subject: PreparedDesign, settings: ChoiceSettings, max_solved: int = MOST_SOLVED
 ) -> ChoiceSearch:
@@ -161,7 +164,7 @@ def search_choices(
     Parameters
     ----------
     subject : the design with its choices
-    settings : of the full searches
+    settings : settings of the full searches
     max_solved : maximum number of combinations solved from many starts
 
     Raises
@@ -190,7 +193,7 @@ def search_choices(
 
 
 def _with_goal(actuator: ActuatorProblem, goal: Goal) -> ActuatorProblem:
-    """The problem with the common objective, so that all combinations have the same weights."""
+    """The problem with one common objective, so that all combinations use the same weights."""
     shared = replace(actuator, goal=goal)
     return replace(shared, problem=replace(actuator.problem, evaluate=shared.evaluate))
 
@@ -204,7 +207,7 @@ def _missed_checks(rows: Sequence[LimitRow]) -> frozenset[str]:
 
 
 def _evaluate(look: Look, goal: Goal) -> None:
-    """Evaluate a combination without free variables."""
+    """Evaluate a combination that has no free variables."""
     subject = look.subject
     assert subject is not None
     values = subject.values()
@@ -227,7 +230,7 @@ def _evaluate(look: Look, goal: Goal) -> None:
 
 
 def _look_at_all(choice_search: ChoiceSearch, settings: ChoiceSettings) -> None:
-    """Look quickly at every combination, in half of the available time."""
+    """Take a quick look at every combination, in half of the available time."""
     began = time.perf_counter()
     for look in choice_search.looks:
         seconds = settings.left(0.5, began)
@@ -247,11 +250,11 @@ def _any(choice_search: ChoiceSearch) -> bool:
 
 
 def _starts(choice_search: ChoiceSearch, look: Look) -> list[LookStart]:
-    """Starts from the combinations that differ in the fewest values.
+    """Starts for a combination, taken from those that differ from it in the fewest values.
 
-    A feasible neighbour is a start for a descent. An infeasible neighbour is the start for a
-    reduction of the violation. The latest neighbour with a Hessian differs least; steps may follow
-    its optimum.
+    A feasible neighbour is the start of a descent. An infeasible neighbour is the start of a search
+    that reduces the violation. If the latest neighbour has a Hessian, it differs least, and steps
+    may follow its optimum.
     """
     solved = [other for other in choice_search.looks if other.x is not None and other is not look]
 
@@ -281,7 +284,7 @@ def _starts(choice_search: ChoiceSearch, look: Look) -> list[LookStart]:
 
 
 def _solve_best(choice_search: ChoiceSearch, settings: ChoiceSettings, max_solved: int) -> None:
-    """Solve the best combination, and those close to it, from many starts."""
+    """Solve the best combination from many starts, and those that are nearly as good."""
     first_gain = True
     for _ in range(max_solved):
         look = _promising(choice_search)
@@ -325,7 +328,7 @@ def _promising(choice_search: ChoiceSearch) -> Look | None:
 
 
 def many_starts(look: Look, settings: ChoiceSettings) -> None:
-    """Solve a combination from many starts and its best known point."""
+    """Solve a combination from many starts and from its best known point."""
     assert look.actuator is not None
     seconds = settings.left()
     starts = [] if look.x is None else [look.x]
@@ -381,7 +384,7 @@ def record(choice_search: ChoiceSearch, design: Design) -> Choices:
 
 
 def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
-    """The search of a combination and its outcome, in words."""
+    """Search method and outcome of a combination, in words."""
     if look.fault:
         return f"not possible: {look.fault}"
     if look.how == "not tried":
@@ -410,18 +413,18 @@ _SIZING = {
     "none": "none with listed sizes",
     "no size fits": "no listed size within its bounds",
 }
-"""Result of the search for listed sizes."""
+"""Words for the result of the search for listed sizes."""
 
 
 _WITHOUT = ("none", "none better", "no size fits")
-"""Combinations without a design to compare."""
+"""Words for combinations that have no design to compare."""
 
 
 _WAYS: dict[How, str] = {"multistart": "many starts: ", "quick": "quick look: ", "evaluated": ""}
 
 
 def _sentence(choices: Choices) -> str:
-    """The numbers of combinations, feasible combinations, and combinations of each search."""
+    """Sentence with the numbers of combinations: all, feasible, and searched in each way."""
     total, feasible = len(choices.combinations), choices.feasible
     result = f"none of {total} combinations meets all requirements; the nearest one is shown"
     if feasible:
@@ -445,12 +448,12 @@ def _counts(choices: Choices) -> Iterator[str]:
 
 
 _NOTHING_BETTER = SizeSearch(None, None, None, {}, 0, complete=True)
-"""Result of a combination that cannot improve on the best design."""
+"""Search result for a combination that cannot improve on the best design."""
 
 
 @dataclass(frozen=True)
 class Sized:
-    """A combination with its sizes and the result of their search."""
+    """A combination with the chosen sizes, and the result of the search for them."""
 
     look: Look
     sizes: ListedSizes
@@ -461,10 +464,10 @@ class Sized:
 def best_of_sizes(
     choices: ChoiceSearch, requested: Wanted, settings: ChoiceSettings
 ) -> Sized | None:
-    """Find the combination with the best design of listed sizes, solved from many starts.
+    """Find the combination with the best design of listed sizes; it is solved from many starts.
 
-    If no size fits, the combination with the best continuous optimum. None if no variable has
-    sizes.
+    If no size fits, returns the combination with the best continuous optimum. None if no variable
+    has listed sizes.
 
     Raises
     ------
@@ -486,7 +489,7 @@ def best_of_sizes(
 def _searched(
     choices: ChoiceSearch, requested: Wanted, settings: ChoiceSettings
 ) -> Iterator[Sized]:
-    """Search the sizes of each promising combination for a better design."""
+    """Search the sizes of each combination that may give a better design."""
     error: InputError | None = None
     memories: dict[object, Memory] = {}
     evidence_by_sizes: dict[object, list[Evidence]] = {}
@@ -534,7 +537,7 @@ def _searched(
 
 
 def _runners_up(winner: Sized, searched: Sequence[Sized]) -> None:
-    """Evaluate the best sizes in the next best combinations."""
+    """Evaluate the best designs with sizes among the next best combinations."""
     assert winner.size_search.assignment is not None
     candidates = [sized for sized in searched if sized.look.sizing == "none better"]
     for sized in candidates[:RUNNERS_UP]:

@@ -1,9 +1,10 @@
-"""Remedies for an infeasible actuator: a sufficient change of a fixed dimension or of a choice.
+"""Finds remedies for an infeasible actuator: one changed dimension or choice that is enough.
 
-A dimension becomes a variable that may move in the helpful direction, from the design of the
-smallest joint relaxation. A choice replaces the value of the file. A design that meets all limits
-and checks confirms each remedy. Counts, not time, limit the effort, so the same input gives the
-same remedies. Candidates that were not tried are listed.
+To change a fixed dimension, it is made a variable that may move in the helpful direction; the start
+is the design with the smallest joint relaxation of the limits. To change a choice, its alternative
+replaces the word in the file. Each remedy is confirmed by a design that meets all limits and
+checks. The effort is limited by counts, not by time, so the same input gives the same remedies.
+Candidates that were not tried are listed.
 """
 
 from __future__ import annotations
@@ -37,26 +38,26 @@ DIMENSIONS = (
     "bore", "wall_thickness", "winding_angle", "rod_diameter", "rod_inner_diameter", "part_length",
     "radial_clearance", "thread_diameter", "squeeze", "diameter",
 )  # fmt: skip
-"""Quantities of dimensions that may change; stroke and duty are excluded. A choice."""
+"""Quantities whose dimensions may change, without stroke and operating data. Our choice."""
 
 PARTS = re.compile(r"(cylinder|barrel|rod|piston|head|caps|retention|clevis|seals|lines)\b")
-"""Parts to which these dimensions belong."""
+"""Parts whose dimensions may change."""
 
 MOST_DIMENSIONS = 8
-"""Maximum dimensions tried, most helpful first: a choice, to limit the time."""
+"""Maximum number of dimensions tried, the most helpful first: our choice, to limit the time."""
 
 MOST_CHOICES = 4
-"""Maximum choices solved, least infeasible first: a choice, to limit the time."""
+"""Maximum number of choices solved, the least infeasible first: our choice, to limit the time."""
 
 ENOUGH = 3
-"""Number of remedies of one kind after which the search for this kind stops: a choice."""
+"""The search for a kind of remedy stops after this number of remedies: our choice."""
 
 WORTH = 0.1
-"""Share of the missed margins that a factor of two on a number must close, by its slope. Numbers
-that close less are not tried. A choice."""
+"""Share of the missed margins that doubling or halving a number must close, judged by its slope.
+Numbers that close less are not tried. Our choice."""
 
 DIGITS = 4
-"""Digits of a dimension; a design with the rounded value confirms that it is feasible."""
+"""Significant digits of a dimension; a design with the rounded dimension confirms the remedy."""
 
 SUBSTITUTES = {
     "metal": ("al_7075_t6", "ti_6al4v", "steel_42crmo4", "steel_17_4ph_h1025"),
@@ -64,17 +65,18 @@ SUBSTITUTES = {
     "seal": ("nbr_70", "nbr_90", "hnbr_75", "fkm_90"),
     "adhesive": ("epoxy_structural",),
 }
-"""Common library materials, tried in place of a material of the same kind. A choice."""
+"""Common library materials that are tried in place of another material of the same kind. Our
+choice."""
 
 BACK_UP = "back_up_ptfe"
-"""Material of a back-up ring if the design has none: a common material. A choice."""
+"""Material assumed for a back-up ring if the design states none: a common material. Our choice."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cure:
-    """A sufficient change: a fixed dimension at another value (SI), or another choice.
+    """A change that is enough alone: a fixed dimension with another value (SI), or another choice.
 
-    `beside` lists further entries that a choice needs, by PATH.
+    `beside` lists other entries that must change with a choice, by PATH.
     """
 
     path: str
@@ -85,9 +87,9 @@ class Cure:
 
 @dataclass(frozen=True, slots=True)
 class Cures:
-    """Dimensions and choices that are enough alone, and the PATHs not tried.
+    """Dimensions and choices that are each enough alone, and the PATHs that were not tried.
 
-    `together` lists dimensions that are only enough together.
+    `together` lists dimensions that are only enough if they change together.
     """
 
     dimensions: tuple[Cure, ...] = ()
@@ -97,7 +99,7 @@ class Cures:
 
 
 def cures(actuator: ActuatorProblem, conflict: Conflict) -> Cures:
-    """The fixed dimensions and choices that are enough alone.
+    """Find the fixed dimensions and choices that are each enough alone.
 
     Parameters
     ----------
@@ -116,7 +118,7 @@ def cures(actuator: ActuatorProblem, conflict: Conflict) -> Cures:
 
 
 def _gains(actuator: ActuatorProblem, conflict: Conflict) -> dict[str, float]:
-    """Fall of the missed margins per relative growth of every number, by PATH."""
+    """By PATH, how much a relative growth of each number reduces the missed margins."""
     paths = [
         path
         for path in actuator.fixed_numbers(conflict.x)
@@ -132,7 +134,7 @@ def _gains(actuator: ActuatorProblem, conflict: Conflict) -> dict[str, float]:
 def _dimensions(
     actuator: ActuatorProblem, x: Vector, gains: Mapping[str, float]
 ) -> tuple[tuple[Cure, ...], tuple[Cure, ...], list[str]]:
-    """Dimensions enough alone, smallest change first; else enough together; and those not tried."""
+    """Dimensions that are enough alone, least change first, or else together; and the untried."""
     design = actuator.subject.design
     candidates = sorted(
         (
@@ -166,7 +168,7 @@ def _dimensions(
 
 
 def _limit(quantity: Quantity, now: float, gain: float) -> float:
-    """Limit of a dimension's change in the helpful direction, within its valid range."""
+    """Limit to which a dimension may change in the helpful direction within its valid range."""
     limit = now * repairs.WIDEST if gain > 0 else now / repairs.WIDEST
     limit = limit if quantity.lower is None else max(limit, quantity.lower)
     return float(limit if quantity.upper is None else min(limit, quantity.upper))
@@ -179,15 +181,15 @@ def least_changes(
     paths: Mapping[int, str],
     design: Design,
 ) -> list[Cure]:
-    """The least change of some fixed variables that meets all limits; empty if there is none.
+    """The least change of some fixed variables with which all limits are met; empty if impossible.
 
-    Values are rounded outwards, and a design confirms the rounded values.
+    Values are rounded away from the present value, and a design confirms the rounded values.
 
     Parameters
     ----------
-    problem, start : the problem with these variables fixed, and one of its points
-    limits, paths : limit of the change and PATH of each variable, by index
-    design : defines the quantities of the PATHs
+    problem, start : the problem in which these variables are fixed, and one of its points
+    limits, paths : by index of the variable, the limit of its change and its PATH
+    design : the design, from which the quantity of each PATH is known
     """
     places = [place for place, limit in limits.items() if limit != start[place]]
     if not places:
@@ -223,7 +225,7 @@ def least_changes(
 
 
 def rounded_outward(quantity: Quantity, value: float, *, upwards: bool) -> float:
-    """A value (SI) rounded outwards in its display unit."""
+    """A value (SI) rounded in its display unit, upwards or downwards."""
     shown = outward(quantity.to_display(value), DIGITS, upwards)
     return unit(quantity.unit, quantity.dimension).to_si(shown) if quantity.unit else shown
 
@@ -235,9 +237,9 @@ def _least_first(enough: Sequence[Cure]) -> tuple[Cure, ...]:
 
 
 def with_variables(actuator: ActuatorProblem, paths: Sequence[str]) -> BoxProblem:
-    """The problem with the numbers at `paths` as additional variables, fixed at their values.
+    """The problem with the numbers at `paths` as further variables, fixed at their present values.
 
-    It includes rows that only these variables affect, except for checks that no variable can fix.
+    Includes the limits that only these variables affect, but no checks that no variable can fix.
     """
     subject, numbers = actuator.subject, actuator.subject.numbers
     values = {path: numbers[path] for path in paths}
@@ -250,7 +252,7 @@ def with_variables(actuator: ActuatorProblem, paths: Sequence[str]) -> BoxProble
 
 
 def _without_rows(actuator: ActuatorProblem, lost: frozenset[str]) -> BoxProblem:
-    """The problem without the rows of some checks."""
+    """The problem without the limits of some checks."""
     rows = np.array([row.label not in lost for row in actuator.rows], dtype=bool)
 
     def evaluate(points: Array) -> PointValues:
@@ -265,7 +267,7 @@ def _without_rows(actuator: ActuatorProblem, lost: frozenset[str]) -> BoxProblem
 
 
 def _unfixable_checks(actuator: ActuatorProblem) -> frozenset[str]:
-    """Labels of the missed checks that no variable can fix."""
+    """Labels of the missed checks that no variable can correct."""
     return frozenset(
         row.label
         for row in actuator.fixed
@@ -274,7 +276,7 @@ def _unfixable_checks(actuator: ActuatorProblem) -> frozenset[str]:
 
 
 def outward(value: float, digits: int, upwards: bool) -> float:
-    """A number rounded to some digits, upwards or downwards; floating-point noise is ignored.
+    """A number rounded upwards or downwards to `digits` digits; floating-point noise is ignored.
 
     >>> outward(283.0994, 4, True), outward(9.98645, 4, False), outward(400.00000001, 4, True)
     (283.1, 9.986, 400.0)
@@ -291,7 +293,7 @@ def outward(value: float, digits: int, upwards: bool) -> float:
 def _choices(
     actuator: ActuatorProblem, conflict: Conflict, gains: Mapping[str, float]
 ) -> tuple[tuple[Cure, ...], list[str]]:
-    """Choices that are enough alone, least infeasible first; and those not tried."""
+    """Choices that are enough alone, least infeasible first, and the choices not tried."""
     subject, library = actuator.subject, load_library()
     present = _missed(actuator.problem, conflict.x)
     offered: list[tuple[float, Cure, BoxProblem]] = []
@@ -319,7 +321,7 @@ def _choices(
 
 
 def _missed(problem: BoxProblem, x: Vector) -> float:
-    """Sum of the missed margins at a point; infinite where the models have no result."""
+    """Sum of the missed margins at a point; infinite if the models have no result there."""
     rows = Evaluator.screen(problem.rows(x[:, None]))[1:, 0]
     return float(np.maximum(-rows, 0.0).sum()) if np.isfinite(rows).all() else math.inf
 
@@ -327,9 +329,9 @@ def _missed(problem: BoxProblem, x: Vector) -> float:
 def _candidate_choices(
     subject: PreparedDesign, library: Library, gains: Mapping[str, float], places: set[str]
 ) -> Iterator[tuple[str, str, dict[str, str]]]:
-    """Choices that may resolve the conflict: PATH, alternative, further entries it needs.
+    """Choices that may resolve the conflict: PATH, alternative, entries to change with it.
 
-    A part is included if its numbers have an effect (`gains`), a seal also if it misses a limit
+    A part is included if its numbers have an effect (`gains`); a seal also if it misses a limit
     (`places`).
     """
     design = subject.design
@@ -361,7 +363,7 @@ def _candidate_choices(
 
 
 def _rings(seal: Seal, section: str, count: int) -> dict[str, str] | None:
-    """Further entries for more back-up rings; None if no standard defines their gland width."""
+    """Entries to change for more back-up rings; None if no standard has a gland for them."""
     if seal.back_up_material is not None and seal.back_up_thickness is not None:
         return {}
     try:
@@ -374,7 +376,7 @@ def _rings(seal: Seal, section: str, count: int) -> dict[str, str] | None:
 
 
 def _word_at(design: Design, path: str) -> str:
-    """The word or material at a PATH; "" if the design states none."""
+    """The word or material that a design states at a PATH; "" if it states none."""
     value: object = design
     for step in re.split(r"\.|(?=\[)", path):
         layer = re.fullmatch(r"\[(\d+)\]", step)
@@ -388,7 +390,7 @@ def _word_at(design: Design, path: str) -> str:
 def _with_choice(
     actuator: ActuatorProblem, values: Mapping[str, str], library: Library
 ) -> BoxProblem | None:
-    """The problem with another choice; None if the choice is invalid or misses another check."""
+    """The problem with another choice; None if that is invalid or misses another check."""
     subject = actuator.subject
     try:
         other = build(replace(variant(subject, values, library), reserves=subject.reserves))

@@ -1,8 +1,8 @@
-"""Evaluates a problem for the solvers: values and exact gradients of each point, once.
+"""Evaluates a problem for the solvers: values and exact gradients, computed once per point.
 
-Real evaluations give the values, so that a domain error (the root of a negative number) becomes
-NaN. One batched complex step gives the gradients [Squire1998]. They are compared with finite
-differences once; rows that differ use central differences.
+Values come from real arithmetic, so that a domain error (such as the root of a negative number)
+becomes NaN. Gradients come from one batched complex step [Squire1998]. They are compared with
+finite differences once; rows that disagree use central differences.
 """
 
 from __future__ import annotations
@@ -18,20 +18,21 @@ from ..base.numeric import STEP
 from .problem import BoxProblem, Space, Vector
 
 CHUNK = 4096
-"""Maximum columns in one model call."""
+"""Maximum number of points in one model call."""
 
 DIFFERENCE_STEP = 6e-6
-"""Step of central differences of values, in solver coordinates: near the cube root of rounding."""
+"""Step for central differences of values, in solver coordinates: near the cube root of rounding
+error."""
 
 HESSIAN_STEP = 1e-5
-"""Step of central differences of exact gradients."""
+"""Step for central differences of exact gradients, which give the Hessian."""
 
 CEILING = 1e9
-"""Substitute for an infinite margin of an unloaded part; its slope is zero."""
+"""Number that replaces the infinite margin of an unloaded part; its slope is zero."""
 
 
 class LimitReached(Exception):
-    """The evaluation or time limit of a run is reached."""
+    """Raised when the limit of evaluations or time of a run is reached."""
 
 
 @dataclass(slots=True)
@@ -52,7 +53,7 @@ class Point:
 
 
 class Evaluator:
-    """Values, gradients and Hessians of one problem in solver coordinates.
+    """Values, gradients and Hessians of a problem, in solver coordinates.
 
     Parameters
     ----------
@@ -90,18 +91,18 @@ class Evaluator:
         self.trace: list[tuple[int, float, float]] = []
         self.best: Point | None = None
         self.precomputed: dict[bytes, npt.NDArray[np.generic]] = {}
-        """Precomputed rows of the `columns` of points, by coordinates."""
+        """Rows computed in advance for the `columns` of points, by the points' coordinates."""
         self._cache: dict[bytes, Point] = {}
 
     @property
     def late(self) -> bool:
-        """Whether the time limit is reached or a stop is requested."""
+        """Whether the time limit is reached or the caller wants the run to stop."""
         elapsed = time.perf_counter() - self.began
         timed_out = self.max_seconds is not None and elapsed >= self.max_seconds
         return timed_out or (self.stop is not None and self.stop())
 
     def check_limits(self) -> None:
-        """Raise `LimitReached` at the limit of evaluations or time."""
+        """Raise `LimitReached` if the limit of evaluations or time is reached."""
         if not self.limited:
             return
         counted_out = self.max_evaluations is not None and self.evaluations >= self.max_evaluations
@@ -110,7 +111,7 @@ class Evaluator:
             raise LimitReached
 
     def point(self, z: Vector) -> Point:
-        """The evaluated point at z (nf,), from the cache if known."""
+        """The evaluated point at z (nf,), from the cache if already known."""
         point = self._cache.get(z.tobytes())
         if point is not None:
             return point
@@ -126,17 +127,17 @@ class Evaluator:
         return self._store(z, rows, slopes)
 
     def adopt_check(self, checked: Evaluator) -> None:
-        """Reuse the gradient check of an evaluator whose problem has the same rows."""
+        """Take over the gradient check of another evaluator whose problem has the same rows."""
         self.complex_works = checked.complex_works
         self.difference_rows = checked.difference_rows
 
     @property
     def exact(self) -> bool:
-        """Whether every gradient comes from the complex step."""
+        """Whether every gradient comes from the complex step, none from differences."""
         return self.complex_works and not self.difference_rows.any() and self.space.size > 0
 
     def _store(self, z: Vector, rows: Vector, slopes: Vector | None) -> Point:
-        """Count and cache a point with its rows."""
+        """Count a point, and store it with its rows in the cache."""
         valid = bool(np.isfinite(rows).all())
         self.evaluations += 1
         self.invalid += not valid
@@ -153,17 +154,17 @@ class Evaluator:
         return point
 
     def enter(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
-        """The point at z (nf,) whose `columns` have these rows."""
+        """The point at z (nf,), given the rows of its `columns`."""
         return self._store(z, *self.values_and_slopes(rows))
 
     def enter_precomputed(self) -> None:
-        """Count the precomputed points as visited."""
+        """Count the points computed in advance as visited."""
         for z, rows in self.precomputed.items():
             self.enter(np.frombuffer(z), rows)
         self.precomputed.clear()
 
     def _record(self, point: Point) -> None:
-        """Add a point to the trace if it improves on the last entry."""
+        """Add a point to the trace if it improves on the last point there."""
         excess = point.violation if point.violation > 1e-6 else 0.0
         if self.trace:
             _, objective, violation = self.trace[-1]
@@ -173,12 +174,12 @@ class Evaluator:
         self.trace.append((self.evaluations, point.objective, point.violation))
 
     def batch(self, z: Vector) -> Vector:
-        """Rows (rows, k) of coordinates (nf, k), in one call; NaN where the model is undefined."""
+        """Rows (rows, k) at coordinates (nf, k), in one call; NaN where the model is undefined."""
         return self.screen(self.problem.rows(self.space.to_x(z)))
 
     @staticmethod
     def screen(rows: npt.NDArray[np.generic]) -> Vector:
-        """Replace infinite margins by their ceiling, and other infinities by NaN."""
+        """Replace infinite margins by `CEILING`, and other infinite values by NaN."""
         values = np.array(rows.real, dtype=float)
         margins = values[1:]
         margins[margins == np.inf] = CEILING
@@ -186,9 +187,9 @@ class Evaluator:
         return values
 
     def violations(self, rows: Vector, kind: str) -> Vector:
-        """Infeasibility (k,) of rows (rows, k): the "worst" violation, or the bounded "sum".
+        """Infeasibility (k,) of rows (rows, k): the "worst" violation, or a bounded "sum".
 
-        The sum is that of v/(1 + v) over the violations v, so that no row dominates. NaN counts as
+        The sum adds v/(1 + v) for every violation v, so that no row dominates. NaN counts as
         infinitely infeasible.
         """
         margins = rows[1 : 1 + self.constraint_count]
@@ -200,13 +201,13 @@ class Evaluator:
         return np.where(np.isfinite(rows).all(axis=0), result, np.inf)
 
     def jacobian(self, point: Point) -> Vector:
-        """Gradients (rows, nf) at a point in solver coordinates; an undefined slope is 0."""
+        """Gradients (rows, nf) at a point, in solver coordinates; an undefined slope becomes 0."""
         if point.jacobian is None:
             return self._store_jacobian(point, self.jacobians(point.z[:, None])[:, 0])
         return point.jacobian
 
     def take_slopes(self, points: Sequence[Point]) -> None:
-        """Compute the gradients at some points, in one model call."""
+        """Compute the gradients at several points in one model call."""
         slopes = self.jacobians(np.stack([point.z for point in points], axis=1))
         for k, point in enumerate(points):
             self._store_jacobian(point, slopes[:, k])
@@ -223,14 +224,14 @@ class Evaluator:
         return slopes
 
     def columns(self, z: Vector) -> npt.NDArray[np.complex128]:
-        """Complex points (n, nf) whose rows contain value and gradient at coordinates (nf, 1)."""
+        """Complex points (n, nf) from which values and gradients at coordinates (nf, 1) follow."""
         return self.space.complex_steps(self.space.to_x(z))
 
     def values_and_slopes(self, rows: npt.NDArray[np.generic]) -> tuple[Vector, Vector]:
-        """Rows (rows, 1) and gradients (rows, nf) of one point from the rows of its `columns`.
+        """Values (rows, 1) and gradients (rows, nf) of a point, from the rows of its `columns`.
 
         Outside its domain, a complex root or logarithm has a large imaginary part instead of NaN.
-        These rows become NaN.
+        Such rows become NaN.
         """
         hidden = (np.abs(rows.imag) > 1e-9 * (1.0 + np.abs(rows.real))).any(axis=1)
         values = self.screen(np.where(hidden, np.nan, rows.real[:, 0])[:, None])
@@ -280,7 +281,7 @@ class Evaluator:
         return np.where(np.isnan(above), (middle - below) / DIFFERENCE_STEP, forward)
 
     def hessian(self, point: Point, weights: Vector, columns: npt.NDArray[np.intp]) -> Vector:
-        """Hessian (nf, nf) of weights @ rows in the given columns and rows; zero elsewhere."""
+        """Hessian (nf, nf) of weights @ rows in the given columns; zero elsewhere."""
         n = self.space.size
         result = np.zeros((n, n))
         if len(columns) == 0:
@@ -303,7 +304,7 @@ class Evaluator:
         return result
 
     def check_gradients(self, point: Point) -> tuple[str, ...]:
-        """Compare the complex step with finite differences; returns warnings.
+        """Compare the complex step with finite differences; return warnings.
 
         Rows that differ use finite differences from then on.
         """
@@ -332,7 +333,7 @@ class Evaluator:
     def _disagreement(self, point: Point, exact: Vector) -> npt.NDArray[np.bool_]:
         n = self.space.size
         wrong = np.ones(len(exact), dtype=bool)
-        for step in (1e-5, 1e-4, 1e-6):  # a kink or rounding does not affect all three
+        for step in (1e-5, 1e-4, 1e-6):  # a kink or rounding does not spoil all three steps
             moves = step * np.eye(n)
             z = point.z[:, None]
             sides = np.concatenate([z + moves, z - moves], axis=1)
@@ -350,9 +351,9 @@ class Evaluator:
 
 
 def points_together(requests: Sequence[tuple[Evaluator, Vector]]) -> list[Point]:
-    """Evaluate a point z (nf,) of each evaluator with gradients, in one model call.
+    """Evaluate each evaluator's point z (nf,), with gradients, in one model call.
 
-    The problems differ at most in their bounds.
+    The evaluators' problems may differ only in their bounds.
     """
     if len(requests) == 1 or not all(evaluator.exact for evaluator, _ in requests):
         return [evaluator.point(z) for evaluator, z in requests]

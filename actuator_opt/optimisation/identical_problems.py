@@ -1,10 +1,10 @@
-"""Detects problems with the same result of a search of sizes.
+"""Detects problems for which a search of listed sizes gives the same result.
 
-Combinations of choices often differ in numbers that only enter inactive limits, such as the
+Combinations of choices often differ only in numbers that enter inactive limits, such as the
 viscosity of oils with the same bulk modulus. The search of listed sizes depends on the result of
-each box: its optimum or least infeasible point. Two problems have the same results if values and
-slopes agree at these points. Rows may differ if their limits are farther away than the accuracy of
-these points.
+each box of the search space: its optimum or its least infeasible point. If values and slopes of two
+problems agree at these points, both give the same results. Rows may differ if their limits are
+farther away than these points are accurate.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from .problem import BoxProblem, Vector
 from .resolve.boxes import NEAR
 
 SAME_OPTIMUM = 1e-6
-"""Relative difference of continuous optima that counts as zero: the accuracy of quick looks."""
+"""Continuous optima count as equal up to this relative difference, the accuracy of quick looks."""
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """Results of the boxes of a search; `optimum` is the continuous optimum's objective."""
+    """Results of all boxes of a search; `optimum` is the objective of the continuous optimum."""
 
     problem: BoxProblem
     optimum: float
@@ -61,5 +61,5 @@ class Evidence:
 
 
 def _distance(rows: Vector, slopes: Vector) -> Vector:
-    """Distance of the limits of rows in solver coordinates, from their slopes."""
+    """Distance of each row from its limit in solver coordinates, from value and slope."""
     return np.asarray(rows / np.maximum(np.sqrt((slopes**2).sum(axis=1)), 1e-300))

@@ -1,9 +1,10 @@
 """Explains why a problem is infeasible: joint relaxation, sufficient changes, binding bounds.
 
-All amounts are margins, as fractions of the limits. The smallest joint relaxation minimises the sum
-of the margins given up (an elastic programme [Chinneck2008]). The sum favours a large relaxation of
-few requirements over a small relaxation of many. Physical laws (geometry) are never relaxed. All
-searches are local, from the given points: their remedies are valid, but others may exist.
+All amounts are margins, as fractions of the limits. The smallest joint relaxation is the set of
+relaxed limits that makes the problem feasible with the least sum of margins given up (an elastic
+programme [Chinneck2008]). The sum favours a large relaxation of few requirements over a small
+relaxation of many. Physical laws (geometry) are never relaxed. All searches are local, from the
+given points: their remedies are valid, but others may exist.
 """
 
 from __future__ import annotations
@@ -21,26 +22,27 @@ from .problem import BoxProblem, Vector
 from .repairs import NOTHING, Opening, RelaxedConstraint
 
 STARTS = 2
-"""Maximum starts of the search for the joint relaxation."""
+"""Maximum number of starts in the search for the joint relaxation."""
 
 ROOM = 1.001
-"""Relaxation granted to a limit, relative to the least sufficient relaxation."""
+"""A limit is relaxed by this multiple of the least sufficient relaxation."""
 
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """The conflicting requirements, and the size of the conflict.
+    """The requirements that conflict, and by how much.
 
     Parameters
     ----------
-    joint : the smallest joint relaxation, the largest first; empty if only laws conflict
-    sole : sufficient relaxation of each conflicting requirement alone
-    bounds : binding bounds of variables at the joint relaxation, the most helpful first
-    laws : constraints that cannot be relaxed and conflict among themselves
+    joint : the limits to relax together, with the least total; largest first; empty if only laws
+        conflict
+    sole : for each conflicting requirement, the relaxation that is enough alone
+    bounds : bounds of variables that are active at the joint relaxation, the most helpful first
+    laws : constraints that cannot be relaxed but conflict with each other
     x : the point of the joint relaxation
     total : sum of the joint relaxation
-    residual : of the optimality conditions of the joint relaxation
-    multipliers : fall of the total per unit of margin granted to each constraint (m,)
+    residual : residual of the optimality conditions at the joint relaxation
+    multipliers : decrease of the total per unit by which each constraint is relaxed (m,)
     """
 
     joint: tuple[RelaxedConstraint, ...]
@@ -59,7 +61,7 @@ def explain(problem: BoxProblem, points: Sequence[Vector]) -> Conflict:
     Parameters
     ----------
     problem : the problem; `relaxable` separates requirements from laws (None: all relaxable)
-    points : starts (n,), such as the least infeasible points of a search
+    points : starting points (n,), such as the least infeasible points of a search
     """
     tell("infeasible: searching for the smallest relaxation")
     m = len(problem.constraint_names)
@@ -105,7 +107,7 @@ def _joint(
     mask: npt.NDArray[np.bool_],
     point: Point,
 ) -> tuple[RelaxedConstraint, ...]:
-    """The relaxations at a point of the elastic problem, the largest first."""
+    """The relaxations at a point of the elastic problem, largest first."""
     amounts = point.x[len(problem.names) :]
     joint = [
         RelaxedConstraint(problem.constraint_names[group[0]], int(group[0]), float(amount))
@@ -123,9 +125,9 @@ def _smaller_relaxation(
     sole: Sequence[RelaxedConstraint],
     point: Point,
 ) -> Point | None:
-    """A smaller joint relaxation, if a single limit needs less; None otherwise.
+    """A smaller joint relaxation, if a single limit alone needs less than its total; else None.
 
-    A single limit needs less than the joint relaxation if the descent stalled.
+    This happens if the descent to the joint relaxation stalled.
     """
     single = [(r.amount, group) for r, group in zip(sole, candidates, strict=True) if r.amount]
     amount, group = min(single, key=lambda entry: entry[0], default=(np.inf, groups[0]))
@@ -144,10 +146,10 @@ def _smaller_relaxation(
 def _conflicting(
     evaluator: Evaluator, point: Point, quality: kkt.KktResidual
 ) -> npt.NDArray[np.bool_]:
-    """Mask of the constraints that cause the conflict; without the others, it persists.
+    """Mask of the constraints that cause the conflict: it remains if all others are dropped.
 
-    The multipliers of the relaxation prove this locally, or globally for a convex problem. Without
-    optimality, every binding constraint may be a cause.
+    The multipliers of the relaxation prove this locally, and globally for a convex problem. If the
+    relaxation is not optimal, every active constraint counts as a possible cause.
     """
     if quality.residual <= NOTHING:
         return np.asarray(quality.multipliers > 1e-7)
@@ -155,7 +157,7 @@ def _conflicting(
 
 
 def _groups(problem: BoxProblem) -> list[repairs.Indices]:
-    """Rows of the constraints, grouped by limit."""
+    """Row numbers of the constraints, grouped by limit."""
     m = len(problem.constraint_names)
     numbers = np.arange(m) if problem.groups is None else np.asarray(problem.groups)
     return [np.flatnonzero(numbers == number) for number in dict.fromkeys(numbers.tolist())]
@@ -164,7 +166,7 @@ def _groups(problem: BoxProblem) -> list[repairs.Indices]:
 def _smallest(
     problem: BoxProblem, groups: list[repairs.Indices], points: Sequence[Vector]
 ) -> tuple[Point, Evaluator]:
-    """The smallest sum of the groups' slacks over several starts, and its elastic problem."""
+    """The smallest sum of slacks found from several starts, and its elastic problem."""
     judge = Evaluator(problem)
     room, starts = 1.0, []
     for x in list(points)[:STARTS] or [(problem.lower + problem.upper) / 2]:
@@ -184,7 +186,7 @@ def _smallest(
 def _binding_bounds(
     problem: BoxProblem, evaluator: Evaluator, quality: kkt.KktResidual
 ) -> tuple[Opening, ...]:
-    """Bounds that limit the joint relaxation, the most helpful first."""
+    """Bounds that prevent a smaller joint relaxation, the most helpful first."""
     openings = []
     space = evaluator.space
     for k, j in enumerate(space.free):

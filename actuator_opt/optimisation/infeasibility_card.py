@@ -1,4 +1,4 @@
-"""The explanation of an infeasible actuator: limits by PATH, in display units."""
+"""Explains to the user why an actuator is infeasible: limits by PATH, in display units."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .repairs import WIDEST, Opening, RelaxedConstraint
 from .result import Infeasibility
 
 MORE_DIGITS = 6
-"""Digits for changes below one per cent."""
+"""Number of digits for changes below one per cent."""
 
 KINDS = ("dimension", "choice", "bound", "requirement", "safety factor")
 """Kinds of change, the most advisable first."""
@@ -31,9 +31,9 @@ _ORIGINS = {"requirement": "requirement", "case": "load case", "check": "check l
 def explained(
     actuator: ActuatorProblem, solution: Solution
 ) -> tuple[Infeasibility | None, Solution]:
-    """Explain an infeasible result; returns the explanation and the joint relaxation's solution.
+    """Explain an infeasible result; return explanation and solution of the joint relaxation.
 
-    A feasible result, or a search that stopped at a limit, has no explanation.
+    There is no explanation for a feasible result, or for a search that was stopped by a limit.
     """
     limited = solution.outcome is Outcome.LIMIT_INFEASIBLE
     if solution.feasible or solution.kkt is None or limited:
@@ -81,12 +81,12 @@ def _card(
 
 
 def _kind(entry: Mapping[str, Any]) -> str:
-    """The kind of a limit: requirement or safety factor."""
+    """The kind of limit: "requirement" or "safety factor"."""
     return "safety factor" if entry["safety_factor"] else "requirement"
 
 
 def _limit_entry(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
-    """A sufficient change of a limit or bound, as an entry of the cures."""
+    """Cure entry for a sufficient change of a limit or bound."""
     return {
         "kind": kind,
         "parameter": entry["parameter"] or entry["requirement"],
@@ -96,7 +96,7 @@ def _limit_entry(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
 
 
 def _joint_entry(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[str, Any]:
-    """Dimensions that are enough together, as an entry of the cures."""
+    """Cure entry for dimensions that are only enough together."""
     parts = [_cure_entry(actuator, "dimension", cure) for cure in dimensions]
     texts = ("parameter", "limit_text", "needed_text")
     entry: dict[str, Any] = {
@@ -112,7 +112,7 @@ def _joint_entry(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[
 
 
 def _cure_entry(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, Any]:
-    """A sufficient dimension or choice, as an entry of the cures."""
+    """Cure entry for a dimension or choice that is enough alone."""
     entry: dict[str, Any] = {"kind": kind, "parameter": cure.path, "advised": True, "now": cure.now}
     if isinstance(cure.now, str) or isinstance(cure.needed, str):
         further = ", ".join(
@@ -131,7 +131,7 @@ def _cure_entry(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, A
 
 
 def entry_of(actuator: ActuatorProblem, relaxed: RelaxedConstraint) -> dict[str, Any]:
-    """A requirement as an entry: its stated limit and the sufficient limit."""
+    """Entry for a requirement, with its stated limit and the limit that would be enough."""
     row, amount = actuator.rows[relaxed.index], relaxed.amount
     limit = float(np.ravel(row.limit)[0])
     path, sense = row.limit_of.path, row.limit_of.sense
@@ -160,12 +160,12 @@ def entry_of(actuator: ActuatorProblem, relaxed: RelaxedConstraint) -> dict[str,
 
 
 def _protects_safety(row: LimitRow) -> bool:
-    """Whether a limit protects safety: a limit of the check list, or of a safety factor."""
+    """Whether a limit protects safety: it belongs to the check list or to a safety factor."""
     return row.limit_of.origin == "check" or row.limit_of.metric.endswith("_factor")
 
 
 def _relaxed(row: LimitRow, limit: float, amount: float) -> float:
-    """The limit that gives up a margin `amount`."""
+    """The limit after a margin `amount` is given up."""
     step = amount * (abs(limit) or 1.0)
     return limit - step if row.limit_of.sense == "min" else limit + step
 
@@ -188,7 +188,7 @@ def _bound_entry(actuator: ActuatorProblem, bound: Opening) -> dict[str, Any]:
 def _texts(
     quantity: Quantity, limit: float, needed: float | None, *, upwards: bool
 ) -> dict[str, str]:
-    """Both values in the display unit; the rounded needed value is sufficient as printed."""
+    """Both limits in the display unit; `needed` is rounded so that it suffices as printed."""
     texts = {"limit_text": quantity.text(limit, MORE_DIGITS), "needed_text": ""}
     if needed is not None:
         fine = abs(needed - limit) < 0.01 * abs(limit)
@@ -254,7 +254,7 @@ def _sentence(
 
 
 def _evidence(explanation: Explanation, solution: Solution) -> str:
-    """The evidence for the advice."""
+    """Sentence on how far the advice is proven."""
     count = len(solution.starts)
     starts = f"{count} start{'' if count == 1 else 's'}"
     statement = (

@@ -1,14 +1,15 @@
-"""Optimality of a point (multipliers, residual, rank, curvature), and Newton steps towards it.
+"""Optimality of a point (multipliers, residual, rank, curvature), and Newton steps to an optimum.
 
-The residual is the norm of grad f - sum(multiplier * grad g) over the norm of grad f, in solver
-coordinates. The sum includes constraints and bounds that are active within 1e-6. The multipliers
-follow from non-negative least squares [LawsonHanson1974].
+The residual is the norm of grad f - sum(multiplier * grad g), divided by the norm of grad f, in
+solver coordinates; f is the objective and g are constraint margins and distances to bounds. The sum
+includes those within 1e-6 of zero. The multipliers follow from non-negative least squares
+[LawsonHanson1974].
 
-The Newton steps are sequential quadratic programming with the Hessian of the Lagrangian from exact
+The Newton steps are sequential quadratic programming with the Lagrangian's Hessian from exact
 gradients [NocedalWright2006] ch. 18. Each quadratic programme is a least-distance problem, solved
-by non-negative least squares [LawsonHanson1974] ch. 23. This identifies the active set and permits
-dependent rows and overdetermined vertices. The steps converge quadratically near the optimum, also
-near that of a slightly changed problem.
+by non-negative least squares [LawsonHanson1974] ch. 23. This finds the active set, and works with
+dependent rows and at vertices with more active rows than variables. The steps converge
+quadratically near the optimum, also if they start from the optimum of a slightly changed problem.
 """
 
 from __future__ import annotations
@@ -23,11 +24,12 @@ from .evaluator import Evaluator, LimitReached, Point
 from .problem import Vector
 
 ACTIVE = 1e-6
-"""Margin, or distance to a bound in solver coordinates, below which a limit is active."""
+"""A limit is active if its margin, or the distance to a bound in solver coordinates, is below this.
+"""
 
 
 class Curvature(Enum):
-    """Sign of the Lagrangian's Hessian along the directions that the active set leaves free."""
+    """Sign of the Lagrangian's Hessian along the directions that the active limits leave free."""
 
     VERTEX = "vertex: the active set leaves no direction free"
     POSITIVE = "positive definite: a strict local minimum"
@@ -37,13 +39,14 @@ class Curvature(Enum):
 
 @dataclass(frozen=True)
 class Active:
-    """The active set at a point: margins of constraints and bounds, with gradients.
+    """The limits and bounds that are active at a point, with their margins and gradients.
 
     Parameters
     ----------
-    gradients : of the margins (a, nf)
-    margins : (a,), at least 0 where met
-    constraint, lower, upper : index of the constraint or variable of each row, in this order
+    gradients : gradients of the margins (a, nf)
+    margins : margins (a,), at least 0 where met
+    constraint, lower, upper : numbers of the active constraints, and of the variables at lower and
+        upper bounds; rows are in this order
     """
 
     gradients: Vector
@@ -60,17 +63,17 @@ class Active:
 
 @dataclass(frozen=True)
 class KktResidual:
-    """Accuracy of the optimality conditions at a point.
+    """Accuracy with which a point satisfies the optimality conditions.
 
     Parameters
     ----------
-    residual : relative norm of the gradient of the Lagrangian
+    residual : norm of the Lagrangian's gradient, relative to that of the objective's gradient
     active : labels of active constraints, equalities and bounds ("NAME lower", "NAME upper")
-    count, rank : number of active gradients, and of independent gradients among them
-    multipliers : (m,) of the constraints: change of the objective per unit of required margin
-    equality_multipliers : (e,)
-    lower_multipliers, upper_multipliers : (n,) of the bounds, per unit of solver coordinate
-    curvature : second-order condition; None if not requested
+    count, rank : number of active gradients, and how many of them are independent
+    multipliers : (m,) for the constraints: change of the objective per unit of required margin
+    equality_multipliers : (e,) for the equalities
+    lower_multipliers, upper_multipliers : (n,) for the bounds, per unit of solver coordinate
+    curvature : result of the second-order condition; None if not requested
     """
 
     residual: float
@@ -85,16 +88,17 @@ class KktResidual:
 
     @property
     def unique(self) -> bool:
-        """Whether the multipliers are unique: the active gradients are independent."""
+        """Whether the multipliers are unique, which requires independent active gradients."""
         return self.rank == self.count
 
 
 def nnls(matrix: Vector, vector: Vector, previous: Vector | None = None) -> Vector:
-    """Non-negative least squares: min |matrix @ result - vector|, result >= 0.
+    """Non-negative least squares: minimise |matrix @ result - vector| with result >= 0.
 
-    An unconstrained solution over all columns comes first; it suffices at a regular optimum. Else
-    follows the active-set method of Lawson and Hanson, which ends on independent columns. It starts
-    from the positive columns of `previous`, the result of a similar problem.
+    First, all columns are solved without the sign constraint, which is enough at a regular optimum.
+    If a result is negative, the active-set method of Lawson and Hanson follows; it ends with
+    independent columns. It starts from the positive columns of `previous`, the result of a similar
+    problem.
     """
     size = np.sqrt((matrix**2).sum(axis=0))
     used = np.flatnonzero(size > 1e-14 * size.max(initial=0.0))
@@ -125,7 +129,7 @@ def _lawson_hanson(matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_
             break
         passive[entering] = True
         trial, rank = _restricted(matrix, vector, passive)
-        if rank < passive.sum() or trial[entering] <= 0:  # dependent, or within rounding
+        if rank < passive.sum() or trial[entering] <= 0:  # dependent, or within rounding error
             passive[entering], refused[entering] = False, True
             continue
         while trial[passive].min() <= 0:
@@ -133,7 +137,7 @@ def _lawson_hanson(matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_
             room = result[falling] - trial[falling]
             shares = np.where(room > 0, result[falling] / np.where(room > 0, room, 1.0), 0.0)
             result = result + shares.min() * (trial - result)
-            passive[falling[shares <= shares.min() * (1 + 1e-12)]] = False  # removes at least one
+            passive[falling[shares <= shares.min() * (1 + 1e-12)]] = False  # at least one
             result[~passive] = 0.0
             if not passive.any():
                 trial = result
@@ -147,7 +151,7 @@ def _lawson_hanson(matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_
 def _initial_result(
     matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_]
 ) -> tuple[Vector, npt.NDArray[np.bool_]]:
-    """A first result on the largest subset of the columns that is positive and independent."""
+    """A first result from the largest subset of columns that is positive and independent."""
     nothing = np.zeros(matrix.shape[1])
     while passive.any():
         trial, rank = _restricted(matrix, vector, passive)
@@ -168,7 +172,7 @@ def _restricted(
 
 
 def active_set(evaluator: Evaluator, point: Point, width: float = ACTIVE) -> Active:
-    """The constraints and bounds with a margin up to `width` at a point."""
+    """The constraints and bounds whose margin at a point is at most `width`."""
     space, m = evaluator.space, evaluator.constraint_count
     jacobian = evaluator.jacobian(point)
     margins = point.rows[1 : 1 + m]
@@ -190,10 +194,10 @@ def active_set(evaluator: Evaluator, point: Point, width: float = ACTIVE) -> Act
 def multipliers(
     slope: Vector, active: Active, equalities: Vector, damping: float = 0.0
 ) -> tuple[Vector, Vector]:
-    """Multipliers (a,) >= 0 of an active set, and multipliers (e,) of the equalities.
+    """Multipliers (a,) >= 0 of the active limits, and multipliers (e,) of the equalities.
 
-    `damping` > 0 penalises multipliers of rows with a positive margin. This identifies the active
-    set from a point near the optimum.
+    A `damping` above 0 penalises multipliers of limits with a positive margin. So the active limits
+    of an optimum are identified from a point near it.
     """
     matrix, vector = active.gradients.T, slope
     if len(equalities):
@@ -215,10 +219,10 @@ def multipliers(
 
 
 def slope_scale(evaluator: Evaluator, point: Point, objective_scale: float = 0.0) -> float:
-    """The divisor of the residual, |grad f|.
+    """Divisor of the residual: |grad f|, the norm of the objective's gradient.
 
-    At a stationary objective, |grad f| vanishes. A thousandth of the objective's magnitude then
-    replaces it.
+    The divisor is at least a thousandth of the objective's magnitude, since |grad f| vanishes where
+    the objective is stationary.
     """
     slope = float(np.linalg.norm(evaluator.jacobian(point)[0]))
     floor = max(1e-3 * abs(point.objective), 1e-6 * objective_scale)
@@ -228,7 +232,7 @@ def slope_scale(evaluator: Evaluator, point: Point, objective_scale: float = 0.0
 def _priced(
     evaluator: Evaluator, point: Point, objective_scale: float
 ) -> tuple[Active, Vector, Vector, float]:
-    """The active set at a point, its multipliers, those of the equalities, and the residual."""
+    """The active set at a point, its multipliers, the equalities' multipliers, and the residual."""
     jacobian = evaluator.jacobian(point)
     active = active_set(evaluator, point)
     equalities = jacobian[1 + evaluator.constraint_count :]
@@ -239,14 +243,14 @@ def _priced(
 
 
 def residual(evaluator: Evaluator, point: Point) -> float:
-    """Relative norm of the Lagrangian's gradient at a point, as in `check`."""
+    """Relative norm of the Lagrangian's gradient at a point, computed as in `check`."""
     return _priced(evaluator, point, 0.0)[-1]
 
 
 def check(
     evaluator: Evaluator, point: Point, *, curvature: bool = False, objective_scale: float = 0.0
 ) -> KktResidual:
-    """Check the optimality conditions at a point."""
+    """Check how accurately a point satisfies the optimality conditions."""
     problem, m = evaluator.problem, evaluator.constraint_count
     jacobian = evaluator.jacobian(point)
     active, inequality, equality_multipliers, residual = _priced(evaluator, point, objective_scale)
@@ -276,12 +280,12 @@ def check(
 
 
 def lagrangian_weights(constraints: Vector, equalities: Vector) -> Vector:
-    """Weights of the rows (objective, constraints, equalities) in the Lagrangian."""
+    """Factors of the rows (objective, constraints, equalities) in the Lagrangian."""
     return np.concatenate([[1.0], -constraints, -equalities])
 
 
 def null_space(rows: Vector, size: int) -> Vector:
-    """Orthonormal basis (size, k) of the directions that leave all rows (a, size) unchanged."""
+    """Orthonormal basis (size, k) of the directions along which no row (a, size) changes."""
     if len(rows) == 0:
         return np.eye(size)
     lengths = np.sqrt((rows**2).sum(axis=1, keepdims=True))
@@ -306,16 +310,16 @@ def _curvature(
 
 
 DAMPING = 1e3
-"""Weight of complementarity when multipliers are estimated away from the optimum."""
+"""Weight on margin times multiplier = 0 when multipliers are estimated away from the optimum."""
 FEASIBLE = 1e-9
-"""Violation up to which a polished point counts as exactly feasible."""
+"""Violation up to which a point from Newton steps counts as exactly feasible."""
 RADIUS = 0.5
-"""Longest step in any solver coordinate (a factor of 1.65 in a logarithmic variable)."""
+"""Longest step in each solver coordinate (a factor of 1.65 in a logarithmic variable)."""
 
 
 @dataclass(frozen=True)
 class NewtonState:
-    """A point with the data for the next step."""
+    """A point with the data from which the next step is computed."""
 
     point: Point
     active: Active
@@ -326,7 +330,7 @@ class NewtonState:
 
 
 def state_at(evaluator: Evaluator, point: Point) -> NewtonState:
-    """A point with its multipliers and optimality residual."""
+    """A point together with its multipliers and its residual."""
     m = evaluator.constraint_count
     jacobian = evaluator.jacobian(point)
     active = active_set(evaluator, point, width=0.1)
@@ -342,9 +346,9 @@ def state_at(evaluator: Evaluator, point: Point) -> NewtonState:
 def polish(
     evaluator: Evaluator, start: Point, *, iterations: int = 12, tolerance: float = 1e-13
 ) -> Point:
-    """Improve a point by Newton steps; returns the start itself without a better point.
+    """Improve a point by Newton steps; return the start if no better point is reached.
 
-    The steps end once the measure of optimality is below `tolerance`.
+    The steps end when the measure of optimality falls below `tolerance`.
     """
     if not start.valid or evaluator.space.size == 0:
         return start
@@ -369,9 +373,9 @@ def polish(
 
 
 def _acceptable(evaluator: Evaluator, initial: NewtonState, newton_state: NewtonState) -> bool:
-    """Whether a point is no less feasible, and its objective at most that of the start.
+    """Whether a point is at least as feasible as the start, with no higher objective.
 
-    The objective may rise by twice the price of the start's violation.
+    The objective may rise by twice what it costs to remove the violation of the start.
     """
     if newton_state.point.violation > max(FEASIBLE, initial.point.violation):
         return False
@@ -379,13 +383,13 @@ def _acceptable(evaluator: Evaluator, initial: NewtonState, newton_state: Newton
     m = evaluator.constraint_count
     allowance += float(np.abs(initial.equality_multipliers) @ np.abs(initial.point.rows[1 + m :]))
     room = 1e-9 * max(abs(initial.point.objective), initial.scale)
-    if initial.point.violation > 1e-3:  # far away: any feasible point is an improvement
+    if initial.point.violation > 1e-3:  # far from feasible: any feasible point is an improvement
         return True
     return newton_state.point.objective <= initial.point.objective + 2 * allowance + room
 
 
 def _advance(evaluator: Evaluator, state: NewtonState) -> NewtonState | None:
-    """One accepted step, or None if no step improves."""
+    """One accepted Newton step, or None if no step improves the point."""
     point, space = state.point, evaluator.space
     step, price = quadratic_step(
         evaluator,
@@ -413,7 +417,7 @@ def _advance(evaluator: Evaluator, state: NewtonState) -> NewtonState | None:
 
 
 def _merit(evaluator: Evaluator, point: Point, scale: float, price: float) -> float:
-    """The l1 merit: the objective plus the violations, weighted above their price."""
+    """The l1 merit: the objective, plus violations weighted with more than their multipliers."""
     m = evaluator.constraint_count
     missed = np.maximum(-point.rows[1 : 1 + m], 0.0).sum() + np.abs(point.rows[1 + m :]).sum()
     return point.objective / scale + price * float(missed)
@@ -426,9 +430,9 @@ def quadratic_step(
     hessian: Vector,
     equality_multipliers: Vector,
 ) -> tuple[Vector, float]:
-    """Step (nf,) of the quadratic programme, and a price above every scaled multiplier.
+    """Step (nf,) of the quadratic programme, and a penalty above every scaled multiplier.
 
-    `hessian` (nf, nf) is that of the Lagrangian over `scale`, positive definite.
+    `hessian` (nf, nf) is the Lagrangian's Hessian divided by `scale`; it must be positive definite.
     """
     m = evaluator.constraint_count
     rows = active_set(evaluator, point, width=1.0)
@@ -452,10 +456,10 @@ def quadratic_step(
 
 
 def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
-    """Scaled Hessian of the Lagrangian, made positive definite without a change of the step.
+    """Scaled Hessian of the Lagrangian, made positive definite in a way that keeps the step.
 
-    Multiples of the active rows' outer products do not change the solution on these rows. If they
-    are not enough, the magnitude replaces a negative curvature.
+    Multiples of the active rows' outer products are added, which keeps the solution on these rows.
+    If they are not enough, a negative curvature is replaced by its magnitude.
     """
     m, active = evaluator.constraint_count, state.active
     constraint_multipliers = np.zeros(m)
@@ -484,10 +488,10 @@ def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
 def quadratic_programme(
     hessian: Vector, slope: Vector, rows: Vector, margins: Vector, previous: Vector | None = None
 ) -> tuple[Vector, Vector]:
-    """Minimise d'Hd/2 + slope'd subject to margins + rows d >= 0, with multipliers (a,) >= 0.
+    """Minimise d'Hd/2 + slope'd for a step d with margins + rows d >= 0; also multipliers (a,).
 
-    Inconsistent rows give the step of least violation instead. `previous` are multipliers of a
-    similar programme and only save time.
+    H is the Hessian. If the rows are inconsistent, the step with the least violation results
+    instead. `previous` holds multipliers of a similar programme and only saves time.
     """
     factor = np.linalg.cholesky(hessian)
     scaled_slope = np.linalg.solve(factor, slope)

@@ -1,9 +1,9 @@
-"""Guarded calls of NLopt: algorithms by name, screened callbacks, verified results.
+"""Safe calls of NLopt: algorithms by name, guarded callbacks, verified results.
 
 NLopt reports success at infeasible points (MMA, CCSAQ, COBYLA), crashes on NaN (AGS), replaces
-exceptions of callbacks, and discards good results with RoundoffLimited [NLopt]. The wrapper
-therefore only records the return code. Callbacks never raise and never return NaN, the best
-feasible iterate is stored, and the caller verifies the result.
+exceptions of callbacks, and discards good results with RoundoffLimited [NLopt]. So the wrapper only
+records the return code. Its callbacks never raise and never return NaN. It stores the best feasible
+iterate, and the caller verifies the result.
 """
 
 from __future__ import annotations
@@ -22,21 +22,22 @@ from .evaluator import Evaluator, LimitReached, Point
 from .problem import BoxProblem, Vector
 
 FEASIBLE = 1e-8
-"""Violation below which an iterate counts as feasible when selecting the best."""
+"""Violation up to which an iterate counts as feasible when the best iterate is selected."""
 
 
 @dataclass(frozen=True, slots=True)
 class Algorithm:
-    """An NLopt algorithm and its capabilities.
+    """An NLopt algorithm and the problems that it can solve.
 
     Parameters
     ----------
     name : NLopt's name
     scope : "local", "global", or "wrapper" for one that needs an inner algorithm
-    inequalities, equalities : whether it supports them
+    inequalities, equalities : whether the algorithm supports them
     most_variables : maximum number of free variables
-    most_evaluations : maximum of one run; the time of the original DIRECT grows with their cube
-    about : description
+    most_evaluations : maximum evaluations in one run; the time of the original DIRECT grows with
+        their cube
+    about : description for the user
     """
 
     name: str
@@ -49,7 +50,7 @@ class Algorithm:
 
     @property
     def uses_gradients(self) -> bool:
-        """Whether it uses gradients itself."""
+        """Whether the algorithm itself uses gradients."""
         return self.name.startswith(("LD_", "GD_"))
 
 
@@ -108,21 +109,21 @@ OLDER = {
     "GN_MLSL_LDS": "G_MLSL_LDS+LN_BOBYQA",
     "G_MLSL": "G_MLSL_LDS+LD_LBFGS",
 }
-"""NLopt names of combinations, and their notation as a sum."""
+"""Combinations that have a name of their own in NLopt, and their notation as a sum."""
 
 INSIDE = {"AUGLAG": "LD_LBFGS", "AUGLAG_EQ": "LD_MMA", "G_MLSL_LDS": "LD_LBFGS"}
-"""Default inner algorithm of a wrapper."""
+"""Inner algorithm of a wrapper if the user names none."""
 
 
 def find(text: str) -> tuple[Algorithm, Algorithm | None]:
-    """The algorithm named `text` and its inner algorithm, as in "AUGLAG+LD_LBFGS".
+    """The algorithm with a given name, and its inner algorithm, as in "AUGLAG+LD_LBFGS".
 
-    Case does not matter. A prefix may be omitted if the name remains unique ("slsqp").
+    Upper and lower case are equal. A prefix may be omitted if the name remains unique ("slsqp").
 
     Raises
     ------
     UsageError
-        the algorithm does not exist; suggests the nearest names
+        the algorithm does not exist; the message suggests the nearest names
     """
     name = OLDER.get(text.strip().upper(), text.strip().upper())
     outer, _, inner = name.partition("+")
@@ -159,12 +160,12 @@ def _refusal(message: str, remedy: str) -> UsageError:
 
 
 def suit(text: str, problem: BoxProblem) -> str:
-    """The full name of an algorithm, if it can solve the problem.
+    """The full name of an algorithm, after checking that it can solve the problem.
 
     Raises
     ------
     UsageError
-        it cannot solve this kind of problem; suggests another
+        it cannot solve this kind of problem; the message suggests another algorithm
     """
     outer, inner = find(text)
     inequalities, equalities = bool(problem.constraint_names), bool(problem.equality_names)
@@ -193,8 +194,9 @@ def suit(text: str, problem: BoxProblem) -> str:
 
 
 ARRIVAL = (0.1, 1e-3, 1e-3)
-"""Distance in solver coordinates, relative difference of the objective, and violation within which
-a run has reached a known optimum. Only its slow convergence would follow."""
+"""A run has reached a known optimum within this distance in solver coordinates, relative difference
+of the objective, and violation. The run can stop, as only slow convergence to that optimum would
+follow."""
 
 
 @dataclass(frozen=True)
@@ -205,15 +207,15 @@ class NloptRun:
     code: int
     algorithm: str
     arrived: int | None = None
-    """Index of the known optimum that stopped the run."""
+    """Number of the known optimum that the run reached, which stopped it."""
 
 
 class _Arrived(Exception):
-    """The run reached a known optimum."""
+    """Raised if a run reaches a known optimum."""
 
 
 class _Guard:
-    """Callbacks in logarithmic or linear coordinates that never raise and never return NaN."""
+    """Callbacks, in logarithmic or linear coordinates, that never raise and never return NaN."""
 
     def __init__(self, evaluator: Evaluator, start: Point, *, linear: bool, handle: Any) -> None:
         self.evaluator, self.handle, self.linear = evaluator, handle, linear
@@ -254,7 +256,7 @@ class _Guard:
         return np.asarray(jacobian * (self.width / slope))
 
     def _visit(self, u: Vector) -> Point | None:
-        """The point at u, or None if the run must stop."""
+        """The evaluated point at u, or None if the run must stop."""
         if self.error is not None:
             return None
         with self._deferred():
@@ -270,7 +272,7 @@ class _Guard:
         return None
 
     def _look_around(self, point: Point) -> None:
-        """Stop the run near a known optimum."""
+        """Stop the run if the point is near a known optimum."""
         distance, share, violation = ARRIVAL
         if point.violation > violation:
             return
@@ -282,10 +284,10 @@ class _Guard:
 
     @contextmanager
     def _deferred(self) -> Iterator[None]:
-        """Defer exceptions of the model and Ctrl-C until NLopt has returned."""
+        """Hold back exceptions of the model, and Ctrl-C, until NLopt has returned."""
         try:
             yield
-        except BaseException as error:  # every exception, as NLopt turns them into SystemError
+        except BaseException as error:  # all exceptions, because NLopt turns them into SystemError
             self.error = error
             self.handle.force_stop()
 
@@ -316,7 +318,7 @@ class _Guard:
         self._rows(result, u, slopes, slice(1, 1 + self.evaluator.constraint_count), 1.0)
 
     def worst_margin(self, u: Vector, slope: Vector) -> float:
-        """The worst-violated constraint as one number, for AGS."""
+        """Margin of the most violated constraint, as the single constraint for AGS."""
         result = np.zeros(self.evaluator.constraint_count)
         self.inequalities(result, u, slope)
         return float(result.max())
@@ -337,12 +339,13 @@ def run(
     optima: Sequence[Point] = (),
     rank: Callable[[Point], Any] | None = None,
 ) -> NloptRun:
-    """Run one algorithm from one point, for at most `max_evaluations` (default: the algorithm's).
+    """Run one algorithm from one point, for at most `max_evaluations`.
 
-    A run that reaches one of the known `optima` (see `ARRIVAL`) stops there. Returns the best by
-    `rank` (default: feasible by objective, else by violation) of NLopt's point, the best feasible
-    iterate, the last iterate and the start. Exceptions of the model, interrupts included, are
-    raised unchanged. A limit ends the run without an exception.
+    The default of `max_evaluations` is the algorithm's own limit. A run that reaches one of the
+    known `optima` (see `ARRIVAL`) stops there. Candidates for the result are NLopt's point, the
+    best feasible iterate, the last iterate and the start. `rank` selects the best of them; by
+    default, feasible points by objective come first, then others by violation. Exceptions of the
+    model and Ctrl-C are raised unchanged. A limit ends the run without an exception.
     """
     if evaluator.space.size == 0:
         return NloptRun(start, 1, algorithm)
@@ -358,7 +361,7 @@ def run(
     handle.set_upper_bounds(bounds[1])
     handle.set_min_objective(guard.objective)
     m, e = evaluator.constraint_count, len(evaluator.problem.equality_names)
-    if m and outer.name == "GN_AGS":  # takes only a few scalar constraints
+    if m and outer.name == "GN_AGS":  # AGS takes only a few scalar constraints
         handle.add_inequality_constraint(guard.worst_margin, tolerance)
     elif m:
         handle.add_inequality_mconstraint(guard.inequalities, np.full(m, tolerance))
@@ -389,7 +392,7 @@ def _handle(algorithm: Algorithm, size: int, tolerance: float, max_evaluations: 
 
 
 def _pick(evaluator: Evaluator, guard: _Guard, end: Vector | None, start: Point) -> Point:
-    """The best of NLopt's point, the best feasible iterate, the last iterate and the start."""
+    """The best among NLopt's point, the best feasible iterate, the last iterate and the start."""
     candidates = [guard.best, guard.last, start]
     if end is not None and guard.error is None and np.isfinite(end).all():
         limited, evaluator.limited = evaluator.limited, False
@@ -400,7 +403,7 @@ def _pick(evaluator: Evaluator, guard: _Guard, end: Vector | None, start: Point)
 
 
 def _rank(point: Point) -> tuple[float, float]:
-    """Feasible points by objective, others by violation; a point without values comes last."""
+    """Sort key: feasible points by objective, others by violation, then without values."""
     if not point.valid:
         return (np.inf, np.inf)
     missed = point.violation if point.violation > 1e-6 else 0.0

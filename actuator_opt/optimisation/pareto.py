@@ -1,4 +1,4 @@
-"""The Pareto front of an actuator for several metrics: designs, knee, spacing, checks."""
+"""Computes the Pareto front of an actuator for several metrics: designs, knee, spacing, checks."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Wish:
 
 @dataclass(frozen=True, slots=True)
 class FrontPoint:
-    """A design of the front (SI), with the residual of its optimality conditions."""
+    """A design on the front (SI), with the residual of its optimality conditions."""
 
     variables: Mapping[str, float]
     metrics: Mapping[str, float]
@@ -60,7 +60,7 @@ class FrontPoint:
 
 @dataclass(frozen=True, slots=True)
 class Knee:
-    """The design farthest from the plane of the anchors, and its normalised distance."""
+    """The design where the front bends most; its normalised distance to the anchors' plane."""
 
     index: int
     depth: float
@@ -73,18 +73,19 @@ class ParetoFront(Displayed):
     Parameters
     ----------
     subject : the design studied
-    spec_hash : hash of this design
+    spec_hash : hash of the design studied
     objectives : metrics with their direction
-    points : designs, the best in the first objective first
+    points : designs on the front, sorted by the first objective
     knee : the design where the front bends most towards the ideal; None without a bend
-    design, evaluation : of the knee, else of the first point; without a front, of the file
-    passed : objectives of the dominated designs of the search
-    gaps : normalised distances between neighbours (to the nearest for three or more objectives)
-    wide : gaps of two objectives above three times the median, and the reason
-    checked, improved : independent searches between designs, and how many improved the front
+    design, evaluation : the knee, or else the first point; without a front, the design in the file
+    passed : objectives of designs that the search found but that are dominated
+    gaps : normalised distances between neighbours; for three or more objectives, to the nearest
+        design
+    wide : with two objectives, gaps above three times the median and the reason for them
+    checked, improved : number of checking searches between designs, and how many improved the front
     failed : number of levels without a design nearby
-    infeasibility : explanation of a missing front
-    unsolved : objective without a best design, and the outcome of its search
+    infeasibility : explanation of why there is no front
+    unsolved : the objective without a best design, and the outcome of its search
     """
 
     subject: Design
@@ -115,23 +116,23 @@ class ParetoFront(Displayed):
 
     @property
     def jumps(self) -> tuple[FrontGap, ...]:
-        """Gaps at which the front is discontinuous, so that no design lies between."""
+        """Gaps where the front jumps, so that no design lies between."""
         return tuple(gap for gap in self.wide if gap.jump)
 
     @property
     def steps(self) -> tuple[float, ...]:
-        """The gaps other than jumps."""
+        """The gaps that are not jumps."""
         jumps = {gap.after for gap in self.jumps}
         return tuple(gap for k, gap in enumerate(self.gaps) if k not in jumps)
 
     @property
     def evenness(self) -> float | None:
-        """Ratio of the largest gap to the median gap, without jumps; None without gaps."""
+        """Largest gap divided by the median gap, without jumps; None if there are no gaps."""
         return max(self.steps) / median(self.steps) if self.steps else None
 
     @property
     def sentence(self) -> str:
-        """The result in words."""
+        """The result as a sentence."""
         if self.unsolved:
             return (
                 f"no front: the search for the best of one objective alone failed, {self.unsolved}"
@@ -150,7 +151,7 @@ class ParetoFront(Displayed):
         return sentence
 
     def to_dict(self) -> dict[str, Any]:
-        """The object of `pareto --json`: the evaluation's keys are those of the knee (SI)."""
+        """The object of `pareto --json`; it includes the evaluation of the knee (SI)."""
         knee = self.knee
         result = self.evaluation.to_dict() | {
             "spec_hash": self.spec_hash,
@@ -189,7 +190,8 @@ def wishes(texts: Sequence[str], quantities: dict[str, Quantity]) -> tuple[Wish,
 
     Raises
     ------
-    UsageError : fewer than two or more than four, an unknown metric, or one metric twice
+    UsageError : fewer than two or more than four objectives, an unknown metric, or the same metric
+        twice
     """
     objectives: list[Wish] = []
     for text in texts:
@@ -222,10 +224,10 @@ class _ManyObjectives:
     goals: tuple[Goal, ...]
     wished: tuple[Wish, ...]
     subject: PreparedDesign
-    """The problem with the design's own objective."""
+    """The design, with the objective of its file."""
 
     def evaluate(self, points: Array) -> PointValues:
-        """Objectives, to be minimised, and margins."""
+        """Objectives, in the form to be minimised, and margins."""
         cases = self.actuator.subject.cases
         outputs: list[MetricArrays] = []
         values = self.actuator.evaluate(points, outputs=outputs)
@@ -248,9 +250,10 @@ def pareto(
     subject : the prepared design
     objectives : two to four of ``METRIC:min`` or ``METRIC:max``
     count : requested number of designs
-    seed : of the searches; the same seed gives the same front
-    checks : number of independent searches between designs, which detect merely local designs
-    fault : locates faults of variables in the file
+    seed : seed of the searches; the same seed gives the same front
+    checks : number of independent searches between designs, which reveal designs that are only
+        locally best
+    fault : builds the Diagnostic of a faulty variable, with its line in the file
     """
     began = time.perf_counter()
     wished = wishes(objectives, dict(subject.quantities))
@@ -271,7 +274,7 @@ def pareto(
 def _problem(
     subject: PreparedDesign, wished: tuple[Wish, ...], fault: Fault | None
 ) -> _ManyObjectives:
-    """Build the problem; every objective must be defined and variable.
+    """Build the problem; reject an objective that is undefined or that no variable changes.
 
     Raises
     ------
@@ -304,7 +307,7 @@ def _problem(
 
 
 def _points(many: _ManyObjectives, result: Front) -> tuple[FrontPoint, ...]:
-    """Variables of every design, and its metrics of the objectives and requirements."""
+    """For every design, its variables and the metrics used by objectives and requirements."""
     actuator, count = many.actuator, result.x.shape[1]
     subject = actuator.subject
     numbers = subject.values(dict(zip(actuator.paths, result.x, strict=True)))
@@ -329,7 +332,7 @@ def _points(many: _ManyObjectives, result: Front) -> tuple[FrontPoint, ...]:
 
 
 def _result(many: _ManyObjectives, result: Front, seed: int, began: float) -> ParetoFront:
-    """Assemble the result."""
+    """Assemble the result from the computed front."""
     knee = None if result.knee is None else Knee(*result.knee)
     index = 0 if knee is None else knee.index
     design, evaluation = design_at(many.actuator, result.x[:, index])
@@ -360,7 +363,7 @@ def _passed(values: Vector, signs: Vector) -> list[list[float]]:
 
 
 def _notes(many: _ManyObjectives) -> list[str]:
-    """Warnings on parts of a design that a front ignores: choices, and sizes of variables."""
+    """Warnings about choices and listed sizes of a design, which a front ignores."""
     design = many.actuator.subject.design
     notes = []
     if design.choices:
@@ -382,7 +385,7 @@ def _text(wish: Wish) -> str:
 
 
 def _without(many: _ManyObjectives, no_anchor: NoAnchor, began: float) -> ParetoFront:
-    """The result without a front: no design is feasible, or an anchor is missing."""
+    """The result if there is no front: no design is feasible, or an anchor is missing."""
     subject = many.subject
     solution = no_anchor.solution
     feasible = solution.violation <= MET

@@ -1,12 +1,13 @@
-"""Prices of the parameters of an optimum: value, range of validity, and check by re-solving.
+"""Prices of an optimum's parameters: value, range of validity, and check by re-solving.
 
-The price of a parameter is the derivative of the Lagrangian [Fiacco1983]. It is exact for limits,
-material data, pressures and bounds, for any algebraic form of the constraints. The derivative of
-the optimum solves the linearised optimality conditions [Fiacco1983]; the range of validity of the
-price follows from it. Re-solving at plus and minus 10 % shows the error of the straight line.
+The price of a parameter is the change of the optimal objective per unit of the parameter, which is
+the derivative of the Lagrangian [Fiacco1983]. It is exact for limits, material data, pressures and
+bounds, whatever the form of the constraints. The derivative of the optimum solves the linearised
+optimality conditions [Fiacco1983]; the range in which the price is valid follows from it.
+Re-solving at plus and minus 10 % shows the error of the straight-line prediction.
 
-At a degenerate vertex the multipliers form a polytope. The prices upwards and downwards are then
-the largest and smallest over the polytope [Gauvin1982].
+At a degenerate vertex the multipliers are not unique but form a polytope. The prices of an increase
+and of a decrease are then the largest and the smallest within this polytope [Gauvin1982].
 """
 
 from __future__ import annotations
@@ -34,25 +35,26 @@ from .resolve import ladder
 from .resolve.steps import valley_at
 
 INSTANT = 1e-7
-"""Change of an active margin per relative parameter change that counts as zero."""
+"""Change of an active margin, per relative change of the parameter, that counts as zero."""
 BASES = 1000
-"""Maximum bases of the multiplier polytope for enumeration; beyond, linear programming."""
+"""Maximum number of vertices that are enumerated for the multipliers; beyond, linear programming is
+used."""
 
 
 @dataclass(frozen=True)
 class Optimum:
-    """Linear algebra of an optimum: margins of constraints, then lower and upper bounds.
+    """Linear algebra at an optimum; margins are of constraints, then lower and upper bounds.
 
     Parameters
     ----------
-    margins, multipliers : (M,)
-    gradients : of the margins (M, nf)
-    equalities : gradients (e, nf)
-    equality_multipliers : (e,)
+    margins, multipliers : margins (M,) and their multipliers
+    gradients : gradients of the margins (M, nf)
+    equalities : gradients of the equalities (e, nf)
+    equality_multipliers : multipliers of the equalities (e,)
     slope : gradient of the objective (nf,)
-    hessian : of the Lagrangian (nf, nf)
-    labels : of the margins
-    weights : of the rows in the Lagrangian
+    hessian : Hessian of the Lagrangian (nf, nf)
+    labels : labels of the margins
+    weights : factors of the rows in the Lagrangian
     """
 
     margins: Vector
@@ -67,7 +69,7 @@ class Optimum:
 
     @property
     def active(self) -> npt.NDArray[np.intp]:
-        """Margins with a positive multiplier."""
+        """Mask of the margins whose multiplier is positive."""
         size = self.multipliers * np.sqrt((self.gradients**2).sum(axis=1))
         return np.flatnonzero(size > 1e-10 * max(float(np.linalg.norm(self.slope)), 1e-300))
 
@@ -104,7 +106,7 @@ def optimum_at(evaluator: Evaluator, point: Point, quality: kkt.KktResidual) -> 
 
 
 def margin_slopes(optimum: Optimum, derivatives: Responses) -> Vector:
-    """Explicit derivative of every margin by every parameter (M, q)."""
+    """Derivative (M, q) of every margin by every parameter, with the variables held constant."""
     m = len(optimum.margins) - len(derivatives.bounds)
     return np.concatenate([derivatives.rows[1 : 1 + m], derivatives.bounds])
 
@@ -116,9 +118,9 @@ def lagrangian_slopes(optimum: Optimum, derivatives: Responses) -> Vector:
 
 
 def movement(optimum: Optimum, derivatives: Responses) -> tuple[Vector, Vector]:
-    """Derivatives of the optimum (nf, q) and of its multipliers (M, q) by the parameters.
+    """Derivatives by the parameters of the optimum (nf, q) and of its multipliers (M, q).
 
-    Directions without effect to second order do not move.
+    Directions along which neither objective nor limits curve are taken not to move.
     """
     active, nf = optimum.active, len(optimum.slope)
     rows = np.concatenate([optimum.gradients[active], optimum.equalities])
@@ -128,7 +130,7 @@ def movement(optimum: Optimum, derivatives: Responses) -> tuple[Vector, Vector]:
             derivatives.rows[len(derivatives.rows) - len(optimum.equalities) :],
         ]
     )
-    # scaled system: d(gradient of the Lagrangian) = 0 and d(margin) = 0 on the active rows
+    # scaled system on the active rows: d(gradient of the Lagrangian) = 0 and d(margin) = 0
     size = np.sqrt((rows**2).sum(axis=1))
     size = np.where(size > 0, size, 1.0)
     scale = max(float(np.linalg.norm(optimum.slope)), 1e-300)
@@ -144,9 +146,9 @@ def movement(optimum: Optimum, derivatives: Responses) -> tuple[Vector, Vector]:
 def reach(
     optimum: Optimum, derivatives: Responses, moves: Vector, shifts: Vector
 ) -> list[tuple[float | None, str | None]]:
-    """For each parameter, the nearest value at which the active set changes, and the change.
+    """For each parameter, the nearest value at which the active limits change, and that change.
 
-    None beyond -100 % and +100 % of the parameter.
+    None if there is no change between -100 % and +100 % of the parameter.
     """
     result: list[tuple[float | None, str | None]] = []
     for value, changes in zip(
@@ -161,10 +163,10 @@ def reach(
 
 
 class ActiveSetChange(NamedTuple):
-    """A change of the active set: distance and direction of the parameter, and the change.
+    """A change of the active limits, and the distance and direction of the parameter to it.
 
-    The direction matters at distance 0: a zero margin without a multiplier becomes active on one
-    side only.
+    The direction matters at distance 0: a limit that is just met, without a multiplier, becomes
+    active on one side only.
     """
 
     distance: float
@@ -175,7 +177,7 @@ class ActiveSetChange(NamedTuple):
 def ends(
     optimum: Optimum, derivatives: Responses, moves: Vector, shifts: Vector
 ) -> list[tuple[ActiveSetChange | None, ActiveSetChange | None]]:
-    """For each parameter, the nearest change of the active set below and above its value."""
+    """For each parameter, the nearest change of active limits below and above its present value."""
     return [
         (
             min((change for change in changes if change.direction < 0), key=_size, default=None),
@@ -192,7 +194,7 @@ def _size(change: ActiveSetChange) -> float:
 def _changes(
     optimum: Optimum, derivatives: Responses, moves: Vector, shifts: Vector
 ) -> Iterator[list[ActiveSetChange]]:
-    """For each parameter, the values at which linear margins or multipliers vanish."""
+    """For each parameter, the values at which a linearised margin or multiplier reaches zero."""
     rates = margin_slopes(optimum, derivatives) + optimum.gradients @ moves
     active = optimum.active
     for k, value in enumerate(derivatives.values):
@@ -211,7 +213,7 @@ def _changes(
 
 
 def one_sided(optimum: Optimum, derivatives: Responses, active: npt.NDArray[np.intp]) -> Vector:
-    """Smallest and largest price (2, q) over all multipliers of the optimum."""
+    """Smallest and largest price (2, q) among all multipliers that the optimum admits."""
     margins = _without_copies(optimum, derivatives, active)
     rows = np.concatenate([optimum.gradients[margins], optimum.equalities])
     count, e = len(rows), len(optimum.equalities)
@@ -244,9 +246,10 @@ def one_sided(optimum: Optimum, derivatives: Responses, active: npt.NDArray[np.i
 def _without_copies(
     optimum: Optimum, derivatives: Responses, active: npt.NDArray[np.intp]
 ) -> npt.NDArray[np.intp]:
-    """Active margins without exact copies, such as the same limit in two load cases.
+    """Active margins without exact duplicates, such as the same limit in two load cases.
 
-    Only copies without a multiplier are dropped; least squares gives at most one copy a multiplier.
+    Only duplicates without a multiplier are dropped. Least squares gives a multiplier to at most
+    one of several equal margins.
     """
     slopes = np.concatenate([optimum.gradients, margin_slopes(optimum, derivatives)], axis=1)
     indices: list[int] = []
@@ -261,7 +264,7 @@ def _without_copies(
 
 
 def _vertices(rows: Vector, target: Vector, rank: int, free_count: int) -> Vector:
-    """Vertices (v, a) of {m : rows.T @ m = target, m >= 0}; the last `free_count` of m are free."""
+    """Vertices (v, a) of {m : rows.T @ m = target, m >= 0}; the last `free_count` are free."""
     count = len(rows)
     vertices = []
     for combination in itertools.combinations(range(count - free_count), rank - free_count):
@@ -282,25 +285,26 @@ def _vertices(rows: Vector, target: Vector, rank: int, free_count: int) -> Vecto
 def _by_linear_programming(
     rows: Vector, target: Vector, slopes: Vector, objective: Vector, free_count: int
 ) -> Vector:
-    from scipy.optimize import linprog  # slow import for a rare case
+    from scipy.optimize import linprog  # slow import, rarely needed
 
     limits = [(0, None)] * (len(rows) - free_count) + [(None, None)] * free_count
     result = np.empty((2, slopes.shape[1]))
     for k in range(slopes.shape[1]):
         for side, sign in ((0, 1.0), (1, -1.0)):
             solution = linprog(-sign * slopes[:, k], A_eq=rows.T, b_eq=target, bounds=limits)
-            # an unbounded price: no feasible point in this direction
+            # an unbounded price means that no point in this direction is feasible
             value = -np.inf if solution.fun is None else float(solution.fun)
             result[side, k] = objective[k] + sign * value
     return result
 
 
 CHANGE = 0.1
-"""Relative change for prediction and re-solving (contract)."""
+"""Relative change of a parameter for prediction and re-solving; part of the documented interface.
+"""
 STRAIGHT = 0.25
-"""Largest error of a straight response, as a share of the re-solved change."""
+"""Largest error of a straight-line prediction, as a share of the re-solved change."""
 Kind: TypeAlias = Literal["requirement", "parameter", "material"]
-"""A limit to negotiate, a fixed number of the design, or a material property."""
+"""A limit that can be negotiated, a fixed number of the design, or a material property."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -310,17 +314,17 @@ class Sensitivity:
     Parameters
     ----------
     parameter : PATH
-    label : of its quantity
-    unit : display unit
+    label : name of its quantity
+    unit : display unit of the parameter
     scale : display value = SI value / scale
     limit : present value
     price : change of the objective per unit of the parameter
     percent_per_percent : relative change of the objective per relative change of the parameter;
-        None if one of both is 0
-    predicted_10, resolved_10, predicted_minus10, resolved_minus10 : the objective at ±10 %,
-        predicted by the price and re-optimised; None without a design
-    holds_until : value at which the active set changes; None beyond ±100 %
-    next_active : the change of the active set
+        None if the objective or the parameter is 0
+    predicted_10, resolved_10, predicted_minus10, resolved_minus10 : the objective at +10 % and -10
+        %, predicted by the price, and re-optimised; None if there is no design
+    holds_until : value of the parameter up to which the same limits are active; None beyond ±100 %
+    next_active : the limit that becomes active, or stops being active, at this value
     active : whether the limit is active at the optimum
     price_up, price_down : prices of an increase and of a decrease, which differ only at a
         degenerate vertex; None if no design exists in this direction
@@ -372,12 +376,12 @@ class Sensitivity:
         return abs(up - down) > 1e-6 * max(abs(up), abs(down))
 
     def effect(self, objective: float) -> float:
-        """Largest re-solved change of the objective within ±10 %."""
+        """Largest re-solved change of the objective, at +10 % or -10 %."""
         changes = [abs(solved - objective) for _, _, solved in self.ends if solved is not None]
         return max(changes, default=0.0)
 
     def straight(self, objective: float) -> bool:
-        """Whether the price predicts the changes at ±10 % to a quarter."""
+        """Whether the price predicts the changes at ±10 % with an error below a quarter."""
         for _, predicted, solved in self.ends:
             if predicted is None or solved is None:
                 if predicted is not solved:
@@ -397,7 +401,7 @@ class Sensitivity:
 
 
 def ranked(rows: Sequence[Sensitivity], objective: float) -> tuple[Sensitivity, ...]:
-    """Rows by re-solved effect, the largest first."""
+    """Rows sorted by their re-solved effect on the objective, the largest first."""
     return tuple(
         sorted(rows, key=lambda r: (-r.effect(objective), -abs(r.percent_per_percent or 0.0)))
     )
@@ -405,7 +409,7 @@ def ranked(rows: Sequence[Sensitivity], objective: float) -> tuple[Sensitivity, 
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """The better of both ±10 % changes of a row (SI); `gain` > 0 is better."""
+    """The better of the changes of a row by +10 % and -10 % (SI); a positive `gain` is better."""
 
     row: Sensitivity
     change: float
@@ -421,10 +425,10 @@ class Offer:
 
 @dataclass(frozen=True, slots=True)
 class Offers:
-    """The most valuable changes: the best offer of each kind, None without one.
+    """The most valuable change of each kind; None for a kind without a worthwhile change.
 
-    `no_design` lists the requirements that cannot change by 10 %, with the sign of the infeasible
-    change.
+    `no_design` lists requirements that have no feasible design after a change of 10 %, with the
+    sign of that change.
     """
 
     requirement: Offer | None
@@ -434,12 +438,12 @@ class Offers:
 
     @property
     def found(self) -> tuple[Offer, ...]:
-        """The existing offers, requirements first."""
+        """The changes that exist, requirements first."""
         existing = (self.requirement, self.parameter, self.material)
         return tuple(offer for offer in existing if offer is not None)
 
     def to_dict(self) -> dict[str, Any]:
-        """The "what_buys_most" of `optimise --json` (SI); its sentence is the optimisation's."""
+        """The "what_buys_most" of `optimise --json` (SI), except for its sentence."""
         kinds = ("requirement", "parameter", "material")
         best_offers = {name: getattr(self, name) for name in kinds}
         return {
@@ -453,7 +457,7 @@ class Offers:
 
 
 def offers(rows: Sequence[Sensitivity], objective: float, *, maximised: bool) -> Offers:
-    """The best re-solved change of each kind of row, if better than the optimum."""
+    """For each kind of row, the best re-solved change, if it improves on the optimum."""
     direction = 1.0 if maximised else -1.0
     best: dict[Kind, Offer] = {}
     infeasible = []
@@ -475,7 +479,7 @@ def offers(rows: Sequence[Sensitivity], objective: float, *, maximised: bool) ->
 
 @dataclass(frozen=True, slots=True)
 class ParameterPrice:
-    """The price of one parameter at an optimum; values in the units of the model.
+    """The price of a parameter at an optimum; values are in the units of the model.
 
     Parameters
     ----------
@@ -485,11 +489,12 @@ class ParameterPrice:
         no feasible point exists in this direction
     percent_per_percent : relative change of the objective per relative change of the parameter;
         None where the objective or the parameter is 0
-    predicted_up, predicted_down : objective at +10 % and -10 % by the price; None where infinite
+    predicted_up, predicted_down : objective at +10 % and -10 % as predicted by the price; None
+        where infinite
     resolved_up, resolved_down : re-optimised objective; None if infeasible or not requested
-    holds_until : the nearest value of the parameter at which the active set changes; None beyond
+    holds_until : the nearest value of the parameter at which the active limits change; None beyond
         -100 % and +100 %
-    change : of the active set, "LABEL becomes active" or "LABEL stops being active"
+    change : this change in words, "LABEL becomes active" or "LABEL stops being active"
     movement : change of each variable (n,) per unit of the parameter
     """
 
@@ -516,7 +521,7 @@ def prices(
     resolve: bool = True,
     bounds: bool = True,
 ) -> tuple[ParameterPrice, ...]:
-    """Price every parameter, and every bound with a multiplier, at the optimum.
+    """Price every parameter, and every bound that has a multiplier, at the optimum.
 
     Parameters
     ----------
@@ -524,7 +529,7 @@ def prices(
     solution : its optimum; an infeasible or undefined solution has no prices
     change : relative change for prediction and re-solving
     resolve : whether to re-solve
-    bounds : whether to price bounds, as "NAME lower" and "NAME upper"
+    bounds : whether to price bounds of variables, as "NAME lower" and "NAME upper"
     """
     if solution.kkt is None or not solution.feasible:
         return ()
@@ -567,8 +572,8 @@ def _ends(
     Parameters
     ----------
     solved : the unchanged problem
-    derivatives : the parameters, bounds of variables included
-    moves : derivative of the optimum by the parameters (nf, q)
+    derivatives : derivatives by the parameters, bounds of variables included
+    moves : derivatives of the optimum by the parameters (nf, q)
     change : relative change
     """
     parametric, point = solved.parametric, solved.valleys[0].point
@@ -646,16 +651,18 @@ def _finite(value: float) -> float | None:
 
 
 MOST_PARAMETERS = 10
-"""Maximum parameters (not limits) in the sensitivity table, by importance."""
+"""Maximum number of parameters (besides limits) in the sensitivity table, the most important first.
+"""
 LEAST_EFFECT = 1e-3
-"""Least elasticity (% per %) of a parameter in the table."""
+"""A parameter enters the table if 1 % of it changes the objective by at least this many per cent.
+"""
 FREE = 1e-9
-"""Price of a limit of 0, relative to the objective, up to which the limit has no row."""
+"""A limit of 0 is left out if its price, relative to the objective, is at most this."""
 _NO_PERCENT = ("temperature", "temperature_difference", "angle", "count")
 
 
 def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensitivity, ...]:
-    """Price the limits and the parameters with the largest effect."""
+    """Prices of the limits, and of the parameters with the largest effect on the objective."""
     active = _active_limits(actuator, solution)
     limits = dict.fromkeys(
         row.limit_of.path
@@ -721,7 +728,7 @@ def _quantity(actuator: ActuatorProblem, path: str) -> Quantity:
 def _strongest(
     actuator: ActuatorProblem, solution: Solution, excluded: set[str]
 ) -> tuple[str, ...]:
-    """The parameters with the largest elasticity of the objective, by the Lagrangian."""
+    """The parameters to which the objective is most sensitive, by the Lagrangian."""
     if solution.kkt is None:
         return ()
     candidates = [
@@ -754,7 +761,7 @@ def display_of(row: Sensitivity, value: float | None) -> float | None:
 
 
 def short_name(row: Sensitivity) -> str:
-    """A PATH shortened for a sentence: "stiffness_min", "density of ti_6al4v".
+    """A PATH shortened for use in a sentence: "stiffness_min", "density of ti_6al4v".
 
     >>> from types import SimpleNamespace as Row
     >>> short_name(Row(parameter="requirements.stiffness_min.min"))
@@ -774,17 +781,17 @@ def short_name(row: Sensitivity) -> str:
 def buys_most(
     best_offers: Offers, quantity: Quantity, objective: float, *, maximised: bool
 ) -> tuple[str, ...]:
-    """Sentences on the most valuable changes, and on requirements that cannot be tightened.
+    """Sentences on the most valuable changes, and on requirements that cannot be made stricter.
 
     Parameters
     ----------
-    best_offers : the best offer of each kind
-    quantity, objective : quantity of the objective, and its value at the optimum (SI)
+    best_offers : the best change of each kind
+    quantity, objective : the objective's quantity, and its value at the optimum (SI)
     maximised : whether a larger objective is better
     """
 
     def gain(offer: Offer) -> str:
-        """The gain of an offer: "saves 19.7 g (7.5 %)"."""
+        """The gain of a change in words: "saves 19.7 g (7.5 %)"."""
         per_display = quantity.to_display(1.0) - quantity.to_display(0.0)
         amount = f"{short(offer.gain * per_display, 3, full=True)} {quantity.unit}".rstrip()
         if objective:
@@ -816,7 +823,7 @@ def buys_most(
 
 
 def _at(row: Sensitivity, value: float) -> str:
-    """A value of the parameter with its unit."""
+    """A value of the parameter as text with its unit."""
     display = display_of(row, value)
     assert display is not None
     unit = "" if row.unit == "-" else row.unit

@@ -1,8 +1,8 @@
-"""The optimisation problem: a vector function in a box, without physical meaning.
+"""The optimisation problem: a vector function within bounds, without physical meaning.
 
-Constraints are relative margins, at least zero if met. An evaluation is a pure function of a batch
-of real or complex points, one per column. Solver coordinates are logarithms for variables with a
-positive lower bound; for others, multiples of half the box width.
+Constraints are relative margins, at least zero if met. An evaluation is a pure function of several
+real or complex points, one per column. Solver coordinates are logarithms for variables with a
+positive lower bound. Other variables are divided by half the width between their bounds.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Vector: TypeAlias = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class PointValues:
-    """Result of evaluating k points.
+    """Objective, constraints and equalities at k points.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class PointValues:
 
 @dataclass(frozen=True)
 class BoxProblem:
-    """Minimise an objective over a box, subject to margins >= 0 and equalities = 0.
+    """Minimise an objective within bounds, subject to margins >= 0 and equalities = 0.
 
     Parameters
     ----------
@@ -47,11 +47,12 @@ class BoxProblem:
     lower, upper : finite bounds (n,); equal bounds fix a variable
     evaluate : maps points (n, k), real or complex, to `PointValues`
     constraint_names, equality_names : label of each row of the values
-    start : a first guess inside the box, or None
+    start : a first guess within the bounds, or None
     relaxable : for each constraint, True for a requirement, False for a law such as geometry
-    groups : for each constraint, the number of its limit; the rows of one limit are relaxed
-        together. None: each constraint is a group
-    has_complex_step : False if `evaluate` takes only real points; gradients are differences then
+    groups : for each constraint, the number of its limit; constraints of one limit are relaxed
+        together. None: each constraint is a limit of its own
+    has_complex_step : False if `evaluate` only takes real points; then gradients are finite
+        differences
     linear : labels of variables that stay linear although their lower bound is positive
     """
 
@@ -108,7 +109,7 @@ class BoxProblem:
         )
 
     def inside(self, x: Vector) -> Vector:
-        """The point of the box nearest to another (n,)."""
+        """The point within the bounds that is nearest to another point (n,)."""
         return np.clip(x, self.lower, self.upper)
 
     @property
@@ -141,7 +142,7 @@ class BoxProblem:
 
 @dataclass(frozen=True)
 class ParametricProblem:
-    """A problem with parameters that can be priced.
+    """A problem with parameters whose prices can be computed.
 
     Parameters
     ----------
@@ -172,12 +173,13 @@ class ParametricProblem:
 
 
 ON_BOUND = 1e-12
-"""Share of a range within which a coordinate becomes its bound, so that 1e-23 becomes 0."""
+"""A coordinate this close to a bound becomes the bound (as a share of the range), so 1e-23 becomes
+0."""
 
 
 @dataclass(frozen=True)
 class Space:
-    """The solver's coordinates of a problem: its free variables, logarithmic where positive."""
+    """The solver's coordinates: free variables, as logarithms if the lower bound is positive."""
 
     problem: BoxProblem
     free: npt.NDArray[np.intp] = field(init=False)
@@ -211,16 +213,16 @@ class Space:
         return len(self.free)
 
     def to_z(self, x: Vector) -> Vector:
-        """Solver coordinates (nf,) of a point (n,) inside the box."""
+        """Solver coordinates (nf,) of a point (n,) within the bounds."""
         inner = x[self.free]
         log = self.logarithmic
         z = np.where(log, np.log(np.where(log, inner, 1.0)), inner / self.scale)
         return np.asarray(np.clip(z, self.lower, self.upper))
 
     def to_x(self, z: Vector, *, inside: bool = True) -> Vector:
-        """Points (n, k) of coordinates (nf, k); exactly on a bound where z is at the bound.
+        """Points (n, k) at coordinates (nf, k); exactly on a bound if z is.
 
-        `inside=False` permits points outside the box, for finite-difference steps.
+        `inside=False` permits points beyond the bounds, for finite-difference steps.
         """
         log, low, high = (
             a[:, None]
@@ -244,7 +246,7 @@ class Space:
         return np.where(self.logarithmic[:, None], x[self.free], self.scale[:, None])
 
     def complex_steps(self, x: Vector) -> npt.NDArray[np.complex128]:
-        """Points x (n, k) with a complex step in each coordinate in turn (n, k nf)."""
+        """Copies of the points x with a complex step in each coordinate in turn (n, k nf)."""
         count = x.shape[1]
         batch = np.repeat(x.astype(complex), self.size, axis=1)
         columns = np.arange(count * self.size).reshape(count, self.size)
@@ -253,14 +255,14 @@ class Space:
 
     @property
     def reference(self) -> Vector:
-        """Coordinates of the start, else of the middle of the box."""
+        """Coordinates of the start, or else of the middle between the bounds."""
         start = self.problem.start
         return (self.lower + self.upper) / 2 if start is None else self.to_z(start)
 
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """One optimum of the sequence: objective (SI) and share of draws that meet all limits."""
+    """One optimum of the robust search: objective (SI), and share of draws that meet all limits."""
 
     objective: float
     rate: float
@@ -268,18 +270,19 @@ class Round:
 
 @dataclass(frozen=True, slots=True)
 class Robust:
-    """Robustness of an optimum with uncertain inputs.
+    """Robustness of an optimum against uncertain inputs.
 
     Parameters
     ----------
     target : requested probability
-    rate, lower, upper : probability of meeting all covered limits, with 95 % bounds
-    samples : number of independent draws behind the rate
+    rate, lower, upper : probability of meeting all covered limits, with its 95 % confidence
+        interval
+    samples : number of independent draws from which the rate was counted
     converged : whether the reserves converged
-    nominal_objective, nominal_rate : of the optimum without reserves
-    reserves : extra margin that the robust search requires, by limit
-    rounds : the sequence of optima, first the optimum without reserves
-    left_out : limits not covered: checks that the optimum misses anyway
+    nominal_objective, nominal_rate : objective and rate of the optimum without reserves
+    reserves : margin added for scatter, by limit
+    rounds : the optima in sequence; the first is without reserves
+    left_out : limits that are not covered, because the optimum misses these checks anyway
     sentence : the result in words
     """
 
@@ -298,11 +301,11 @@ class Robust:
 
     @property
     def reached(self) -> bool:
-        """Whether the independent draws reach the requested probability."""
+        """Whether the rate in independent draws reaches the requested probability."""
         return self.rate >= self.target
 
     def to_dict(self) -> dict[str, Any]:
-        """The JSON form (SI)."""
+        """The result as JSON data (SI)."""
         result = asdict(self)
         for key in ("rate", "lower", "upper"):
             del result[key]

@@ -1,4 +1,4 @@
-"""A quick look at one combination of the choices: descents from its solved neighbours.
+"""A quick look at a combination of the choices: descends from solved, similar combinations.
 
 It usually finds the optimum of the combination, or shows that it is infeasible, but proves neither.
 """
@@ -25,28 +25,29 @@ from .result import How
 from .solver import solve, sweep
 
 EVALUATIONS = 40
-"""Maximum evaluations of one descent; 10 to 30 suffice from a nearby design."""
+"""Maximum number of evaluations in one descent; 10 to 30 are enough from a nearby design."""
 
 SAMPLES = 256
-"""Number of points of the sweep for another start if the neighbours fail."""
+"""Number of points of the sweep that gives another start if the similar combinations fail."""
 
 DOUBTFUL = 0.02
-"""Least violation up to which a look may have overlooked a feasible design."""
+"""If the least violation is at most this, the look may have overlooked a feasible design."""
 
 STUCK = 0.3
-"""Least violation above which a search may be stuck. Between both limits, all starts of the shipped
-designs led to the same value, so one start is enough."""
+"""If the least violation exceeds this, the search may be stuck. Between both limits, all starts of
+the shipped designs led to the same value, so one start is enough."""
 
 SETTLED = 1e-2
-"""Residual of the optimality conditions up to which a descent counts as converged."""
+"""A descent counts as converged up to this residual of the optimality conditions."""
 
 STARTS = 3
-"""Starts if a descent did not converge: its end point, the design's start, the best of a sweep."""
+"""Number of starts if a descent did not converge: its end point, the design's start, and the best
+point of a sweep."""
 
 
 @dataclass
 class Look:
-    """One combination: its design and the results so far."""
+    """A combination of choices: its design and the results so far."""
 
     order: int
     values: Mapping[str, Value]
@@ -61,12 +62,13 @@ class Look:
     missed: str = ""
     """The limit with the largest violation."""
     checks: frozenset[str] = frozenset()
-    """Missed checks that no variable can fix."""
+    """Missed checks that no variable can correct."""
     solution: Solution | None = None
     hessian: ScaledHessian | None = None
-    """Hessian at its optimum, or at the optimum of the neighbour whose steps led to it."""
+    """Hessian at the optimum of this combination, or at that of the neighbour from which steps led
+    to it."""
     sizing: str = ""
-    """Result of the search for listed sizes, if any."""
+    """In words, the result of the search for listed sizes; empty without a search."""
     rounded: float | None = None
     """Objective of the best design of listed sizes."""
 
@@ -77,7 +79,7 @@ class Look:
 
 
 class LookStart(NamedTuple):
-    """A start: `descend` directly, or reduce the worst violation first."""
+    """A start; if `descend` is false, the worst violation is reduced first."""
 
     x: Vector
     descend: bool
@@ -91,13 +93,13 @@ def look_quickly(
     seed: int,
     seconds: float | None,
 ) -> None:
-    """Descend from the starts, then from a sweep, until the result is clear.
+    """Descend from the starts, then from the best point of a sweep, until the result is clear.
 
     Parameters
     ----------
-    look : the combination; stores the best point
+    look : the combination, in which the best point is stored
     starts : the most reliable first
-    seed : of the sweep
+    seed : seed of the sweep
     seconds : time limit
     """
     assert look.actuator is not None
@@ -130,7 +132,7 @@ def look_quickly(
 
 
 def _follow_neighbour(look: Look, evaluator: Evaluator, starts: Sequence[LookStart]) -> bool:
-    """Step from a neighbour's optimum to that of the combination; returns whether it succeeds."""
+    """Step from a neighbour's optimum to that of the combination; return whether this succeeds."""
     neighbour = next((start for start in starts if start.hessian is not None), None)
     if neighbour is None or neighbour.hessian is None or not evaluator.space.size:
         return False
@@ -156,7 +158,7 @@ def hessian_of(look: Look) -> ScaledHessian | None:
 
 
 def _settle_quickly(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> None:
-    """Solve from a few starts if the descent ended before an optimum."""
+    """Solve from a few starts, if the descent ended before it reached an optimum."""
     quality = kkt.check(evaluator, evaluator.point(evaluator.space.to_z(x)))
     if quality.residual <= SETTLED or not evaluator.space.size:
         return
@@ -179,7 +181,7 @@ def _settle_quickly(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> N
 def _coordinates(
     evaluator: Evaluator, starts: Sequence[LookStart], seed: int
 ) -> Iterator[tuple[Vector, bool]]:
-    """The given starts, then the best point of a small sweep."""
+    """Coordinates of the given starts, then of the best point of a small sweep."""
     for x, descend, _ in starts:
         yield evaluator.space.to_z(x), descend
     if evaluator.space.size:
@@ -189,7 +191,7 @@ def _coordinates(
 
 
 def _store_best(look: Look, evaluator: Evaluator, point: Point) -> Point:
-    """Store a point if it is better than the stored point; returns the point."""
+    """Store a point if it is better than the stored point; return the point."""
     better = (max(point.violation, MET), point.objective)
     if not point.valid or better >= (max(look.violation, MET), look.objective):
         return point

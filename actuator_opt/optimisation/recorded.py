@@ -1,8 +1,8 @@
-"""Stores and restores an optimisation or a front as plain data of a run record.
+"""Stores an optimisation or a Pareto front as plain data of a run record, and restores it.
 
-Designs are stored as trees of SI numbers, which rebuild exactly the same design. An evaluation is
-stored as its design and estimated yield, and repeated on reading. All other data are dataclasses,
-restored by their annotations.
+A design is stored as a tree of SI numbers, from which exactly the same design can be rebuilt. An
+evaluation is stored as its design and its estimated yield; the design is evaluated again on
+reading. All other data are dataclasses, which are restored by their type annotations.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ Found = TypeVar("Found", Optimisation, ParetoFront)
 
 
 _PLAIN: dict[Any, Any] = {float: (int, float), int: int, str: str, bool: bool}
-"""Plain values, with the JSON types they may have."""
+"""Plain types, with the JSON types that are accepted for each."""
 
 
 def to_plain(result: Optimisation | ParetoFront) -> dict[str, Any]:
-    """A result as JSON data: the `designs`, and the `result` with references to them."""
+    """A result as JSON data: `designs`, and `result`, which refers to the designs."""
     designs: list[dict[str, Any]] = []
 
     def place(design: Design) -> int:
@@ -95,7 +95,7 @@ def from_plain(
         return built.design
 
     def evaluation(entry: Any) -> Evaluation:
-        # the format before 0.7 has no yield
+        # records before version 0.7 contain no yield
         index, estimate = entry if isinstance(entry, list) else (entry, None)
         if index not in evaluated:
             subject = prepare(design(index), None, plugins)
@@ -140,7 +140,7 @@ def _hints(kind: type) -> dict[str, Any]:
 
 
 def _typed(kind: Any, value: Any) -> Any:
-    """Convert a JSON value to its annotated type: dataclasses and tuples.
+    """Convert a JSON value to its annotated type, dataclasses and tuples included.
 
     Raises
     ------

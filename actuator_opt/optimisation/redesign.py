@@ -1,4 +1,4 @@
-"""Effect of measured values on a design: on its requirements and its optimum."""
+"""Shows how measured values change a design: its requirements and its optimum."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from .run import optimise
 
 @dataclass(frozen=True, slots=True)
 class Shift:
-    """A requirement with the old and the new values, and its range over the measured bounds.
+    """A requirement with old and new values, and the range from the measured uncertainty.
 
-    `lower` and `upper` bound the value after (SI); None without a bound.
+    `lower` and `upper` enclose the value after the change (SI); None without uncertainties.
     """
 
     before: Requirement
@@ -31,7 +31,7 @@ class Shift:
 
     @property
     def move(self) -> float:
-        """Change of the margin as a share of the limit; negative if it decreases."""
+        """Change of the margin as a share of the limit; negative if the margin decreases."""
         if self.before.margin is None or self.after.margin is None:
             return 0.0
         return self.after.margin - self.before.margin
@@ -61,7 +61,7 @@ class Shift:
 
 
 class ObjectiveChange(NamedTuple):
-    """An objective metric at both optima (SI); None without an optimum."""
+    """A metric of the objective at the old and the new optimum (SI); None without an optimum."""
 
     metric: str
     quantity: Quantity
@@ -71,13 +71,14 @@ class ObjectiveChange(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Redesign:
-    """A design with the old and the new values: with the values of its file, and optimised.
+    """A design with old and new values: unchanged otherwise, and optimised again.
 
     Parameters
     ----------
     evaluation : with the new values
-    shifts : every requirement before and after
-    best_before, best_after : the optima; None for a design without variables and choices
+    shifts : every requirement with the old and the new values
+    best_before, best_after : the optima with old and new values; None for a design without
+        variables and choices
     """
 
     evaluation: Evaluation
@@ -104,10 +105,10 @@ class Redesign:
 
     @property
     def goals(self) -> tuple[ObjectiveChange, ...]:
-        """The metrics of the objective at both optima, weighted terms separately.
+        """The metrics of the objective at both optima; the terms of a weighted sum are separate.
 
-        A weighted sum divides each term by its value in the design of the file, which the new
-        values change. The sums before and after are therefore not comparable.
+        A weighted sum divides each term by its value in the design file, and the new values change
+        that divisor. So the sums with old and new values cannot be compared.
         """
         before, after = self.best_before, self.best_after
         if before is None or after is None:
@@ -169,7 +170,7 @@ def solved(optimisation: Optimisation) -> bool:
 
 
 def _values(name: str, *optima: Optimisation) -> list[float | None]:
-    """A metric at designs that meet their requirements."""
+    """Look up the value of a metric in designs that meet their requirements."""
     return [
         optimum.evaluation.metrics[name].value if solved(optimum) else None for optimum in optima
     ]
@@ -188,16 +189,17 @@ def redesign(
     seed: int = 0,
     search: bool = True,
 ) -> Redesign:
-    """Evaluate both designs and, if they have variables, optimise them.
+    """Evaluate the designs with old and new values; optimise both if they have variables.
 
-    Each group of measured values takes its bounds, with all other values unchanged. The range of a
-    requirement is the root of the sum of the squared changes, upwards and downwards.
+    Each group of measured values is set to its lower and upper bounds while all other values stay
+    unchanged. The resulting changes of a requirement are combined as the root of their sum of
+    squares, separately upwards and downwards.
 
     Parameters
     ----------
     before, after : the design with the old and the new values
     learned : groups of measured values that vary together: lower and upper bounds by PATH
-    seed : of the searches
+    seed : seed of the searches
     search : whether to optimise
     """
     evaluation_before, evaluation_after = evaluate(before), evaluate(after)
@@ -220,7 +222,7 @@ def _bounds(
     middle: Evaluation,
     learned: Sequence[Mapping[str, tuple[float, float]]],
 ) -> dict[str, tuple[float | None, float | None]]:
-    """Range of the requirements' values within the measured bounds."""
+    """Range of the requirements' values while the measured values vary within their bounds."""
     values = {row.name: row.value for row in middle.requirements}
     reach = dict.fromkeys(values, (0.0, 0.0))
     for group in learned:
@@ -250,7 +252,7 @@ def _bounds(
 def _optimum_words(
     before: Optimisation, after: Optimisation, goals: Sequence[ObjectiveChange]
 ) -> list[str]:
-    """Changes of the optimum and of its active limits."""
+    """Sentences on how the optimum and its active limits changed."""
     if not (solved(before) and solved(after)):
         states = [
             "a design meets all requirements"
@@ -264,7 +266,7 @@ def _optimum_words(
 
 
 def _goal_words(objective_change: ObjectiveChange) -> str:
-    """A metric of the objective before and after."""
+    """A metric of the objective with old and new values, in words."""
     old, new = objective_change.before, objective_change.after
     if old is None or new is None:
         return f"{objective_change.metric} has no value"
@@ -276,7 +278,7 @@ def _goal_words(objective_change: ObjectiveChange) -> str:
 
 
 def _repairs(optimisation: Optimisation) -> list[str]:
-    """The sufficient single change, and the smallest change of limits."""
+    """The single change that is enough, and the smallest change of limits."""
     if optimisation.infeasibility is None:
         return []
     first_cure = next((cure for cure in optimisation.infeasibility.cures if cure["advised"]), None)
@@ -292,7 +294,7 @@ def _repairs(optimisation: Optimisation) -> list[str]:
 
 
 def _active_words(old: Sequence[str], new: Sequence[str]) -> list[str]:
-    """Limits that became active at the optimum, and those no longer active."""
+    """Limits that became active at the optimum, and limits that are now inactive."""
     pairs = (
         ([limit for limit in new if limit not in old], "newly at its limit"),
         ([limit for limit in old if limit not in new], "no longer at its limit"),

@@ -1,9 +1,9 @@
-"""Single changes that make an infeasible problem feasible: of one requirement, or of one bound.
+"""Single changes of a requirement or a bound that make an infeasible problem feasible.
 
-First, shortest steps to the linearised rows search for a point that meets everything except this
-requirement, or that lies beyond this bound, for all candidates at once. If the steps fail, an
-elastic problem with slacks on the constraints minimises the worst violation from several points.
-The least sufficient change follows from the feasible point.
+Each candidate drops one requirement or opens one bound. For all candidates at once, shortest steps
+to the linearised limits search for a point that meets all other limits. If the steps fail, an
+elastic problem (with slacks on the constraints) minimises the worst violation from several points.
+The feasible point then leads to the least change that is enough.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ Indices: TypeAlias = npt.NDArray[np.intp]
 
 
 MOST = 200
-"""Maximum evaluations of one descent; 10 to 50 usually suffice."""
+"""Maximum number of evaluations in one descent; 10 to 50 usually suffice."""
 
 
 FINE = 1e-7
-"""Relative tolerance of a descent before it is polished."""
+"""Relative tolerance of a descent whose result is polished afterwards."""
 
 
 EXACT = 1e-9
-"""Measure of optimality at which polishing ends."""
+"""Polishing ends when the measure of optimality falls below this."""
 
 
 ROUGH = 1e-5
@@ -45,7 +45,7 @@ ROUGH = 1e-5
 
 
 def common(problem: BoxProblem, room: float) -> BoxProblem:
-    """The elastic problem with one slack for all constraints and equalities."""
+    """The elastic problem with a single slack for all constraints and equalities."""
     m, e = len(problem.constraint_names), len(problem.equality_names)
     n = len(problem.names)
 
@@ -62,7 +62,7 @@ def common(problem: BoxProblem, room: float) -> BoxProblem:
 
 
 def separate(problem: BoxProblem, groups: Sequence[Indices], room: Sequence[float]) -> BoxProblem:
-    """The elastic problem with one slack per group of constraints; all others must be met."""
+    """The elastic problem with one slack for each group of constraints; all others must be met."""
     n, m = len(problem.names), len(problem.constraint_names)
 
     def evaluate(x: Array) -> PointValues:
@@ -79,7 +79,7 @@ def separate(problem: BoxProblem, groups: Sequence[Indices], room: Sequence[floa
 
 
 def _rows_once(problem: BoxProblem, points: Array) -> npt.NDArray[np.generic]:
-    """Rows of points (n, k); repeated points, which differ only in slacks, are evaluated once."""
+    """Rows of points (n, k); points that differ only in their slacks are evaluated once."""
     columns = np.ascontiguousarray(points.T)
     numbers: dict[bytes, int] = {}
     places = [numbers.setdefault(column.tobytes(), len(numbers)) for column in columns]
@@ -113,7 +113,7 @@ def _extended(
 
 
 def feasible_point(evaluator: Evaluator, point: Point) -> Point | None:
-    """A feasible point near `point`, or None; minimises one common slack."""
+    """A feasible point near `point`, or None; found by minimising a common slack."""
     if point.violation <= NOTHING:
         return point
     end = least_missed(evaluator, point)
@@ -121,7 +121,7 @@ def feasible_point(evaluator: Evaluator, point: Point) -> Point | None:
 
 
 def least_missed(evaluator: Evaluator, point: Point, rough: float = np.inf) -> Point:
-    """Minimise the worst violation near a point; a feasible point is returned unchanged.
+    """Minimise the worst violation near a point; return a feasible point unchanged.
 
     A result with a violation above `rough` is not polished, which halves the effort.
     """
@@ -144,14 +144,14 @@ def least_missed(evaluator: Evaluator, point: Point, rough: float = np.inf) -> P
 
 
 def _miss(point: Point) -> float:
-    """The worst violation at a point of the problem with a common slack."""
+    """The worst violation at a point of the problem with a common slack, for sorting."""
     return point.objective + point.violation if point.valid else np.inf
 
 
 def descend(
     problem: BoxProblem, x: Vector, slack: Sequence[float], ends: Sequence[Point] = ()
 ) -> Point:
-    """Solve an elastic problem from a point and slacks; a known end point stops the run."""
+    """Solve an elastic problem from a point and slacks; stop at an end point already known."""
     inner = Evaluator(problem)
     start = inner.point(inner.space.to_z(np.concatenate([x, np.asarray(slack, dtype=float)])))
     if not start.valid:
@@ -176,27 +176,28 @@ NOTHING = 1e-6
 """Relaxation or violation below which it counts as zero."""
 
 SETTLED = 1e-6
-"""Residual of the optimality conditions up to which a result counts as an optimum."""
+"""A result counts as an optimum up to this residual of the optimality conditions."""
 
 CHALLENGE = 0.99
-"""Share of an amount; if it is also enough, the amount is too large."""
+"""If this share of an amount is also enough, the amount is too large."""
 
 FAINT = 1e-3
-"""Least amount for this check; a hundredth of it must exceed the feasibility tolerance."""
+"""Least amount that is checked in this way; a hundredth of it must exceed the feasibility
+tolerance."""
 
 CHALLENGES = 8
-"""Maximum rounds of this check; seven halvings reach one per cent."""
+"""Maximum number of such checks; seven halvings reach one per cent."""
 
 WIDEST = 2.0
-"""Largest factor on a bound or dimension; larger changes give another actuator."""
+"""Largest factor on a bound or dimension; with a larger factor it would be another actuator."""
 
 _FREED = 1e9
-"""Margin granted to an excluded requirement, larger than any violation."""
+"""Margin granted to a requirement that must be ignored; larger than any violation."""
 
 
 @dataclass(frozen=True, slots=True)
 class RelaxedConstraint:
-    """A constraint and the margin (fraction of its limit) to give up.
+    """A constraint and the margin (fraction of its limit) that must be given up.
 
     `amount` is None if the problem is infeasible even without this constraint.
     """
@@ -208,12 +209,12 @@ class RelaxedConstraint:
 
 @dataclass(frozen=True, slots=True)
 class Opening:
-    """A bound that limits the joint relaxation.
+    """A bound of a variable that prevents a smaller joint relaxation.
 
     Parameters
     ----------
     variable, index, side, value : the bound
-    gain : fall of the total relaxation per unit of relative change of the bound (0.01 = 1 %)
+    gain : decrease of the total relaxation per relative change of the bound
     needed : value of the bound that is enough alone; None if no bound is enough up to `WIDEST`
     """
 
@@ -226,7 +227,7 @@ class Opening:
 
 
 def missed(evaluator: Evaluator, x: Vector, groups: Sequence[Indices]) -> list[float]:
-    """The largest margin missed in each group at a point."""
+    """In each group, the largest violation at a point."""
     rows = evaluator.point(evaluator.space.to_z(x)).rows[1 : 1 + evaluator.constraint_count]
     lacks = np.maximum(-np.nan_to_num(rows, nan=0.0), 0.0)
     return [float(lacks[group].max(initial=0.0)) for group in groups]
@@ -238,14 +239,14 @@ def by_limits(
     named: set[int],
     points: Sequence[Vector],
 ) -> tuple[RelaxedConstraint, ...]:
-    """The relaxation that each group of constraints needs alone.
+    """For each group of constraints, the relaxation that is enough if only this group is relaxed.
 
     Parameters
     ----------
     problem : the infeasible problem
-    groups : rows of the candidates
-    named : first rows of the groups that are searched from every point
-    points : starts, the point of the smallest joint relaxation first
+    groups : row numbers of each candidate
+    named : first rows of those groups that are searched from every point
+    points : starting points; the first is that of the smallest joint relaxation
     """
     amounts: list[float | None] = []
     points_without = without_each(problem, groups, points[0])
@@ -267,9 +268,10 @@ def _challenged(
     amounts: Sequence[float | None],
     points: Sequence[Vector],
 ) -> list[float | None]:
-    """The amounts, reduced where a share `CHALLENGE` is enough as well.
+    """The amounts, reduced wherever the share `CHALLENGE` of an amount is enough as well.
 
-    A descent may end at a kink or in a shallow valley; halving then finds a smaller amount.
+    A descent may end at a kink or in a shallow valley. Halving the amount then leads to a smaller
+    amount.
     """
     sufficient = {k: amount for k, amount in enumerate(amounts) if amount is not None}
     trials = {k: CHALLENGE * amount for k, amount in sufficient.items() if amount > FAINT}
@@ -305,9 +307,10 @@ def without_each(
     x: Vector,
     granted: Sequence[float] | None = None,
 ) -> list[Vector | None]:
-    """For each group, a point that meets all other rows, with a margin granted to the group.
+    """For each group, a point that meets all rows of the other groups.
 
-    `granted` is None for any margin. The result is None without this point.
+    The group's own violation may be up to `granted`; None permits any violation. The result is None
+    without such a point.
     """
     evaluator = Evaluator(problem)
     point = evaluator.point(evaluator.space.to_z(x))
@@ -335,7 +338,7 @@ def near(problem: BoxProblem, x: Vector) -> Vector | None:
 
 
 def _without(problem: BoxProblem, group: Indices, points: Sequence[Vector]) -> Vector | None:
-    """A point that meets all rows except one group, or None."""
+    """A point that meets all rows except those of one group, or None."""
     m = len(problem.constraint_names)
     remaining = np.setdiff1d(np.arange(m), group)
 
@@ -357,7 +360,7 @@ def _without(problem: BoxProblem, group: Indices, points: Sequence[Vector]) -> V
 def _least_of_all(
     problem: BoxProblem, group: Indices, x: Vector, points: Sequence[Vector]
 ) -> float | None:
-    """The least relaxation of one group; also from other points if a descent stalled."""
+    """The least relaxation of one group; other starting points follow if a descent stalls."""
     amount, optimal = _least(problem, group, x)
     for point in points:
         if optimal:
@@ -370,12 +373,12 @@ def _least_of_all(
 
 
 def least(problem: BoxProblem, group: Indices, x: Vector) -> float | None:
-    """The least relaxation of one group, near a point that meets the others; None without one."""
+    """The least relaxation of a group, near a point that meets the other groups; or None."""
     return _least(problem, group, x)[0]
 
 
 def _least(problem: BoxProblem, group: Indices, x: Vector) -> tuple[float | None, bool]:
-    """As `least`, and whether the result is optimal."""
+    """The result of `least`, and whether it is optimal."""
     lacks = missed(Evaluator(problem), x, [group])
     stretched = separate(problem, [group], [2.0 * max(*lacks, 0.5)])
     end = descend(stretched, x, lacks)
@@ -386,7 +389,7 @@ def _least(problem: BoxProblem, group: Indices, x: Vector) -> tuple[float | None
 
 
 def by_bounds(problem: BoxProblem, bounds: Sequence[Opening], x: Vector) -> tuple[Opening, ...]:
-    """The bounds, with the value of each that is enough alone."""
+    """The bounds, each with the value that is enough if only this bound is changed."""
     result = []
     for number, bound in enumerate(bounds):
         tell("infeasible: searching for a sufficient bound", number / len(bounds))
@@ -395,7 +398,7 @@ def by_bounds(problem: BoxProblem, bounds: Sequence[Opening], x: Vector) -> tupl
 
 
 def _opened(problem: BoxProblem, bound: Opening, x: Vector) -> float | None:
-    """The value of a variable nearest to its bound, beyond it, that meets all requirements."""
+    """The value beyond its bound, nearest to it, with which a variable meets all requirements."""
     j, is_upper = bound.index, bound.side == "upper"
     if bound.value <= 0:
         return None

@@ -32,7 +32,7 @@ class VariableResult:
     at_bound: str | None
 
     def moved(self, value: float) -> VariableResult:
-        """The dimension at another value."""
+        """The dimension with another value."""
         room = 1e-6 * max(abs(self.lower), abs(self.upper), self.upper - self.lower)
         bounds = {"lower": value - self.lower, "upper": self.upper - value}
         active_bound = next((name for name, distance in bounds.items() if distance <= room), None)
@@ -41,39 +41,41 @@ class VariableResult:
 
 @dataclass(frozen=True, slots=True)
 class Kkt:
-    """Quality of the optimum: ‖∇f + Σλ∇g‖/‖∇f‖ in log variables, active rows, their rank."""
+    """Quality of the optimum: residual ‖∇f + Σλ∇g‖/‖∇f‖, active limits, their rank."""
 
     residual: float
     active: tuple[str, ...]
     rank: int
     curvature: str
-    """Sign of the reduced Hessian in words ("vertex", "positive definite", …)."""
+    """Sign of the Hessian in the free directions, in words ("vertex", "positive definite", …)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Infeasibility:
-    """Explanation of an infeasible design: joint relaxation, sufficient changes, binding bounds.
+    """Explanation of an infeasible design: which limits conflict, and which changes are enough.
 
-    `joint` and `sole` entries contain requirement, origin, parameter (PATH), metric, sense, limit,
-    needed (the sufficient limit; None if no change of this limit is enough alone), relaxation
-    (fraction of the margin given up), change (of the limit, a fraction), safety_factor (True for
-    the check list and factors, whose relaxation is not advised) and both limits as text in the
-    display unit. The text of `needed` is rounded so that it is sufficient as printed. If a torque
-    is required through a lever, limit and needed are torques.
+    An entry of `joint` is a limit to relax together with others. An entry of `sole` is a limit that
+    is enough if it alone is relaxed. Both contain requirement, origin, parameter (PATH), metric,
+    sense, limit, needed (the limit that is enough; None if no change of this limit alone is
+    enough), relaxation (fraction of the margin given up), change (of the limit, a fraction),
+    safety_factor (True for the check list and safety factors, whose relaxation is not advised) and
+    both limits as text in the display unit. The text of `needed` is rounded so that it is enough as
+    printed. If a torque is required through a lever, limit and needed are torques.
 
-    `bounds` entries contain variable, parameter (PATH), quantity, bound (side), value, gain
-    (decrease of `total` per unit of relative change; a change of 1 % gives 0.01 of it), needed (the
-    bound that is enough alone; None without one), change and texts.
+    An entry of `bounds` is a bound of a variable that is active at the joint relaxation. It
+    contains variable, parameter (PATH), quantity, bound (side), value, gain (decrease of `total`
+    per relative change; a change of 1 % gives 0.01 of it), needed (the bound that is enough alone;
+    None if none is), change and texts.
 
-    `cures` lists sufficient single changes, the most advisable first: kind (dimension, choice,
-    bound, requirement, safety factor), parameter (PATH), now and needed (SI, or a word), change,
-    texts, and advised (False for safety factors). A dimension is not a variable of the design;
-    `together` lists dimensions that are only enough together; `beside` gives further entries that
-    a choice needs, by PATH. A design confirmed each cure. `untried` lists candidates that were not
-    tried.
+    An entry of `cures` is a single change that is enough, the most advisable first. It contains
+    kind (dimension, choice, bound, requirement, safety factor), parameter (PATH), now and needed
+    (SI, or a word), change, texts, and advised (False for safety factors). A dimension here is not
+    a variable of the design. `together` lists dimensions that are only enough together. `beside`
+    lists other entries that must change with a choice, by PATH. A design confirmed each cure.
+    `untried` lists candidates that were not tried.
 
-    `laws` lists conflicting geometry, `total` is the sum of the joint relaxations, `sentence` the
-    advice in one line, and `evidence` states what is proven.
+    `laws` lists geometrical conditions that conflict. `total` is the sum of the joint relaxations.
+    `sentence` is the advice in one line, and `evidence` states what is proven.
     """
 
     joint: tuple[Mapping[str, Any], ...]
@@ -89,12 +91,13 @@ class Infeasibility:
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """Distance of a design from the best possible: the proof, and the evidence.
+    """Distance of a design from the best possible design: the proof, and the evidence.
 
-    No design that meets the covered limits has an objective below `lower_bound` (SI); `gap` is the
-    remaining distance of this design, relative to its objective. Both are None without a proof;
-    `sentence` then gives the reason. `dropped` gives the reason for each limit that is not covered;
-    dropped limits can only lower the bound. `evidence` is the statistic of the starts, not a proof.
+    No design that meets the covered limits has an objective below `lower_bound` (SI). `gap` is the
+    distance of this design's objective from that bound, as a share of the objective. Without a
+    proof both are None, and `sentence` gives the reason. `dropped` gives the reason for each limit
+    that is not covered; dropping a limit can only lower the bound. `evidence` is a statistic of the
+    search's starts, not a proof.
     """
 
     sentence: str
@@ -112,9 +115,9 @@ class Certificate:
 
 @dataclass(frozen=True, slots=True)
 class RoundedVariable:
-    """A variable before and after rounding (SI); a `discrete` variable only takes listed values.
+    """A variable before and after rounding (SI); a `discrete` variable has only listed values.
 
-    `plies` is the number of plies of a layer, `sizes` the name of the list or series.
+    `plies` is the number of plies of a layer; `sizes` is the name of the list or series.
     """
 
     path: str
@@ -138,10 +141,10 @@ class RunnerUp:
 
 @dataclass(frozen=True, slots=True)
 class SizeRemedy:
-    """A small change of one number that allows better sizes.
+    """A small change of one number that makes better sizes possible.
 
-    `change` contains parameter (PATH), limit and needed (SI), change (a fraction) and both as text;
-    `objective` and `values` (sizes by PATH) are of a feasible design with this change.
+    `change` contains parameter (PATH), limit and needed (SI), change (a fraction) and both limits
+    as text. `objective` and `values` (sizes by PATH) belong to a feasible design with this change.
     """
 
     change: Mapping[str, Any]
@@ -152,17 +155,17 @@ class SizeRemedy:
 
 @dataclass(frozen=True, slots=True)
 class Rounding:
-    """The best design of whole plies, standard or other listed sizes, and the cost of rounding.
+    """The best design with whole plies, standard or other listed sizes, and what rounding costs.
 
-    `name` is the kind of sizes ("whole plies", "standard sizes"). `cost` is the loss of the
-    objective (≥ 0, in its SI unit), `percent` the loss relative to the continuous optimum. Both are
-    None, like `design` and `evaluation`, if no rounded design was feasible. `plies` gives the
-    number of plies of every layer with a ply thickness. `tried` and `feasible` count rounded
-    designs, `solves` re-optimisations; `complete` is True if the search did not stop at a limit.
-    The bounds of the search are local optima, so the result is not proven. `unmade` lists the PATHs
-    of values that are not whole plies or allowed angles because the requested sizes leave them
-    free; this design cannot be built yet. `remedies` lists small changes of a limit, load or
-    pressure that allow better sizes, if rounding costs much.
+    `name` is the kind of sizes ("whole plies", "standard sizes"). `cost` is the loss in the
+    objective (≥ 0, in its SI unit); `percent` is this loss relative to the continuous optimum. Both
+    are None, like `design` and `evaluation`, if no rounded design was feasible. `plies` gives the
+    number of plies of every layer with a ply thickness. `tried` and `feasible` count the rounded
+    designs, `solves` the re-optimisations. `complete` is True if the search did not stop at a
+    limit. The bounds of the search are local optima, so the result is not proven. `unmade` lists
+    the PATHs of values that are not whole plies or allowed angles because the requested sizes leave
+    them free; such a design cannot be built yet. `remedies` lists small changes of a limit, load or
+    pressure that make better sizes possible; they are searched if rounding costs much.
     """
 
     met: bool
@@ -219,19 +222,20 @@ class Rounding:
 
 
 How: TypeAlias = Literal["multistart", "quick", "evaluated", "not possible", "not tried"]
-"""Kind of search of a combination."""
+"""Search method of a combination of choices."""
 
 
 @dataclass(frozen=True, slots=True)
 class Combination:
-    """One combination of the choices and its best design.
+    """A combination of the choices, and its best design.
 
-    `how` is the search: "multistart" from many starts, "quick" from the nearest known design only
-    (it may miss the optimum), "evaluated" without variables, "not possible" for contradicting
-    values, "not tried" at the time limit. `feasible` is True if all requirements are met. `cost` is
-    the loss relative to the best objective (in its SI unit), `percent` the relative loss; None
-    without a comparison. `rounded` is the objective with listed sizes, if requested and better than
-    that of the combinations before; costs then refer to the best rounded objective.
+    `how` is the kind of search. "multistart" means from many starts. "quick" means only from the
+    nearest known design, which may miss the optimum. "evaluated" has no variables, "not possible"
+    has values that contradict each other, and "not tried" was left out at the time limit.
+    `feasible` is True if all requirements are met. `cost` is the loss against the best objective
+    (in its SI unit), `percent` the relative loss; both are None without a comparison. `rounded` is
+    the objective with listed sizes, if these were requested and it beats all combinations before.
+    Costs then refer to the best rounded objective.
     """
 
     values: Mapping[str, choice_list.Value]
@@ -251,7 +255,7 @@ class Combination:
 
 @dataclass(frozen=True, slots=True)
 class Choices:
-    """All combinations of the choices; the first is the best and gives the result."""
+    """All combinations of the choices; the first is the best, and its design is the result."""
 
     sentence: str
     combinations: tuple[Combination, ...]
@@ -263,7 +267,7 @@ class Choices:
         return self.combinations[0].values
 
     def count(self, *how: How) -> int:
-        """Number of combinations searched in these ways."""
+        """Number of combinations that were searched in the given ways (see `Combination`)."""
         return sum(combination.how in how for combination in self.combinations)
 
     @property
@@ -294,7 +298,7 @@ class Choices:
 
 @dataclass(frozen=True, slots=True)
 class Optimisation(Displayed):
-    """The best design, its quality, and the price of each requirement."""
+    """Result of an optimisation: best design, its quality, and the price of each requirement."""
 
     status: str
     sentence: str
@@ -311,15 +315,15 @@ class Optimisation(Displayed):
     evaluations: int
     samples: int
     starts: tuple[float | None, ...]
-    """Objective that each start reached; None if the design misses a limit."""
+    """Objective that each start reached; None if its design misses a limit."""
     trace: tuple[tuple[int, float, float], ...]
-    """(evaluation, objective, worst violation) of each improvement."""
+    """Evaluation number, objective and worst violation at each improvement."""
     algorithm: str
     warnings: tuple[str, ...]
     seed: int
     seconds: float
     certificate: Certificate | None = None
-    """Distance of the design from the best possible design, if requested."""
+    """If requested, how far the design is from the best possible design."""
     rounding: Rounding | None = None
     """The best design of listed sizes, if requested and a continuous optimum exists."""
     choices: Choices | None = None
@@ -328,12 +332,12 @@ class Optimisation(Displayed):
 
     @property
     def made(self) -> Rounding | None:
-        """The rounding, if it has a design of listed sizes; this design is shown and saved."""
+        """The rounding, if it found a design with listed sizes, which is shown and saved."""
         return None if self.rounding is None or self.rounding.design is None else self.rounding
 
     @property
     def best(self) -> Design:
-        """The design to build: the design of listed sizes if any, else the continuous optimum."""
+        """The design to build: with listed sizes if it exists, or else the continuous optimum."""
         return self.design if self.made is None or self.made.design is None else self.made.design
 
     @property
@@ -344,7 +348,7 @@ class Optimisation(Displayed):
 
     @property
     def tight(self) -> tuple[str, ...]:
-        """Limits without margin in the design to build; empty if it has the requested yield."""
+        """Limits without margin in the design to build; empty if its yield is as requested."""
         return () if self.robust and self.robust.reached else self.best_evaluation.tight
 
     @property
@@ -366,12 +370,12 @@ class Optimisation(Displayed):
 
     @property
     def optimum(self) -> bool:
-        """Whether the design to build is an optimum, among its sizes if requested."""
+        """Whether the design to build is optimal; with sizes, among designs of these sizes."""
         return self.status == "optimal" and self.best_evaluation.met
 
     @property
     def shown(self) -> str:
-        """The design in tables, drawing and JSON, in words; empty without requested sizes."""
+        """In words, the design in tables, drawing and JSON; empty without requested sizes."""
         if self.rounding is None:
             return ""
         quantity, name = of_metric(self.objective_metric), self.rounding.name
@@ -394,13 +398,13 @@ class Optimisation(Displayed):
 
     @property
     def offers(self) -> Offers:
-        """The most valuable changes by re-solved prices."""
+        """The most valuable changes, judged by the re-solved optima."""
         maximised = self.design.objective.maximise is not None
         return offers(self.sensitivities, self.objective_value, maximised=maximised)
 
     @property
     def buys_most(self) -> tuple[str, ...]:
-        """The most valuable changes in sentences; empty without prices."""
+        """Sentences on the most valuable changes; empty without prices."""
         if not self.sensitivities:
             return ()
         maximised = self.design.objective.maximise is not None
@@ -408,7 +412,7 @@ class Optimisation(Displayed):
         return prices.buys_most(self.offers, quantity, self.objective_value, maximised=maximised)
 
     def __str__(self) -> str:
-        """Outcome, variables and the evaluation of the best design as tables."""
+        """Outcome, variables, and the evaluation of the best design, as tables."""
         rows = [["variable", "value", "lower", "upper", ""]]
         for v in self.best_variables:
             quantity = INPUTS[v.quantity]
@@ -430,11 +434,11 @@ class Optimisation(Displayed):
         return table | {"limit": [row.limit / row.scale for row in self.sensitivities]}
 
     def to_dict(self) -> dict[str, Any]:
-        """The `optimise --json` object (SI): the evaluation's keys and the optimiser's.
+        """The object of `optimise --json` (SI): keys of evaluation and optimisation.
 
-        Metrics, requirements, checks, objective and variables belong to the design to build;
-        `evaluate` reproduces them from the saved file. Multipliers, prices and certificate belong
-        to the continuous optimum.
+        Metrics, requirements, checks, objective and variables are those of the design to build;
+        `evaluate` gives the same values for the saved file. Multipliers, prices and certificate are
+        those of the continuous optimum.
         """
         evaluation, value, infeasibility = (
             self.best_evaluation,
@@ -470,7 +474,7 @@ class Optimisation(Displayed):
         )
 
     def _shown(self) -> dict[str, Any]:
-        """The design shown: the continuous optimum, or the design of the requested sizes."""
+        """Which design is shown: the continuous optimum, or the design with the requested sizes."""
         return {
             "design": "continuous" if self.made is None else "rounded",
             "sizes": None if self.rounding is None else self.rounding.name,
@@ -478,12 +482,12 @@ class Optimisation(Displayed):
         }
 
     def _variables(self) -> dict[str, Any]:
-        """Value, bounds and active bound of every variable, by PATH."""
+        """By PATH, every variable's value and bounds, and which bound it has reached."""
         keys = ("value", "lower", "upper", "at_bound")
         return {v.path: {name: getattr(v, name) for name in keys} for v in self.best_variables}
 
     def _rounding(self) -> dict[str, Any] | None:
-        """The rounding with the evaluation of the continuous optimum."""
+        """The rounding, together with the evaluation of the continuous optimum."""
         if self.rounding is None:
             return None
         return self.rounding.to_dict() | {"continuous_evaluation": self.evaluation.to_dict()}

@@ -1,14 +1,15 @@
-"""Rounds the continuous optimum to manufacturable sizes, with its cost and remedies.
+"""Rounds the continuous optimum to sizes that can be made; gives the cost and remedies.
 
-Variables take the sizes stated in the file (a list, a step, a standard series) and, on request,
-whole plies, allowed angles or all standard sizes; see `design.sizes`. All other variables remain
-continuous and are optimised again. The search proves nothing; see `branch_and_bound`.
+A variable takes sizes that its file states (a list, a step, a standard series). On request,
+variables also take whole plies, allowed angles or all standard sizes; see `design.sizes`. All other
+variables remain continuous and are optimised again. The search proves nothing; see
+`branch_and_bound`.
 
-Remedies are small changes of a limit, a load or the supply pressure that allow better sizes. If
-rounding costs much, the size with the largest change takes its other neighbour, which some limit
-forbids. If no sized design is feasible, the least infeasible sizes are used. For these sizes, the
-least relaxation of each limit is computed, and the best design with this relaxation, which confirms
-the remedy.
+Remedies are small changes of a limit, a load or the supply pressure that make better sizes
+possible. If rounding costs much, the most changed variable is moved to the listed size on its other
+side, which some limit forbids. If no design with sizes is feasible, the least infeasible sizes are
+taken. For these sizes, the least relaxation of each limit is computed. The best design with this
+relaxation confirms the remedy.
 """
 
 from __future__ import annotations
@@ -44,19 +45,19 @@ from .result import Optimisation, RoundedVariable, Rounding, RunnerUp, SizeRemed
 from .solver import solve
 
 COSTLY = 10.0
-"""Cost of rounding (%) above which remedies are searched for: a choice."""
+"""If rounding costs more than this (%), remedies are searched for: our choice."""
 
 
 SMALL = 0.25
-"""Largest relative change of a number in a remedy: a choice."""
+"""Largest relative change of a number in a remedy: our choice."""
 
 
 MOST_LIMITS = 6
-"""Maximum limits tried, the tightest first: a choice, to limit the time."""
+"""Maximum number of limits tried, the tightest first: our choice, to limit the time."""
 
 
 MOST_SIZES = 3
-"""Maximum combinations of sizes tried: a choice, to limit the time."""
+"""Maximum number of combinations of sizes tried: our choice, to limit the time."""
 
 
 PRESSURE = "supply.pressure"
@@ -69,7 +70,7 @@ def size_remedies(
     size_search: SizeSearch,
     deadline: float | None = None,
 ) -> tuple[tuple[SizeRemedy, ...], str]:
-    """The changes of one number that allow better sizes, best design first, and a note without any.
+    """Single changes that make better sizes possible, best design first; a note if there are none.
 
     Parameters
     ----------
@@ -97,9 +98,9 @@ def size_remedies(
 
 
 def _other_sizes(listed: Sequence[Listed], x: Vector, size_search: SizeSearch) -> list[Assignment]:
-    """Assignments with the most rounded size at its other neighbour.
+    """Assignments in which the variable that rounding changes most has its other neighbouring size.
 
-    If no sized design is feasible, the least infeasible assignment.
+    If no design with sizes is feasible, returns the least infeasible assignment.
     """
     if size_search.assignment is None:
         return [] if size_search.nearest is None else [size_search.nearest]
@@ -115,7 +116,7 @@ def _other_sizes(listed: Sequence[Listed], x: Vector, size_search: SizeSearch) -
 
 
 def _limits(actuator: ActuatorProblem, solution: Solution, size_search: SizeSearch) -> list[int]:
-    """Rows of the requirements and loads with the least margins, at the optimum or the sizes."""
+    """Requirements and loads with the least margins, at the optimum or with the sizes."""
     margins = solution.constraints
     if size_search.missed is not None:
         margins = np.minimum(margins, size_search.missed.rows[1 : 1 + len(margins)])
@@ -132,7 +133,7 @@ def _limits(actuator: ActuatorProblem, solution: Solution, size_search: SizeSear
 
 @dataclass(frozen=True)
 class _FixedSizes:
-    """The problem with every size of an assignment fixed."""
+    """The problem in which every variable with sizes is fixed at the size of an assignment."""
 
     actuator: ActuatorProblem
     listed: Sequence[Listed]
@@ -142,7 +143,7 @@ class _FixedSizes:
 
     @property
     def sizes(self) -> dict[int, float]:
-        """The sizes by index of their variable."""
+        """The chosen sizes, by index of their variable."""
         pairs = zip(self.listed, self.assignment, strict=True)
         return {
             i: float(v)
@@ -151,14 +152,14 @@ class _FixedSizes:
         }
 
     def with_sizes(self, problem: BoxProblem) -> BoxProblem:
-        """A problem with the sizes fixed."""
+        """A copy of a problem in which the sizes are fixed."""
         lower, upper = problem.lower.copy(), problem.upper.copy()
         for place, value in self.sizes.items():
             lower[place] = upper[place] = value
         return replace(problem, lower=lower, upper=upper, start=None)
 
     def relaxed(self, indices: Sequence[int]) -> Iterator[SizeRemedy]:
-        """The least relaxation of each limit that makes the sizes feasible."""
+        """For each limit, the least relaxation that makes the sizes feasible."""
         problem = self.with_sizes(self.actuator.problem)
         assert problem.groups is not None
         numbers = np.asarray(problem.groups)
@@ -173,7 +174,7 @@ class _FixedSizes:
             if entry["change"] is None or abs(entry["change"]) > SMALL:
                 continue
             granted = np.zeros((len(problem.constraint_names), 1))
-            granted[group] = amount  # the printed value is rounded outwards, so it grants more
+            granted[group] = amount  # the printed value is rounded, so it grants more
 
             def evaluate(points: Array, granted: Array = granted) -> PointValues:
                 values = problem.evaluate(points)
@@ -210,7 +211,7 @@ class _FixedSizes:
     def remedy(
         self, eased: BoxProblem, x: Vector, entry: Mapping[str, Any]
     ) -> Iterator[SizeRemedy]:
-        """The best design of the sizes at the changed number, if better than without the change."""
+        """The best design with the sizes and the changed number, if the change helps."""
         point = repairs.near(eased, x)
         if point is None:
             return
@@ -228,17 +229,17 @@ class _FixedSizes:
 
 
 RUNNERS_UP = 3
-"""Number of next best designs in the result."""
+"""Number of next best designs listed in the result."""
 
 MOST_SAID = 4
-"""Maximum sizes named in a sentence."""
+"""Maximum number of sizes named in a sentence."""
 
 _OF_PLIES = ("whole plies", "allowed angles")
 
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """Requested sizes, in addition to those of the file."""
+    """Sizes that the user requests in addition to those of the file."""
 
     whole_plies: bool = False
     standard: bool = False
@@ -246,11 +247,11 @@ class Wanted:
 
 @dataclass(frozen=True)
 class ListedSizes:
-    """The listed variables of a design: groups for the search, and the series of each variable."""
+    """The variables with listed values: their groups for the search, and the series of each."""
 
     listed: tuple[Listed, ...]
     labels: dict[str, str]
-    """Source of each listed variable's sizes, by PATH."""
+    """Where each listed variable's sizes come from, by PATH."""
 
     @property
     def name(self) -> str:
@@ -267,7 +268,7 @@ def layers(design: Design) -> Iterator[tuple[str, Ply]]:
 
 
 def plies(ply: Ply) -> int | None:
-    """Number of plies of a layer; None if it is not whole, or without a ply thickness."""
+    """Number of plies of a layer; None if not whole, or if no ply thickness is stated."""
     if ply.ply_thickness is None:
         return None
     step = 2 if ply.balanced and not along(ply.angle) else 1
@@ -276,9 +277,9 @@ def plies(ply: Ply) -> int | None:
 
 
 def uncounted(design: Design, materials: Mapping[str, Material]) -> tuple[str, ...]:
-    """PATHs of fibre layer thicknesses whose plies cannot be counted.
+    """PATHs of fibre layer thicknesses for which plies cannot be counted.
 
-    These layers state no ply thickness, and their thickness is no variable with sizes.
+    Their layers state no ply thickness, and the thickness is not a variable with sizes.
     """
     paths = []
     for path, ply in layers(design):
@@ -307,7 +308,7 @@ def misfits(design: Design) -> tuple[str, ...]:
 
 
 def unrounded(optimisation: Optimisation) -> str:
-    """A note on an optimum without whole plies, if not requested; else empty."""
+    """A note if an optimum has no whole plies and none were requested; else empty."""
     design = optimisation.design
     paths = [path for path in misfits(design) if path in design.variables]
     if optimisation.rounding is not None or not paths or not optimisation.evaluation.met:
@@ -321,14 +322,14 @@ def sizes_of(
     materials: Mapping[str, Material],
     fault: Fault | None = None,
 ) -> ListedSizes | None:
-    """The variables that only take listed values; None if no variable does.
+    """The variables that only take listed values; None if there are no such variables.
 
     Parameters
     ----------
     design : the design with its variables
     requested : sizes in addition to those of the file
-    materials : of the design, by name
-    fault : locates a variable's fault in the file; default: by PATH only
+    materials : materials of the design, by name
+    fault : builds the Diagnostic of a faulty variable; default: one with the PATH but no line
 
     Raises
     ------
@@ -365,7 +366,7 @@ def sizes_of(
 
 
 def _require_plies(design: Design, requested: Wanted, materials: Mapping[str, Material]) -> None:
-    """Check that every fibre layer has countable plies, and whole plies if it is fixed."""
+    """Check that every fibre layer has countable plies, and if fixed, whole plies."""
     plies_by_path = dict(layers(design))
     hint = "" if requested.whole_plies else '; for bore and rod alone write "sizes: iso_3320"'
     faults = [
@@ -406,7 +407,7 @@ def _nothing_to_round(requested: Wanted) -> Diagnostic:
 
 
 def design_at(actuator: ActuatorProblem, x: Vector) -> tuple[Design, Evaluation]:
-    """The evaluated design at a point of its variables."""
+    """The evaluated design with the variables at a point."""
     subject = actuator.subject
     values = dict(zip(actuator.paths, x.tolist(), strict=True))
     design = with_values(subject.design, values, metrics=subject.quantities, contradictions=False)
@@ -423,7 +424,7 @@ def rounded(
     until: float | None = None,
     seed: int = 0,
 ) -> tuple[Rounding, Solution]:
-    """The best design with the sizes, and the continuous optimum.
+    """The best design with the sizes, and the continuous optimum for comparison.
 
     The continuous optimum is the given solution, unless the search of sizes finds a better design.
 
@@ -431,9 +432,9 @@ def rounded(
     ----------
     actuator, solution : the problem and a feasible point
     sizes : `sizes_of` the design
-    size_search : result of the search, if already made
-    until : time of `time.perf_counter` to stop at
-    seed : of the sweeps
+    size_search : result of the search for sizes, if already made
+    until : time of `time.perf_counter` at which the search stops
+    seed : seed of the sweeps
     """
     problem = actuator.problem
     if size_search is None:
@@ -452,7 +453,7 @@ def rounded(
 
 
 def _cost(objective: float, solution: Solution) -> float:
-    """Loss of an objective relative to the continuous optimum; rounding errors count as zero."""
+    """Loss of objective against the continuous optimum; at least 0, despite rounding errors."""
     cost = objective - solution.objective
     return 0.0 if abs(cost) <= 10 * SAME * abs(solution.objective) else cost
 
@@ -505,7 +506,7 @@ def _rounding(
 
 
 def _nearest(actuator: ActuatorProblem, sizes: ListedSizes, size_search: SizeSearch) -> str:
-    """The limit that the nearest sizes miss most, in words; empty if unknown."""
+    """The limit that the least infeasible sizes miss most, in words; empty if unknown."""
     if (
         size_search.nearest is None
         or size_search.missed is None
@@ -527,7 +528,7 @@ def _nearest(actuator: ActuatorProblem, sizes: ListedSizes, size_search: SizeSea
 def _values_of(
     actuator: ActuatorProblem, listed: Sequence[Listed], assignment: Assignment
 ) -> dict[str, float]:
-    """The listed variables of an assignment by PATH."""
+    """By PATH, the values that an assignment gives to the listed variables."""
     return {
         actuator.paths[index]: float(value)
         for group, row in zip(listed, assignment, strict=True)
@@ -542,7 +543,7 @@ _FINER = {
 
 
 def _sentence(name: str, met: bool, complete: bool) -> tuple[str, str]:
-    """The result of the search, and the remedy, in words."""
+    """Sentence on the result of the search and the remedy."""
     if not met:
         return f"the design of {name} misses a requirement", f"relax it, or {_FINER[name]}"
     if not complete:
@@ -563,7 +564,7 @@ def _unbuildable(
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """PATHs without whole plies, allowed angles or `ply_thickness`, and a sentence on each.
 
-    For the design before rounding, without the variables.
+    For the design before rounding; its variables are left out.
     """
     start = design is actuator.subject.design
     excluded = design.variables if start else {}
@@ -613,7 +614,7 @@ def _variables(
 def _runners_up(
     actuator: ActuatorProblem, solution: Solution, listed: Sequence[Listed], size_search: SizeSearch
 ) -> tuple[RunnerUp, ...]:
-    """The next best rounded designs."""
+    """The next best designs with sizes."""
     candidates = sorted(
         (objective, assignment)
         for assignment, objective in size_search.tried.items()

@@ -1,4 +1,4 @@
-"""Optimises an actuator: problem, solution, rounding, prices, certificate, infeasibility."""
+"""Optimises an actuator: solves, rounds to sizes, prices, proves, or explains infeasibility."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ from .rounding import Wanted, design_at, rounded, sizes_of
 from .solver import solve
 
 CHANCE = 0.95
-"""Probability for the evidence of the starts."""
+"""Confidence level for the evidence from the starts."""
 SAME = 1e-3
-"""Relative difference of objectives up to which two starts count as equal."""
+"""Two starts count as equal up to this relative difference of their objectives."""
 
 
 def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
-    """Bound the distance of a feasible design from the best possible design.
+    """Prove how far a feasible design can be from the best possible design.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
 
 
 def enumerated(optimisation: Optimisation, goal: Goal) -> Certificate | None:
-    """The certificate from an evaluation of all combinations, for a design without variables."""
+    """The certificate of a design without variables, whose combinations are all evaluated."""
     choices = optimisation.choices
     if choices is None or not optimisation.evaluation.met:
         return None
@@ -95,9 +95,7 @@ def enumerated(optimisation: Optimisation, goal: Goal) -> Certificate | None:
     ]
     best = min((sign * objective for objective in objectives), default=sign * value)
     sentence += "none that meets all requirements is better"
-    if (
-        best < sign * value
-    ):  # checks that another combination meets take precedence over the objective
+    if best < sign * value:  # checks met count before the objective
         sentence += ", except those that miss more of the check list"
     if goal.single is None or sign < 0 or not value > 0:
         return Certificate(sentence, "")
@@ -114,7 +112,7 @@ def _percent(share: float) -> str:
 
 
 def _unsuited(actuator: ActuatorProblem, solution: Solution) -> str:
-    """The reason why no bound can be proven; empty if it can."""
+    """The reason why no bound can be proven; empty if a proof is possible."""
     if actuator.goal.single is None:
         return "a weighted sum of metrics cannot be bounded yet; minimise one metric"
     if actuator.goal.sign < 0:
@@ -125,7 +123,7 @@ def _unsuited(actuator: ActuatorProblem, solution: Solution) -> str:
 
 
 def _evidence(solution: Solution) -> str:
-    """The evidence of the starts against a better optimum."""
+    """Sentence: how strongly the starts suggest that no optimum is better."""
     count = len(solution.starts)
     if count == 0:
         return ""
@@ -144,7 +142,8 @@ def _evidence(solution: Solution) -> str:
 
 SAMPLES = 2048
 """Number of points of the global sweep. For every shipped design, 8192, 2048 and 1024 points led to
-the same optimum, with three seeds each. With poles and margins the sweep takes most of the time."""
+the same optimum, with three seeds each. With hydraulic poles and stability margins, the sweep takes
+most of the time."""
 
 
 def optimise(
@@ -162,22 +161,23 @@ def optimise(
     keep_interrupted: bool = False,
     explain: bool = True,
 ) -> Optimisation:
-    """Find the best design.
+    """Find the best design of an actuator.
 
     Parameters
     ----------
     subject : the prepared design
-    fault : locates faults of variables in the file
+    fault : builds the Diagnostic of a faulty variable, with its line in the file
     algorithm : "auto" or an NLopt name such as ``LD_SLSQP``
     starts : number of starts from the global sweep
-    seed : of sweep and stochastic algorithms; the same seed gives the same result
-    prices : whether to price requirements and parameters, with re-solving at ±10 %
+    seed : seed of sweep and stochastic algorithms; the same seed gives the same result
+    prices : whether to compute prices of requirements and parameters, and re-solve at ±10 %
     max_seconds : time limit of the search; the best design so far is kept
     whole_plies : whether to find the best design of whole plies and allowed angles, too
     standard_sizes : whether to find the best design with all standard sizes, too
-    certify : whether to prove the distance from the best possible design
+    certify : whether to prove how far the design is from the best possible design
     explain : whether to explain an infeasible result
-    keep_interrupted : whether Ctrl-C keeps the best design so far; not with choices
+    keep_interrupted : whether the best design so far is kept after Ctrl-C; not for designs with
+        choices
     """
     began = time.perf_counter()
     deadline = None if max_seconds is None else began + max_seconds
@@ -233,14 +233,14 @@ def result_of(
     began: float,
     start: Evaluation | None = None,
 ) -> Optimisation:
-    """The optimisation for a known solution, with or without prices.
+    """The optimisation result for a solution already known, with or without prices.
 
     Parameters
     ----------
     subject, actuator, solution : the prepared design, its problem and the solution
-    prices : as of `optimise`
-    seed : of the search
-    began : time of `time.perf_counter` when it began
+    prices : see `optimise`
+    seed : seed of the search
+    began : time of `time.perf_counter` at which the search began
     start : evaluation of the start; default: the design with the values of its file
     """
     follow_up = _FollowUp(solution)
@@ -250,7 +250,7 @@ def result_of(
 
 @dataclass
 class _FollowUp:
-    """The solution and its follow-up results."""
+    """The solution, with the explanation, prices, certificate and rounding computed from it."""
 
     solution: Solution
     rounding: Rounding | None = None
@@ -262,7 +262,7 @@ class _FollowUp:
 def _complete(
     actuator: ActuatorProblem, follow_up: _FollowUp, *, prices: bool, certify: bool, explain: bool
 ) -> None:
-    """Explain, certify and price a solution."""
+    """Explain an infeasible solution; certify and price a feasible solution."""
     if follow_up.solution.interrupted:
         return
     if explain:
@@ -282,7 +282,7 @@ def _result(
     began: float,
     start: Evaluation | None = None,
 ) -> Optimisation:
-    """Assemble the result."""
+    """Assemble the result of an optimisation."""
     solution = follow_up.solution
     design, evaluation = design_at(actuator, solution.x)
     return Optimisation(
@@ -321,7 +321,7 @@ def _result(
 
 
 def _idle(actuator: ActuatorProblem) -> tuple[str, ...]:
-    """Objective terms that no variable affects, as warnings."""
+    """Warnings about objective terms that no variable affects."""
     if actuator.goal.single is not None:
         return ()
     return tuple(f"objective: no variable affects {name}" for name in idle_metrics(actuator))
@@ -336,7 +336,7 @@ def _enumerated(
     *,
     certify: bool,
 ) -> Optimisation:
-    """The best combination of the choices, for a design without variables."""
+    """The best combination of choices for a design without variables."""
     best = choice_search.ranked()[0]
     assert best.subject is not None
     status, remedy = "optimal", ""

@@ -1,12 +1,13 @@
-"""The optimiser: sweep the box, descend from the best starts, polish, verify.
+"""The optimiser: sweep the design space, descend from the best starts, polish, verify.
 
-On the default path, a low-discrepancy sweep suggests starts. SLSQP runs from each in logarithmic
-variables, and in linear variables if it failed. If all runs fail, an augmented Lagrangian around
-LBFGS follows. Active-set Newton steps polish the result to rounding. Feasibility and optimality are
-then verified, whatever a solver reports.
+On the default path, a low-discrepancy sweep suggests starts. From each start, SLSQP runs in
+logarithmic variables, and if that fails in linear variables. If all runs fail, an augmented
+Lagrangian around LBFGS follows. Active-set Newton steps reduce the remaining error to rounding.
+Feasibility and optimality are then verified, whatever a solver reports.
 
-The sweep is a scrambled Halton sequence [Halton1960] [Owen2017]: the radical inverse of the index
-in one prime base per variable, with seeded random digit permutations.
+The sweep is a scrambled Halton sequence [Halton1960] [Owen2017]: each variable has a prime base, in
+which the digits of a point's index are reversed behind the radix point. The digits are permuted at
+random, with a seed.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ from .resolve.parallel_descents import (
 from .resolve.steps import RESIDUAL
 
 KEEP = 256
-"""Number of best points kept as candidate starts."""
+"""Number of best points of the sweep that are kept as possible starts."""
 
 
 def primes(count: int) -> list[int]:
@@ -46,7 +47,7 @@ def primes(count: int) -> list[int]:
 
 
 class Halton:
-    """Scrambled Halton points in the unit cube; a seed always gives the same points."""
+    """Scrambled Halton points in the unit cube; the same seed gives the same points."""
 
     def __init__(self, dimension: int, seed: int, max_points: int = 2**31) -> None:
         generator = np.random.default_rng(seed)
@@ -57,11 +58,11 @@ class Halton:
                 digits += 1
             order = generator.permuted(np.tile(np.arange(base), (digits, 1)), axis=1)
             self.tables.append(order * float(base) ** -np.arange(1, digits + 1)[:, None])
-        self.shift = generator.random(dimension)  # all digits beyond the tables
+        self.shift = generator.random(dimension)  # for all digits beyond the tables
         self.most = max_points
 
     def points(self, first: int, count: int) -> Vector:
-        """Points (dimension, count) from index `first`."""
+        """Points (dimension, count); the first has the index `first`."""
         result = np.empty((len(self.tables), count))
         for row, table, shift in zip(result, self.tables, self.shift, strict=True):
             base = table.shape[1]
@@ -79,14 +80,14 @@ class Halton:
 
 @dataclass(frozen=True)
 class Sweep:
-    """Result of a sweep of the box.
+    """Result of a sweep of the design space.
 
     Parameters
     ----------
     z : candidates (nf, k), sorted by violation, then by objective
-    violation, objective : of the candidates (k,)
-    count, valid, feasible : number of points, of points with finite values, of feasible points
-    spread : range of the objective over the sweep, relative to its largest magnitude
+    violation, objective : violation and objective of the candidates (k,)
+    count, valid, feasible : numbers of all points, points with finite values, and feasible points
+    spread : range of the objective within the sweep, relative to its largest magnitude
     scale : largest magnitude among the candidates' objectives
     """
 
@@ -101,7 +102,7 @@ class Sweep:
 
 
 def sweep(evaluator: Evaluator, samples: int, seed: int) -> Sweep:
-    """Evaluate `samples` low-discrepancy points of the box, in chunks, and rank the best."""
+    """Evaluate `samples` low-discrepancy points, in chunks, and sort the best of them."""
     space = evaluator.space
     sequence = Halton(space.size, seed, max_points=max(2, samples))
     width = (space.upper - space.lower)[:, None]
@@ -135,7 +136,7 @@ def sweep(evaluator: Evaluator, samples: int, seed: int) -> Sweep:
 
 
 def distinct(evaluator: Evaluator, z: Vector, count: int) -> list[Vector]:
-    """Up to `count` points of the ranked candidates (nf, k) that are far apart."""
+    """Up to `count` of the sorted candidates (nf, k) that are far apart from each other."""
     space = evaluator.space
     unit = (z - space.lower[:, None]) / (space.upper - space.lower)[:, None]
     selected: list[int] = []
@@ -152,7 +153,7 @@ def distinct(evaluator: Evaluator, z: Vector, count: int) -> list[Vector]:
 
 
 LAGRANGIAN_EVALUATIONS = 1000
-"""Maximum evaluations of one augmented Lagrangian run: the shipped designs take 300 to 850."""
+"""Maximum evaluations in one augmented Lagrangian run: the shipped designs take 300 to 850."""
 
 
 def solve(
@@ -174,9 +175,9 @@ def solve(
     ----------
     problem : the problem; its own start, if any, is always tried
     algorithm : "auto" (the default path) or a name that `nlopt_wrapper.find` knows
-    starts : number of starts; beyond the given starts, they come from the global sweep
+    starts : number of starts; after the given starts, the best points of the global sweep are used
     samples : number of points of the global sweep
-    seed : of the sweep and of stochastic algorithms; the same seed gives the same result
+    seed : seed of sweep and stochastic algorithms; the same seed gives the same result
     max_evaluations, max_seconds : limits of the whole run; the best point so far is kept
     more_starts : further starts (n,)
     keep_interrupted : whether Ctrl-C ends the search with the best point so far, as a limit does
@@ -215,13 +216,13 @@ def solve(
 
 
 def _nothing(evaluator: Evaluator) -> Sweep:
-    """A sweep of no points."""
+    """An empty sweep, for a search without one."""
     size = evaluator.space.size
     return Sweep(np.empty((size, 0)), np.empty(0), np.empty(0), 0, 0, 0, 0.0, 0.0)
 
 
 def _starts(search: Descents, swept: Sweep, count: int, further: Sequence[Vector]) -> list[Point]:
-    """Valid starts: the problem's start, then the further starts, then the best of the sweep."""
+    """Valid starts: the problem's own, then the further starts, then the sweep's best."""
     evaluator = search.evaluator
     user_starts = [x for x in (evaluator.problem.start, *further) if x is not None]
     coordinates = [evaluator.space.to_z(np.asarray(x, dtype=float)) for x in user_starts]
@@ -235,8 +236,8 @@ def _starts(search: Descents, swept: Sweep, count: int, further: Sequence[Vector
 def _default_path(search: Descents, points: list[Point]) -> None:
     """Run SLSQP in logarithmic variables, then other methods from failed starts.
 
-    If the first start leads to no feasible point, even after a reduction of its worst violation,
-    the other starts reduce their worst violation first.
+    If the first start leads to no feasible point, even after its worst violation was minimised, the
+    other starts first minimise their worst violation.
     """
     failed = []
     precompute(search.evaluator, points, seed=search.seed, max_evaluations=LOCAL_EVALUATIONS)
@@ -268,7 +269,7 @@ def _default_path(search: Descents, points: list[Point]) -> None:
 
 
 def _chosen_path(search: Descents, points: list[Point], name: str) -> None:
-    """Run local algorithms from every start; global ones once, then refine with SLSQP."""
+    """Run a local algorithm from every start; a global one once, then refine with SLSQP."""
     outer, _ = nlopt_wrapper.find(name)
     if outer.scope == "local" or outer.name.startswith("AUGLAG"):
         for point in points:
@@ -342,7 +343,7 @@ def _conclude(search: Descents, swept: Sweep) -> Solution:
 
 
 def _best_seen(search: Descents, swept: Sweep) -> SearchResult:
-    """The best of all points: of the runs, the sweep, and the start or the middle."""
+    """The best of all points: from the runs, the sweep, and the start or middle."""
     evaluator = search.evaluator
     if search.interrupted or evaluator.exhausted:
         evaluator.enter_precomputed()
@@ -355,7 +356,7 @@ def _best_seen(search: Descents, swept: Sweep) -> SearchResult:
 
 
 def _settle(search: Descents, best: SearchResult) -> tuple[Point, tuple[str, ...]]:
-    """Reset variables without effect to their start, or to the middle of their bounds."""
+    """Reset variables without effect to their start, or else to the middle of their bounds."""
     evaluator = search.evaluator
     space, problem = evaluator.space, evaluator.problem
     if not best.point.valid or space.size == 0:

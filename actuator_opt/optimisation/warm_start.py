@@ -1,9 +1,9 @@
-"""Re-solves problems near an optimum, and predicts its movement.
+"""Re-solves problems near an optimum, and predicts how the optimum moves.
 
-Full steps, then restoration and descent, start from the local optima of the search
-(`resolve.ladder`), with their Hessians computed once. If they fail, a search from `STARTS` starts
-follows; if it finds no design, the original search is repeated. So every problem that the original
-search solves is solved.
+The search's local optima, with their Hessians computed once, are the starts for full steps, then
+for restoration and descent (`resolve.ladder`). If these fail, a search from `STARTS` starts
+follows. If that finds no design, the original search is repeated. So every problem that the
+original search can solve is solved.
 """
 
 from __future__ import annotations
@@ -28,18 +28,19 @@ Stop = Callable[[], bool]
 """Called between steps; True stops the search."""
 
 STARTS = 3
-"""Number of starts of the search if the steps fail."""
+"""Number of starts in the search that follows if the steps fail."""
 
 SAMPLES = 1024
-"""Number of points of the sweep of this search."""
+"""Number of points in the sweep of this search."""
 
 AGREES = 1e-9
-"""Tolerance of margins, for rounding, to decide whether a parameter describes a changed problem."""
+"""Tolerance of margins, for rounding, when testing whether a parameter describes a changed problem.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class SearchEffort:
-    """Effort of a search: number of starts, points of the sweep, and seed."""
+    """Effort of a search: numbers of starts and sweep points, and the seed."""
 
     starts: int
     samples: int
@@ -48,14 +49,14 @@ class SearchEffort:
 
 @dataclass(frozen=True)
 class LinearPath:
-    """The optimum as a straight line in one parameter (model units).
+    """The optimum as a linear function of one parameter (in units of the model).
 
     Parameters
     ----------
     below, above : slope of the objective downwards and upwards; infinite without a design
     moves : change of each variable (n,) per unit
-    low, high : distance and description of the nearest change of the active set on each side; None
-        without a change
+    low, high : distance to the nearest change of the active limits on each side, and its
+        description; None without a change
     """
 
     below: float
@@ -66,13 +67,13 @@ class LinearPath:
 
 
 class WarmStart:
-    """An optimum with the data to re-solve nearby problems.
+    """An optimum, with the data needed to re-solve nearby problems.
 
     Parameters
     ----------
     actuator : the problem
     solution : its optimum
-    effort : of the search for the optimum
+    effort : effort of the search that found the optimum
     """
 
     def __init__(self, actuator: ActuatorProblem, solution: Solution, effort: SearchEffort) -> None:
@@ -86,7 +87,7 @@ class WarmStart:
         self._responses: dict[str, Responses] = {}
 
     def solve(self, problem: BoxProblem, stop: Stop | None = None) -> Solution:
-        """The optimum of a changed problem with the same variables.
+        """Find the optimum of a changed problem with the same variables.
 
         Parameters
         ----------
@@ -127,16 +128,16 @@ class WarmStart:
         self, path: str, values: Sequence[float], rebuilt: Callable[[float], ActuatorProblem],
         stop: Stop | None = None,
     ) -> list[Point | None]:  # fmt: skip
-        """The optimum at each value of a number, solved together.
+        """Find the optimum at each value of a number, solving all together.
 
-        If shared steps do not reach a value, searches proceed outwards, up to the first value
-        without a design on each side.
+        If the shared steps do not reach a value, searches proceed outwards from the optimum. On
+        each side they stop at the first value without a design.
 
         Parameters
         ----------
-        path, values : the number
-        rebuilt : the problem with the number at a value
-        stop : called between steps; True ends the search, and further values are None
+        path, values : PATH of the number, and its values
+        rebuilt : function that builds the problem for a value of the number
+        stop : called between steps; True ends the search, and the remaining values have no optimum
         """
         present = self.actuator.subject.numbers.get(path)
         optima: list[Point | None] = [None] * len(values)
@@ -165,12 +166,12 @@ class WarmStart:
         return optima
 
     def line(self, changes: Mapping[str, float], size: float = 1.0) -> LinearPath:
-        """The optimum as a straight line along joint changes of numbers, per unit.
+        """The optimum as a linear function of a joint change of several numbers.
 
         Parameters
         ----------
         changes : difference of each number by PATH
-        size : number of units in a change as large as the numbers themselves
+        size : number of units that make up a change of 100 %
         """
         optimum = self.optimum
         derivatives = self._along(changes, size)
@@ -196,7 +197,7 @@ class WarmStart:
         return self._optimum
 
     def _along(self, changes: Mapping[str, float], size: float) -> Responses:
-        """The responses to one parameter that changes several numbers."""
+        """Derivatives with respect to one parameter that changes several numbers in proportion."""
         self.differentiate(changes)
         parts = [(self._responses[path], change) for path, change in changes.items()]
         first = parts[0][0]
@@ -210,9 +211,9 @@ class WarmStart:
         )
 
     def differentiate(self, paths: Iterable[str]) -> None:
-        """Compute the derivatives by the numbers at `paths`, unless known.
+        """Compute the derivatives by the numbers at `paths`, unless already known.
 
-        A joint call for many numbers costs little more than a call for one.
+        A single call for many numbers takes little longer than a call for one number.
         """
         missing = tuple(path for path in dict.fromkeys(paths) if path not in self._responses)
         if missing:
@@ -226,7 +227,7 @@ class WarmStart:
                 )  # fmt: skip
 
     def _take_gradients(self, evaluator: Evaluator) -> None:
-        """Reuse the gradient check for a changed problem with the same rows, else check again."""
+        """Reuse the gradient check if the changed problem has the same rows; else check again."""
         solved, problem = self.evaluator, evaluator.problem
         if tuple(problem.constraint_names) == tuple(solved.problem.constraint_names):
             evaluator.adopt_check(solved)
@@ -236,7 +237,7 @@ class WarmStart:
             )
 
     def _valleys(self, evaluator: Evaluator) -> list[Valley]:
-        """The valleys as starts for a changed problem."""
+        """The valleys of the optimum as starts for a changed problem."""
         solved, space = self.evaluator.space, evaluator.space
         same_coordinates = np.array_equal(solved.free, space.free) and all(
             np.array_equal(getattr(solved, name), getattr(space, name))
@@ -260,7 +261,7 @@ class WarmStart:
     def _stepped(
         self, evaluator: Evaluator, valleys: Sequence[Valley]
     ) -> tuple[Point | None, Vector | None]:
-        """The optimum that steps from the valleys reach, and a feasible point (nf,); or None."""
+        """Optimum by steps from the valleys, and a feasible point (nf,); None if missing."""
         problem = evaluator.problem
         parametric = ParametricProblem(problem, (), np.zeros(0), lambda x, _: problem.evaluate(x))
         if not valleys or not applicable(parametric, evaluator):
@@ -270,7 +271,7 @@ class WarmStart:
         return optima[0], feasible[0]
 
     def _interrupted(self, evaluator: Evaluator) -> Solution:
-        """The unchanged optimum as the result of a stopped search."""
+        """The unchanged optimum as the result of a search that was stopped."""
         evaluator.limited = False
         point = evaluator.point(evaluator.space.to_z(evaluator.problem.inside(self.point.x)))
         return _stopped(_solution(evaluator, point, "interrupted"))
@@ -282,10 +283,10 @@ class WarmStart:
         values: Sequence[float],
         rebuilt: Callable[[float], ActuatorProblem],
     ) -> bool:
-        """Whether the number as a parameter describes the changed problems; checked at both ends.
+        """Whether the problem changes as if the number were a parameter; checked at both ends.
 
-        Some numbers affect more than the models read directly: temperatures affect the factors on
-        materials.
+        Some numbers act in more ways than the models read directly: temperatures, for example,
+        change the factors on material properties.
         """
         parametric = self.actuator.parametric((path,))
         if not applicable(parametric, self.evaluator):
@@ -302,7 +303,7 @@ class WarmStart:
         return True
 
     def _curve(self, path: str, values: Sequence[float], stop: Stop | None) -> list[Point | None]:
-        """The optima at values of a number, where shared steps reach them."""
+        """The optima at values of a number; None where shared steps do not reach them."""
         evaluator = Evaluator(self.actuator.problem, stop=stop)
         self._take_gradients(evaluator)
         changed = ChangedProblems(self.actuator.parametric((path,)), evaluator, np.array([values]))
@@ -311,7 +312,7 @@ class WarmStart:
 
 
 def _solution(evaluator: Evaluator, point: Point, algorithm: str) -> Solution:
-    """A point as a solution; an optimum if it is feasible and stationary."""
+    """A point as a solution; it counts as an optimum if it is feasible and stationary."""
     quality = kkt.check(evaluator, point) if point.valid else None
     if point.violation > MET or quality is None:
         outcome = Outcome.INFEASIBLE

@@ -1,1 +1,1 @@
-"""Lower bound on the objective of every design: trace, relax, branch and bound."""
+"""Lower bound on the objective of every design: trace the models, relax them, branch and bound."""

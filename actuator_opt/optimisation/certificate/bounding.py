@@ -1,13 +1,14 @@
-"""Lower bound of one box: a linear programme for the least objective of its relaxation.
+"""Lower bound for one box: a linear programme minimises the objective of the box's relaxation.
 
-Tangents bound every curve on its convex side. They are valid in every box and added where the
-solution misses the curve [Kelley1960]. On the other side, the chord over the box bounds the curve.
-The bound is computed from the multipliers alone, so it is valid for any tolerance of the solver
-[Neumaier2004].
+A tangent bounds a curve on its convex side. Tangents are valid in every box; one is added where the
+solution violates the curve [Kelley1960]. On the other side, the chord across the box bounds the
+curve. The bound is computed from the multipliers alone, so it is valid for any tolerance of the
+solver [Neumaier2004].
 
-Wide sums are also stated in plain numbers: their bounds are loose in logarithms, but exact in plain
-numbers. There the planes of a product [McCormick1976] relate a monomial to its widest factor and
-its cofactor: mass and stiffness of a layer both follow its thickness.
+Sums whose terms vary widely are also stated without logarithms, because their bounds are loose in
+logarithms but exact without. Four planes bound each product [McCormick1976]. They relate a monomial
+to its widest factor and the remaining factor: for example, mass and stiffness of a layer both
+follow its thickness.
 """
 
 from __future__ import annotations
@@ -37,10 +38,10 @@ from .relaxation import (
 
 
 class Products:
-    """Rows of products w = k x y, starting at row `first`.
+    """Rows of the linear programme, from row `first`, that bound products w = k x y.
 
-    Each row is low <= w + a x + b y or w + a x + b y <= high. Two planes lie below the product and
-    two above, through the corners of both factors' ranges.
+    Each row reads low <= w + a x + b y or w + a x + b y <= high. Two planes lie below the product
+    and two above. They pass through the corners of the ranges of x and y.
     """
 
     def __init__(self, products: Sequence[Product], first: int, columns: int) -> None:
@@ -49,13 +50,13 @@ class Products:
         self.atoms = np.array(atoms, dtype=np.int32).reshape(-1, 3)
         self.level = np.exp([product.level for product in products])
         self.columns = np.repeat(self.atoms, 4, axis=0)
-        """Columns (rows, 3) of x, y and w."""
+        """Column numbers (rows, 3) of x, y and w."""
         starts, shape = 3 * np.arange(self.rows + 1), (self.rows, columns)
         ones = np.ones(3 * self.rows)
         self.matrix = sp.csr_matrix((ones, self.columns.ravel(), starts), shape=shape)
 
     def planes(self, lower: Vector, upper: Vector) -> tuple[Vector, Vector, Vector]:
-        """Coefficients (rows, 3) and ends of the rows, for ranges of all columns.
+        """Coefficients (rows, 3) and limits of the rows, given the ranges of all columns.
 
         w >= k (x_l y + y_l x - x_l y_l), w >= k (x_u y + y_u x - x_u y_u),
         w <= k (x_u y + y_l x - x_u y_l), w <= k (x_l y + y_u x - x_l y_u).
@@ -72,7 +73,7 @@ class Products:
         return planes.reshape(-1, 3), low.ravel(), high.ravel()
 
     def product_errors(self, x: Vector, dual: Vector) -> Vector:
-        """Error of every product at a point, weighted with its multipliers."""
+        """Error of every product at a point, multiplied by the multipliers of its rows."""
         first, second, out = self.atoms.T
         price = np.abs(dual[self.first : self.first + self.rows]).reshape(-1, 4).sum(axis=1)
         errors: Vector = np.abs(x[out] - self.level * x[first] * x[second]) * price
@@ -80,7 +81,7 @@ class Products:
 
 
 class Lines(NamedTuple):
-    """low <= out + coefficient * ratio <= high, by columns of curve and direction."""
+    """Lines low <= out + coefficient * ratio <= high for a curve's value and its ratio."""
 
     ratio: Any
     coefficient: Vector
@@ -89,7 +90,7 @@ class Lines(NamedTuple):
     high: Vector
 
     def joined(self, others: Lines) -> Lines:
-        """These lines, followed by others."""
+        """A set with these lines and then the others."""
         return Lines(*(np.concatenate(pair) for pair in zip(self, others, strict=True)))
 
     def add_to(self, solver: Any) -> None:
@@ -102,7 +103,7 @@ class Lines(NamedTuple):
 
 
 class KnownExtents:
-    """Least and largest value of every direction over known points of the relaxation."""
+    """Least and largest value of every direction among known points of the relaxation."""
 
     def __init__(self, directions: Vector) -> None:
         self.ends = directions.copy(), directions.copy()
@@ -114,51 +115,53 @@ class KnownExtents:
 
 
 WIDEST = 40.0
-"""Widest range of an argument with a chord; wider chords carry no information."""
+"""Widest range of an argument for which a chord is drawn; wider chords bound nothing."""
 
 ROUNDS = 3
-"""Maximum rounds of tangents per box; later boxes reuse them."""
+"""Maximum number of rounds that add tangents per box; later boxes reuse them."""
 
 TANGENT_GAIN = 2e-5
-"""Gain of the bound below which the rounds of tangents end."""
+"""The rounds of tangents end once a round raises the bound by less than this."""
 
 TANGENT_DISTANCES = (1e-5, 1e-3)
-"""Smallest and largest distance from a curve at which a tangent is added."""
+"""Smallest and largest setting of the distance from a curve at which a tangent is added."""
 
 FINE = 0.01
-"""Distance from a curve at which a tangent is added, relative to the remaining gap."""
+"""Distance from a curve at which a tangent is added, as a share of the remaining gap."""
 
 PROVEN = 1e-6
-"""Least value of a dual ray that proves a box empty; above rounding."""
+"""A dual ray proves a box empty if its value is at least this, well above rounding error."""
 
 NEAR_END = 0.05
-"""Share of a range: a known point this close to an end shows that the end cannot be cut."""
+"""A known point this close to an end of a range (as a share of it) shows that the end cannot be
+cut."""
 
 LINES_PER_CURVE = 3
-"""Lines per curve above which inactive tangents are deleted."""
+"""Number of lines per curve above which inactive tangents are deleted."""
 
 
 class Bound(NamedTuple):
-    """Logarithm of a box's least objective, and where the relaxation of the box is loose."""
+    """Logarithm of the least objective in a box, and where the box's relaxation is loose."""
 
     value: float
     atoms: Vector
     directions: Vector
     excess: Vector
-    """Distance of every curve from the solution, on the side of its chord."""
+    """For every curve, its distance from the solution on the side of its chord."""
     price: Vector
-    """Multiplier of every chord."""
+    """For every chord, its multiplier."""
     product_errors: Vector
-    """Error of every product, weighted with its multipliers."""
+    """Error of every product, multiplied by the multipliers of its rows."""
     slopes: Vector
-    """Reduced cost of every column: slope of the objective away from the column's better end."""
+    """Reduced cost of every column: slope of the objective, away from the column's better limit."""
 
 
 class Bounding:
     """The relaxation as one linear programme that is solved again for every box.
 
-    Columns: atoms, directions, curves. Rows: definitions of directions and curves, limits, and
-    lines between a direction and a curve (one chord per curve, and the tangents).
+    The columns are atoms (elementary positive quantities), directions (logarithms of ratios) and
+    curves. The rows define directions and curves, state the limits, and hold lines that bound a
+    curve by its direction: one chord per curve, and the tangents.
     """
 
     def __init__(self, layout: Layout, objective: Form) -> None:
@@ -167,7 +170,8 @@ class Bounding:
         composite = layout.plain < 0
         self.columns = layout.atoms + int(composite.sum())
         self.column = np.where(composite, layout.atoms + np.cumsum(composite) - 1, layout.plain)
-        """Column of every output and direction; a plain atom shares the column of the atom."""
+        """Column of every output and direction; if it equals a single atom, it shares the atom's
+        column."""
         self.out = self.column[:curves].astype(np.int32)
         self.direction_columns = self.column[curves:]
         self.ratio = self.direction_columns[layout.direction].astype(np.int32)
@@ -195,11 +199,11 @@ class Bounding:
         self.missed = TANGENT_DISTANCES[1]
 
     def refine(self, gap: float) -> None:
-        """Set the accuracy of the tangents for a gap of the objective's logarithm."""
+        """Set how accurate the tangents must be for a given gap in the objective's logarithm."""
         self.missed = float(np.clip(FINE * gap, *TANGENT_DISTANCES))
 
     def _definitions(self) -> tuple[Any, Vector, Vector]:
-        """Rows that define outputs and directions by their atoms, and the rows >= 0."""
+        """Rows that define outputs and directions by atoms, and the constraint rows >= 0."""
         layout = self.layout
         new = np.flatnonzero(layout.plain < 0)
         defined = np.concatenate([new, np.arange(len(layout.plain), len(layout.levels))])
@@ -216,7 +220,7 @@ class Bounding:
         return matrix, level, high
 
     def _solver(self) -> Any:
-        """The linear programme without bounds and chords, which depend on the box."""
+        """The linear programme without bounds and chords, which change with the box."""
         solver: Any = highspy.Highs()  # type: ignore[no-untyped-call]
         m = self.matrix
         for name, value in _OPTIONS.items():
@@ -230,7 +234,7 @@ class Bounding:
         return solver
 
     def solve(self, box: Box) -> Bound | None:
-        """The bound of a box; None if the relaxation has no solution."""
+        """Compute the bound of a box; None if its relaxation has no solution."""
         lower, upper = self.enter(box)
         solution = self._minimum(self.cost, lower, upper, rounds=ROUNDS)
         if solution is None:
@@ -250,7 +254,8 @@ class Bounding:
     def trimmed(self, box: Box, bound: Bound, best: float) -> Box:
         """The part of a box that may contain a design as good as the best known design.
 
-        The length of a range with reduced cost d is at most the remaining gap divided by d.
+        A range with reduced cost d can be cut to the length gap / d, where gap is the remaining
+        gap.
         """
         lower, upper = self._ends(box)
         gap = max(best - bound.value, 0.0) + ROOM
@@ -267,14 +272,14 @@ class Bounding:
         )
 
     def enter(self, box: Box) -> tuple[Vector, Vector]:
-        """Load a box into the linear programme; returns the ranges of its columns."""
+        """Load a box into the linear programme, and return the ranges of its columns."""
         self._purge()
         ends = self._columns(box)
         self._chords(box)
         return ends
 
     def _purge(self) -> None:
-        """Delete inactive tangents once there are too many lines."""
+        """Delete inactive tangents if there are too many lines."""
         first, count = len(self.low) + self.moving, len(self.lines.low)
         if count < LINES_PER_CURVE * self.moving:
             return
@@ -294,7 +299,8 @@ class Bounding:
     ) -> tuple[float, float] | None:
         """Least and largest value of a direction in the loaded box; None if the box is empty.
 
-        Skips an end of the range that a known point nearly reaches. Adds new points to `known`.
+        Does not search at an end of the range that a known point nearly reaches. Adds the points of
+        the search to `known`.
         """
         column = self.direction_columns[direction]
         extent = [float(end[column]) for end in ends]
@@ -314,7 +320,7 @@ class Bounding:
     def _minimum(
         self, cost: Vector, lower: Vector, upper: Vector, *, rounds: int
     ) -> tuple[float, Vector, Vector, Vector] | None:
-        """Minimise a linear function: proven value, reduced costs, point, multipliers."""
+        """Minimise a linear function: proven minimum, reduced costs, point, multipliers."""
         index = np.arange(self.columns, dtype=np.int32)
         self.solver.changeColsCost(self.columns, index, cost)
         previous = -np.inf
@@ -350,7 +356,7 @@ class Bounding:
         return lower, upper
 
     def _columns(self, box: Box) -> tuple[Vector, Vector]:
-        """Load the ranges of the columns and the planes of the products."""
+        """Load the ranges of the columns and the planes that bound the products."""
         lower, upper = self._ends(box)
         index = np.arange(self.columns, dtype=np.int32)
         self.solver.changeColsBounds(self.columns, index, lower, upper)
@@ -358,7 +364,7 @@ class Bounding:
         return lower, upper
 
     def _planes(self, lower: Vector, upper: Vector) -> None:
-        """Load the planes of the products over the ranges of the columns."""
+        """Load the planes that bound the products, for these ranges of the columns."""
         products, first = self.products, self.products.first
         planes, low, high = products.planes(lower, upper)
         self.matrix.data[len(self.matrix.data) - planes.size :] = planes.ravel()
@@ -374,7 +380,7 @@ class Bounding:
         self.solver.changeRowsBounds(products.rows, index, low, high)
 
     def _chords(self, box: Box) -> None:
-        """Replace the chords by those over this box."""
+        """Replace all chords by the chords across this box."""
         layout, lines = self.layout, self.lines
         first, count = len(self.low), layout.curves
         low, high = layout.arguments(box.low, box.high)
@@ -412,13 +418,13 @@ class Bounding:
         return argument
 
     def _missed(self, x: Vector) -> Vector:
-        """Distance of a point from every curve, positive on the side of the tangents."""
+        """Distance of a point from every curve, positive where a tangent is missing."""
         functions = self.layout.functions
         off = functions.value(self._argument(x)) - x[self.out]
         return np.where(functions.convex == 0, -np.abs(off), functions.convex * off)
 
     def add_first_tangents(self, box: Box) -> None:
-        """Add a tangent at the middle of every convex or concave curve."""
+        """Add a tangent at the middle of the range of every convex or concave curve."""
         low, high = self.layout.arguments(box.low, box.high)
         curves = np.flatnonzero(self.layout.functions.convex)
         self._append(self._touching((low + high) / 2, curves))
@@ -428,14 +434,14 @@ class Bounding:
         self.lines = self.lines.joined(lines)
 
     def _tangents(self, x: Vector) -> bool:
-        """Add tangents to the curves that the point violates; returns whether any were added."""
+        """Add tangents to the curves that the point violates; return whether any were added."""
         curves = np.flatnonzero(self._missed(x) > self.missed)
         if len(curves):
             self._append(self._touching(self._argument(x), curves))
         return len(curves) > 0
 
     def _touching(self, t: Vector, curves: Any) -> Lines:
-        """Tangents of `curves` at arguments t of all curves."""
+        """Tangents of the given curves; `t` has an argument for every curve."""
         layout, functions = self.layout, self.layout.functions
         slope = functions.slope(t)
         level = (
@@ -453,7 +459,7 @@ class Bounding:
     def _proven_minimum(
         self, cost: Vector, dual: Vector, lower: Vector, upper: Vector
     ) -> tuple[float, Vector]:
-        """Lower bound of the cost, proven by the multipliers, and the reduced costs."""
+        """Lower bound on the cost, proven by the multipliers, and the reduced costs."""
         count, lines = len(self.low), self.lines
         dual = dual[: count + len(lines.low)]
         low, high = (
@@ -475,27 +481,27 @@ _OPTIONS = {
     "output_flag": False,
     "presolve": "off",
     "simplex_strategy": 0,
-    "simplex_dual_edge_weight_strategy": 1,  # Devex: no update after a change of rows
+    "simplex_dual_edge_weight_strategy": 1,  # Devex pricing needs no update after a change of rows
     "primal_feasibility_tolerance": 1e-7,
     "dual_feasibility_tolerance": 1e-9,
     "threads": 1,
     "simplex_scale_strategy": 0,
 }
 SAMPLES = 1001
-"""Number of samples over the range of an argument."""
+"""Number of sample points across the range of an argument."""
 CAUTION = 1.5
-"""Safety factor on the second derivative of the samples."""
+"""Safety factor on the second derivative estimated from the samples."""
 _LOGIC = ("lt", "le", "and", "or", "not")
 
 
 class Leads:
-    """Finds the lead of a value: the single value through which it depends on all variables."""
+    """Finds the lead of a value: a single other value that determines it for all variables."""
 
     def __init__(self) -> None:
         self._known: dict[int, Symbol] = {}
 
     def of(self, node: Symbol) -> Symbol:
-        """The lead of a value."""
+        """The lead of a value, see `Leads`."""
         if node.index not in self._known:
             operand_leads = {self.of(operand) for operand in node.operands}
             self._known[node.index] = operand_leads.pop() if len(operand_leads) == 1 else node
@@ -503,7 +509,7 @@ class Leads:
 
 
 def function(nodes: Sequence[Symbol], lead: Symbol) -> Callable[[Vector], Vector]:
-    """Function that maps logarithms (n,) of a lead to values (nodes, n) of nodes with that lead."""
+    """Function from the logarithms (n,) of a lead to the values (nodes, n) of nodes."""
     code = vectorised("lone", "value", {}, nodes, known={lead: "value"})
 
     def values(t: Vector) -> Vector:
@@ -515,13 +521,13 @@ def function(nodes: Sequence[Symbol], lead: Symbol) -> Callable[[Vector], Vector
 
 
 def samples(lead: Symbol) -> Vector:
-    """Equally spaced logarithms over the range of a positive value."""
+    """Equally spaced logarithms across the range of a positive value."""
     low, high = np.log(lead.bounds)
     return np.linspace(low, high, SAMPLES)
 
 
 def ranges(nodes: Sequence[Symbol]) -> dict[Symbol, tuple[float, float]]:
-    """Sampled ranges of values with a positive lead, where finite."""
+    """Ranges, from samples, of values with a positive lead; only where finite."""
     leads = Leads()
     groups: dict[Symbol, list[Symbol]] = {}
     for node in nodes:
@@ -540,11 +546,12 @@ def ranges(nodes: Sequence[Symbol]) -> dict[Symbol, tuple[float, float]]:
 
 
 WIDE = 0.3
-"""Least range of the log ratio of a sum's parts that justifies plain numbers."""
+"""A sum is also stated without logarithms if the logarithm of its terms' ratio varies by this much.
+"""
 
 
 class _PlainAtoms:
-    """Adds plain numbers of monomials to a relaxation with known ranges."""
+    """Adds atoms without logarithms, for monomials of a relaxation with known ranges."""
 
     def __init__(self, relaxation: Relaxation) -> None:
         self.relaxation = relaxation
@@ -557,12 +564,12 @@ class _PlainAtoms:
         }
 
     def width(self, form: Form) -> float:
-        """Range of a monomial's logarithm."""
+        """Length of the range of a monomial's logarithm."""
         low, high = self.relaxation.reach(form)
         return high - low
 
     def atom(self, powers: Powers) -> int:
-        """Number of the plain atom of a monomial, relative to its largest value."""
+        """Number of the atom for a monomial without logarithm, divided by its largest value."""
         if powers not in self.known:
             relaxation, form = self.relaxation, Form(0.0, powers)
             low, high = relaxation.reach(form)
@@ -577,14 +584,14 @@ class _PlainAtoms:
         return self.known[powers]
 
     def term(self, form: Form, scale: float) -> Form:
-        """A monomial divided by e^scale, linear in its plain atom."""
+        """A monomial divided by e^scale, as a linear function of its atom without logarithm."""
         if not form.powers:
             return Form(math.exp(form.constant - scale))
         number = self.atom(form.powers)
         return Form(0.0, ((number, math.exp(form.constant + self.tops[number] - scale)),))
 
     def _tie(self, form: Form, number: int) -> None:
-        """Relate a plain atom to the plain atoms of its factors or of its argument."""
+        """Relate the atom of a monomial to the atoms of its factors, or to that of its argument."""
         lone = [i for i, power in form.powers if power == 1.0]
         if not lone:
             return
@@ -603,7 +610,7 @@ class _PlainAtoms:
 
 
 def add_plain_sums(relaxation: Relaxation) -> None:
-    """State the wide sums of a relaxation in plain numbers, too."""
+    """State the widely varying sums of a relaxation without logarithms, too."""
     plain = _PlainAtoms(relaxation)
     for whole, part, remainder in list(relaxation.splits):
         if plain.width(part - remainder) < WIDE:

@@ -1,6 +1,7 @@
-"""Builds the relaxation: traced values as monomials of atoms, and curves that relate the atoms.
+"""Builds the relaxation: traced values become monomials of atoms; curves relate the atoms.
 
-A model without a closed expression becomes an unknown between envelopes.
+Atoms are elementary positive quantities, such as variables and sums. A model without a closed
+expression becomes an unknown quantity between upper and lower estimates (its envelope).
 """
 
 from __future__ import annotations
@@ -55,17 +56,17 @@ from .relaxation import (
 )
 
 WIDEST = 20.0
-"""Widest logarithmic range for sampling."""
+"""Longest logarithmic range that is sampled."""
 
 LARGEST = 8
-"""Maximum number of terms of an expanded sum, in which terms can cancel."""
+"""Maximum number of terms when a sum is expanded so that terms can cancel."""
 
 _MONOMIAL = ("variable", "mul", "div", "neg", "sqrt", "pow")
-"""Operations whose results are monomials if their operands are."""
+"""Operations that give a monomial if their operands are monomials."""
 
 
 class Builder:
-    """Adds traced values to a relaxation; equal values share an atom."""
+    """Adds traced values to a relaxation; equal values use the same atom."""
 
     def __init__(self) -> None:
         self.relaxation = Relaxation()
@@ -80,7 +81,7 @@ class Builder:
         Raises
         ------
         Unknown
-            its sign is not known, or one of its models has no relaxation
+            the value's sign is not known, or one of its models has no relaxation
         """
         if not isinstance(value, Symbol):
             number = float(value)
@@ -98,14 +99,14 @@ class Builder:
         return entry
 
     def _tightest(self, node: Symbol) -> tuple[float, Form]:
-        """The sampled form where it is tighter than that composed of the operands."""
+        """The sampled form of a value, if tighter than the form composed of its operands."""
         if node.op not in _MONOMIAL or self._repeats(node):
             with suppress(Unknown):
                 return self._sampled(node)
         return self._composed(node)
 
     def _repeats(self, node: Symbol) -> bool:
-        """Whether both factors of a product depend on one value, and not only as its powers."""
+        """Whether both factors of a product depend on the same value, other than as its powers."""
         if node.op not in ("mul", "div"):
             return False
         lead, (first, second) = self._leads.of(node), node.args
@@ -137,12 +138,12 @@ class Builder:
         low, high = node.bounds
         if not low > 0:
             raise Unknown(f"{node.args[0]} may be zero or negative")
-        form = self.relaxation.atom(low, high, lambda y: math.nan)  # an atom of the design itself
+        form = self.relaxation.atom(low, high, lambda y: math.nan)  # a design value
         self.variables[node.args[0]] = form
         return 1.0, form
 
     def _sampled(self, node: Symbol) -> tuple[float, Form]:
-        """The sampled form of a function of one value."""
+        """The sampled form of a value that is a function of a single other value."""
         lead = self._leads.of(node)
         if lead is node:
             raise Unknown("it depends on several values")
@@ -204,7 +205,7 @@ class Builder:
             return None
 
     def _of_sum(self, node: Symbol) -> tuple[float, Form]:
-        """A sum, expanded where terms cancel or where the sign of an operand is unknown."""
+        """The form of a sum; expanded if terms cancel or the sign of an operand is unknown."""
         low, high = node.bounds
         parts = self._cancelled(node) or self._terms(node)
         single = parts.single
@@ -228,12 +229,12 @@ class Builder:
         raise Unknown("the sign of a difference is not known")
 
     def _lower_bound(self, plus: Sequence[Form], minus: Sequence[Form]) -> float:
-        """Lower bound of a difference of two sums of monomials."""
+        """Lower bound on the difference of two sums of monomials."""
         least = sum(math.exp(self.relaxation.reach(term)[0]) for term in plus)
         return least - sum(math.exp(min(self.relaxation.reach(term)[1], 700.0)) for term in minus)
 
     def _cancelled(self, node: Symbol) -> Signomial | None:
-        """An expanded sum, if terms of its operands cancel."""
+        """A sum in expanded form, if terms of its operands cancel."""
         parts = [self.expanded(value) for value in (node, *node.args)]
         if None in parts:
             return None
@@ -241,7 +242,7 @@ class Builder:
         return parts[0] if size < (1 - 1e-9) * sum(sizes) else None
 
     def _terms(self, node: Symbol) -> Signomial:
-        """A sum of its operands as monomials; operands of unknown sign are expanded."""
+        """Monomials whose sum is a value; operands of unknown sign are expanded."""
         first, second = (self.signomial(arg) for arg in node.args)
         return first.plus(second, -1.0 if node.op == "sub" else 1.0)
 
@@ -251,7 +252,7 @@ class Builder:
         Raises
         ------
         Unknown
-            one of its models has no relaxation
+            one of the value's models has no relaxation
         """
         try:
             return Signomial.monomial(*self.form(value))
@@ -281,7 +282,7 @@ class Builder:
         Raises
         ------
         Unknown
-            one of their models has no relaxation
+            a model of either value has no relaxation
         """
         plus, minus = self.signomial(value).plus(self.signomial(bound), -1.0).sides()
         if minus and not plus:
@@ -295,7 +296,7 @@ class Builder:
     def _difference(
         self, plus: Sequence[Form], minus: Sequence[Form], low: float, high: float
     ) -> Form:
-        """Logarithm of the difference plus - minus > 0."""
+        """Logarithm of a positive difference plus - minus."""
         minuend = self.relaxation.total(plus, 0.0, math.inf)
         subtrahend = self.relaxation.total(minus, 0.0, math.inf)
 
@@ -345,9 +346,9 @@ class Builder:
     def _logarithm(
         self, graph: object, argument: Any, low: float, high: float
     ) -> tuple[float, Form]:
-        """The form of |ln x|: ln x is affine in the atoms, and its logarithm is a curve of it."""
+        """Logarithm of |ln x|: ln x is affine in the atoms, and the result is a curve of ln x."""
         parts = self.expanded(argument)
-        if parts is not None:  # the terms of 1.2 + t/r show that it exceeds 1
+        if parts is not None:  # the terms of a sum such as 1.2 + t/r show that it exceeds 1
             plus, minus = parts.sides()
             least = self._lower_bound(plus, minus)
             low = max(low, math.log(least)) if least > 0 else low
@@ -360,7 +361,7 @@ class Builder:
         return sign, self._curve("log", inner, math.log(ends[0]), math.log(ends[1]))
 
     def _exponential(self, argument: Any, low: float, high: float) -> Form:
-        """The form of e^x: its logarithm x is a curve of the logarithm of x."""
+        """The form of e^x: its logarithm is x, which is a curve of the logarithm of x."""
         sign, form = self.form(argument)
         if sign > 0:
             return self._curve("exp", form, math.log(low) if low > 0 else -FAR, math.log(high))
@@ -369,7 +370,7 @@ class Builder:
         return out
 
     def _curve(self, kind: Kind, argument: Form, low: float, high: float) -> Form:
-        """A new atom as a function of a monomial's logarithm, with logarithmic bounds."""
+        """A new atom: a function of a monomial's logarithm, with bounds in logarithms."""
         functions = CurveFunctions([kind])
         out = self.relaxation.atom(
             math.exp(low),
@@ -381,26 +382,28 @@ class Builder:
 
 
 def _power(value: Any, lead: Symbol) -> bool:
-    """Whether a value is a number times a power of `lead`."""
+    """Whether a value is a constant times a power of `lead`."""
     if value is lead or not isinstance(value, Symbol):
         return True
     return value.op in _MONOMIAL and all(_power(arg, lead) for arg in value.args)
 
 
 LEAST_DECAY = 1e-3
-"""Least exponent of decay of the displacement through part of a layer; avoids the exponent 0."""
+"""Least exponent with which the displacement decays through a part of a layer; avoids exponent 0.
+"""
 
 
 PARTS = 4
-"""Parts per layer of known stiffness in the bound on its growth; the bound holds for any."""
+"""Number of parts per layer of known stiffness in the bound on its growth; any number is valid."""
 
 
 CONTRACTION = 0.2
-"""Contraction per axial strain in the bound on a wall's stiffness; the bound holds for any."""
+"""Transverse contraction per axial strain in the bound on a wall's stiffness; any value is valid.
+"""
 
 
 class EnvelopeProblem(Protocol):
-    """Collects the unknowns of envelopes and the relations between them."""
+    """Collects the unknown quantities of envelopes, and the relations between them."""
 
     facts: list[tuple[Any, Any]]
 
@@ -409,7 +412,7 @@ class EnvelopeProblem(Protocol):
 
 
 class Envelopes:
-    """Envelopes of one load case, tight at the `reference` design."""
+    """Envelopes (upper and lower estimates) of one load case, exact at the `reference` design."""
 
     def __init__(
         self,
@@ -422,26 +425,27 @@ class Envelopes:
         self.problem, self.subject, self.reference = problem, subject, reference
         self.decays, self.case = decays, case
         self.bearable: Array | None = None
-        """Upper bound on the pressure of a laminated wall before first damage; None if unknown."""
+        """Upper bound on the pressure that a laminated wall bears before first damage; None if
+        unknown."""
 
     def implicit(self) -> Implicit:
-        """The models that the evaluation uses instead of its own."""
+        """The models that the trace uses in place of the evaluation's own models."""
         return Implicit(
             wall=self.laminate if layered(self.subject) else compute,
             critical_load=self.column(self._mode()),
         )
 
     def number(self, value: Array) -> float:
-        """Value of an evaluated design in this load case."""
+        """An evaluated value of the reference design in this load case."""
         rows = np.atleast_2d(np.asarray(value, dtype=float))
         return float(rows[min(self.case, len(rows) - 1), 0])
 
     def unknown(self, name: str, exact: Callable[[ModelRun], Array]) -> Symbol:
-        """Add an unknown of this load case."""
+        """Add an unknown quantity of this load case."""
         return self.problem.unknown(f"{name}_{self.case}", lambda run: self.number(exact(run)))
 
     def _mode(self) -> TrialMode | None:
-        """The buckling shape of the evaluated design between its pins."""
+        """The shape in which the evaluated design buckles between its pins."""
         if self.subject.design.cylinder.mount != "cap_clevis":
             return None
         lengths = rod_strength.lengths(self.reference.geometry, self.reference.state)
@@ -460,9 +464,9 @@ class Envelopes:
         )
 
     def column(self, mode: TrialMode | None) -> Callable[..., Array]:
-        """Model of the critical load: an unknown, bounded above by the load of a trial shape.
+        """Model of the buckling load: an unknown, at most the load computed for a trial shape.
 
-        The bound uses the shear stiffness of the stiffer segment.
+        This upper bound uses the shear stiffness of the stiffer segment.
         """
 
         def critical(
@@ -488,10 +492,10 @@ class Envelopes:
     def laminate(
         self, v: Values, design: Design, stock: MaterialValues, g: Geometry, state: LoadState
     ) -> Wall:
-        """A laminated wall with growth and axial stiffness as unknowns between bounds.
+        """A laminated wall whose growth and axial stiffness are unknowns between bounds.
 
-        Its swelling is uncoupled: growth without axial strain, stretch without radial motion. Its
-        strength enters only through `bearable`.
+        Its swelling is taken as uncoupled: bore growth without axial strain, stretch without radial
+        motion. Its strength enters only through `bearable`.
 
         Raises
         ------
@@ -541,7 +545,7 @@ class Envelopes:
     def _elastic(
         self, walls: Sequence[Sequence[Array]], thicknesses: Sequence[Array], radius: Array
     ) -> tuple[Symbol, Symbol, Symbol]:
-        """Growth per pressure of a laminated wall, axially free and fixed; axial stiffness."""
+        """Bore growth per pressure, axially free and fixed, and the axial stiffness."""
         growth = self.problem.unknown("growth", lambda run: self.number(run.wall.swelling.growth))
         held_growth = self.problem.unknown(
             "held_growth", lambda run: self.number(_held_growth(run.wall.swelling))
@@ -580,7 +584,7 @@ class Envelopes:
 
     @staticmethod
     def _compliances(springs: Springs, share: float, pulling: Chamber) -> dict[str, Array]:
-        """Compliances of both chambers at a share of the stroke."""
+        """Compliances of both chambers, at a piston position as a share of the stroke."""
         g = springs.geometry
         causes = [cause for cause in springs.chambers if cause not in ("barrel", "stretch")]
         x = share * g.stroke
@@ -598,7 +602,7 @@ class Envelopes:
 
     @staticmethod
     def joint(statics: Statics, out: MetricArrays) -> None:
-        """Replace the retention factor of a joint by its envelope, if it has one."""
+        """Replace the retention factor of a joint by its envelope, if there is a factor."""
         retention = statics.joint
         if retention is None or retention.joint.envelope is None:
             return
@@ -616,7 +620,7 @@ class Envelopes:
         state: LoadState,
         swelling: Swelling,
     ) -> LoadPath:
-        """Axial force in a laminated wall; with tie rods, the share of the wall is an unknown."""
+        """Axial force in a laminated wall; with tie rods, its share is an unknown."""
         if not clamped(design):
             return wall.load_path(v, design, stock, g, state, swelling)
         name = wall.STOP if design.cylinder.end_stop == "internal" else wall.LARGEST
@@ -634,7 +638,7 @@ class Envelopes:
 
 
 def refuse(design: Design) -> None:
-    """Reject designs with models that have no envelope yet.
+    """Reject a design that uses a model without an envelope.
 
     Raises
     ------
@@ -652,16 +656,16 @@ def refuse(design: Design) -> None:
 
 
 def layered(subject: PreparedDesign) -> bool:
-    """Whether the wall of a design is layered."""
+    """Whether a design has a layered wall."""
     return kind(subject.design, subject.materials) in LAMINATES
 
 
 def decays(
     subject: PreparedDesign, v: Values, run: ModelRun, variables: Container[str]
 ) -> list[list[float]]:
-    """Exponents of decay of the displacement through the parts of each layer at a design.
+    """Exponents with which the displacement decays through the parts of each layer.
 
-    A layer whose angle is among the PATHs `variables` is one part.
+    A layer whose angle is among the free PATHs `variables` is one part.
     """
     if not layered(subject):
         return []
@@ -690,16 +694,16 @@ def _held_growth(swelling: Swelling) -> Array:
 
 
 def _contracting(wall: Sequence[Array], contraction: float) -> Array:
-    """Axial modulus of a layer that contracts by a given share of its axial strain."""
+    """Axial modulus of a layer that contracts transversely by a given share of its axial strain."""
     zz, zt, zr, tt, tr, rr = wall[:6]
     return zz - 2 * contraction * (zt + zr) + contraction**2 * (tt + 2 * tr + rr)
 
 
 def _bearable(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Array | None:
-    """Upper bound on the pressure of a laminated wall before first damage.
+    """Upper bound on the pressure that a laminated wall bears before first damage.
 
-    None without a proof: for another criterion, with autofrettage, without strengths, or for a ply
-    that is stiffer through the wall than around it.
+    None where no bound is proven: for another failure criterion, with autofrettage, without
+    strengths, or with a ply that is stiffer through the wall than around it.
     """
     if design.barrel.criterion != "max_stress" or design.barrel.autofrettage_pressure is not None:
         return None
@@ -716,7 +720,7 @@ def _bearable(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> 
 
 
 def _hoop(layer: plies.Layer) -> Array:
-    """Largest hoop strength of a ply over its climates, at least the strength along its fibres.
+    """Largest hoop strength of a ply among its climates; at least its strength along the fibres.
 
     Axial strain and temperature alone cause far less hoop stress, by the equilibrium of the wall
     (`tube_bounds.greatest_pressure`).
@@ -733,12 +737,12 @@ def _hoop(layer: plies.Layer) -> Array:
 
 
 def _largest(values: Sequence[Array]) -> float:
-    """The largest value; a variable counts with its upper bound."""
+    """The largest value; a variable is taken at its upper bound."""
     return max(bounds_of(number)[1] for value in values for number in np.ravel(value))
 
 
 def _wraps(layer: plies.Layer) -> bool:
-    """Whether a layer is as stiff around the tube as through its wall, at any angle."""
+    """Whether a layer, at any angle, is at least as stiff around the tube as through its wall."""
     if layer.isotropic:
         return True
     low, high = bounds_of(layer.angle)

@@ -1,9 +1,9 @@
-"""Proof of quality: a lower bound on the objective of all designs, and the gap of a design to it.
+"""Proof of quality: a lower bound on the objective of all designs, and a design's gap to it.
 
-The models that evaluate a design are traced as expressions of its variables, one load case at a
-time. A model without a closed expression becomes an unknown with an envelope around its exact
-value, so that limits on either side stay valid. Limits that cannot be traced are dropped and listed
-by name.
+The models that evaluate a design are traced as expressions of its variables, separately for each
+load case. A model without a closed expression becomes an unknown quantity. An envelope (upper and
+lower estimates) encloses its exact value, so upper and lower limits stay valid. Limits that cannot
+be traced are dropped and listed by name.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from .intervals import ROOM, Box, Empty, Layout, narrow, tighten
 from .relaxation import ConstraintRow, Form, Relaxation, Unknown
 
 SOFTER = 1e-5
-"""Relative tolerance of the stiffness; the closed-form softest position is exact to about 1e-7."""
+"""Relative tolerance on the stiffness; its closed-form minimum is accurate to about 1e-7."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,30 +50,31 @@ class TracedLimit:
 class Traced:
     """Objective and limits of a design as expressions of its variables.
 
-    `dropped` gives the reason for each limit that is not traced, by name.
+    For each limit that could not be traced, `dropped` gives the reason by the limit's name.
     """
 
     graph: Graph
     variables: dict[str, Symbol]
     """Variables of the design by PATH."""
     unknowns: dict[str, tuple[Symbol, Callable[[ModelRun], float]]] = field(default_factory=dict)
-    """Unknowns of the envelopes by name, with functions for their values in an evaluated design."""
+    """By name: unknown quantities of the envelopes, and functions that read them from an evaluated
+    design."""
     objectives: list[Any] = field(default_factory=list)
     """The objective is at least each of these values."""
     claims: list[TracedLimit] = field(default_factory=list)
     facts: list[tuple[Any, Any]] = field(default_factory=list)
-    """Pairs of values: the first is always at least the second."""
+    """Pairs of values; the first value of a pair is always at least the second."""
     dropped: dict[str, str] = field(default_factory=dict)
 
     def unknown(self, name: str, exact: Callable[[ModelRun], float]) -> Symbol:
-        """Add a positive unknown; `exact` returns its value in an evaluated design."""
+        """Add a positive unknown quantity; `exact` returns its value for an evaluated design."""
         if name not in self.unknowns:
             self.unknowns[name] = self.graph.variable(name, (0.0, math.inf)), exact
         return self.unknowns[name][0]
 
 
 def variable(number: int) -> str:
-    """Name of a design variable in expressions."""
+    """Name that a design variable has in the expressions."""
     return f"x{number}"
 
 
@@ -83,7 +84,7 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
     Parameters
     ----------
     actuator : the problem
-    x : the design at which envelopes are tight
+    x : the design at which the envelopes are exact
 
     Raises
     ------
@@ -116,7 +117,7 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
         try:
             with np.errstate(all="ignore"):
                 case_statics = statics(case_subject, values, out, envelopes.implicit())
-        except (TypeError, AttributeError):  # symbols raise this for operations they do not support
+        except (TypeError, AttributeError):  # symbols raise this for unsupported operations
             raise Unknown("one of its models is not a closed expression of the variables") from None
         traced.facts += [(part, 0.0) for part in case_statics.mass_parts.values()]
         traced.facts += _along_the_stroke(envelopes, case_statics, out, positions)
@@ -131,17 +132,17 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
 
 
 def _least_proof(run: ModelRun) -> float:
-    """The least proof factor of all places."""
+    """The least proof factor among all locations."""
     return min(float(np.min(value)) for value in run.computed.metrics["proof_factor"].values())
 
 
 def _along_the_stroke(
     envelopes: Envelopes, case_statics: Statics, out: MetricArrays, positions: tuple[float, ...]
 ) -> Iterator[tuple[Any, Any]]:
-    """Bound the stiffness from above by its values at some positions.
+    """Bound the minimum stiffness from above by its values at some piston positions.
 
-    Walls only add to the compliance of the oil, a matrix of the two chambers. Its determinant and
-    diagonal are therefore at least those of the oil.
+    Walls only add compliance to that of the oil (a 2 x 2 matrix of the two chambers). So its
+    determinant and diagonal are at least those of the oil alone.
     """
     springs, stroke = case_statics.springs, case_statics.base.geometry.stroke
     if springs.topology != "per_chamber" or springs.seals is not None:
@@ -175,7 +176,7 @@ def _collect(
     *,
     is_first: bool,
 ) -> None:
-    """Collect claims and objectives of one load case."""
+    """Collect the limits and objectives of one load case."""
     goal = actuator.goal
     case = values.cases[0]
     if goal.single is not None:
@@ -206,7 +207,7 @@ def _collect(
 
 
 def _applying(out: MetricArrays, metric: str, case: str) -> Iterator[tuple[str, Any]]:
-    """Traced values of a metric where it applies."""
+    """Traced values of a metric, in the load cases where the metric applies."""
     for place, value in out.metrics.get(metric, {}).items():
         applies = out.applies_at.get((metric, place), out.applies.get(metric))
         if applies is None or bool(np.ravel(applies)[0]):
@@ -214,29 +215,30 @@ def _applying(out: MetricArrays, metric: str, case: str) -> Iterator[tuple[str, 
 
 
 def _positions(reference: ModelRun) -> tuple[float, ...]:
-    """Softest positions of the load cases, as shares of the stroke."""
+    """Piston position of least stiffness in each load case, as a share of the stroke."""
     shares = np.ravel(reference.weakest / reference.geometry.stroke)
     return tuple(sorted({round(float(share), 6) for share in shares if np.isfinite(share)}))
 
 
 GUARD = 1e-6
-"""Relative deduction from the bound: a margin far above the rounding of traced values."""
+"""Relative amount subtracted from the bound, far above the rounding error of traced values."""
 CLOSE = 1e-4
 """Relative gap at which the search ends."""
 MIDDLE = 0.2
-"""Smallest share of a range that a split cuts off."""
+"""A split cuts off at least this share of a range."""
 WORTH = 1e-9
-"""Least excess times price that justifies a split."""
+"""Least product of excess and price that justifies a split."""
 FAR_OFF = 0.2
-"""Cap on the excess of a curve in the choice of a split, since the first split gains most."""
+"""Upper limit on a curve's excess when a split is chosen, since the first split gains most."""
 FLOOR = 0.003
-"""Minimum price of a curve in the choice of a split; loose curves in series show no price."""
+"""Least price of a curve when a split is chosen; of several loose curves in series, some have price
+0."""
 SQUEEZES = 2
-"""Maximum rounds that cut the first box."""
+"""Maximum number of rounds that cut the first box."""
 DIRECTIONS = 16
-"""Number of directions cut per round, in addition to the variables."""
+"""Number of directions that are cut per round, besides the variables."""
 GAIN = 0.1
-"""Share of the ranges that a round must remove to justify another round."""
+"""A further round follows only if a round cut at least this share of the ranges."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -249,13 +251,13 @@ class ProvenBound:
 
 
 class BoxSearch:
-    """Branch and bound: splits the box of the lowest bound where its relaxation is loosest.
+    """Branch and bound: splits the box with the lowest bound, where its relaxation is loosest.
 
     Parameters
     ----------
     layout, bounding : the relaxation
-    best : logarithm of the largest objective a design may have
-    variables : atoms whose directions are always cut in the first box
+    best : logarithm of the largest objective of interest; worse designs are excluded
+    variables : atoms (elementary quantities) whose ranges are always cut in the first box
     deadline : time of `time.perf_counter` at which the search stops
     max_boxes : maximum number of boxes to solve
     """
@@ -274,14 +276,14 @@ class BoxSearch:
         self.deadline, self.max_boxes = deadline, max_boxes
         self.goal = best + math.log1p(-CLOSE)
         self.least, self.boxes = math.inf, 0
-        """Lowest bound of the finished boxes; number of boxes solved."""
+        """Lowest bound among the finished boxes, and the number of boxes solved."""
         directions = layout.plain[layout.curves :]
         self.variables = np.flatnonzero(np.isin(directions, variables))
         self._order = itertools.count()
         self._open: list[tuple[float, int, Box, Bound]] = []
 
     def run(self, report: Callable[[float], None] | None = None) -> ProvenBound:
-        """Search until the gap closes or a limit is reached; returns the bound.
+        """Search until the gap is closed or a limit is reached; return the bound.
 
         `report` is called with every better bound.
         """
@@ -315,7 +317,7 @@ class BoxSearch:
         return math.inf if bound is None else bound.value
 
     def _add(self, box: Box, parent: float) -> None:
-        """Solve a box and store it if it may contain a better design."""
+        """Solve a box, and store it if it may contain a better design."""
         bound = self.bounding.solve(box)
         self.boxes += 1
         if bound is None:
@@ -328,9 +330,10 @@ class BoxSearch:
         heapq.heappush(self._open, (value, next(self._order), trimmed, bound))
 
     def _squeezed(self, box: Box) -> Box:
-        """The first box, cut to the designs no worse than the best known design.
+        """The first box, cut to the designs that are no worse than the best known design.
 
-        Each round minimises and maximises the directions in which the relaxation is loosest.
+        Each round minimises and maximises the log ratios (directions) at which the relaxation is
+        loosest.
 
         Raises
         ------
@@ -360,7 +363,7 @@ class BoxSearch:
         return box
 
     def _gains(self, box: Box, bound: Bound) -> Vector:
-        """Estimated gain of a split along each direction."""
+        """Estimated gain in the bound from a split along each direction."""
         gains = np.minimum(bound.excess, FAR_OFF) * (bound.price + FLOOR)
         layout, width = self.layout, box.high - box.low
         by_direction = np.bincount(layout.direction, gains, layout.directions).astype(float)
@@ -370,7 +373,7 @@ class BoxSearch:
         return by_direction
 
     def _choice(self, box: Box, bound: Bound) -> tuple[int, float] | None:
-        """Direction and position of the split with the largest estimated gain, or None."""
+        """Direction and position of the split with the largest gain; None if none gains."""
         gains = self._gains(box, bound)
         number = int(np.argmax(gains))
         if gains[number] <= WORTH:
@@ -383,19 +386,19 @@ class BoxSearch:
 Report: TypeAlias = Callable[[float], None] | None
 
 BOXES = 200
-"""Default number of boxes: about three seconds, and the same bound on every machine."""
+"""Default limit on the number of boxes: some three seconds, and the same bound on every machine."""
 
 AIM = 0.049
-"""Target gap of a coarse search, which only excludes much lighter designs."""
+"""Target gap of a coarse search, which only has to exclude much lighter designs."""
 
 WIDE = 0.1
-"""Gap of the first box above which the search is coarse."""
+"""If the gap of the first box exceeds this, a coarse search is run."""
 
 EASY = 20
-"""A coarse search that ends within this number of boxes is followed by a full search."""
+"""A full search follows a coarse search that ends within this number of boxes."""
 
 SECONDS = 30.0
-"""Time limit of the search; reached only on very slow machines."""
+"""Time limit of the search; only very slow machines reach it."""
 
 
 @dataclass(frozen=True)
@@ -408,10 +411,10 @@ class Relaxed:
     covered: tuple[TracedLimit, ...]
     dropped: dict[str, str]
     unknowns: dict[str, Callable[[ModelRun], float]]
-    """Functions for the values of the unknowns in an evaluated design, by name."""
+    """By name: functions that read the unknown quantities from an evaluated design."""
 
     def atoms(self, actuator: ActuatorProblem, x: Vector) -> Vector:
-        """Logarithm of every atom at a design."""
+        """Logarithm of every atom's value at a design."""
         point = {path: np.array([value]) for path, value in zip(actuator.paths, x, strict=True)}
         with np.errstate(all="ignore"):
             run = compute(actuator.subject, actuator.subject.values(point))
@@ -425,7 +428,7 @@ class Relaxed:
 
 
 def relax(traced: Traced, best: float) -> Relaxed:
-    """Relax the problem for all designs that meet the limits and are no worse than `best`.
+    """Relax the problem for all designs that meet the limits and are at most as bad as `best`.
 
     Raises
     ------
@@ -467,7 +470,7 @@ def relax(traced: Traced, best: float) -> Relaxed:
 
 
 def _largest(builder: Builder, values: Sequence[Any]) -> Form:
-    """Logarithm of the largest value: one form, or an atom at least as large as each value."""
+    """Logarithm of the largest value: a single form, or an atom at least as large as each value."""
     forms = list(dict.fromkeys(builder.form(value)[1] for value in values))
     if len(forms) == 1:
         return forms[0]
@@ -493,13 +496,13 @@ def certify(
     max_boxes: float = BOXES,
     report: Report = None,
 ) -> tuple[Relaxed, ProvenBound]:
-    """Compute a lower bound on the objective of every design that meets the limits.
+    """Compute a lower bound on the objective, for all designs that meet the limits.
 
     Parameters
     ----------
     actuator : the problem
     x, objective : the best known design
-    seconds, max_boxes : limits of the search
+    seconds, max_boxes : limits on duration and number of boxes
     report : called with the logarithm of every better bound
 
     Raises
@@ -529,7 +532,7 @@ def _coarse(
     max_boxes: float,
     report: Report,
 ) -> tuple[Relaxed | None, ProvenBound]:
-    """Search for designs no worse than `aim`; no relaxation if the first box is already empty."""
+    """Search for designs no worse than `aim`; no relaxation if the first box is empty."""
     try:
         relaxed, search = _search(trace(actuator, x), aim, deadline, max_boxes)
     except Empty:
@@ -540,7 +543,7 @@ def _coarse(
 def _search(
     traced: Traced, objective: float, deadline: float, max_boxes: float
 ) -> tuple[Relaxed, BoxSearch]:
-    """A search for designs whose objective is at most `objective`."""
+    """Prepare a search for designs whose objective is at most `objective`."""
     relaxed = relax(traced, objective)
     layout = Layout(relaxed.relaxation)
     bounding = Bounding(layout, relaxed.objective)
@@ -552,7 +555,7 @@ def _search(
 
 
 def _meets(layout: Layout, y: Vector) -> bool:
-    """Whether a design satisfies the ranges and rows of its relaxation."""
+    """Whether a design satisfies the ranges and rows of its own relaxation."""
     box = Box.whole(layout)
     _, high, _, _ = layout.reach(y, y)
     rows = layout.parts[2]
@@ -561,5 +564,5 @@ def _meets(layout: Layout, y: Vector) -> bool:
 
 
 def _log(value: float) -> float:
-    """Logarithm; values at or below zero give that of the zero substitute."""
+    """Logarithm of a value; a value at or below 0 is replaced by a tiny number."""
     return math.log(value) if value > 0 else -math.inf

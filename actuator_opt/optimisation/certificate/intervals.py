@@ -1,8 +1,9 @@
 """Interval constraint propagation: bounds of traced values over all designs that meet the limits.
 
-The propagation runs forwards from operands to results and backwards from limits to variables
-[Benhamou1999]. A choice between a value and NaN takes the value, because a design without a value
-meets no requirement. A box is a part of the design space: ranges of atoms and of log ratios.
+The propagation runs forwards from operands to results, and backwards from limits to variables
+[Benhamou1999]. If an expression chooses between a value and NaN, the value is taken, because a
+design without a value meets no requirement. A box is a part of the design space, given by ranges of
+atoms (elementary quantities) and of log ratios.
 """
 
 from __future__ import annotations
@@ -32,29 +33,29 @@ from .relaxation import (
 )
 
 ROUNDS = 30
-"""Maximum passes over all values."""
+"""Maximum number of passes through all values."""
 
 WORTH = 1e-3
-"""Relative gain of a bound below which another pass does not pay."""
+"""A further pass follows only if a bound improved by at least this relative amount."""
 
 LARGEST = 80
-"""Maximum number of terms of an expanded sum."""
+"""Maximum number of terms when a sum is expanded."""
 
 SLACK = 1e-9
-"""Relative tolerance on every bound for rounding."""
+"""Relative widening of every bound, for rounding."""
 
 
 class Empty(Exception):
-    """No design of the box meets the limits: some range is empty."""
+    """Raised if no design in the box meets the limits, because some range is empty."""
 
 
 def tighten(nodes: Sequence[Symbol], facts: Sequence[tuple[Any, Any]] = ()) -> None:
-    """Tighten the bounds of traced values, operands before results, in place.
+    """Tighten the bounds of traced values in place.
 
     Parameters
     ----------
-    nodes : operands before results
-    facts : pairs of values, the first at least the second
+    nodes : the values, operands before results
+    facts : pairs of values; the first value of each is at least the second
 
     Raises
     ------
@@ -79,7 +80,7 @@ def tighten(nodes: Sequence[Symbol], facts: Sequence[tuple[Any, Any]] = ()) -> N
 
 
 def cancelling(nodes: Sequence[Symbol]) -> dict[Symbol, Signomial]:
-    """Sums whose terms partly cancel when expanded, which plain bounds miss."""
+    """Sums in which terms cancel when expanded; bounds from operands are too wide."""
     signomials: dict[int, Signomial | None] = {}
 
     def expanded(value: Any) -> Signomial | None:
@@ -125,7 +126,7 @@ _ALGEBRA: dict[str, Callable[..., Signomial | None]] = {
 
 
 def _of_terms(parts: Signomial, nodes: Sequence[Symbol]) -> Bounds:
-    """Bounds of a sum of products of values."""
+    """Bounds on a sum whose terms are products of values."""
     low = high = 0.0
     for powers, factor in parts.terms.items():
         term_low = term_high = 1.0
@@ -143,7 +144,7 @@ def _of_terms(parts: Signomial, nodes: Sequence[Symbol]) -> Bounds:
 
 
 def narrow(value: Any, ends: Bounds) -> bool:
-    """Narrow the bounds of a value; returns whether the gain justifies another pass.
+    """Narrow the bounds of a value; return whether the gain justifies another pass.
 
     Raises
     ------
@@ -167,7 +168,7 @@ def _much(old: float, new: float) -> bool:
 
 
 def decided(condition: Any) -> bool | None:
-    """True if a condition is true for all designs, False if for none, None if undecided."""
+    """True if a condition holds for all designs, False if for none, None if not known."""
     if not isinstance(condition, Symbol):
         return bool(condition)
     args = condition.args
@@ -187,7 +188,7 @@ def decided(condition: Any) -> bool | None:
 
 
 def branch(node: Symbol) -> Any:
-    """The branch that a choice takes for all designs with a value; None if undecided."""
+    """The branch that a choice takes for every design that has a value; None if not known."""
     condition, yes, no = node.args
     if _is_nan(yes):
         return no
@@ -198,7 +199,7 @@ def branch(node: Symbol) -> Any:
 
 
 def extreme(node: Symbol) -> str | None:
-    """Whether a choice is the larger ("max") or the smaller ("min") of its branches."""
+    """Whether a choice takes the larger ("max") or the smaller ("min") branch; else None."""
     condition, yes, no = node.args
     if getattr(condition, "op", None) not in ("lt", "le"):
         return None
@@ -232,7 +233,7 @@ def _forward(node: Symbol) -> Bounds:
 
 
 def _difference(node: Symbol) -> Bounds:
-    """Bounds of a difference; a difference of squares is also (a - b)(a + b) if a - b is traced."""
+    """Bounds on a difference; also as (a - b)(a + b) for squares, if a - b is traced."""
     low, high = bounds("sub", node.args)
     first, second = (_root_of(arg) for arg in node.args)
     if first is not None and second is not None:
@@ -245,7 +246,7 @@ def _difference(node: Symbol) -> Bounds:
 
 
 def _root_of(value: Any) -> Symbol | None:
-    """The x of x * x."""
+    """The value x if the value is x * x."""
     if isinstance(value, Symbol) and value.op == "mul" and value.args[0] is value.args[1]:
         root: Symbol = value.args[0]
         return root
@@ -253,7 +254,7 @@ def _root_of(value: Any) -> Symbol | None:
 
 
 def _backward(node: Symbol) -> bool:
-    """Narrow the operands of a value by its bounds."""
+    """Narrow the operands of a value, using the bounds of the value."""
     rule = _BACKWARDS.get(node.op)
     return False if rule is None else rule(node)
 
@@ -269,7 +270,7 @@ def _sub(node: Symbol) -> bool:
 
 
 def _rounded(op: str, first: Any, second: Any) -> Bounds:
-    """Bounds of a sum or difference, widened by the rounding of its operands."""
+    """Bounds on a sum or difference, widened by the rounding error of its operands."""
     low, high = bounds(op, (first, second))
     sizes = [abs(end) for end in (*bounds_of(first), *bounds_of(second)) if math.isfinite(end)]
     room = ROUNDING * max(sizes, default=0.0)
@@ -344,7 +345,7 @@ def _where(node: Symbol) -> bool:
 
 
 def _impose(condition: Any, *, truth: bool) -> bool:
-    """Narrow the operands of a condition that is known to be true or false."""
+    """Narrow the operands of a condition that is known to be true or known to be false."""
     if not isinstance(condition, Symbol):
         return False
     if condition.op == "not":
@@ -376,23 +377,23 @@ _BACKWARDS: dict[str, Callable[[Symbol], bool]] = {
 
 
 BOX_ROUNDS = 20
-"""Maximum passes of the propagation in one box."""
+"""Maximum number of propagation passes in one box."""
 
 
 GAIN = 0.01
-"""Share of the summed ranges that a pass must remove to justify another pass."""
+"""A further pass follows only if a pass cut at least this share of the summed ranges."""
 
 
 ROOM = 1e-9
-"""Tolerance for rounding at both ends of a range of logarithms."""
+"""Tolerance for rounding, at both ends of a range of logarithms."""
 
 
 CROSSED = 1e-8
-"""Distance by which the ends of a range must cross to prove a box empty."""
+"""A box is proven empty if the lower end of a range exceeds the upper end by this much."""
 
 
 def _lone(form: Form) -> int:
-    """Number of the atom if a form is a single plain atom, else -1."""
+    """Number of the atom, if the form is that single atom; else -1."""
     lone = form.constant == 0 and len(form.powers) == 1 and form.powers[0][1] == 1.0
     return form.powers[0][0] if lone else -1
 
@@ -400,9 +401,10 @@ def _lone(form: Form) -> int:
 class Layout:
     """A relaxation as arrays.
 
-    A direction is a log ratio, such as log(t/r). All curves of powers of one ratio share it. Its
-    largest power is 1, so its range is at most the sum of the ranges of its atoms. The order of
-    the forms: outputs of curves, directions, rows (each >= 0).
+    A direction is a log ratio, such as log(t/r). All curves that depend on powers of one ratio
+    share its direction. The largest exponent is scaled to 1, so the direction's range is at most
+    the sum of the ranges of its atoms. The forms are ordered: outputs of curves, directions, rows
+    (each >= 0).
     """
 
     def __init__(self, relaxation: Relaxation) -> None:
@@ -435,7 +437,7 @@ class Layout:
 
     @cached_property
     def factors(self) -> tuple[np.ndarray, np.ndarray]:
-        """Directions of both factors of every product."""
+        """For every product, the directions of its two factors."""
         direction_of = {
             curve.out.powers[0][0]: int(number)
             for curve, number in zip(self.relaxation.curves, self.direction, strict=True)
@@ -450,14 +452,14 @@ class Layout:
 
     @cached_property
     def _linked(self) -> tuple[Tables, np.ndarray, Vector]:
-        """Tables of the links, numbers of their curves, and levels of their ratios."""
+        """For every link: its table, the number of its curve, and the constant in its ratio."""
         number = np.array([self._of_curve[id(link.curve)] for link in self.links])
         kinds = [link.curve.kind for link in self.links]
         tables = Tables([kind for kind in kinds if isinstance(kind, SampledFunction)])
         return tables, number, np.array([link.level for link in self.links])
 
     def ratios(self, box: Box) -> tuple[Vector, Vector]:
-        """Least and largest ratio of every link in a box."""
+        """Least and largest ratio of every link within a box."""
         if not self.links:
             return np.empty(0), np.empty(0)
         tables, number, constant = self._linked
@@ -470,7 +472,7 @@ class Layout:
 
     @cached_property
     def parts(self) -> tuple[slice, slice, slice]:
-        """Slices of the forms: outputs, directions, rows."""
+        """Slices that select the outputs, the directions and the rows among the forms."""
         outputs_end, directions_end = self.curves, self.curves + self.directions
         return (
             slice(0, outputs_end),
@@ -479,7 +481,7 @@ class Layout:
         )
 
     def arguments(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
-        """Ranges of the curves' arguments, from the ranges of the directions."""
+        """Ranges of the curves' arguments, computed from the ranges of the directions."""
         ends = (
             self.factor * low[self.direction] + self.constant,
             self.factor * high[self.direction] + self.constant,
@@ -487,7 +489,7 @@ class Layout:
         return np.minimum(*ends), np.maximum(*ends)
 
     def reach(self, lower: Vector, upper: Vector) -> tuple[Vector, Vector, Vector, Vector]:
-        """Ranges of all forms, and of their terms."""
+        """Ranges of all forms, and of the terms of each form."""
         ends = self.power * lower[self.atom], self.power * upper[self.atom]
         term_low, term_high = np.minimum(*ends), np.maximum(*ends)
         count = len(self.levels)
@@ -498,7 +500,7 @@ class Layout:
 
 @dataclass(frozen=True)
 class Box:
-    """Ranges of the atoms' logarithms and of the directions."""
+    """Ranges of the directions, and of the atoms' logarithms."""
 
     lower: Vector
     upper: Vector
@@ -514,7 +516,7 @@ class Box:
         return cls(lower, upper, none - FAR, none + FAR)
 
     def split(self, direction: int, at: float) -> tuple[Box, Box]:
-        """The parts of the box below and above a value of a direction."""
+        """The two parts of the box, below and above a value of a direction."""
         return self.cut(direction, high=at), self.cut(direction, low=at)
 
     def cut(self, direction: int, *, low: float = -FAR, high: float = FAR) -> Box:
@@ -525,7 +527,7 @@ class Box:
         return replace(self, low=lows, high=highs)
 
     def tightened(self, layout: Layout) -> Box:
-        """The box after propagation through all rows and curves.
+        """The box after propagation through all its rows and curves.
 
         Raises
         ------
@@ -544,7 +546,7 @@ class Box:
 
 
 class _Propagation:
-    """Ranges of a box during the propagation."""
+    """The ranges of a box while they are propagated."""
 
     def __init__(self, layout: Layout, box: Box) -> None:
         self.layout = layout
@@ -582,7 +584,7 @@ class _Propagation:
         self._raise(self.lower, self.upper, lower, upper)
 
     def _back(self, low: Vector, high: Vector) -> None:
-        """Cut the directions by the ranges of the curves' outputs."""
+        """Cut the directions, using the ranges of the curves' outputs."""
         layout = self.layout
         inner = layout.functions.inverse_hull(low, high)
         ends = [(end - layout.constant) / layout.factor for end in inner]
@@ -593,7 +595,7 @@ class _Propagation:
 
     @staticmethod
     def _raise(low: Vector, high: Vector, new_low: Vector, new_high: Vector) -> None:
-        """Cut ranges in place."""
+        """Cut ranges in place to the new ends, where these are tighter."""
         np.maximum(low, new_low, out=low)
         np.minimum(high, new_high, out=high)
         crossed = low > high

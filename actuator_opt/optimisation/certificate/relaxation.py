@@ -1,4 +1,4 @@
-"""Convex relaxation in logarithms: linear rows, and curves with one argument.
+"""Convex relaxation in logarithms: linear rows, and curves that each have one argument.
 
 A monomial is a positive number times powers of atoms (positive unknowns). Its logarithm is affine
 in the logarithms of the atoms. Products, quotients and powers of monomials are monomials. A
@@ -25,13 +25,13 @@ from ..problem import Vector
 Name: TypeAlias = Literal["softplus", "exp", "log", "tanh"]
 Function: TypeAlias = Callable[[Vector], Vector]
 LEAST = 1e-300
-"""Substitute for zero in a logarithm."""
+"""Number that replaces zero in a logarithm."""
 FAR = 200.0
 """Largest logarithm of an atom or a ratio; e^200 is beyond any quantity."""
 
 
 class MonotoneFunction(NamedTuple):
-    """An increasing function with slope and inverse; convex (1) or concave (-1)."""
+    """An increasing function with its slope and inverse; convex (1) or concave (-1)."""
 
     value: Function
     slope: Function
@@ -39,16 +39,16 @@ class MonotoneFunction(NamedTuple):
     convex: int
 
     def hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
-        """Ranges of the values over ranges of the arguments."""
+        """Ranges of the function's values, for given ranges of the argument."""
         return self.value(low), self.value(high)
 
     def inverse_hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
-        """Ranges of the arguments whose values lie in ranges."""
+        """Ranges of the argument, for given ranges of the function's values."""
         return self.inverse(low), self.inverse(high)
 
 
 def _softplus_inverse(y: Vector) -> Vector:
-    """log(e^y - 1)."""
+    """The y of softplus inverted: log(e^y - 1)."""
     positive = np.maximum(y, LEAST)
     return positive + np.log(-np.expm1(-positive))
 
@@ -77,18 +77,18 @@ SHAPES: dict[Name, MonotoneFunction] = {
         -1,
     ),
 }
-"""Functions of curves; tanh maps the logarithm of the argument to that of the value."""
+"""Functions of curves; "tanh" maps log x to log tanh x."""
 
 
 @dataclass(frozen=True, eq=False)
 class SampledFunction:
-    """A smooth function as equally spaced samples.
+    """A smooth function, stored as equally spaced samples.
 
     Parameters
     ----------
-    low, step : first argument and spacing
+    low, step : first argument, and spacing of the arguments
     values : the samples
-    room : bound on the error of linear interpolation
+    room : upper limit on the error of linear interpolation
     convex : 1 convex, -1 concave, 0 neither
     rising : 1 rising, -1 falling, 0 neither
     """
@@ -102,7 +102,7 @@ class SampledFunction:
 
     @classmethod
     def of(cls, t: Vector, values: Vector, caution: float) -> SampledFunction:
-        """The function with samples at t; `caution` scales their second derivative."""
+        """The function with samples at t; `caution` scales its second derivative."""
         step = float(t[1] - t[0])
         second = np.diff(values, 2)
         noise = 1e-12 * (1 + float(np.abs(values).max()))
@@ -114,7 +114,7 @@ class SampledFunction:
 
 
 class Tables:
-    """Several sampled functions with equally many samples, one argument each."""
+    """Several sampled functions with equally many samples; each has its own argument."""
 
     def __init__(self, tables: Sequence[SampledFunction]) -> None:
         self.low = np.array([table.low for table in tables])
@@ -137,7 +137,7 @@ class Tables:
         return index, np.clip(place - index, 0.0, 1.0)
 
     def value(self, x: Vector) -> Vector:
-        """Linear interpolation between two samples."""
+        """Values by linear interpolation between two samples."""
         index, share = self._place(x)
         first, second = self.values[self.rows, index], self.values[self.rows, index + 1]
         values: Vector = first * (1 - share) + second * share
@@ -151,12 +151,12 @@ class Tables:
         return slopes
 
     def _inside(self, low: Vector, high: Vector, indices: np.ndarray) -> tuple[Vector, np.ndarray]:
-        """Arguments of the samples of some tables, and whether they lie within the ranges."""
+        """The sample arguments of some tables, and which of them lie within the ranges."""
         t = self.low[indices, None] + self.step[indices, None] * np.arange(self.last + 1)
         return t, (t > low[:, None]) & (t < high[:, None])
 
     def hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
-        """Least and largest values over ranges."""
+        """Least and largest values of the functions, for given ranges of the arguments."""
         ends = self.value(low), self.value(high)
         lowest, highest = np.minimum(*ends), np.maximum(*ends)
         indices = self.non_monotonic
@@ -172,13 +172,13 @@ class Tables:
     def secant_errors(
         self, low: Vector, high: Vector, slope: Vector, indices: Any
     ) -> tuple[Vector, Vector]:
-        """Least and largest distance of some tables from lines through their first values.
+        """Least and largest distance of some functions from lines through their first values.
 
         Parameters
         ----------
-        low, high : ranges of the arguments of all tables
-        slope : of the lines
-        indices : the tables
+        low, high : ranges of the arguments, for all tables
+        slope : slope of each line
+        indices : numbers of the tables examined
         """
         first, last = self.value(low)[indices], self.value(high)[indices]
         low, high, slope = low[indices], high[indices], slope[indices]
@@ -192,7 +192,7 @@ class Tables:
         )
 
     def inverse_hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
-        """Ranges of arguments for ranges of values; the whole range of a table if not monotonic."""
+        """Ranges of arguments for ranges of values; the whole range if not monotonic."""
         falls = self.rising < 0
         low_ends = np.where(falls, -high, low) - self.room
         high_ends = np.where(falls, -low, high) + self.room
@@ -204,9 +204,9 @@ class Tables:
         return lowest, highest
 
     def _inverse(self, values: Vector, counts_below: np.ndarray, flat: float) -> Vector:
-        """Arguments of values, from the number of samples below each.
+        """Arguments for given values, from the number of samples below each value.
 
-        A flat segment gives its lower (`flat` = 0) or upper end (1).
+        On a flat segment this is its lower end (`flat` = 0) or its upper end (1).
         """
         ordered, rows = self._ordered, self.rows
         index = np.clip(counts_below - 1, 0, self.last - 1)
@@ -221,7 +221,7 @@ Kind: TypeAlias = Name | SampledFunction
 
 
 class CurveFunctions:
-    """Functions of all curves, grouped by kind, one argument each."""
+    """The functions of all curves, grouped by kind; each has its own argument."""
 
     def __init__(self, kinds: Sequence[Kind]) -> None:
         names = np.array([kind if isinstance(kind, str) else "" for kind in kinds], dtype=object)
@@ -240,21 +240,21 @@ class CurveFunctions:
             self.convex[indices] = functions.convex
 
     def value(self, x: Vector) -> Vector:
-        """The functions' values."""
+        """The value of each function at its argument."""
         values = np.empty_like(x)
         for functions, indices in self.groups:
             values[indices] = functions.value(x[indices])
         return values
 
     def slope(self, x: Vector) -> Vector:
-        """The functions' slopes."""
+        """The slope of each function at its argument."""
         slopes = np.empty_like(x)
         for functions, indices in self.groups:
             slopes[indices] = functions.slope(x[indices])
         return slopes
 
     def hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
-        """Ranges of the values over ranges of the arguments."""
+        """Ranges of the functions' values, for given ranges of the arguments."""
         lowest, highest = np.empty_like(low), np.empty_like(high)
         for functions, indices in self.groups:
             ends = functions.hull(low[indices], high[indices])
@@ -262,7 +262,7 @@ class CurveFunctions:
         return lowest, highest
 
     def inverse_hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
-        """Ranges of the arguments whose values lie in ranges."""
+        """Ranges of the arguments, for given ranges of the functions' values."""
         lowest, highest = np.empty_like(low), np.empty_like(high)
         for functions, indices in self.groups:
             ends = functions.inverse_hull(low[indices], high[indices])
@@ -270,7 +270,7 @@ class CurveFunctions:
         return lowest, highest
 
     def secant_errors(self, low: Vector, high: Vector, slope: Vector) -> tuple[Vector, Vector]:
-        """Distance of functions from their secants, below and above; 0 for one-sided curvature."""
+        """Least and largest distance of functions from their secants; 0 if curved to one side."""
         lowest, highest = np.zeros_like(low), np.zeros_like(low)
         if self.tables is not None:
             indices, curves = self.tables.non_convex, self.table_curves
@@ -282,7 +282,7 @@ class CurveFunctions:
 
 
 Powers: TypeAlias = tuple[tuple[int, float], ...]
-"""Exponents by atom number, in order; a missing atom has exponent 0."""
+"""Exponents by atom number, in ascending order; an atom that is not listed has exponent 0."""
 
 
 class Form(NamedTuple):
@@ -298,16 +298,16 @@ class Form(NamedTuple):
         return Form(self.constant - other.constant, merged(self.powers, other.powers, -1.0))
 
     def at(self, logarithms: Sequence[float]) -> float:
-        """The logarithm at given logarithms of the atoms."""
+        """The logarithm of the monomial, given the logarithms of the atoms."""
         return self.constant + sum(power * logarithms[i] for i, power in self.powers)
 
     def scaled(self, factor: float) -> Form:
-        """The logarithm of a power."""
+        """The logarithm of the monomial raised to the power `factor`."""
         return Form(factor * self.constant, tuple((i, factor * p) for i, p in self.powers))
 
 
 def merged(first: Powers, second: Powers, factor: float) -> Powers:
-    """Powers of a product, or of a quotient with factor -1."""
+    """Exponents of a product of two monomials, or with factor -1 of their quotient."""
     if not second:
         return first
     total = dict(first)
@@ -317,7 +317,7 @@ def merged(first: Powers, second: Powers, factor: float) -> Powers:
 
 
 class Signomial(NamedTuple):
-    """A sum of monomials: signed factors by powers."""
+    """A sum of monomials: for each set of exponents, a factor with its sign."""
 
     terms: Mapping[Powers, float]
 
@@ -333,7 +333,7 @@ class Signomial(NamedTuple):
 
     @property
     def single(self) -> tuple[float, Form] | None:
-        """Sign and logarithm of a single monomial."""
+        """Sign and logarithm, if the sum is a single monomial."""
         if len(self.terms) != 1:
             return None
         ((powers, factor),) = self.terms.items()
@@ -341,11 +341,11 @@ class Signomial(NamedTuple):
 
     @property
     def size(self) -> float:
-        """Sum of the absolute factors."""
+        """Sum of the factors' absolute values."""
         return sum(map(abs, self.terms.values()))
 
     def plus(self, other: Signomial, sign: float = 1.0) -> Signomial:
-        """Sum or difference; terms that cancel to rounding are dropped."""
+        """Sum or difference; terms that cancel, apart from rounding, are dropped."""
         total = dict(self.terms)
         for powers, factor in other.terms.items():
             earlier = total.get(powers)
@@ -358,7 +358,7 @@ class Signomial(NamedTuple):
         return Signomial(total)
 
     def times(self, other: Signomial) -> Signomial:
-        """Product, expanded."""
+        """Product of two sums, expanded into monomials."""
         total = Signomial({})
         for powers, factor in other.terms.items():
             part = {merged(p, powers, 1.0): f * factor for p, f in self.terms.items()}
@@ -366,7 +366,7 @@ class Signomial(NamedTuple):
         return total
 
     def sides(self) -> tuple[list[Form], list[Form]]:
-        """Logarithms of the positive and of the negative terms."""
+        """Logarithms of the positive terms, and of the negative terms."""
         logarithms: tuple[list[Form], list[Form]] = ([], [])
         for powers, factor in sorted(self.terms.items()):
             logarithms[factor < 0].append(Form(math.log(abs(factor)), powers))
@@ -374,15 +374,15 @@ class Signomial(NamedTuple):
 
 
 ROUNDING = 1e-12
-"""Relative remainder of two terms that counts as zero."""
+"""Two terms cancel if their sum is at most this share of them."""
 
 
 class Unknown(Exception):
-    """A value has an unknown sign, or its model has no relaxation; the message gives the reason."""
+    """Raised if a value's sign is unknown or its model has no relaxation; states the reason."""
 
 
 class AtomFunction(NamedTuple):
-    """A curve out = function(argument), both affine in the logarithms of atoms."""
+    """A curve out = function(argument); both are affine in the logarithms of atoms."""
 
     kind: Kind
     argument: Form
@@ -390,9 +390,9 @@ class AtomFunction(NamedTuple):
 
 
 class Link(NamedTuple):
-    """A plain atom as a sampled function of another: out = e^level f(base).
+    """An atom as a sampled function of another, without logarithms: out = e^level f(base).
 
-    `curve` is the table of log f by the logarithm of its argument.
+    `curve` is the table of log f as a function of the argument's logarithm.
     """
 
     out: int
@@ -402,7 +402,7 @@ class Link(NamedTuple):
 
 
 class Product(NamedTuple):
-    """Three plain atoms: out = e^level * first * second."""
+    """Three atoms without logarithms, where out = e^level * first * second."""
 
     out: int
     first: int
@@ -411,11 +411,11 @@ class Product(NamedTuple):
 
 
 Maker: TypeAlias = Callable[[Sequence[float]], float]
-"""Logarithm of an atom from those of earlier atoms."""
+"""Computes the logarithm of an atom from the logarithms of earlier atoms."""
 
 
 class ConstraintRow(NamedTuple):
-    """low <= high."""
+    """A constraint low <= high between two forms."""
 
     low: Form
     high: Form
@@ -423,8 +423,9 @@ class ConstraintRow(NamedTuple):
 
 @dataclass
 class Relaxation:
-    """Atoms with their bounds (logarithms), linear rows and curves.
+    """Convex relaxation of a problem in logarithms: atoms with bounds, linear rows, and curves.
 
+    Atoms are elementary positive quantities; rows are linear constraints between their logarithms.
     `makers` compute the logarithm of every atom from those of earlier atoms.
     """
 
@@ -434,13 +435,13 @@ class Relaxation:
     rows: list[ConstraintRow] = field(default_factory=list)
     curves: list[AtomFunction] = field(default_factory=list)
     splits: list[tuple[Form, Form, Form]] = field(default_factory=list)
-    """Every sum and its two terms."""
+    """Every sum, followed by its two terms."""
     links: list[Link] = field(default_factory=list)
     products: list[Product] = field(default_factory=list)
     sums: dict[tuple[Form, Form], Form] = field(default_factory=dict)
 
     def atom(self, low: float, high: float, maker: Maker) -> Form:
-        """Add a positive unknown between two values."""
+        """Add an atom, a positive unknown, whose value lies between `low` and `high`."""
         self.makers.append(maker)
         self.lower.append(math.log(low) if low > 0 else -math.inf)
         self.upper.append(math.log(high) if high < math.inf else math.inf)
@@ -455,7 +456,7 @@ class Relaxation:
         return low, high
 
     def total(self, terms: Sequence[Form], low: float, high: float) -> Form:
-        """Logarithm of a sum of monomials whose value is between `low` and `high`."""
+        """Logarithm of a sum of monomials; the sum lies between `low` and `high`."""
         common = _common(terms)
         common_low, common_high = self.reach(common)
         low = low * math.exp(-min(common_high, 700.0)) if low > 0 else low
@@ -467,7 +468,7 @@ class Relaxation:
         return result + common
 
     def _sum(self, first: Form, second: Form, low: float, high: float) -> Form:
-        if first.powers == second.powers:  # constant ratio
+        if first.powers == second.powers:  # the terms have a constant ratio
             return Form(log_of_sum(first.constant, second.constant), first.powers)
         key = (first, second) if first <= second else (second, first)
         if key not in self.sums:
@@ -476,19 +477,19 @@ class Relaxation:
         return self.sums[key]
 
     def split(self, whole: Form, part: Form, remainder: Form) -> None:
-        """Add the constraint whole = part + rest."""
+        """Add the constraint whole = part + remainder."""
         self.curves.append(AtomFunction("softplus", part - remainder, whole - remainder))
         self.splits.append((whole, part, remainder))
 
 
 def log_of_sum(first: float, second: float) -> float:
-    """Logarithm of the sum of two numbers, given by their logarithms."""
+    """Logarithm of the sum of two numbers that are given by their logarithms."""
     high, low = max(first, second), min(first, second)
     return high + math.log1p(math.exp(low - high))
 
 
 def _common(terms: Sequence[Form]) -> Form:
-    """The greatest monomial that divides all terms."""
+    """The greatest monomial by which all terms can be divided."""
     if len(terms) < 2:
         return Form(0.0)
     first, *other_terms = (dict(term.powers) for term in terms)

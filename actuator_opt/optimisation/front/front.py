@@ -1,13 +1,14 @@
-"""The Pareto front, evenly spread and checked for merely local designs.
+"""Computes an evenly spread Pareto front, and checks it for designs that are only locally best.
 
-The anchors are the best designs of each objective alone. They share one sweep of the box and one
-model call per step; ties are resolved in favour of the other objectives. Designs at levels between
-the anchors are computed from their neighbours, in shared steps. Each is compared with all others at
-its own levels, which replaces merely local designs. Independent full searches at some levels then
-check whether a better design was overlooked.
+The anchors are the designs that are best in one objective each. They share one sweep of the design
+space and one model call per step; between equally good anchors, the other objectives decide.
+Designs between the anchors are computed for levels (upper limits) of the objectives, starting from
+their neighbours, in shared steps. At its own levels, each is compared with all other designs; a
+better design replaces it. Independent full searches at some levels then check whether a better
+design was overlooked.
 
-The levels limit the length of a continuous front between two designs. If close levels lead to
-distant designs, the front jumps and no design lies between.
+The levels limit how long a continuous front can be between two designs. If close levels lead to
+distant designs, the front jumps and no design lies between them.
 """
 
 from __future__ import annotations
@@ -46,18 +47,18 @@ from .plane import (
 from .tracer import FrontDesign, FrontSearch, FrontStart, Tracer, knee, nondominated
 
 HOLD = 1e-10
-"""Share of its range by which an anchor's objective may worsen while the others improve."""
+"""An anchor's objective may worsen by this share of its range while the others improve."""
 GAINED = 1e-3
-"""Normalised gain of the others that justifies this loss."""
+"""Normalised gain of the other objectives that justifies this loss."""
 CONFLICT = 1e-6
-"""Share of the magnitude; an objective with a smaller range does not vary."""
+"""An objective counts as constant if its range is below this share of its magnitude."""
 ROUGH = 16
-"""Number of points of an SLSQP run after which steps with the Hessian take over."""
+"""Number of points after which an SLSQP run is replaced by steps with the Hessian."""
 
 
 @dataclass(frozen=True)
 class FrontEffort:
-    """Search effort: starts and sweep samples per objective, and the seed."""
+    """Search effort: starts and sweep samples for each objective, and the seed."""
 
     starts: int
     samples: int
@@ -66,14 +67,14 @@ class FrontEffort:
 
 @dataclass(frozen=True)
 class Anchors:
-    """The anchors (n, objectives), and all feasible local optima (n, k)."""
+    """The anchors' variables (n, objectives), and all feasible local optima (n, k)."""
 
     x: Vector
     others: Vector
 
 
 class NoAnchor(NamedTuple):
-    """The number of an objective without a best design, and its failed search."""
+    """Number of an objective without a best design, and its failed search."""
 
     objective: int
     solution: Solution
@@ -82,7 +83,7 @@ class NoAnchor(NamedTuple):
 def find_anchors(
     objectives: Objectives, checked: Evaluator, effort: FrontEffort
 ) -> Anchors | NoAnchor:
-    """Find the best design of each objective; returns the failed search if there is none."""
+    """Find the best design of each objective; return the failed search if one has none."""
     optima = [[] for _ in range(objectives.count)] if not checked.exact else _joint_search(
         objectives, checked, effort
     )  # fmt: skip
@@ -110,7 +111,7 @@ def find_anchors(
 def _joint_search(
     objectives: Objectives, checked: Evaluator, effort: FrontEffort
 ) -> list[list[Vector]]:
-    """Local optima of each objective, best first, from runs with shared model calls."""
+    """Local optima of each objective, the best first, from runs that share model calls."""
     objectives = replace(objectives, evaluate=_with_cache(objectives.evaluate))
     evaluators = [objectives.evaluator_of(checked, k) for k in range(objectives.count)]
     swept = [sweep(evaluator, effort.samples, effort.seed) for evaluator in evaluators]
@@ -124,7 +125,7 @@ def _joint_search(
 
 
 def _with_cache(evaluate: Callable[[Array], PointValues]) -> Callable[[Array], PointValues]:
-    """The function with a cache of its last real points: all objectives sweep the same points."""
+    """The function with a cache of its last real points, as all objectives sweep them."""
     cache: dict[bytes, PointValues] = {}
 
     def remembered(points: Array) -> PointValues:
@@ -141,14 +142,14 @@ def _with_cache(evaluate: Callable[[Array], PointValues]) -> Callable[[Array], P
 
 
 def _starts(evaluator: Evaluator, swept: Sweep, count: int) -> list[Vector]:
-    """Coordinates of the problem's start and of the best distinct points of the sweep."""
+    """Coordinates of the problem's start, and of the best distinct points of the sweep."""
     start = evaluator.problem.start
     starts = [] if start is None else [evaluator.space.to_z(start)]
     return starts + distinct(evaluator, swept.z, max(count - len(starts), 1))
 
 
 def _optima(run_ends: Sequence[Point], converged: Sequence[Point | None]) -> list[Vector]:
-    """Distinct optima, best first; empty if an unfinished run may be better."""
+    """Distinct optima, the best first; empty if a run that did not finish may be better."""
     optima = sorted((p for p in converged if p is not None), key=lambda point: point.objective)
     unfinished = [
         p.objective for p, point in zip(run_ends, converged, strict=True)
@@ -162,7 +163,7 @@ def _optima(run_ends: Sequence[Point], converged: Sequence[Point | None]) -> lis
 def normalised(
     objectives: Objectives, checked: Evaluator, anchors: Anchors
 ) -> tuple[Tracer, Vector]:
-    """The normalisation and the anchors (n, k); a single anchor without a conflict."""
+    """The normalisation and the anchors (n, k); if no objectives conflict, a single anchor."""
     x = anchors.x
     all_values = objectives.values(np.concatenate([anchors.others, x], axis=1))
     values, magnitude = all_values[:, -x.shape[1] :], np.abs(all_values).max(axis=1)
@@ -187,7 +188,7 @@ def normalised(
 
 
 def _sharpened(tracer: Tracer, x: Vector, units: Vector) -> Vector:
-    """The anchors (n, k), moved where other objectives improve at no loss of the anchor's own."""
+    """The anchors (n, k), moved where other objectives improve at no loss of their own."""
     count = len(x.T)
     starts = []
     for k in range(count):
@@ -204,15 +205,15 @@ def _sharpened(tracer: Tracer, x: Vector, units: Vector) -> Vector:
 
 
 OVERLOOKED = 1e-6
-"""Normalised level by which a search must improve."""
+"""Normalised amount by which a search must improve a level to replace a design."""
 TOLERANCE = 1e-7
-"""Relative change of level and variables that ends a run."""
+"""A run ends if level and variables change by less than this relative amount."""
 ROUNDS = 24
-"""Maximum points of a run; without a feasible design by then, other steps take over."""
+"""Maximum number of points of a run; if none is feasible by then, other steps take over."""
 
 
 def overlooked(tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort) -> list[Vector]:
-    """Variables (n,) of better designs at the levels of some designs of the front."""
+    """Search for better designs at the levels of some designs; returns their variables (n,)."""
     run_ends: list[list[Point]] = [[] for _ in designs]
     if tracer.exact and designs:
         run_ends = _feasible_ends(tracer, designs, effort)
@@ -234,7 +235,7 @@ def overlooked(tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffo
 def _feasible_ends(
     tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort
 ) -> list[list[Point]]:
-    """Feasible end points of runs, by level."""
+    """Feasible points at which runs ended, for each level."""
     evaluators = [tracer.evaluator_of(tracer.at(d.level, d.direction)) for d in designs]
     parameters = np.stack(
         [np.concatenate([design.level, design.direction]) for design in designs], axis=1
@@ -257,7 +258,7 @@ def _feasible_ends(
 def _overlooked_starts(
     tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort
 ) -> list[list[Vector]]:
-    """Starts for each level: the problem's start, and the best points of one shared sweep."""
+    """Starts for each level: the problem's start, and the best points of a shared sweep."""
     inner = Evaluator(tracer.objectives.single_problem(0))
     space, start = inner.space, tracer.objectives.problem.start
     cube = Halton(space.size, effort.seed, max_points=max(2, effort.samples)).points(
@@ -287,14 +288,14 @@ def _overlooked_starts(
 
 @dataclass(frozen=True)
 class FrontSettings:
-    """Search effort for a front.
+    """Search effort for a Pareto front.
 
     Parameters
     ----------
     count : requested number of designs
-    starts, samples : of the search for each anchor
-    checks : number of full searches at levels in between
-    seed : of the searches
+    starts, samples : numbers of starts and sweep points in the search for each anchor
+    checks : number of full searches that check designs between the anchors
+    seed : seed of the searches
     """
 
     count: int
@@ -306,19 +307,19 @@ class FrontSettings:
 
 @dataclass(frozen=True)
 class Front:
-    """A front: its designs along the first objective, and the search statistics.
+    """A Pareto front: its designs in order of the first objective, and search statistics.
 
     Parameters
     ----------
     x : variables (n, k)
     values : objectives (objectives, k), to be minimised
-    units : normalised objectives: 0 ideal, 1 worst of the anchors
-    residuals : of the optimality conditions (k,)
-    knee : index and depth of the design where the front bends most, or None
-    passed : values (objectives, p) of dominated designs of the search
-    checked, improved : full searches at levels in between, and how many improved a design
+    units : normalised objectives: 0 at the ideal, 1 at the worst value of the anchors
+    residuals : residuals of the optimality conditions (k,)
+    knee : index of the design where the front bends most, and how far it bulges; or None
+    passed : values (objectives, p) of designs that the search found but that are dominated
+    checked, improved : number of checking searches, and how many of them improved a design
     failed : number of levels without a design at or near them
-    wide : gaps of two objectives wider than `plane.WIDEST`, and the reason
+    wide : with two objectives, gaps wider than `plane.WIDEST` and the reason for them
     """
 
     x: Vector
@@ -335,7 +336,7 @@ class Front:
 
     @property
     def gaps(self) -> Vector:
-        """Normalised distance to the next design: along two objectives, else to the nearest."""
+        """Normalised distance to the next design (two objectives) or the nearest design."""
         if self.units.shape[1] < 2:
             return np.empty(0)
         if len(self.units) > 2:
@@ -344,7 +345,7 @@ class Front:
 
 
 def front(objectives: Objectives, settings: FrontSettings) -> Front | NoAnchor:
-    """Compute the front; returns the failed search if an objective has no best design."""
+    """Compute the front; return the failed search if an objective has no best design."""
     effort = FrontEffort(settings.starts, settings.samples, settings.seed)
     tell("searching for the ends of the front")
     checked, warnings = objectives.checked()
@@ -379,7 +380,7 @@ def front(objectives: Objectives, settings: FrontSettings) -> Front | NoAnchor:
 
 
 def _fill(search: FrontSearch, count: int) -> None:
-    """Add the requested number of designs, evenly spread."""
+    """Add designs, evenly spread, until the requested number is reached."""
     if len(search.tracer.ideal) == 2:
         fill_line(search, count)
         close_gaps(search, count)
@@ -388,7 +389,7 @@ def _fill(search: FrontSearch, count: int) -> None:
 
 
 def _places(search: FrontSearch, settings: FrontSettings) -> list[int]:
-    """Indices of designs for independent searches: evenly spaced, and in the wide gaps."""
+    """Indices of designs for the checking searches: evenly spaced, and at the wide gaps."""
     inner = [k for k in search.front_indices() if search.designs[k].at_level][1:-1]
     positions = np.linspace(0, len(inner) - 1, settings.checks + 2)[1:-1].round().astype(int)
     places = {inner[k] for k in positions.tolist()} if inner else set()
@@ -400,7 +401,7 @@ def _places(search: FrontSearch, settings: FrontSettings) -> list[int]:
 def _assembled(
     search: FrontSearch, count: int, warnings: tuple[str, ...], checked: int, improved: int
 ) -> Front:
-    """The front of the final designs, with the dominated designs and the gaps."""
+    """Build the front from the final designs, the dominated designs and the gaps."""
     tracer, indices = search.tracer, final_designs(search, count)
     units = search.units[:, indices]
     replaced = np.stack(search.replaced, axis=1) if search.replaced else np.empty((len(units), 0))
@@ -422,7 +423,7 @@ def _assembled(
 
 
 def _single(tracer: Tracer, x: Vector, warnings: tuple[str, ...]) -> Front:
-    """A front of one design, which is best in every objective."""
+    """A front that consists of one design, which is best in every objective."""
     design = tracer.initial_designs(x)[0]
     unit = design.unit[:, None]
     residual = Conditions(tracer.objectives).residual(design.point)

@@ -1,9 +1,10 @@
-"""Several objectives of one problem, and the scalar problems for the designs of their front.
+"""Several objectives of one problem, and the single-objective problems that give front designs.
 
-A design of the front solves: minimise t subject to f_i <= a_i + r_i t for every normalised
-objective i, within the requirements [PascolettiSerafini1984]. With r_i = 1 for all objectives, the
-design is nearest to the ideal along the line through `a` that trades all objectives equally
-[DasDennis1998]. An objective with r_i = 0 is only bounded.
+A front design solves: minimise t subject to f_i <= a_i + r_i t for every normalised objective f_i,
+and to all requirements [PascolettiSerafini1984]. The level a_i and the direction r_i are given.
+With r_i = 1 for all objectives, the design is the nearest to the ideal along the line through `a`
+on which all objectives improve equally [DasDennis1998]. An objective with r_i = 0 only has to stay
+below a_i.
 """
 
 from __future__ import annotations
@@ -25,16 +26,16 @@ LEVEL = "level of the objectives"
 """Name of the variable t."""
 
 LOWEST, HIGHEST = -1.0, 2.0
-"""Bounds of t, which is between -1 and 1 within the anchors."""
+"""Bounds of t; at the designs between the anchors, t lies between -1 and 1."""
 
 
 @dataclass(frozen=True)
 class Objectives:
-    """The objectives to be minimised together.
+    """Several objectives, all to be minimised, of one problem.
 
     Parameters
     ----------
-    names : of the objectives
+    names : names of the objectives
     problem : variables and constraints; its objective is ignored
     evaluate : maps points (n, k) to `PointValues` with objectives (objectives, k), to be minimised
     """
@@ -49,7 +50,7 @@ class Objectives:
         return len(self.names)
 
     def selection(self) -> ParametricProblem:
-        """The problem of one objective; the parameter is the index of the objective."""
+        """The problem with one objective; its parameter is the index of that objective."""
 
         def evaluate(points: Array, parameters: Array) -> PointValues:
             values = self.evaluate(points)
@@ -60,11 +61,11 @@ class Objectives:
         return ParametricProblem(self.problem, ["objective"], np.zeros(1), evaluate)
 
     def single_problem(self, index: int) -> BoxProblem:
-        """The problem of one objective."""
+        """The problem with only the objective `index`."""
         return self.selection().at(np.array([index]))
 
     def evaluator_of(self, checked: Evaluator, index: int) -> Evaluator:
-        """An evaluator of one objective that reuses the gradient check of `scaled`."""
+        """An evaluator for one objective that reuses the gradient check of `scaled`."""
         evaluator, m = Evaluator(self.single_problem(index)), len(self.problem.constraint_names)
         rows = [
             1 + m + index,
@@ -76,7 +77,7 @@ class Objectives:
         return evaluator
 
     def checked(self) -> tuple[Evaluator, tuple[str, ...]]:
-        """An evaluator of `scaled` with checked gradients, and the warnings of the check."""
+        """An evaluator of `scaled` after its gradient check, and the warnings of that check."""
         problem = self.problem
         start = (problem.lower + problem.upper) / 2 if problem.start is None else problem.start
         size = np.abs(self.values(start[:, None])[:, 0])
@@ -95,9 +96,9 @@ class Objectives:
         return np.stack([np.broadcast_to(np.asarray(f), points.shape[1:]) for f in parts])
 
     def scaled(self, ideal: Vector, width: Vector) -> ParametricProblem:
-        """Minimise t; the parameters are `a` (objectives,), then `r` (objectives,).
+        """The problem to minimise t; parameters: `a` (objectives,), then `r` (objectives,).
 
-        `ideal` and `width` (objectives,) normalise: (f - ideal)/width.
+        Objectives f are normalised as (f - ideal)/width; `ideal` and `width` are (objectives,).
         """
         problem, count = self.problem, self.count
 
@@ -135,17 +136,18 @@ def _joined(constraints: Array, front: Array) -> Array:
 
 @dataclass(frozen=True)
 class Conditions:
-    """The optimality conditions of a design of the front.
+    """Checks the optimality conditions of a front design.
 
-    A design of the front minimises at least one objective with the others bounded at their values.
-    Its residual is the first below the tolerance of such a problem, else the smallest.
+    A front design minimises at least one objective while the others are bounded at their values.
+    Each objective gives such a problem with a residual. The design's residual is the first below
+    the tolerance, or else the smallest.
     """
 
     objectives: Objectives
 
     @cached_property
     def _evaluators(self) -> list[Evaluator]:
-        """Evaluators of the problems that minimise one objective with the others bounded."""
+        """Evaluators of the problems that minimise one objective while the others are bounded."""
         problem, names = self.objectives.problem, self.objectives.names
         return [
             Evaluator(
@@ -160,7 +162,7 @@ class Conditions:
         ]
 
     def residual(self, point: Point) -> float:
-        """The residual at a point (variables and t) whose gradients are known."""
+        """The residual at a point (variables and t) with known gradients."""
         smallest = np.inf
         for index in range(self.objectives.count):
             smallest = min(smallest, self._residual_of(point, index))
@@ -169,7 +171,7 @@ class Conditions:
         return float(smallest)
 
     def _residual_of(self, point: Point, index: int) -> float:
-        """The residual of minimising one objective with the others bounded."""
+        """The residual of minimising one objective while the others are bounded."""
         assert point.jacobian is not None
         count, problem = self.objectives.count, self.objectives.problem
         inner, size = len(problem.constraint_names), len(point.z) - 1
@@ -177,7 +179,7 @@ class Conditions:
         bounded = [1 + inner + i for i in range(count) if i != index]
         slopes = point.jacobian[:, :size]
         order = [*range(1, 1 + inner), *bounded, *range(front.stop, len(point.rows))]
-        # an objective of 1 makes a vanishing gradient count as 1e-3
+        # with an objective of 1, `slope_scale` replaces a vanishing gradient by 1e-3
         rows = np.concatenate([[1.0], point.rows[order]])
         rows[1 + inner : inner + count] = 0.0
         jacobian = np.concatenate([-slopes[front][index][None], slopes[order]])

@@ -1,13 +1,14 @@
-"""Levels along the front, and an even selection of its designs.
+"""Chooses levels along the front, and selects designs that are evenly spread.
 
-Levels lie on the plane of the anchors. Two objectives use the line u -> (u, 1 - u). Along it a
-front is never steeper than 45 degrees, so its length between two places is at most twice their
-difference in u. Three or more objectives use the points of a lattice on the plane sum = 1 whose
-lines meet the box of ideal and nadir.
+A level is a set of upper limits for the normalised objectives. Levels lie on the plane of the
+anchors. With two objectives they lie on the line u -> (u, 1 - u). Relative to u, a front is never
+steeper than 45 degrees, so its length between two positions is at most twice their difference in u.
+With three or more objectives, levels are lattice points on the plane sum = 1 whose lines meet the
+box between ideal and nadir (best and worst values of the anchors).
 
-A front may extend beyond its anchors. The search therefore tries the neighbours of every level with
-a design, up to the edge of the front. There it improves the objectives that still can improve. Then
-it fills wide holes and explains the gaps that remain.
+A front may extend beyond its anchors. So the search tries the neighbours of every level that has a
+design, until it reaches the edge of the front. There it improves the objectives that can still
+improve. Then it fills wide holes and explains the gaps that remain.
 """
 
 from __future__ import annotations
@@ -36,28 +37,28 @@ from .tracer import (
 )
 
 STEEPEST = 2.0
-"""Maximum length of a front of two objectives per unit of u."""
+"""With two objectives, the greatest length of a front per unit of u."""
 
 
 def on_line(places: Vector) -> Vector:
-    """Levels (2, k) at places u (k,) between the anchors of the first and the second objective."""
+    """Levels (2, k) at positions u (k,) between the first and the second anchor."""
     return np.stack([places, 1.0 - places])
 
 
 def lengths(places: Vector, units: Vector) -> Vector:
-    """Length of the front between neighbours (k - 1,), jumps excluded.
+    """Length of the front between neighbours (k - 1,), without its jumps.
 
     Parameters
     ----------
-    places : u (k,), ascending
-    units : normalised objectives (2, k) there
+    places : positions u (k,), ascending
+    units : normalised objectives (2, k) at these positions
     """
     chords = np.sqrt((np.diff(units, axis=1) ** 2).sum(axis=0))
     return np.asarray(np.minimum(chords, STEEPEST * np.diff(places)))
 
 
 def between(places: Vector, units: Vector, count: int) -> Vector:
-    """`count` new places u, where the front between neighbours is longest."""
+    """`count` new positions u, chosen where the front between neighbours is longest."""
     sections = lengths(places, units)
     parts_of = np.ones(len(sections), dtype=int)
     for _ in range(count):
@@ -73,7 +74,7 @@ def between(places: Vector, units: Vector, count: int) -> Vector:
 
 
 def places(objectives: int, steps: int) -> list[tuple[int, ...]]:
-    """Lattice points, in steps from the middle, whose lines meet the unit box.
+    """Lattice points, as steps from the middle, whose lines meet the unit box.
 
     >>> len(places(3, 1)), len(places(3, 2))
     (1, 7)
@@ -87,7 +88,7 @@ def places(objectives: int, steps: int) -> list[tuple[int, ...]]:
 
 
 def around(place: tuple[int, ...]) -> list[tuple[int, ...]]:
-    """The neighbours of a place.
+    """The lattice points next to a lattice point.
 
     >>> around((0, 0))
     [(-1, 1), (1, -1)]
@@ -102,52 +103,53 @@ def around(place: tuple[int, ...]) -> list[tuple[int, ...]]:
 
 
 def level(place: Sequence[int], steps: int) -> Vector:
-    """Levels (objectives,) at a place."""
+    """Levels (objectives,) at a lattice point."""
     return 1.0 / len(place) + np.array(place, dtype=float) / steps
 
 
 Place = tuple[int, ...]
-"""Lattice steps from the middle, one number per objective, of sum 0."""
+"""A lattice point: steps from the middle, one whole number per objective, with sum 0."""
 
 SURPLUS = 2.0
-"""Designs computed per requested design; the most distant of these are selected."""
+"""Number of designs computed per requested design; the most distant of them are selected."""
 
 COARSE = 4
-"""Steps of the first lattice from the middle to the level of an anchor."""
+"""In the first lattice, the number of steps from the middle to the level of an anchor."""
 
 RESERVE = 12
-"""Maximum levels of a lattice per requested design."""
+"""Maximum number of levels tried on a lattice, per requested design."""
 
 GROWN = 0.05
-"""Relative change of an objective's range that triggers a new normalisation."""
+"""If an objective's range changes by this relative amount, the objectives are normalised again."""
 
 RESCALES = 3
-"""Maximum number of new normalisations."""
+"""Maximum number of times that the objectives are normalised again."""
 
 PRICED = 1e-6
-"""Price of an objective (1 in total) above which its level is active."""
+"""The level of an objective counts as active if its price exceeds this (all prices sum to 1)."""
 
 HOLD = 1e-9
-"""Normalised slack of a bounded objective while others improve."""
+"""Normalised amount by which a bounded objective may worsen while others improve."""
 
 ROUNDS = 12
-"""Maximum rounds of filling holes."""
+"""Maximum number of rounds that fill holes."""
 
 ELSEWHERE = 1e-3
-"""Difference of a variable above which two designs at one level differ."""
+"""Two designs at one level differ if a variable differs by more than this."""
 
 CLOSE = 2.0
-"""Largest shortfall of a design from another valley, relative to the distance of neighbours."""
+"""A design from another valley competes if it is worse by at most this multiple of the neighbours'
+distance."""
 
 CROSSINGS = 4
-"""Maximum rounds of retrying designs from another valley."""
+"""Maximum number of rounds that retry designs from another valley."""
 
 NEIGHBOURS = 14
-"""Number of neighbours of a design that are checked for a hole between."""
+"""For this many neighbours of each design, the space between is checked for a hole."""
 
 
 def fill_plane(search: FrontSearch, count: int) -> None:
-    """Cover a front of three or more objectives with more designs than requested."""
+    """Cover a front of three or more objectives with more designs than are requested."""
     objectives, max_levels = search.tracer.objectives.count, RESERVE * count + 60
     if len(search.designs) == objectives:
         steps = COARSE if objectives == 3 else COARSE // 2
@@ -171,7 +173,7 @@ def fill_plane(search: FrontSearch, count: int) -> None:
 
 
 def _nearest_places(search: FrontSearch, steps: int) -> list[Place]:
-    """Lattice points nearest to the known designs."""
+    """Lattice points that are nearest to the known designs."""
     nearest: set[Place] = set()
     for design in search.designs:
         exact = (design.unit - design.unit.mean()) * steps
@@ -182,7 +184,7 @@ def _nearest_places(search: FrontSearch, steps: int) -> list[Place]:
 
 
 def _flood(search: FrontSearch, first_places: Iterable[Place], steps: int, max_levels: int) -> int:
-    """Try lattice points and the neighbours of every success; returns the number of successes."""
+    """Try lattice points, then the neighbours of every success; return the number of successes."""
     visited: set[Place] = set()
     queue, successes = list(first_places), 0
     while queue and len(visited) < max_levels:
@@ -200,7 +202,7 @@ def _flood(search: FrontSearch, first_places: Iterable[Place], steps: int, max_l
 
 
 def _start_beside(search: FrontSearch, level: Vector) -> FrontStart:
-    """A start from the designs nearest to a level, weighted by proximity."""
+    """A start interpolated from the designs nearest to a level, weighted by proximity."""
     distance = distances(search.plane, level - level.mean())
     nearest = np.argsort(distance, kind="stable")[: len(level)]
     shares = 1 / np.maximum(distance[nearest], 1e-9) ** 2
@@ -213,10 +215,10 @@ def _start_beside(search: FrontSearch, level: Vector) -> FrontStart:
 def _fully_improved(
     search: FrontSearch, designs: Sequence[FrontDesign | None]
 ) -> list[FrontDesign]:
-    """Improve the objectives of each design that can improve without a loss of the others.
+    """Improve those objectives of each design that can improve without a loss in the others.
 
-    An objective whose level is not active has no price. It is improved, with the others bounded at
-    their values, until every objective has a price [Marler2004].
+    An objective whose level is not active has no price. It is improved while the others are bounded
+    at their values, until every objective has a price [Marler2004].
     """
     finished: list[FrontDesign] = []
     prices = search.tracer.prices
@@ -229,7 +231,7 @@ def _fully_improved(
         starts = [_improving_start(search, design, active) for design, active in pending]
         improved = search.tracer.solve(starts, [design for design, _ in pending])
         outcomes = list(zip(improved, pending, strict=True))
-        if stage:  # no slack left: keep the design of the last stage
+        if stage:  # cannot improve further: keep the design of the last stage
             finished += [design for new, (design, _) in outcomes if new is None]
         pending = [
             (new, active | (prices(new) > PRICED))
@@ -242,7 +244,7 @@ def _fully_improved(
 def _improving_start(
     search: FrontSearch, front_design: FrontDesign, active: npt.NDArray[np.bool_]
 ) -> FrontStart:
-    """A start that improves the inactive objectives, with the active objectives bounded."""
+    """A start to improve the inactive objectives while the active objectives are bounded."""
     level = np.where(active, front_design.unit + HOLD, front_design.level)
     direction = (~active).astype(float)
     t = float((front_design.unit - front_design.level)[~active].max())
@@ -251,7 +253,7 @@ def _improving_start(
 
 
 def _renormalised(search: FrontSearch) -> bool:
-    """Normalise again if the range of the front has changed; returns whether it has."""
+    """Normalise again if the range of the front has changed; return whether it has."""
     units = search.units[:, search.front_indices()]
     low, width = units.min(axis=1), np.ptp(units, axis=1)
     if (np.abs(low) < GROWN).all() and (np.abs(width - 1) < GROWN).all():
@@ -261,9 +263,9 @@ def _renormalised(search: FrontSearch) -> bool:
 
 
 def _fill_holes(search: FrontSearch, count: int) -> None:
-    """Add levels between the most distant neighbours until there are enough designs."""
+    """Add levels between the most distant neighbours, until there are enough designs."""
     tried_pairs: set[tuple[int, int]] = set()
-    references: list[FrontDesign] = []  # keeps the ids unique
+    references: list[FrontDesign] = []  # keeps the designs alive, so that ids stay unique
     for number in range(ROUNDS):
         indices = search.front_indices()
         missing = int(np.ceil(SURPLUS * count)) - len(indices)
@@ -287,7 +289,7 @@ def _key(designs: Sequence[FrontDesign], pair: tuple[int, int]) -> tuple[int, in
 
 
 def _neighbour_pairs(search: FrontSearch, indices: Indices) -> list[tuple[int, int]]:
-    """Neighbours without another design between them, most distant first."""
+    """Pairs of neighbours that have no design between them, the most distant pair first."""
     units, projected = search.units[:, indices], search.plane[:, indices]
     gaps: dict[tuple[int, int], float] = {}
     for i in range(len(indices)):
@@ -303,7 +305,7 @@ def _neighbour_pairs(search: FrontSearch, indices: Indices) -> list[tuple[int, i
 
 
 def _middle_start(search: FrontSearch, front_design: FrontDesign, other: FrontDesign) -> FrontStart:
-    """A start at the level midway between two designs."""
+    """A start at the level halfway between two designs."""
     level = (front_design.unit + other.unit) / 2
     level = level - level.mean() + 1 / len(level)
     z = (front_design.point.z + other.point.z) / 2
@@ -312,9 +314,9 @@ def _middle_start(search: FrontSearch, front_design: FrontDesign, other: FrontDe
 
 
 def _retry_crosswise(search: FrontSearch) -> bool:
-    """Retry designs from nearly equal designs with different variables.
+    """Retry designs, starting from nearly equal designs with different variables.
 
-    Returns whether any design was merely local.
+    Returns whether any retried design was only locally best.
     """
     indices = search.front_indices()
     pairs = [(int(indices[i]), int(indices[j])) for i, j in _competitors(search, indices)]
@@ -336,13 +338,13 @@ def _retry_crosswise(search: FrontSearch) -> bool:
 
 
 def _is_alternative(front_design: FrontDesign, alternative: FrontDesign) -> bool:
-    """Whether a design at the same level is equally good but different."""
+    """Whether a design at the same level is as good, but different."""
     differs = np.abs(alternative.point.z[:-1] - front_design.point.z[:-1]).max() > ELSEWHERE
     return bool(differs and alternative.point.objective < front_design.point.objective + BETTER)
 
 
 def _competitors(search: FrontSearch, indices: Indices) -> list[tuple[int, int]]:
-    """Pairs of a design and its closest competitor from another valley."""
+    """Pairs: a design, and the closest design from another valley that competes with it."""
     units = search.units[:, indices]
     z = np.stack([search.designs[k].point.z[:-1] for k in indices], axis=1)
     neighbours = np.array(_neighbour_pairs(search, indices), dtype=np.intp).reshape(-1, 2)
@@ -360,13 +362,13 @@ def _competitors(search: FrontSearch, indices: Indices) -> list[tuple[int, int]]
 
 
 GROWTH = 10
-"""Maximum new designs per round, relative to the number of known designs."""
+"""Maximum number of new designs per round, as a multiple of the number of known designs."""
 MOST_ROUNDS = 12
-"""Maximum rounds: a continuous front takes two or three."""
+"""Maximum number of rounds; a continuous front takes two or three."""
 
 
 def fill_line(search: FrontSearch, count: int) -> None:
-    """Add designs between two anchors where the front is longest."""
+    """Add designs between the two anchors, where the front is longest."""
     for number in range(MOST_ROUNDS):
         missing = count - len(search.front_indices())
         if missing <= 0:
@@ -382,7 +384,7 @@ def fill_line(search: FrontSearch, count: int) -> None:
 
 
 def between_on_line(search: FrontSearch, places: Sequence[float] | Vector) -> list[FrontStart]:
-    """Starts at places u between the known designs, from their neighbours."""
+    """Starts at positions u between the known designs, interpolated from their neighbours."""
     search.sort()
     levels = [design.level[0] for design in search.designs]
     return [
@@ -394,7 +396,7 @@ def between_on_line(search: FrontSearch, places: Sequence[float] | Vector) -> li
 def _start_between(
     designs: Sequence[FrontDesign], k: int, u: float, direction: Vector
 ) -> FrontStart:
-    """An interpolated start before design k, or the nearer neighbour if the front jumps."""
+    """An interpolated start before design k; where the front jumps, the nearer neighbour."""
     left, right = designs[k - 1], designs[k]
     low, high = left.level[0], right.level[0]
     nearer = left if u - low < high - u else right
@@ -411,13 +413,13 @@ def _start_between(
 
 
 def _jumps(left: FrontDesign, right: FrontDesign) -> bool:
-    """Whether two designs are farther apart than on a continuous front."""
+    """Whether two designs are farther apart than they can be on a continuous front."""
     width = right.level[0] - left.level[0]
     return bool(np.linalg.norm(right.unit - left.unit) >= STEEPEST * width)
 
 
 def _weights(places: Vector, u: float) -> Vector:
-    """Weights of values at places (k,) for polynomial interpolation at u."""
+    """Weights of the values at positions (k,) for polynomial interpolation at u."""
     differences = places[:, None] - places + np.eye(len(places))
     offsets = u - places + np.zeros((len(places), 1))
     np.fill_diagonal(offsets, 1.0)
@@ -426,27 +428,27 @@ def _weights(places: Vector, u: float) -> Vector:
 
 
 WIDEST = 3.0
-"""Largest gap between neighbours, relative to the median gap."""
+"""A gap is wide if it exceeds this multiple of the median gap between neighbours."""
 
 
 SPACING_ROUNDS = 6
-"""Maximum rounds of adding designs in wide gaps."""
+"""Maximum number of rounds that add designs in wide gaps."""
 
 
 PIECES = 8
-"""Maximum number of pieces per split of a gap."""
+"""Maximum number of pieces into which a gap is split at once."""
 
 
 @dataclass(frozen=True)
 class FrontGap:
-    """A wide gap between neighbours of a front, in normalised objectives.
+    """A wide gap between neighbours on a front, measured in normalised objectives.
 
     Parameters
     ----------
     after : index of the design before the gap
     size : distance between the two designs
-    reach : upper limit of the front's length between them, from the levels tried
-    jump : whether the reach is at most a median gap, so that the front is discontinuous here
+    reach : upper limit on the length of front between the two designs, from the levels tried
+    jump : whether the reach is at most a median gap, which means that the front jumps here
     """
 
     after: int
@@ -456,7 +458,7 @@ class FrontGap:
 
 
 def final_designs(search: FrontSearch, count: int) -> Indices:
-    """`count` designs, as distant as possible, in order of the first objective."""
+    """`count` designs that are as far apart as possible, in order of the first objective."""
     optimal = [k for k in search.front_indices() if search.residual(k) <= RESIDUAL]
     indices = np.array(optimal, dtype=np.intp)
     units = search.units[:, indices]
@@ -485,7 +487,7 @@ def wide_gaps(search: FrontSearch, indices: Indices) -> list[FrontGap]:
 
 
 def close_gaps(search: FrontSearch, count: int) -> None:
-    """Add designs of two objectives in wide gaps until all remaining gaps are jumps."""
+    """Add designs in wide gaps of two objectives, until all remaining wide gaps are jumps."""
     for number in range(SPACING_ROUNDS):
         indices = final_designs(search, count)
         open_gaps = [gap for gap in wide_gaps(search, indices) if not gap.jump]
@@ -503,7 +505,7 @@ def close_gaps(search: FrontSearch, count: int) -> None:
 
 
 def middle_designs(search: FrontSearch, count: int) -> list[int]:
-    """Indices of the designs nearest to the middle level of each wide gap, widest gap first."""
+    """For each wide gap, the design nearest to its middle level (index); widest gap first."""
     indices, result = final_designs(search, count), []
     for gap in sorted(wide_gaps(search, indices), key=lambda g: -g.size):
         section = _section(search, indices[gap.after], indices[gap.after + 1])
@@ -514,7 +516,7 @@ def middle_designs(search: FrontSearch, count: int) -> list[int]:
 
 
 def lost_levels(search: FrontSearch, indices: Indices) -> int:
-    """Number of levels without a design nearby; two objectives count only gaps without a jump."""
+    """Number of levels without a design nearby; for two objectives, of gaps without a jump."""
     units = search.units[:, indices]
     if len(units) > 2:
         widest = nearest(units).max(initial=0.0)
@@ -534,7 +536,7 @@ def _pairs(indices: Indices) -> Iterator[tuple[int, int]]:
 
 
 def _section(search: FrontSearch, left: int, right: int) -> Indices:
-    """Designs at levels between those of two designs, in order."""
+    """Designs whose levels lie between those of two designs, in order."""
     levels = np.array([design.level[0] for design in search.designs])
     low, high = sorted((levels[left], levels[right]))
     order = np.argsort(levels, kind="stable")
@@ -543,7 +545,7 @@ def _section(search: FrontSearch, left: int, right: int) -> Indices:
 
 
 def _section_lengths(search: FrontSearch, left: int, right: int) -> Vector:
-    """Upper limits of the front's length between neighbouring levels of a section."""
+    """Upper limits on the length of front between neighbouring levels of a section."""
     section = _section(search, left, right)
     levels = np.array([search.designs[k].level[0] for k in section])
     return lengths(levels, search.units[:, section])

@@ -1,6 +1,7 @@
-"""Computes designs of a front at given levels, many at once, from neighbouring designs.
+"""Computes many designs of a front together, for given levels, from neighbouring designs.
 
-It also selects non-dominated designs, measures their spacing and locates the knee.
+A level is a set of upper limits for the objectives. The module also selects non-dominated designs,
+measures their spacing and locates the knee (where the front bends most).
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ Indices = npt.NDArray[np.intp]
 
 
 CLEARLY = 100.0
-"""Multiple of `equal` that counts as clearly better; prevents cycles of dominance."""
+"""Multiple of `equal` that counts as clearly better; it prevents cycles of dominance."""
 
 
 SAME = 1e-6
@@ -34,14 +35,14 @@ SAME = 1e-6
 
 
 def nondominated(values: Vector, equal: float = 0.0) -> npt.NDArray[np.bool_]:
-    """Mask of the designs that no other design dominates.
+    """Which designs no other design dominates, as a mask.
 
     A dominating design is no worse in every objective and clearly better in one.
 
     Parameters
     ----------
-    values : (objectives, designs), to be minimised; equal designs all remain
-    equal : difference that counts as no worse; `CLEARLY` times this counts as clearly better
+    values : objectives to be minimised (objectives, designs); of equal designs, all remain
+    equal : loss up to which a design is no worse; a gain of `CLEARLY` times this is clearly better
 
     >>> nondominated(np.array([[1.0, 2.0, 3.0], [3.0, 2.0, 2.0]]))
     array([ True,  True, False])
@@ -56,7 +57,7 @@ def nondominated(values: Vector, equal: float = 0.0) -> npt.NDArray[np.bool_]:
 
 
 def distinct(units: Vector, order: Indices) -> Indices:
-    """Indices of designs (objectives, designs), in a given order, that differ from all before.
+    """Indices of designs, in the given order, that differ from all designs before them.
 
     >>> distinct(np.array([[0.0, 0.0, 1.0], [1.0, 1.0, 0.0]]), np.array([1, 0, 2]))
     array([1, 2])
@@ -70,7 +71,7 @@ def distinct(units: Vector, order: Indices) -> Indices:
 
 
 def thinned(units: Vector, fixed: Indices, count: int) -> Indices:
-    """Indices of `count` designs (objectives, designs), as distant as possible, with `fixed`.
+    """Indices of `count` designs that are as far apart as possible, including the designs `fixed`.
 
     Each step adds the design farthest from the selected designs [Gonzalez1985].
     """
@@ -91,7 +92,7 @@ def distances(units: Vector, unit: Vector) -> Vector:
 
 
 def nearest(units: Vector) -> Vector:
-    """Distance of each design (objectives, designs) to its nearest neighbour."""
+    """Distance from each design (objectives, designs) to its nearest neighbour."""
     result = np.empty(units.shape[1])
     for k in range(units.shape[1]):
         gaps = distances(units, units[:, k])
@@ -101,11 +102,11 @@ def nearest(units: Vector) -> Vector:
 
 
 def knee(units: Vector) -> tuple[int, float] | None:
-    """The design farthest from the plane through the anchors towards the ideal, and its distance.
+    """The design farthest from the anchors' plane, on the side of the ideal, and its distance.
 
-    Units (objectives, designs) are 0 at the best of each objective [Das1999]. If the anchors span
-    no plane that falls in every objective, the plane of equal sums through their middle replaces
-    it. None if the front does not bend towards the ideal.
+    `units` (objectives, designs) are 0 at the best value of each objective [Das1999]. The plane of
+    the anchors must fall in every objective. Otherwise it is replaced by the plane of equal sums
+    through the middle of the anchors. None if the front does not bend towards the ideal.
 
     >>> knee(np.array([[0.0, 0.25, 1.0], [1.0, 0.25, 0.0]]))
     (1, 0.35355339059327373)
@@ -121,16 +122,16 @@ def knee(units: Vector) -> tuple[int, float] | None:
 
 
 BETTER = 1e-7
-"""Normalised improvement that indicates another valley."""
+"""A normalised improvement of this size shows that a design belongs to another valley."""
 
 HELD = 1e-6
-"""Normalised shortfall that still counts as at the level."""
+"""An objective counts as at its level if it falls short by no more than this (normalised)."""
 
 ROUNDS = 4
-"""Maximum exchanges of results; they end once an exchange improves nothing."""
+"""Maximum number of rounds that exchange results; they end if a round improves nothing."""
 
 CURVED = 2
-"""Maximum recomputations of the curvature where full steps do not converge."""
+"""Maximum number of times that the curvature is recomputed if full steps do not converge."""
 
 
 @dataclass(frozen=True)
@@ -139,10 +140,10 @@ class FrontDesign:
 
     Parameters
     ----------
-    level, direction : `a` and `r` of `Objectives.scaled` (objectives,)
+    level, direction : parameters `a` and `r` of `Objectives.scaled` (objectives,)
     point : variables and t
     unit : normalised objectives (objectives,)
-    hessian : of the Lagrangian over `Tracer.scale`, as learnt
+    hessian : estimate of the Lagrangian's Hessian, divided by `Tracer.scale`
     """
 
     level: Vector
@@ -153,14 +154,14 @@ class FrontDesign:
 
     @property
     def at_level(self) -> bool:
-        """Whether every objective is at its level; otherwise the front has an edge or jump here."""
+        """Whether every objective reaches its level; else the front has an edge or jump."""
         room = self.level + self.direction * self.point.objective - self.unit
         return bool((room <= HELD).all())
 
 
 @dataclass(frozen=True)
 class FrontStart:
-    """Start for a design at given levels: coordinates with t, and a Hessian."""
+    """Start for a design at given levels: coordinates that include t, and a Hessian."""
 
     level: Vector
     direction: Vector
@@ -174,8 +175,8 @@ class Tracer:
     Parameters
     ----------
     objectives : the objectives
-    ideal, width : of the normalisation
-    checked : an evaluator with checked gradients, see `Objectives.checked`
+    ideal, width : offset and scale that normalise the objectives
+    checked : an evaluator whose gradients are checked, see `Objectives.checked`
     """
 
     def __init__(
@@ -188,22 +189,22 @@ class Tracer:
         self.exact = applicable(self.parametric, self.evaluator)
 
     def rescale(self, ideal: Vector, width: Vector) -> None:
-        """Change the normalisation; earlier designs become invalid."""
+        """Change the normalisation; designs computed before become invalid."""
         self.ideal, self.width = ideal, width
         self.parametric = self.objectives.scaled(ideal, width)
         self.evaluator = self.evaluator_of(self.parametric.problem)
 
     def from_x(self, x: Vector, t: float) -> Vector:
-        """Coordinates (nf,) of variables (n,) at a level t."""
+        """Coordinates (nf,) of variables (n,), with t as given."""
         return self.evaluator.space.to_z(np.append(x, t))
 
     def to_t(self, z: Vector, t: float) -> Vector:
-        """The same coordinates at another level t."""
+        """The same coordinates with another value of t."""
         space = self.evaluator.space
         return np.append(z[:-1], np.clip(t / self.scale, space.lower[-1], space.upper[-1]))
 
     def unit(self, x: Vector) -> Vector:
-        """Normalised objectives (objectives, k) at variables (n, k)."""
+        """Normalised objectives (objectives, k) at the variables (n, k)."""
         return self.normal(self.objectives.values(x))
 
     def normal(self, values: Vector) -> Vector:
@@ -211,15 +212,15 @@ class Tracer:
         return np.asarray((values - self.ideal[:, None]) / self.width[:, None])
 
     def values(self, units: Vector) -> Vector:
-        """Objectives (objectives, k) from normalised ones."""
+        """Objectives (objectives, k) from normalised objectives."""
         return units * self.width[:, None] + self.ideal[:, None]
 
     def at(self, level: Vector, direction: Vector) -> BoxProblem:
-        """The scalar problem at given levels."""
+        """The single-objective problem for given levels."""
         return self.parametric.at(np.concatenate([level, direction]))
 
     def initial_designs(self, x: Vector) -> list[FrontDesign]:
-        """Designs at variables (n, k), at their own levels, without curvature."""
+        """Designs at the variables (n, k), at their own levels and without curvature."""
         units = self.unit(x)
         size = self.evaluator.space.size
         return self._at_own(
@@ -230,7 +231,7 @@ class Tracer:
         )
 
     def at_own_levels(self, designs: Sequence[FrontDesign]) -> list[FrontDesign]:
-        """The designs, with their own objectives as levels."""
+        """The designs, with the values of their own objectives as levels."""
         if not designs:
             return []
         units = self.unit(np.stack([design.point.x[:-1] for design in designs], axis=1))
@@ -251,7 +252,7 @@ class Tracer:
         return [self._design(s, p, s.hessian) for s, p in zip(starts, points, strict=True)]
 
     def prices(self, front_design: FrontDesign) -> Vector:
-        """Price of each objective's level at a design (objectives,)."""
+        """Price of each objective's level (objectives,) at a design."""
         m, count = len(self.objectives.problem.constraint_names), self.objectives.count
         jacobian = self.evaluator.jacobian(front_design.point)
         active = kkt.active_set(self.evaluator, front_design.point)
@@ -264,9 +265,9 @@ class Tracer:
     def solve(
         self, starts: Sequence[FrontStart], fallbacks: Sequence[FrontDesign] = ()
     ) -> list[FrontDesign | None]:
-        """The design at the levels of each start, or None.
+        """Find the design at the levels of each start; None where not found.
 
-        Where a start fails, a descent from the best of the designs `fallbacks` follows.
+        If the steps from a start fail, a descent follows from the best of the designs `fallbacks`.
         """
         if not starts:
             return []
@@ -282,7 +283,7 @@ class Tracer:
     def exchange(
         self, designs: list[FrontDesign], other_x: Vector, other_units: Vector
     ) -> list[FrontDesign]:
-        """The designs, each replaced where another design's variables are better.
+        """Replace each design where the variables of another design reach a better level.
 
         Parameters
         ----------
@@ -324,7 +325,7 @@ class Tracer:
     def spread(
         self, designs: list[FrontDesign], changed: Sequence[FrontDesign]
     ) -> list[FrontDesign]:
-        """The designs, each replaced where a descent from another start is better."""
+        """Replace each design that a descent from another start improves."""
         improved = list(changed)
         while improved:
             levels = np.stack([descended.level for descended in improved], axis=1)
@@ -351,25 +352,25 @@ class Tracer:
         return designs
 
     def _descended(self, starts: Sequence[FrontStart]) -> list[FrontDesign | None]:
-        """The designs reached by descents from feasible starts."""
+        """The designs that descents reach from feasible starts."""
         if not self.exact:
             return [self._solve_alone(start) for start in starts]
         return self._follow(starts)
 
     def _changed(self, starts: Sequence[FrontStart]) -> ChangedProblems:
-        """The problems at the levels of some starts."""
+        """The problems for the levels of some starts."""
         levels = np.stack(
             [np.concatenate([start.level, start.direction]) for start in starts], axis=1
         )
         return ChangedProblems(self.parametric, self.evaluator, levels)
 
     def _descent(self, hessian: Vector, radius: float = RADIUS) -> Descent:
-        """A descent from a Hessian."""
+        """A descent that begins with a given Hessian."""
         rows = self.evaluator.constraint_count
         return Descent(hessian, self.scale, rows, 1.0, radius=radius)
 
     def _follow(self, starts: Sequence[FrontStart]) -> list[FrontDesign | None]:
-        """Take full steps; where they diverge, retry with the curvature of the last point."""
+        """Take full steps; where they diverge, try again with the curvature of the last point."""
         designs: list[FrontDesign | None] = [None] * len(starts)
         indices, current = list(range(len(starts))), list(starts)
         for attempt in range(1 + CURVED):
@@ -401,7 +402,7 @@ class Tracer:
         missing: list[int],
         fallbacks: Sequence[FrontDesign],
     ) -> None:
-        """Descend from the best known design at each level, within trust regions."""
+        """For each missing design, descend from the best known design in a trust region."""
         units = np.stack([design.unit for design in fallbacks], axis=1)
         coordinates, descents = [], []
         for k in missing:
@@ -418,7 +419,7 @@ class Tracer:
                 designs[k] = self._design(starts[k], point, descent.hessian)
 
     def _solve_alone(self, start: FrontStart) -> FrontDesign | None:
-        """The design at one start, by the most robust method."""
+        """The design for one start, by the most robust method."""
         problem = replace(self.at(start.level, start.direction), start=None)
         x = self.evaluator.space.to_x(start.z[:, None])[:, 0]
         solution = solve(problem, starts=1, samples=0, more_starts=[x])
@@ -427,7 +428,7 @@ class Tracer:
         return self.design_at(start, solution.x)
 
     def polished(self, front_design: FrontDesign) -> FrontDesign:
-        """The design after exact Newton steps."""
+        """The design after Newton steps with the exact Hessian."""
         evaluator = self.evaluator_of(self.at(front_design.level, front_design.direction))
         point = kkt.polish(evaluator, evaluator.point(front_design.point.z))
         evaluator.jacobian(point)
@@ -438,7 +439,7 @@ class Tracer:
         )
 
     def design_at(self, start: FrontStart, x: Vector) -> FrontDesign:
-        """The design at variables with t (n + 1,), with its gradients."""
+        """The design at the point x (n + 1,), which is variables and t, with its gradients."""
         evaluator = self.evaluator_of(self.at(start.level, start.direction))
         point = evaluator.point(evaluator.space.to_z(x))
         evaluator.jacobian(point)
@@ -451,37 +452,39 @@ class Tracer:
         return FrontDesign(start.level, start.direction, point, unit, hessian)
 
     def evaluator_of(self, problem: BoxProblem) -> Evaluator:
-        """An evaluator of a problem that reuses the gradient check."""
+        """An evaluator of a problem that reuses the gradient check made before."""
         evaluator = Evaluator(problem)
         evaluator.adopt_check(self._checked)
         return evaluator
 
 
 EQUAL = 1e-8
-"""Normalised difference that counts as equal: the accuracy of bounded objectives."""
+"""Normalised difference up to which objectives count as equal: the accuracy of bounded objectives.
+"""
 JUMP = 5.0
-"""Step of the variables between neighbours, relative to the median, that suggests a new valley."""
+"""If neighbours' variables differ by this multiple of the median step, a new valley is suspected.
+"""
 
 
 @dataclass
 class FrontSearch:
-    """The designs so far, and other known feasible points."""
+    """The designs found so far, and other feasible points that are known."""
 
     tracer: Tracer
     designs: list[FrontDesign]
     others: Vector
-    """Variables (n, k) of further feasible designs."""
+    """Variables (n, k) of feasible designs that are not in the list of designs."""
     replaced: list[Vector] = field(default_factory=list)
-    """Objectives of designs that were replaced."""
+    """Objectives of designs that a better design has replaced."""
     empty_levels: list[Vector] = field(default_factory=list)
-    """Levels without a design."""
+    """Levels that have no design."""
     _other_values: tuple[Vector, Vector] | None = None
     _residuals: dict[int, tuple[FrontDesign, float]] = field(default_factory=dict)
 
     def solve(self, starts: Sequence[FrontStart], *, firmly: bool = True) -> int:
-        """Add the designs at the levels of some starts; returns their number.
+        """Add the designs at the levels of some starts; return how many were added.
 
-        `firmly` retries failed starts within trust regions.
+        With `firmly`, starts that fail are tried again within trust regions.
         """
         designs = [d for d in self.designs_at(starts, firmly=firmly) if d is not None]
         self.add(designs)
@@ -490,7 +493,7 @@ class FrontSearch:
     def designs_at(
         self, starts: Sequence[FrontStart], *, firmly: bool = True
     ) -> list[FrontDesign | None]:
-        """The designs at the levels of some starts, not yet added; see `solve`."""
+        """The designs at the levels of some starts, not added yet; see `solve`."""
         designs = self.tracer.solve(starts, self.designs if firmly else ())
         self.empty_levels += [
             s.level for s, design in zip(starts, designs, strict=True) if design is None
@@ -498,7 +501,7 @@ class FrontSearch:
         return designs
 
     def improved_designs(self, starts: Sequence[FrontStart]) -> list[FrontDesign | None]:
-        """As `designs_at`, but continued from a known design where it is better at the level."""
+        """As `designs_at`, but continued from a known design that is better at the level."""
         designs = self.designs_at(starts)
         indices = [k for k, d in enumerate(designs) if d is not None]
         known_x = np.stack([design.point.x[:-1] for design in self.designs], axis=1)
@@ -510,7 +513,7 @@ class FrontSearch:
         return designs
 
     def add(self, designs: Sequence[FrontDesign]) -> None:
-        """Add designs, and exchange results between them."""
+        """Add designs, then let all designs exchange their results."""
         previous = [*self.designs, *designs]
         self.designs = self.tracer.exchange(list(previous), self.others, self.other_units)
         changed = [new for old, new in zip(previous, self.designs, strict=True) if old is not new]
@@ -518,11 +521,11 @@ class FrontSearch:
         self._pass([o for o, new in zip(previous, self.designs, strict=True) if o is not new])
 
     def _pass(self, designs: Sequence[FrontDesign]) -> None:
-        """Record the objectives of replaced designs."""
+        """Record the objectives of designs that are replaced."""
         self.replaced += [self.tracer.values(design.unit[:, None])[:, 0] for design in designs]
 
     def rescale(self, low: Vector, width: Vector) -> None:
-        """Normalise to another range (objectives,), in current units."""
+        """Normalise to another range; `low` and `width` (objectives,) are in current units."""
         tracer = self.tracer
         tracer.rescale(tracer.ideal + low * tracer.width, width * tracer.width)
         self.designs = tracer.at_own_levels(self.designs)
@@ -530,12 +533,12 @@ class FrontSearch:
 
     @property
     def plane(self) -> Vector:
-        """The designs (objectives, k) projected on the plane of equal sums."""
+        """The designs' objectives (objectives, k), projected on the plane of equal sums."""
         units = self.units
         return np.asarray(units - units.mean(axis=0))
 
     def sort(self) -> None:
-        """Sort the designs by their level of the first objective."""
+        """Sort the designs by the level of their first objective."""
         self.designs.sort(key=lambda design: design.level[0])
 
     @cached_property
@@ -543,7 +546,7 @@ class FrontSearch:
         return Conditions(self.tracer.objectives)
 
     def residual(self, k: int) -> float:
-        """Residual of a design's optimality conditions, improved by Newton steps if necessary."""
+        """Residual of design k's optimality conditions, after Newton steps if necessary."""
         design = self.designs[k]
         cached = self._residuals.get(id(design))
         if cached is not None and cached[0] is design:
@@ -556,12 +559,12 @@ class FrontSearch:
         return residual
 
     def consider(self, x: Vector) -> None:
-        """Compare the designs with further feasible designs (n, k)."""
+        """Compare the designs with feasible designs at x (n, k), and keep the better."""
         self.others = np.concatenate([self.others, x], axis=1)
         self.add([])
 
     def retry_jumps(self) -> None:
-        """Retry each side of a jump in the variables from the other side."""
+        """Where variables jump between neighbours, retry each side from the other side."""
         self.sort()
         z = np.stack([design.point.z[:-1] for design in self.designs], axis=1)
         steps = np.abs(np.diff(z, axis=1)).max(axis=0)
@@ -582,7 +585,7 @@ class FrontSearch:
 
     @property
     def other_units(self) -> Vector:
-        """Normalised objectives of the further designs (objectives, k)."""
+        """Normalised objectives (objectives, k) of the other feasible designs."""
         if self._other_values is None or self._other_values[0] is not self.others:
             self._other_values = self.others, self.tracer.objectives.values(self.others)
         return self.tracer.normal(self._other_values[1])
@@ -593,7 +596,7 @@ class FrontSearch:
         return np.stack([design.unit for design in self.designs], axis=1)
 
     def front_indices(self) -> Indices:
-        """Indices of distinct non-dominated designs; designs at their levels take precedence."""
+        """Indices of distinct non-dominated designs; those at their levels come first."""
         order = sorted(range(len(self.designs)), key=lambda k: not self.designs[k].at_level)
         units = self.units
         indices = distinct(units, np.array(order, dtype=np.intp))

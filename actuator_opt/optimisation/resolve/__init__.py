@@ -1,1 +1,1 @@
-"""Re-solve many problems near a solved one: shared steps, fallbacks, parallel searches."""
+"""Re-solves many problems near a solved problem: shared steps, fallbacks, parallel searches."""

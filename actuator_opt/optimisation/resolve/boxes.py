@@ -1,8 +1,9 @@
-"""Re-optimises a problem from the optimum of a similar problem with other bounds or materials.
+"""Re-optimises a problem from the optimum of a similar problem (other bounds or materials).
 
-Quadratic steps with the Hessian of that optimum, one evaluation each, reach most optima. Where they
-fail, a restoration finds the nearest feasible point and SLSQP continues from it. The Hessian is not
-updated: results need only seven digits, and equalities are allowed.
+Most optima are reached by quadratic steps that use the Hessian of the known optimum, with one
+evaluation each. If the steps fail, a restoration looks for the nearest feasible point, and SLSQP
+continues from there. The Hessian is not updated: the results need only seven digits, and equalities
+are allowed.
 """
 
 from __future__ import annotations
@@ -29,17 +30,18 @@ from .steps import (
 )
 
 STEPS = 14
-"""Maximum steps with the Hessian of the other optimum."""
+"""Maximum number of steps that use the Hessian of the other optimum."""
 
 MOST_STEPS = 100
-"""Maximum evaluations of SLSQP if these steps do not converge."""
+"""Maximum number of evaluations by SLSQP if these steps do not converge."""
 
 DOUBTFUL = 0.01
-"""Remaining violation up to which the shortest steps may have overlooked a feasible point."""
+"""If the remaining violation is at most this, the shortest steps may have overlooked a feasible
+point."""
 
 
 class Criteria(NamedTuple):
-    """Convergence criteria: step, violation, residual."""
+    """When steps count as converged: limits on step length, violation and residual."""
 
     step: float
     violation: float
@@ -47,22 +49,23 @@ class Criteria(NamedTuple):
 
 
 EXACT = Criteria(SETTLED, 1e-11, RESIDUAL)
-"""For final results: the objective is first order in the violation, second in the others."""
+"""For final results; a violation changes the objective to first order, the others to second order.
+"""
 
 ROUGH = Criteria(1e-4, 1e-7, 1e-3)
-"""For comparisons, to seven digits."""
+"""For comparisons, which need seven digits."""
 
 NEAR = Criteria(0.02, 1e-3, np.inf)
-"""For results that are worse than the known result by more than `WORSE`."""
+"""Sufficient for results that are worse than the known result by more than `WORSE`."""
 
 WORSE = 0.02
-"""Relative loss of the objective beyond the accuracy of `NEAR`."""
+"""Relative loss in the objective that is certain with the accuracy of `NEAR`."""
 
 
 class Nearest(NamedTuple):
-    """The nearby optimum, or None and the least infeasible point.
+    """The optimum near the start; if there is none, the least infeasible point.
 
-    `followed` is True if steps with the other optimum's Hessian converged to the optimum.
+    `followed` is True if steps with the other optimum's Hessian converged.
     """
 
     optimum: Point | None
@@ -76,12 +79,12 @@ class BoxTask:
 
     Parameters
     ----------
-    evaluator : of the problem
+    evaluator : evaluator of the problem
     x : the nearest known point (n,)
-    hessian : at the optimum of the other problem
+    hessian : Hessian at the optimum of the other problem
     criteria : convergence criteria
-    hopeless : whether the other problem is infeasible, with `x` its least infeasible point
-    cutoff : steps may stop near an optimum clearly worse than this objective
+    hopeless : whether the other problem is infeasible; `x` is then its least infeasible point
+    cutoff : steps may stop early if the optimum is clearly worse than this objective
     """
 
     evaluator: Evaluator
@@ -93,9 +96,9 @@ class BoxTask:
 
 
 def resolve_boxes(tasks: Sequence[BoxTask]) -> list[Nearest]:
-    """Resolve every task; no optimum without a feasible point nearby.
+    """Re-optimise every task's problem; no optimum if no feasible point is nearby.
 
-    The problems differ only in their bounds, so one model call evaluates a step of all.
+    The problems differ only in their bounds, so a step of all of them takes one model call.
     """
 
     def evaluate(requests: Mapping[int, Vector]) -> list[Point]:
@@ -106,7 +109,7 @@ def resolve_boxes(tasks: Sequence[BoxTask]) -> list[Nearest]:
 
 
 def _finished(task: BoxTask, end: Nearest) -> Nearest:
-    """Continue with SLSQP from a point that is feasible but not optimal."""
+    """Continue with SLSQP if the end point is feasible but not optimal."""
     if end.optimum is None or end.followed:
         return end
     point = nlopt_wrapper.run(
@@ -117,7 +120,7 @@ def _finished(task: BoxTask, end: Nearest) -> Nearest:
 
 
 def _approach(task: BoxTask) -> Steps[Nearest]:
-    """Step to the optimum with the other problem's Hessian, else to a feasible point."""
+    """Step to the optimum, with the other problem's Hessian; if that fails, to a feasible point."""
     evaluator = task.evaluator
     start = yield evaluator.space.to_z(task.x)
     if evaluator.space.size == 0:
@@ -140,14 +143,14 @@ def fixed_hessian_steps(
     criteria: Criteria,
     cutoff: float = np.inf,
 ) -> Steps[Point | None]:
-    """The optimum reached by steps with another problem's Hessian; None without convergence.
+    """The optimum reached by steps that use another problem's Hessian; None if they fail.
 
-    The steps stop early near an optimum clearly worse than `cutoff`.
+    If the optimum is clearly worse than `cutoff`, the steps stop early.
     """
     clearly_worse = cutoff + WORSE * abs(cutoff) if cutoff < np.inf else np.inf
     space = evaluator.space
     hessian = scaled_hessian.in_coordinates(evaluator, start.x)
-    if not (np.diag(hessian) > 0).all():  # free here, but fixed in the other problem
+    if not (np.diag(hessian) > 0).all():  # a variable is free only here
         return None
     no_equalities = np.zeros(len(evaluator.problem.equality_names))
     previous_length, point, reference = np.inf, start, np.inf
@@ -178,7 +181,7 @@ def fixed_hessian_steps(
 def stepped(
     evaluator: Evaluator, start: Point, scaled_hessian: ScaledHessian, criteria: Criteria
 ) -> Point | None:
-    """`fixed_hessian_steps` of a single problem."""
+    """The result of `fixed_hessian_steps` for a single problem."""
     solver = fixed_hessian_steps(evaluator, start, scaled_hessian, criteria)
     (optimum,) = run_batch(
         [solver], lambda requests: [evaluator.point(z) for z in requests.values()]
@@ -187,7 +190,7 @@ def stepped(
 
 
 def _restored(evaluator: Evaluator, start: Point, patience: int) -> Steps[Nearest]:
-    """A feasible point near the start; else None and the least infeasible point."""
+    """A feasible point near the start; if there is none, None and the least infeasible point."""
     best = start
     if not evaluator.problem.equality_names:
         feasible, least_infeasible = yield from restoring_steps(evaluator, start, patience)

@@ -1,4 +1,4 @@
-"""Solves problems together that differ from a solved problem in the values of parameters."""
+"""Solves several problems together, which differ from a solved problem only in parameter values."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ from .steps import (
 
 
 def applicable(parametric: ParametricProblem, evaluator: Evaluator) -> bool:
-    """Whether one complex evaluation gives exact gradients of all rows, without equalities."""
+    """Whether one complex evaluation gives all gradients exactly, without equalities."""
     exact = evaluator.complex_works and not evaluator.difference_rows.any()
     return exact and not parametric.problem.equality_names
 
 
 @dataclass(frozen=True)
 class ChangedProblems:
-    """A solved problem at K other values of its parameters.
+    """A solved problem, with K sets of other values for its parameters.
 
     Parameters
     ----------
     parametric : the problem with its parameters
-    evaluator : of the solved problem, with exact gradients
+    evaluator : evaluator of the solved problem, with exact gradients
     parameters : values of the parameters of each changed problem (q, K)
     """
 
@@ -48,13 +48,14 @@ class ChangedProblems:
     parameters: Vector
 
     def subset(self, numbers: Sequence[int]) -> ChangedProblems:
-        """The problems with the given numbers."""
+        """The problems whose numbers are given."""
         return replace(self, parameters=self.parameters[:, list(numbers)])
 
     def points(self, z: Vector, numbers: Sequence[int] | None = None) -> list[Point]:
-        """Points with gradients at z (nf, k), one for each problem of `numbers` (default: all).
+        """Points with gradients at coordinates z (nf, k), one point for each problem in `numbers`.
 
-        Takes one complex evaluation. Raises `LimitReached` at the evaluator's limits.
+        By default, `numbers` means all problems. This takes one complex evaluation. Raises
+        `LimitReached` at the evaluator's limits.
         """
         evaluator, parameters = self.evaluator, self.parameters
         evaluator.check_limits()
@@ -81,7 +82,7 @@ class ChangedProblems:
         return run_batch(solvers, evaluate)
 
     def step_fully(self, descents: Sequence[Descent], starts: Vector) -> list[Point | None]:
-        """The optimum of each problem by `full_steps` from starts (nf, K)."""
+        """The optimum of each problem, reached by `full_steps` from starts (nf, K)."""
         return self.run(
             [full_steps(self.evaluator, *pair) for pair in zip(descents, starts.T, strict=True)]
         )
@@ -89,7 +90,7 @@ class ChangedProblems:
     def descend(
         self, descents: Sequence[Descent], starts: Vector, max_evaluations: int = LONGEST
     ) -> list[Point | None]:
-        """The optimum of each problem by `trusted_steps` from starts (nf, K)."""
+        """The optimum of each problem, reached by `trusted_steps` from starts (nf, K)."""
         return self.run(
             [
                 trusted_steps(self.evaluator, *pair, max_evaluations)
@@ -98,7 +99,7 @@ class ChangedProblems:
         )
 
     def restore(self, start: Vector) -> list[Vector | None]:
-        """A feasible point (nf,) of each problem near one start (nf,), or None."""
+        """A feasible point (nf,) of each problem, all from the same start (nf,); or None."""
         count = self.parameters.shape[1]
         results = self.run([restoring_steps(self.evaluator, start) for _ in range(count)])
         return [None if result.feasible is None else result.feasible.z for result in results]
@@ -111,9 +112,9 @@ class ChangedProblems:
         return Evaluator.screen(problem.rows(np.repeat(x, count, axis=1))).reshape(-1, size, count)
 
     def near_optimum(self, valley: Valley, starts: Vector) -> list[Point | None]:
-        """Optima by full steps with the Hessian of the unchanged optimum.
+        """The optimum of each problem, by full steps with the Hessian of the unchanged optimum.
 
-        None if the steps do not converge, or if the unchanged point is better.
+        None if the steps do not converge, or if they end worse than the unchanged point.
 
         Parameters
         ----------
@@ -123,7 +124,7 @@ class ChangedProblems:
         if starts.shape[1] == 0:
             return []
         evaluator, point = self.evaluator, valley.point
-        if (starts == point.z[:, None]).all():  # the unchanged optimum is evaluated once
+        if (starts == point.z[:, None]).all():  # evaluate the unchanged optimum once
             points = self.points(starts)
             unmoved_objectives = [
                 p.objective if p.violation <= FEASIBLE else np.inf for p in points
@@ -145,7 +146,7 @@ class ChangedProblems:
     def descend_from(
         self, valley: Valley, starts: Vector
     ) -> tuple[list[Point | None], list[Point | None]]:
-        """Optima by descents, and feasible points of the problems without an optimum.
+        """Optima by descents, and for problems without an optimum the feasible points.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Re-solves many problems near a solved problem, with methods of increasing robustness.
+"""Re-solves many problems near a solved problem, by increasingly robust methods.
 
 1. Full steps from the predicted optima, all problems together.
 2. Where they fail, a restoration and a descent. Descents also start in the other known valleys, and
@@ -27,17 +27,17 @@ from .changed import ChangedProblems, applicable
 from .steps import Valley
 
 BETTER = 1e-8
-"""Relative improvement of the objective that indicates another valley."""
+"""A relative improvement of the objective by this much shows that there is another valley."""
 
 ROUNDS = 3
-"""Maximum exchanges of optima; they end once an exchange improves nothing."""
+"""Maximum number of rounds that exchange optima; they end if a round improves nothing."""
 
 BEYOND = 1.0
-"""Start of a descent beyond another valley, as a share of its distance from the best valley.
-The ridge between both often moves as fast as they do."""
+"""A descent starts beyond another valley by this share of its distance from the best valley. The
+ridge between two valleys often moves as fast as the valleys do."""
 
 SAMPLES = 1024
-"""Number of points of the sweep for a feasible problem without a known optimum."""
+"""Number of points of the sweep for a feasible problem whose optimum is not yet known."""
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,8 @@ class SolvedProblem:
     Parameters
     ----------
     parametric : the problem with its parameters
-    evaluator : its evaluator, with checked gradients
-    valleys : its local optima, the best first
+    evaluator : evaluator of the problem, with checked gradients
+    valleys : local optima of the problem, the best first
     """
 
     parametric: ParametricProblem
@@ -63,8 +63,8 @@ class ResolveTask:
     Parameters
     ----------
     problem : the changed problem
-    guess : predicted optimum, in coordinates of the solved problem (nf,)
-    parameters : values of the parameters (q,) of the problem; None if its bounds differ
+    guess : predicted optimum (nf,), in coordinates of the solved problem
+    parameters : values of the parameters (q,) in the changed problem; None if its bounds differ
     """
 
     problem: BoxProblem
@@ -73,7 +73,7 @@ class ResolveTask:
 
 
 def resolve(solved: SolvedProblem, tasks: Sequence[ResolveTask]) -> list[Point | None]:
-    """The optimum of every task, else its best feasible point; None without a feasible point."""
+    """The optimum of every task, or else its best feasible point; None if there is none."""
     optima: list[Point | None] = [None] * len(tasks)
     feasible_z: list[Vector | None] = [None] * len(tasks)
     single = list(range(len(tasks)))
@@ -102,7 +102,7 @@ def resolve(solved: SolvedProblem, tasks: Sequence[ResolveTask]) -> list[Point |
 def resolve_batch(
     changed: ChangedProblems, valleys: Sequence[Valley], starts: Vector
 ) -> tuple[list[Point | None], list[Vector | None]]:
-    """The optimum and a feasible point of each changed problem; None where not reached.
+    """The optimum and a feasible point of each changed problem; None where none is reached.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def resolve_batch(
         z = valley.point.z
         start = np.clip(z + BEYOND * (z - point.z), space.lower, space.upper)
         ends.descend(valley, dict(enumerate(changed.restore(start))))
-    single = len(optima) == 1 and len(valleys) == 1  # no other optimum to exchange
+    single = len(optima) == 1 and len(valleys) == 1  # there are no other optima to exchange
     for _ in range(0 if single else ROUNDS):
         improved = ends.better_designs([valley.point for valley in valleys])
         if not improved:
@@ -132,7 +132,7 @@ def resolve_batch(
 
 @dataclass
 class _Ends:
-    """The best optimum of each changed problem, and the best feasible design."""
+    """The best optimum and the best feasible design of each changed problem."""
 
     changed: ChangedProblems
     optima: list[Point | None]
@@ -140,7 +140,7 @@ class _Ends:
     feasible: dict[int, Vector] = field(default_factory=dict)
 
     def descend(self, valley: Valley, starts: Mapping[int, Vector | None]) -> None:
-        """Descend from a start of each of these problems, and store improvements."""
+        """Descend from a start of each of these problems, and store what improves."""
         feasible_starts = {i: z for i, z in starts.items() if z is not None}
         numbers = list(feasible_starts)
         if not numbers:
@@ -153,7 +153,7 @@ class _Ends:
             self.best_feasible[i] = _better(self.best_feasible[i], stop)
 
     def better_designs(self, valleys: Sequence[Point]) -> dict[int, Vector]:
-        """For each problem, the best point of the other problems, if better than its own."""
+        """For each problem, the best point of the other problems, if it beats the problem's own."""
         points = [*valleys, *(optimum for optimum in self.optima if optimum is not None)]
         rows = self.changed.margins_at(points)
         missed = self.changed.evaluator.violations(rows.reshape(len(rows), -1), "worst")
@@ -168,7 +168,7 @@ class _Ends:
         return improvements
 
     def results(self) -> tuple[list[Point | None], list[Vector | None]]:
-        """The optima, and the feasible points; no optimum where a feasible point is better."""
+        """The optima and feasible points; an optimum is left out if a feasible point is better."""
         feasible_z: list[Vector | None] = [None] * len(self.optima)
         for i, point in enumerate(self.best_feasible):
             if point is not None and point.objective < _beaten(self.optima[i]):
@@ -179,7 +179,7 @@ class _Ends:
 
 
 def _beaten(point: Point | None) -> float:
-    """Objective below which another design is clearly better."""
+    """A design with an objective below this is clearly better than the point."""
     return np.inf if point is None else point.objective - BETTER * abs(point.objective)
 
 
@@ -190,7 +190,7 @@ def _better(point: Point | None, other: Point | None) -> Point | None:
 
 
 def other_optima(evaluator: Evaluator, solution: Solution) -> list[Point]:
-    """Local optima of the search, except for the best."""
+    """Local optima that a search reached, except for the best."""
     points = [
         optimum.x
         for optimum in solution.optima
@@ -202,7 +202,7 @@ def other_optima(evaluator: Evaluator, solution: Solution) -> list[Point]:
 
 
 def point_of(evaluator: Evaluator, solution: Solution) -> Point:
-    """The end point of a search."""
+    """The point at which a search ended."""
     rows = np.concatenate([[solution.objective], solution.constraints, solution.equalities])
     return Point(evaluator.space.to_z(solution.x), solution.x, rows, True, solution.violation)
 
@@ -215,17 +215,18 @@ def search_near(
     *,
     feasible_z: Vector | None = None,
 ) -> Point | None:
-    """Solve one slightly changed problem; None if infeasible.
+    """Solve one slightly changed problem; None if it is infeasible.
 
-    Newton steps come first; if the active set changes too much, a search from the known points.
+    Newton steps are tried first. If the active limits change too much for them, a search follows
+    from the known points.
 
     Parameters
     ----------
     problem : the changed problem
-    evaluator, point : of the unchanged problem, and its optimum
+    evaluator, point : evaluator and optimum of the unchanged problem
     guess : predicted optimum (nf,)
-    feasible_z : coordinates of a known feasible point; if missing, and none lies near the unchanged
-        optimum, the problem counts as infeasible
+    feasible_z : coordinates of a known feasible point. Without it, the problem counts as infeasible
+        if the search near the unchanged optimum finds none
     """
     changed = Evaluator(problem)
     if changed.space.size != len(guess):  # the changed bound fixes a variable

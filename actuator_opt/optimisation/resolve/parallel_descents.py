@@ -1,8 +1,8 @@
-"""SLSQP runs from several starts in parallel: one model call evaluates a step of every run.
+"""Runs SLSQP from several starts in parallel: a step of all runs takes one model call.
 
-A model call costs little more for many points than for one, but NLopt requests single points. So
-each run has a thread, which waits until all runs have requested a point. Every run takes the same
-steps as it would alone.
+A model call for many points costs little more than for one point, but NLopt requests single points.
+So each run has its own thread, which waits until all runs have requested a point. Every run takes
+the same steps as it would alone.
 """
 
 from __future__ import annotations
@@ -32,20 +32,20 @@ RESTORATION = "least worst violation by LD_SLSQP"
 
 
 NEARER = 1e-3
-"""Share by which a worst violation must fall below the known violations to count as new."""
+"""A violation counts as a new best only if it is lower than the known violations by this share."""
 
 
 ELSEWHERE = 1.0
-"""Share by which a worst violation must exceed the least known if its search got stuck."""
+"""A search counts as stuck if its worst violation exceeds the least known by this share."""
 
 
 LOCAL_EVALUATIONS = 150
-"""Maximum evaluations of one local SLSQP run on the default path."""
+"""Maximum number of evaluations in one local SLSQP run on the default path."""
 
 
 @dataclass
 class SearchResult:
-    """An end point of runs: its residual, its algorithm, and the number of runs that reached it."""
+    """An end point of runs, with residual, algorithm, and the number of runs that reached it."""
 
     point: Point
     residual: float
@@ -54,12 +54,12 @@ class SearchResult:
 
     @property
     def good(self) -> bool:
-        """Whether it is feasible and satisfies the optimality conditions."""
+        """Whether the point is feasible and satisfies the optimality conditions."""
         return self.point.violation <= MET and self.residual <= RESIDUAL
 
 
 class Descents:
-    """State of a search: evaluator, results and warnings."""
+    """State of a search: the evaluator, the results so far and the warnings."""
 
     def __init__(self, evaluator: Evaluator, seed: int) -> None:
         self.evaluator = evaluator
@@ -68,7 +68,7 @@ class Descents:
         self.records: list[StartRecord] = []
         self.warnings: list[str] = []
         self.least_infeasible: list[Point] = []
-        """Infeasible points with the least worst violation."""
+        """The infeasible points whose worst violation is least."""
         self.objective_scale = 0.0
         self.interrupted = False
 
@@ -89,7 +89,7 @@ class Descents:
         return kkt.check(self.evaluator, point, objective_scale=self.objective_scale).residual
 
     def same(self, point: Point) -> SearchResult | None:
-        """The known optimum that a point has reached, or None."""
+        """The known optimum at which a point has arrived, or None."""
         for optimum in self.optima:
             end = optimum.point
             size = max(abs(end.objective), 1e-3 * self.objective_scale, 1e-300)
@@ -101,7 +101,7 @@ class Descents:
     def descend(
         self, start: Point, algorithm: str, *, linear: bool, max_evaluations: int | None = None
     ) -> bool:
-        """Run one local search and polish the result; True if it ended at an optimum."""
+        """Run one local search and polish its result; return True if it ended at an optimum."""
         evaluations_before = self.evaluator.evaluations
         known_optima = [o for o in self.optima if o.good]
         run = nlopt_wrapper.run(
@@ -129,7 +129,7 @@ class Descents:
         return optimum.good
 
     def restore(self, point: Point, *, start: Point) -> None:
-        """Minimise the worst violation, and descend from the result if it is feasible."""
+        """Minimise the worst violation; if that gives a feasible point, descend from it."""
         evaluations_before = self.evaluator.evaluations
         smallest = min((p.violation for p in self.least_infeasible), default=np.inf)
         end = repairs.least_missed(self.evaluator, point, smallest / 2)
@@ -161,9 +161,9 @@ class Descents:
         return optimum
 
     def best(self, further: Sequence[SearchResult] = ()) -> SearchResult | None:
-        """The best of the optima and other points: by violation, then by objective.
+        """The best among the optima and some other points: by violation, then by objective.
 
-        An optimum takes precedence over a point that is better only by rounding.
+        An optimum is preferred to a point that is better only by rounding.
         """
 
         def rank(optimum: SearchResult) -> tuple[float, float]:
@@ -185,37 +185,39 @@ class Descents:
 
 
 ROUNDS = 60
-"""Maximum precomputed points of a run; from a start of the sweep, 10 to 60 suffice."""
+"""Maximum number of points computed in advance per run; from a sweep's point, 10 to 60 suffice."""
 
 FIRST = 14
-"""Maximum steps of a run before only the runs of unsolved problems continue."""
+"""After this number of steps, only the runs of problems without a solution continue."""
 
 
 @dataclass(frozen=True)
 class DescentTask:
-    """Runs of one problem: the evaluator, and the starting points with gradients."""
+    """The runs of one problem: its evaluator, and the starting points with gradients."""
 
     evaluator: Evaluator
     starts: list[Point]
 
 
 Rows = Callable[[npt.NDArray[np.complex128], npt.NDArray[np.intp]], npt.NDArray[np.generic]]
-"""Rows (rows, k) of points (n, k), for the tasks with the given numbers (k,)."""
+"""Computes rows (rows, k) of points (n, k); each point belongs to the task with the number in (k,).
+"""
 
 
 def precompute(
     evaluator: Evaluator, starts: Sequence[Point], *, seed: int, max_evaluations: int
 ) -> None:
-    """Precompute the points that SLSQP visits from the given starts.
+    """Compute, in parallel, the points that SLSQP will visit from the given starts.
 
-    Does nothing without exact gradients or with a limit of evaluations. Stops early if the first
-    run is infeasible, as the search then skips the others, and at the evaluator's time limit.
+    Does nothing if gradients are not exact or evaluations are limited. Stops early if the first run
+    ends infeasible, because the search then skips the other runs, and at the evaluator's time
+    limit.
 
     Parameters
     ----------
-    evaluator : of the problem
+    evaluator : evaluator of the problem
     starts : evaluated points
-    seed, max_evaluations : of the runs
+    seed, max_evaluations : seed of the runs, and evaluations of each at most
     """
     if len(starts) < 2 or not evaluator.exact or evaluator.max_evaluations is not None:
         return
@@ -238,17 +240,17 @@ def run_together(
     tolerance: float = 1e-9,
     rounds: int = ROUNDS,
 ) -> list[list[Point]]:
-    """The best points of SLSQP runs, for each task and start.
+    """The best point that each SLSQP run reached, by task and start.
 
     The evaluators store every visited point. If the first run of a task is infeasible, the other
     runs of the task stop. All runs stop at the time limit of the first evaluator.
 
     Parameters
     ----------
-    tasks : with exact gradients
+    tasks : the problems and starts, with exact gradients
     rows : evaluates points of all tasks in one call
-    seed, max_evaluations, tolerance : of the runs
-    rounds : maximum points of a run
+    seed, max_evaluations, tolerance : settings of the runs
+    rounds : maximum number of points in a run
     """
     runs: list[SlsqpRun] = []
     for number, task in enumerate(tasks):
@@ -289,7 +291,7 @@ def run_together(
 
 
 def _share(runs: Sequence[SlsqpRun], batch: Batch[None], finished: set[int]) -> None:
-    """Share new optima with the other runs of their task, in order."""
+    """Pass new optima on to the other runs of the same task, in order."""
     for number in sorted(set(batch.results) - finished):
         if runs[number].new:
             runs[number].known.append(runs[number].best)
@@ -303,9 +305,9 @@ class SlsqpRun:
     ----------
     task : number of its task
     start : first point
-    evaluator : of the task; stores the visited points
-    known : optima of the task, at which a run stops
-    seed, most, tolerance : of the run
+    evaluator : evaluator of the task, which stores the visited points
+    known : known optima of the task; a run that reaches one stops
+    seed, most, tolerance : seed, maximum evaluations and tolerance of the run
     """
 
     task: int
@@ -330,7 +332,7 @@ class SlsqpRun:
         )
 
     def steps(self) -> Steps[None]:
-        """The run as a solver; closing it early stops it with the best point so far."""
+        """The run as a solver for `Batch`; closed early, it keeps its best point so far."""
         thread = Thread(target=self._run, daemon=True)
         thread.start()
         try:
@@ -341,7 +343,7 @@ class SlsqpRun:
             thread.join()
 
     def enter(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
-        """The point at z (nf,) from the rows of its columns; stored in the task's evaluator."""
+        """The point at z (nf,), from the rows of its columns; the task's evaluator stores it."""
         self.evaluator.precomputed[z.tobytes()] = rows
         return self._evaluator.enter(z, rows)
 
@@ -359,7 +361,7 @@ class SlsqpRun:
 
 
 class _QueuedEvaluator(Evaluator):
-    """An evaluator that requests its points from the batch."""
+    """An evaluator that gets its points from the batch of all runs."""
 
     def __init__(
         self,
@@ -374,7 +376,7 @@ class _QueuedEvaluator(Evaluator):
         self._cache[start.z.tobytes()] = start
 
     def point(self, z: Vector) -> Point:
-        """The evaluated point at z (nf,), once all runs have requested a point."""
+        """The evaluated point at z (nf,); waits until all runs have requested a point."""
         cached = self._cache.get(z.tobytes())
         if cached is not None:
             return cached
@@ -395,15 +397,15 @@ def descents_from(
     tolerance: float = 1e-9,
     rounds: int = ROUNDS,
 ) -> list[list[Point]]:
-    """The end points of SLSQP runs, for each problem and start.
+    """The points at which SLSQP runs end, for each problem and start.
 
     Parameters
     ----------
     parametric : the problems
-    evaluators : one per problem, with exact gradients
-    parameters : of each problem (q, k)
-    starts : coordinates (nf,) for each problem
-    seed, tolerance, rounds : of the runs, see `run_together`
+    evaluators : one evaluator per problem, with exact gradients
+    parameters : parameter values of each problem (q, k)
+    starts : starting coordinates (nf,) for each problem
+    seed, tolerance, rounds : settings of the runs, see `run_together`
     """
 
     def rows(
@@ -438,11 +440,11 @@ def converged_from(
     parameters: Vector,
     starts: Sequence[Sequence[Point]],
 ) -> list[list[Point | None]]:
-    """The optimum that steps with the Hessian reach from each point, or None.
+    """The optimum reached from each point by steps with its Hessian, or None.
 
     Parameters
     ----------
-    parametric, evaluators, parameters : as of `descents_from`
+    parametric, evaluators, parameters : see `descents_from`
     starts : points of each problem with their gradients
     """
     descents: list[Descent] = []
@@ -472,13 +474,13 @@ def converged_from(
 
 
 def _descent(evaluator: Evaluator, point: Point, hessian: Vector) -> Descent:
-    """A descent from a point with a Hessian."""
+    """A descent that begins at a point with a given Hessian."""
     scale = kkt.slope_scale(evaluator, point)
     return Descent(hessian, scale, evaluator.constraint_count, 1.0)
 
 
 def distinct_ends(points: Sequence[Point]) -> list[Point]:
-    """Distinct end points of runs, the best first."""
+    """Distinct points at which runs ended, the best first."""
     distinct: list[Point] = []
     for point in sorted(points, key=lambda p: (p.violation > ARRIVAL[2], p.objective)):
         if not any(_near(point, known) for known in distinct):
@@ -487,7 +489,7 @@ def distinct_ends(points: Sequence[Point]) -> list[Point]:
 
 
 def _near(point: Point, known: Point) -> bool:
-    """Whether a run has arrived at a known point."""
+    """Whether a point has arrived at a known point."""
     distance, share, _ = ARRIVAL
     similar = abs(point.objective - known.objective) <= share * abs(known.objective)
     return similar and bool(np.abs(point.z - known.z).max(initial=0.0) <= distance)

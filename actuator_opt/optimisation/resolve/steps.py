@@ -1,17 +1,18 @@
-"""Steps towards an optimum near a solved problem, for many problems in parallel.
+"""Steps to an optimum near a solved problem, for many problems in parallel.
 
-A solver is a generator: it yields the coordinates of the point it needs, receives that point with
-its gradients, and returns its result. One model call evaluates a step of every solver. Each solver
-receives only its own points, so its result does not depend on the other solvers.
+A solver is a generator. It yields the coordinates of a point, receives that point evaluated with
+its gradients, and finally returns its result. One model call evaluates a step of all solvers. Each
+solver receives only its own points, so its result does not depend on the other solvers.
 
 Full quadratic steps reach most optima. They start with the Hessian of the unchanged optimum and
-update it. A descent within a trust region reaches the other optima from a feasible point, which a
-restoration finds.
+update it. Where they fail, a restoration finds a feasible point, and a descent within a trust
+region starts there.
 
-The first Hessian is that of another optimum, or it is computed along the free directions. Most
-designs of a front have nearly as many active limits as variables. Along the few free directions, a
-gradient on each side gives the curvature. Elsewhere the Hessian only has to be convex, as the rows
-determine the step [NocedalWright2006] section 16.2.
+The first Hessian is taken from another optimum, or computed along the free directions (along which
+the active limits do not change). Most designs of a front have nearly as many active limits as
+variables, so there are few free directions; a gradient on each side gives the curvature. Along all
+other directions the Hessian only has to be convex, as the active limits determine the step
+[NocedalWright2006] section 16.2.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ Steps: TypeAlias = Generator[Vector, Point, Result]
 
 
 BatchEvaluator: TypeAlias = Callable[[Mapping[int, Vector]], Sequence[Point]]
-"""Evaluates the point requested by each solver, by number."""
+"""Evaluates the requested point of each solver; solvers are given by number."""
 
 
 class Batch(Generic[Result]):
@@ -50,7 +51,7 @@ class Batch(Generic[Result]):
     Attributes
     ----------
     requests : requested coordinates of the running solvers, by number
-    results : of the finished solvers, by number
+    results : results of the finished solvers, by number
     """
 
     def __init__(self, solvers: Sequence[Steps[Result]], evaluate: BatchEvaluator) -> None:
@@ -80,7 +81,7 @@ class Batch(Generic[Result]):
 
 
 def run_batch(solvers: Sequence[Steps[Result]], evaluate: BatchEvaluator) -> list[Result]:
-    """The result of every solver, in order."""
+    """Run all solvers, and return their results in order."""
     batch = Batch(solvers, evaluate)
     while batch.requests:
         batch.step()
@@ -88,46 +89,48 @@ def run_batch(solvers: Sequence[Steps[Result]], evaluate: BatchEvaluator) -> lis
 
 
 ITERATIONS = 10
-"""Maximum full steps; 10 % changes usually take three to five."""
+"""Maximum number of full steps; after a change of 10 %, three to five are usual."""
 
 LONGEST = 60
-"""Maximum evaluations of a descent within a trust region."""
+"""Maximum number of evaluations in a descent within a trust region."""
 
 MEMORY = 3
-"""Number of past merits; a trial must beat the worst of these."""
+"""A trial must be better than the worst of this many past merits (see `Descent`)."""
 
 RADIUS = 0.1
-"""First trust radius, in solver coordinates: 10 % in a logarithmic variable."""
+"""First trust radius, in solver coordinates: 10 % for a logarithmic variable."""
 
 LEAST_RADIUS = 1e-4
 """Trust radius below which a descent fails."""
 
 RESTORATIONS = 24
-"""Maximum steps towards a feasible point."""
+"""Maximum number of steps to a feasible point."""
 
 PATIENCE = 4
-"""Number of steps within which the violation must fall by 2 %; else the solver gives up."""
+"""The solver gives up if the violation does not fall by 2 % within this number of steps."""
 
 SETTLED = 1e-6
-"""Step length below which the optimality conditions are checked."""
+"""Below this step length, the optimality conditions are checked."""
 
 FEASIBLE = 1e-11
-"""Allowed violation: the objective is first order in it."""
+"""Allowed violation; an error in it changes the objective to first order."""
 
 RESIDUAL = 1e-6
-"""Allowed residual of the optimality conditions: the objective is second order in it."""
+"""Allowed residual of the optimality conditions; an error in it changes the objective to second
+order."""
 
 LEAST_CURVATURE = 1e-10
-"""Least ratio of smallest to largest curvature of an updated Hessian; well above rounding."""
+"""Least ratio of smallest to largest curvature in an updated Hessian; well above rounding error."""
 
 
 @dataclass
 class Descent:
-    """One descent: the last accepted point and the trial step from it.
+    """A descent: the last accepted point, and the trial step from it.
 
-    The merit is the objective plus the violations, weighted above their price. A trial must
-    only beat the worst of the last `MEMORY` merits, so that curved constraints do not shorten good
-    steps [NocedalWright2006] ch. 15. The trust radius follows the success of the steps.
+    The merit is the objective plus the violations, which are weighted with more than their
+    multipliers. A trial only has to beat the worst of the last `MEMORY` merits, so that curved
+    constraints do not shorten good steps [NocedalWright2006] ch. 15. The trust radius follows the
+    success of the steps.
     """
 
     hessian: Vector
@@ -151,7 +154,7 @@ class Descent:
 
     @property
     def length(self) -> float:
-        """Length of the trial step, infinite before the first."""
+        """Length of the trial step; infinite before the first step."""
         return np.inf if self.point is None else float(np.abs(self.step).max(initial=0.0))
 
     def accepts(self, trial: Point) -> bool:
@@ -163,7 +166,7 @@ class Descent:
         return value + self.price * missed < max(merits)
 
     def advance(self, evaluator: Evaluator, trial: Point) -> None:
-        """Update the Hessian from an accepted trial and choose the next step."""
+        """Update the Hessian after an accepted trial, and choose the next step."""
         jacobian = evaluator.jacobian(trial)
         if self.point is not None:
             change = jacobian - evaluator.jacobian(self.point)
@@ -178,8 +181,8 @@ class Descent:
     def choose_step(self, evaluator: Evaluator, trial: Point | None = None) -> None:
         """Choose the step from the accepted point, within the trust radius.
 
-        A rejected `trial` corrects the step for the curvature of constraints [NocedalWright2006]
-        section 18.3.
+        After a rejected `trial`, the step is corrected for the curvature of the constraints
+        [NocedalWright2006] section 18.3.
         """
         space, point, unit = evaluator.space, self.current, np.eye(len(self.hessian))
         jacobian = evaluator.jacobian(point)
@@ -205,7 +208,7 @@ class Descent:
         return trial.objective / self.scale, float(missed)
 
     def _learn(self, step: Vector, change: Vector) -> None:
-        """Damped update, which keeps the Hessian positive [NocedalWright2006] procedure 18.2."""
+        """Update, damped to stay positive definite [NocedalWright2006] procedure 18.2."""
         product = self.hessian @ step
         curvature, measured = float(step @ product), float(step @ change)
         if curvature <= 1e-20:
@@ -219,26 +222,26 @@ class Descent:
             + np.outer(change, change) / float(step @ change)
         )
         curvatures = np.linalg.eigvalsh(update)
-        if curvatures[0] > LEAST_CURVATURE * curvatures[-1]:  # otherwise below rounding
+        if curvatures[0] > LEAST_CURVATURE * curvatures[-1]:  # otherwise within rounding error
             self.hessian = update
 
 
 def margin_price(multipliers: Vector) -> float:
-    """A penalty per missed margin that exceeds every multiplier."""
+    """A penalty per missed margin that exceeds all multipliers."""
     return 2 * float(multipliers.max(initial=0.0)) + 1.0
 
 
 @dataclass(frozen=True)
 class Valley:
-    """A local optimum, with the initial data of new descents.
+    """A local optimum, with the data from which new descents start.
 
     Parameters
     ----------
     point : the local optimum
-    hessian : of the Lagrangian over `scale`, made positive definite (nf, nf)
-    scale : size of the objective's gradient
+    hessian : Hessian of the Lagrangian divided by `scale`, made positive definite (nf, nf)
+    scale : norm of the objective's gradient
     rows : number of constraints
-    price : penalty per missed margin, above every multiplier
+    price : penalty per missed margin, larger than every multiplier
     """
 
     point: Point
@@ -257,7 +260,7 @@ class Valley:
 
 
 def valley_at(evaluator: Evaluator, point: Point) -> Valley:
-    """The valley of a local optimum."""
+    """The valley that belongs to a local optimum."""
     state = kkt.state_at(evaluator, point)
     price = margin_price(state.multipliers[: len(state.active.constraint)] / state.scale)
     hessian = kkt.convex_hessian(evaluator, state)
@@ -277,11 +280,11 @@ def is_met(point: Point) -> bool:
 def full_steps(
     evaluator: Evaluator, descent: Descent, start: Vector | Point
 ) -> Steps[Point | None]:
-    """The optimum that full quadratic steps reach, or None.
+    """The optimum that full quadratic steps reach; None if they do not converge.
 
     Parameters
     ----------
-    evaluator : of the problem, or of a problem with the same rows and box
+    evaluator : evaluator of the problem, or of a problem with the same rows and bounds
     descent : a new descent with its initial Hessian
     start : coordinates (nf,), or the evaluated point
     """
@@ -309,11 +312,11 @@ def full_steps(
 def trusted_steps(
     evaluator: Evaluator, descent: Descent, start: Vector, max_evaluations: int = LONGEST
 ) -> Steps[Point | None]:
-    """The optimum that a descent within a trust region reaches, or None.
+    """The optimum that a descent within a trust region reaches; None if it fails.
 
     Parameters
     ----------
-    evaluator, descent, start : as of `full_steps`
+    evaluator, descent, start : see `full_steps`
     max_evaluations : maximum number of evaluations
     """
     space = evaluator.space
@@ -336,7 +339,7 @@ def trusted_steps(
 
 
 class RestorationResult(NamedTuple):
-    """A feasible point, or None and the least infeasible point of the steps."""
+    """A feasible point; if none is reached, None and the least infeasible point of the steps."""
 
     feasible: Point | None
     least: Point | None
@@ -347,13 +350,14 @@ def restoring_steps(
 ) -> Steps[RestorationResult]:
     """A feasible point near a start, for a problem without equalities.
 
-    Every step is the shortest step that satisfies the linearised rows, or violates them least.
+    Every step is the shortest that satisfies the linearised constraints, or else violates them
+    least.
 
     Parameters
     ----------
-    evaluator : of the problem, or of a problem with the same rows and box
+    evaluator : evaluator of the problem, or of a problem with the same rows and bounds
     start : coordinates (nf,), or the evaluated point
-    patience : steps within which the violation must fall by 2 %
+    patience : number of steps within which the violation must fall by 2 %
     """
     space, reference, best = evaluator.space, np.inf, None
     trial = start if isinstance(start, Point) else (yield start)
@@ -378,22 +382,22 @@ def restoring_steps(
 
 
 FIRM = 1e-6
-"""Multiplier, relative to the largest, above which a row is active."""
+"""A limit is active if its multiplier, relative to the largest, exceeds this."""
 FLATTEST = 1e-10
-"""Least ratio of smallest to largest curvature; below it, mixed curvatures are dropped."""
+"""Least ratio of smallest to largest curvature; if it is smaller, mixed curvatures are dropped."""
 LEAST = 1e-6
 """Least curvature, relative to the largest multiplier."""
 
 
 @dataclass(frozen=True)
 class ScaledHessian:
-    """Hessian (n, n) of the Lagrangian over `scale` at an optimum, in the variables x."""
+    """Hessian (n, n) of the Lagrangian divided by `scale`, at an optimum, in the variables x."""
 
     hessian: Vector
     scale: float
 
     def in_coordinates(self, evaluator: Evaluator, x: Vector) -> Vector:
-        """The Hessian in the free coordinates of a problem, at a point x (n,)."""
+        """The Hessian in the free solver coordinates of a problem, at a point x (n,)."""
         space = evaluator.space
         slope = space.slope(x[:, None])[:, 0]
         return np.asarray(self.hessian[np.ix_(space.free, space.free)] * np.outer(slope, slope))
@@ -413,12 +417,12 @@ def hessian_at(evaluator: Evaluator, point: Point) -> ScaledHessian | None:
 
 
 def free_hessians(evaluator: Evaluator, descents: Sequence[Descent]) -> list[Vector]:
-    """Convex Hessian of the Lagrangian at the point of each descent, from one model call.
+    """Convex Hessian of the Lagrangian at the point of each descent, in one model call.
 
     Parameters
     ----------
-    evaluator : of the problems, which share their curvature
-    descents : with a point and its multipliers
+    evaluator : evaluator for all problems, which have the same curvature
+    descents : descents, each with a point and its multipliers
     """
     free = [_free(evaluator, descent) for descent in descents]
     if not any(z.shape[1] for z in free):
@@ -447,7 +451,7 @@ def free_hessians(evaluator: Evaluator, descents: Sequence[Descent]) -> list[Vec
 
 
 def _free(evaluator: Evaluator, descent: Descent) -> Vector:
-    """Orthonormal directions (nf, d) that leave the active rows unchanged."""
+    """Orthonormal directions (nf, d) along which the active limits do not change."""
     size, prices = evaluator.space.size, descent.prices
     unit = np.eye(size)
     rows = np.concatenate([evaluator.jacobian(descent.current)[1 : 1 + descent.rows], unit, -unit])
@@ -457,7 +461,7 @@ def _free(evaluator: Evaluator, descent: Descent) -> Vector:
 
 
 def _convex(z: Vector, products: Vector, largest: float) -> Vector:
-    """A convex matrix (nf, nf) with given products (nf, d) with orthonormal vectors z (nf, d)."""
+    """A convex matrix (nf, nf) with given products (nf, d) for orthonormal vectors z (nf, d)."""
     size = len(z)
     if z.shape[1] == 0:
         return np.eye(size)
