@@ -254,7 +254,7 @@ def verdict(subject: Evaluation | Optimisation) -> Verdict:
         state, words = "met", "REQUIREMENTS MET"
     counts = _counts(evaluation)
     lines, cautions = doubts(evaluation)
-    without = ", without reserves for the yield" if robust and state in _SHORT_OF else ""
+    without = ", without margins for scatter" if robust and state in _SHORT_OF else ""
     return Verdict(
         state,
         words,
