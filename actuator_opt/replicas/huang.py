@@ -418,7 +418,7 @@ def kinds_table(_: Design, study: HuangStudy) -> list[Block]:
         "6 over 0.6 MPa",
     )
     note = kinds_note(study)
-    return [text_table("Huang 2017: why pressure acts both ways", names, rows, note)]
+    return [text_table("Huang 2017: why damping rises or falls with pressure", names, rows, note)]
 
 
 def relief_table(_: Design, study: HuangStudy) -> list[Block]:

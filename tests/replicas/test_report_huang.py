@@ -20,7 +20,7 @@ from actuator_opt.rendering.blocks import Drawing, Table
 from actuator_opt.replicas import MODULES, huang, huang_figures, huang_models
 
 DESIGN = Path(__file__).parents[2] / "designs" / "huang_110_80_560.yaml"
-UNDRAWN = ("why pressure acts both ways", "where its equations are")
+UNDRAWN = ("why damping rises or falls with pressure", "where its equations are")
 """Tables without a drawing."""
 LONG = {"seals.rod.relief": "4.8 mm", "seals.rod.land": "1 mm"}
 OTHERS = (
@@ -129,7 +129,7 @@ def test_the_pages_say_what_is_proven_and_what_is_not(tables):
     assert "we do not meet the measured trend" in plunger
     assert re.search(r"error of 1\.\d % to 1\.8 % in the change of the pressure force", plunger)
     assert "We do not know which of the two is right" in plunger
-    kinds = plain(tables["why pressure acts both ways"].note)
+    kinds = plain(tables["why damping rises or falls with pressure"].note)
     assert "Not shown: that they did in this one" in kinds
     assert "Chosen by us: relief, land, squeeze" in kinds
     relief = plain(tables["relief of the step ring"].note)
@@ -148,7 +148,7 @@ def test_another_seal_turns_the_verdicts(other):
     With a relief of 4.8 and a land of 1 mm k is below 1/2, with 0.5 mm above 2.
     """
     ring, tables = other.subject.design.seals.rod, other.tables
-    kinds = {row[0]: row for row in tables["why pressure acts both ways"].rows}
+    kinds = {row[0]: row for row in tables["why damping rises or falls with pressure"].rows}
     _, balance, *_, rise = kinds["step ring, plunger, alone"]
     film_grows = verdict(tables["step ring at rest and running"], "the mean film")
     if ring.relief > 4e-3:

@@ -169,8 +169,12 @@ def contour_figure(
 
 def _notes(drawn: SweepFigureData, field: Field) -> str:
     counts = drawn.counts()
-    every = f"; {len(field.xs)} by {len(field.ys)} of them drawn" if field.thinned else ""
-    return f"{counts}{every}. Hatched: some limit is missed."
+    every = (
+        (f"; a grid of {len(field.xs)} by {len(field.ys)} of them is drawn")
+        if field.thinned
+        else ""
+    )
+    return f"{counts}{every}. Hatched: at least one limit is missed."
 
 
 def _paper(axes: Axes, points: Array, scale: Sequence[Any]) -> list[Point]:
@@ -283,7 +287,7 @@ def _name(
         if place is None:
             letter = chr(ord("A") + len(key) % 26)
             place = labels.place(edges[number], letter, bold=True)
-            key.append((letter, words if place else f"{words} (no room to mark its line)"))
+            key.append((letter, words if place else f"{words} (its line has no label)"))
             words = letter
         if place is not None:
             _say(labels.axes.ink, place, words, color, bold=True)
@@ -326,7 +330,7 @@ def _below(
         texts.append(f"missed by every design: {', '.join(missed)}")
     own = _everywhere(drawn, field)
     if own:
-        texts.append(f"requirements that every design meets: {', '.join(own)}")
+        texts.append(f"met by every design: {', '.join(own)}")
     for line in (line for text in texts for line in wrap(text, _WIDTH - 4.0, _SIZE)):
         y += 3.6
         ink.text(2.0, y, line, size=_SIZE, color=GREY)

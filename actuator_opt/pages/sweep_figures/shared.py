@@ -160,7 +160,9 @@ class SweepFigureData:
         """The best designs; raises `InputError` where none is feasible."""
         if not self.swept.best:
             message = f"no feasible design among {self.swept.requested} variants"
-            raise InputError(Diagnostic(message, "widen what varies, or draw a contour of a grid"))
+            raise InputError(
+                Diagnostic(message, ("widen the varied ranges, or draw a contour of a grid"))
+            )
         return self.swept.best
 
     def feasible(self, most: int) -> tuple[DrawnRows, list[str]]:
@@ -289,7 +291,7 @@ def watched(study: Study, kinds: Sequence[str], show: Sequence[str]) -> tuple[st
     metrics = chosen(study, show)
     if not study.full and any(own.every for own in figures):
         every = " and ".join(kind for kind in SWEEP_FIGURES if figure(kind).every)
-        message = f"--reduce keeps the best alone, {every} need every design"
+        message = f"--reduce keeps only the best designs, but {every} need every design"
         raise UsageError(Diagnostic(message, "leave out --reduce"))
     for own in figures:
         own.check(study, metrics)
