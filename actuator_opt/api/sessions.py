@@ -275,7 +275,7 @@ class Session:
         if line.high is not None and line.high[0] < 1 - ROUNDING:
             why = f"after {100 * abs(line.high[0]):.3g} % of the change {line.high[1]}"
         if not math.isfinite(line.above):
-            why = "no design is left in this direction"
+            why = "no design meets the limits in this direction"
         return Prediction(objective + change, self._named(x + line.moves), not why, why)
 
     def price(self, path: str) -> Price:
@@ -433,7 +433,10 @@ class Session:
         if path not in numbers:
             raise UsageError(
                 Diagnostic(
-                    "has no derivative at the optimum, as the design does not state it as a number",
+                    (
+                        "has no derivative at the optimum, because the design does not "
+                        "state it as a number"
+                    ),
                     remedy(path, numbers) if get(self._actuator.design, path) is None
                     else "re-solve with it instead (session.solve)",
                     path=path,
@@ -444,8 +447,8 @@ class Session:
         if not self._differentiable[path]:
             raise UsageError(
                 Diagnostic(
-                    "has no derivative here, as it is a whole number, or affects more than the "
-                    "models read directly",
+                    "has no derivative here, because it is a whole number or also changes "
+                    "other inputs",
                     "re-solve with it instead (session.solve, session.curve)",
                     path=path,
                 )

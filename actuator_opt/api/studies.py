@@ -55,7 +55,7 @@ def uncertainty(
 
     if not LEAST <= count <= MOST:
         message = f"{count} draws: need {LEAST} to {MOST}"
-        raise UsageError(Diagnostic(message, "10000 bounds a yield of 99 % within 0.2 %"))
+        raise UsageError(Diagnostic(message, "10000 draws give a yield of 99 % within 0.2 %"))
     actuator, subject = checked_design(design, plugins)
     with located(actuator):
         return run(

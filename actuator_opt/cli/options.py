@@ -96,7 +96,10 @@ StandardSizes = Annotated[
 Certify = Annotated[
     bool,
     typer.Option(
-        "--certify", help="Prove a bound on the gap to the best possible design (seconds)."
+        "--certify",
+        help=(
+            "Prove how far this design is at most from the best possible design (takes seconds)."
+        ),
     ),
 ]
 Yield = Annotated[

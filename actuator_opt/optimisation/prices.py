@@ -810,7 +810,7 @@ def buys_most(
             f"{short_name(row)} at {_at(row, row.limit * (1 + sign * CHANGE))}"
             for row, sign in best_offers.no_design
         )
-        parts.append(f"No feasible design was found with {infeasible}.")
+        parts.append(f"The search found no feasible design with {infeasible}.")
     return tuple(parts)
 
 

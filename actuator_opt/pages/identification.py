@@ -447,7 +447,7 @@ def subject(identification: Identification) -> str:
         range_ = f"{low} to {high} mm/s" if low != high else f"{low} mm/s"
         ways = {point.velocity > 0 for point in identification.points}
         way = (
-            ("in both directions")
+            "in both directions"
             if len(ways) == 2
             else "outwards only"
             if True in ways

@@ -199,7 +199,7 @@ class SweepColumns:
                 for column in study.columns[:count]
             ),
             *((x, study.quantity(x).label, study.quantity(x)) for x in study.metrics),
-            (margin, "least margin of all limits, a share of the limit", None),
+            (margin, "least margin of all limits limits, a share of the limit", None),
         ]
         self._quantities = [quantity for _, _, quantity in named]
         self.fields = [

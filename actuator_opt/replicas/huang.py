@@ -789,5 +789,7 @@ def table(readings: Readings) -> list[Block]:
             f"{percent(readings.swapped / readings.flow - 1)} more."
         )
     return [
-        text_table("Huang 2017: where its equations are", TRACE_COLUMNS, trace_rows(TRACES), note)
+        text_table(
+            ("Huang 2017: functions for its equations"), TRACE_COLUMNS, trace_rows(TRACES), note
+        )
     ]

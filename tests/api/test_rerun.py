@@ -54,7 +54,7 @@ def test_a_report_repeats_to_the_byte(reports, tmp_path, kind):
     assert ("kkt" in data) == (kind == "o")
     assert (tmp_path / "small one.pdf").read_bytes() == reports[kind].read_bytes()
     told = run("rerun", reports[kind])
-    assert told.err.endswith("the same as this one\n")
+    assert told.err.endswith("the version of this installation\n")
     assert run("rerun", reports[kind], "--quiet").out == ""
 
 

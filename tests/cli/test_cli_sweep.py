@@ -67,7 +67,7 @@ def test_no_feasible_variant_is_exit_1():
         ([*BORES, "--csv", "/nowhere/x.csv"], "cannot write", 3),
         ([*BORES, "--csv", "-"], "standard output is used for the results", 2),
         ([*BORES, "--parquet", "-"], "standard output is used for the results", 2),
-        ([*BORES, "--csv", "x.db", "--store", "x.db"], "one file for two of", 2),
+        ([*BORES, "--csv", "x.db", "--store", "x.db"], "two of --store", 2),
         (["--vary", "fluid.flavour=1..2:3"], "unknown PATH", 3),
     ],
 )

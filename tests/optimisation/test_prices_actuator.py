@@ -163,7 +163,7 @@ def test_what_buys_the_most():
         " requirement.",
         "Among the design's fixed values, 10 % less supply.pressure (189 bar) saves 7.90 g"
         " (3.8 %).",
-        "No feasible design was found with friction_running at 283.5 N.",
+        "The search found no feasible design with friction_running at 283.5 N.",
     ]
     told_in_json = fixture.build_optimisation().to_dict()["what_buys_most"]["sentence"]
     assert text.pretty(told_in_json) == " ".join(lines)

@@ -20,7 +20,7 @@ from actuator_opt.rendering.blocks import Drawing, Table
 from actuator_opt.replicas import MODULES, huang, huang_figures, huang_models
 
 DESIGN = Path(__file__).parents[2] / "designs" / "huang_110_80_560.yaml"
-UNDRAWN = ("why damping rises or falls with pressure", "where its equations are")
+UNDRAWN = ("why damping rises or falls with pressure", "functions for its equations")
 """Tables without a drawing."""
 LONG = {"seals.rod.relief": "4.8 mm", "seals.rod.land": "1 mm"}
 OTHERS = (
@@ -228,12 +228,12 @@ def test_every_traced_function_exists(name):
 
 def test_misprints_stand_in_the_trace(tables):
     """Eq. 2 and its minus, a and b in eq. 4, eq. 14 and 15 without shift, q and g in eq. 19."""
-    rows = {row[0]: row[3] for row in tables["where its equations are"].rows}
+    rows = {row[0]: row[3] for row in tables["functions for its equations"].rows}
     assert "minus" in rows["2"]
     assert "u_a = U is the rod" in rows["4"]
     assert "rigid shift" in rows["11–15"]
     assert "density and viscosity" in rows["19–22"]
-    note = plain(tables["where its equations are"].note)
+    note = plain(tables["functions for its equations"].note)
     assert "so no film meets eq. 12" in note
 
 
@@ -255,4 +255,4 @@ def test_figures_stand_after_their_tables(shipped, tables):
         at = titles.index(f"Huang 2017: {name}")
         assert (type(blocks[at]), type(blocks[at + 1])) == (Table, Drawing)
     assert len(drawn) == len(shipped.figures)
-    assert titles[titles.index("Huang 2017: where its equations are") + 1] == "Appendix"
+    assert titles[titles.index("Huang 2017: functions for its equations") + 1] == "Appendix"
