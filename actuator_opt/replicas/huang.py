@@ -179,7 +179,7 @@ def _trends(study: HuangStudy) -> list[tuple[str, ...]]:
     return [
         (
             *claim("huang", "plunger_speed"),
-            f"B falls in {percent(float(np.mean(falls)), 3)} of our speed steps, in all of table 2",
+            f"B falls in {percent(float(np.mean(falls)), 3)} of our speed steps, in table 2 in every step",
             holds(bool(np.all(falls)), *np.ravel(mapped.damping)),
         ),
         (
@@ -692,8 +692,8 @@ def parts_note(study: HuangStudy, dry: float) -> str:
     return (
         f"Back-up ring and chamber {verdict}: together their damping is at most {percent(most)} of "
         f"that of the seals, that of the chamber alone {percent(chamber, 1)}. This applies to a "
-        f"ring on a smooth oil film; its least film thickness, {text.trimmed(1e6 * ring, 2)} µm, is "
-        f"less than the seals' roughness, and the dry friction of the ring would be {newtons(dry)}, "
+        f"ring on a smooth oil film; its least film, {text.trimmed(1e6 * ring, 2)} µm, is "
+        f"thinner than the seals' roughness, and its dry friction would be {newtons(dry)}, "
         f"{percent(dry / seals)} of the least friction of the seals. The paper prints "
         f"{PAPER.chamber_shear} N·s/m for the chamber without inputs. The formula eta pi d L/h_v "
         f"gives this value for L = {text.trimmed(1e3 * member.length)} mm, "
