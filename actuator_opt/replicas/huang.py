@@ -179,7 +179,7 @@ def _trends(study: HuangStudy) -> list[tuple[str, ...]]:
     return [
         (
             *claim("huang", "plunger_speed"),
-            f"B falls in {percent(float(np.mean(falls)), 3)} of our speed steps, in table 2 in every step",
+            f"B falls in {percent(float(np.mean(falls)), 3)} of our speed steps; in table 2 always",
             holds(bool(np.all(falls)), *np.ravel(mapped.damping)),
         ),
         (
