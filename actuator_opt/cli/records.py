@@ -60,7 +60,7 @@ Uncompensated = Annotated[
     bool,
     typer.Option(
         "--uncompensated",
-        help=("Make each filter pass -3 dB at the cut-off, so that both together are -6 dB."),
+        help="Make each filter pass -3 dB at the cut-off, so that both together are -6 dB.",
     ),
 ]
 Mass = Annotated[
@@ -128,7 +128,7 @@ Search = Annotated[
     bool,
     typer.Option(
         "--optimise/--no-optimise",
-        help=("Also optimise the design with its stated and with the measured values."),
+        help="Also optimise the design with its stated and with the measured values.",
     ),
 ]
 

@@ -191,7 +191,7 @@ ScenarioFile = Annotated[
 Verify = Annotated[
     bool,
     typer.Option(
-        "--verify", help=("Integrate again by the Radau method and show the largest difference.")
+        "--verify", help="Integrate again by the Radau method and show the largest difference."
     ),
 ]
 Fast = Annotated[
@@ -203,7 +203,7 @@ SignalsFile = Annotated[
 MeasuredFile = Annotated[
     str | None,
     typer.Option(
-        "--measured", metavar="F.csv", help=("Compare with a test record and show the residuals.")
+        "--measured", metavar="F.csv", help="Compare with a test record and show the residuals."
     ),
 ]
 Fitted = Annotated[

@@ -195,7 +195,7 @@ def explore(
         typer.Option(
             "--rows",
             metavar="N",
-            help=("Maximum number of designs shown; if there are more, an even sample is shown."),
+            help="Maximum number of designs shown; if there are more, an even sample is shown.",
         ),
     ] = 5000,
     out: Annotated[

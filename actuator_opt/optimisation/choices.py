@@ -404,7 +404,7 @@ def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
         outcome = (
             f"misses {look.missed}{by}"
             if look.missed
-            else ("the models have no finite value at any point tried")
+            else "the models have no finite value at any point tried"
         )
     return _WAYS[look.how] + outcome
 

@@ -147,7 +147,7 @@ class ParetoFront(Displayed):
             "that were only local optima"
         )
         if self.failed:
-            sentence += (f"; the search found no design at {self.failed} place") + "s" * (
+            sentence += f"; the search found no design at {self.failed} place" + "s" * (
                 self.failed > 1
             )
         return sentence

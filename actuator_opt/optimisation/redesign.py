@@ -281,7 +281,7 @@ def _repairs(optimisation: Optimisation) -> list[str]:
         return []
     first_cure = next((cure for cure in optimisation.infeasibility.cures if cure["advised"]), None)
     single = (
-        [] if first_cure is None else [(f"this change alone is enough: {change_text(first_cure)}")]
+        [] if first_cure is None else [f"this change alone is enough: {change_text(first_cure)}"]
     )
     joint = optimisation.infeasibility.joint
     changes = "; ".join(change_text(row) for row in joint)

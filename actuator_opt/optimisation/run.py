@@ -341,7 +341,10 @@ def _enumerated(
     assert best.subject is not None
     status, remedy = "optimal", ""
     if not best.feasible:
-        status, remedy = "infeasible", "relax the requirement it misses, or add values to choices"
+        status, remedy = (
+            "infeasible",
+            "relax the requirement that is missed, or add values to choices",
+        )
     optimisation = Optimisation(
         status=status,
         sentence=choices.sentence,

@@ -56,7 +56,7 @@ def _parameters(bending: BendingResult) -> list[tuple[str, Parameter]]:
     ]
     if bending.taken_off:
         rows.append(
-            ((f"modulus, with {' and '.join(bending.taken_off)} subtracted"), bending.modulus)
+            (f"modulus, with {' and '.join(bending.taken_off)} subtracted", bending.modulus)
         )
     return rows
 

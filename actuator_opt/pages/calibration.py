@@ -107,7 +107,7 @@ def _tiles(calibration: Calibration, redesign: Redesign) -> list[Tile]:
     largest = force(calibration.identification.largest)
     tiles = [
         tile("Coulomb friction measured", force(calibration.coulomb), stated),
-        tile("measured over stated", text.number(ratio), "one factor for all seals"),
+        tile("measured / stated value", text.number(ratio), "one factor for all seals"),
         tile("largest friction recorded", largest, "of the filtered record"),
     ]
     moved = redesign.moved

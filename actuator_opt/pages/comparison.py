@@ -163,7 +163,7 @@ def optimality(comparison: Comparison, *, remedy: bool = False) -> list[str]:
     names = f"{', '.join(labels[:-1])} and {labels[-1]}" if many else labels[0]
     words = (
         f"{names} {'are' if many else 'is'} not known to be "
-        f"{'optima' if many else 'an optimum'}: optimised designs may differ otherwise"
+        f"{'optima' if many else 'an optimum'}: optimised designs may compare differently"
     )
     can = any(
         comparison.states[k].status is None and comparison.evaluations[k].design.variables
@@ -206,10 +206,10 @@ def answer(comparison: Comparison, question: Question) -> str:
         why = comparison.evaluations[unknown[0]].metrics[question.metric].why or "not computed"
         note = f"; {_NAMED[name]} of {labels} is not known: {why}"
     if question.metric in comparison.unlike:
-        return f"{name}: cannot be said{note}"
+        return f"{name}: not known{note}"
     if question.best is None or question.other is None:
         if len(unknown) + 1 >= len(question.values):
-            return f"{name}: cannot be said{note}"
+            return f"{name}: not known{note}"
         return f"{name}: none, as all are equally {_WORST[name]}{note}"
     best, other = (question.values[k] or 0.0 for k in (question.best, question.other))
     equal = [comparison.labels[k] for k in question.leaders]

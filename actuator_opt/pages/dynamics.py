@@ -152,7 +152,7 @@ def lumped_sentence(study: DynamicsStudy) -> str:
         f"magnitude differs by less than 1 % up to {upto(0.01)}"
     )
     return words + (
-        (f", and by less than 10 % up to {upto(0.1)}.") if reach[0.01] is not None else "."
+        f", and by less than 10 % up to {upto(0.1)}." if reach[0.01] is not None else "."
     )
 
 

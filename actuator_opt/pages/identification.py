@@ -116,7 +116,7 @@ def series(identification: Identification) -> list[Series]:
 def _tiles(identification: Identification) -> list[Tile]:
     """Friction, its pressure, Coulomb friction and the friction coefficient."""
     mean, mu = identification.mean, identification.coefficient
-    largest = f"{pressure(identification.largest / identification.area)} of the maximum"
+    largest = f"{pressure(identification.largest / identification.area)} at the largest friction"
     tiles = [
         tile(
             mean_label(identification).replace("mean", "mean friction", 1),
@@ -287,7 +287,7 @@ PARAMETERS = {
     "offset": _by(FORCE, "offset", "F_0"),
     "bristle_stiffness": _by(STIFFNESS, "bristle stiffness", "σ₀"),
     "bristle_damping": _by(_VISCOUS, "bristle damping", "σ₁"),
-    "lag": ParameterDisplay("lag left", "τ", "ms", 1e3),
+    "lag": ParameterDisplay("remaining lag", "τ", "ms", 1e3),
 }
 """Parameters of the Stribeck curve and the LuGre model."""
 _NOTHING = {

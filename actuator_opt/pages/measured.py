@@ -151,7 +151,7 @@ def _significant(value: float, half: float) -> str:
 
 def _verdict(fitted: Fitted, *, missed: bool) -> str:
     if fitted.at_bound is not None:
-        return f"at its {fitted.at_bound} end"
+        return f"at its {fitted.at_bound} bound"
     if not fitted.parameter.identifiable:
         return fitted.parameter.verdict
     return "if the model were exact" if missed else "identified"

@@ -295,7 +295,7 @@ def _sizes(optimisation: Optimisation, sizes: Mapping[str, float]) -> str:
 def infeasibility_blocks(card: Infeasibility) -> list[Block]:
     """The card of an infeasible design: the conflict, its size, possible repairs."""
     conflict = text.pretty(sentence(card.sentence)).replace("->", "→")
-    blocks: list[Block] = [Notes("Why nothing fits", [conflict])]
+    blocks: list[Block] = [Notes("Why no design meets all limits", [conflict])]
     if card.joint:
         these = "this" if len(card.joint) == 1 else "all of these together"
         note = (
@@ -319,10 +319,10 @@ def infeasibility_blocks(card: Infeasibility) -> list[Block]:
         words += f"Not tried, to save time: {', '.join(card.untried)}."
     if card.cures:
         rows = [_cure(entry) for entry in card.cures]
-        title = "What is enough alone"
+        title = "Changes of which one is enough"
         blocks.append(Table(title, _columns("what"), rows, note=words.strip()))
     elif words:
-        blocks.append(Notes("What is enough alone", [words.strip()]))
+        blocks.append(Notes("Changes of which one is enough", [words.strip()]))
     if card.bounds:
         blocks.append(_bounds(card))
     if card.evidence:
@@ -392,7 +392,7 @@ def _bounds(card: Infeasibility) -> Block:
         "column shows the share of it that the first 1 % of widening this bound closes. "
         f"{DASH}: widening this bound alone led to no design."
     )
-    return Table("Bounds in the way", columns, rows, note=note)
+    return Table("Bounds that prevent a design", columns, rows, note=note)
 
 
 def _closes(gain: float, total: float | None) -> str:

@@ -236,12 +236,12 @@ def _tornado_block(optimisation: Optimisation) -> Block | None:
     if not rows:
         return None
     left = len(optimisation.sensitivities) - len(rows)
-    more = f" {left} more change less or nothing." if left else ""
+    more = f" {left} more have a smaller effect or none." if left else ""
     note = (
         "Bars: change of the objective after optimising again; strokes: change that the price "
         f"predicts. Ranked by the larger bar.{more}"
     )
-    return Drawing(f"What ±{PER_CENT} % of each changes", tornado(optimisation), note)
+    return Drawing(f"Effect of ±{PER_CENT} % of each", tornado(optimisation), note)
 
 
 def tornado(optimisation: Optimisation, *, width: float = 180.0) -> Ink:

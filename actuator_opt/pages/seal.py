@@ -55,7 +55,10 @@ def page(study: SealStudy) -> Page:
 
 def blocks(study: SealStudy) -> list[Block]:
     """The seals of one place within the report of a design, their gland included."""
-    note = "Dashed: free sections. Long lands between grooves are shortened in the drawing."
+    note = (
+        "Dashed: sections of the free rings. Long lands between grooves are shortened in "
+        "the drawing."
+    )
     if study.place == "piston":
         note += " The bore is drawn at its size without pressure."
     ink = gland_drawing(study).ink
@@ -105,7 +108,7 @@ def _tiles(study: SealStudy) -> list[Tile]:
         flow = _flow(point.flow)
         tiles.append(tile(f"flow across, {driven}", flow, "towards the outer side"))
     else:
-        tiles.append(tile("left by a double stroke", _volume(oil.net), at))
+        tiles.append(tile("leakage per double stroke", _volume(oil.net), at))
     thinnest = min(float(ring.film.min()) for ring in point.rings)
     film = f"{number(1e6 * thinnest, 3)} µm"
     return [*tiles, tile(f"thinnest film, {driven}", film, "between the mean planes")]
@@ -244,10 +247,10 @@ def operating_rows(study: SealStudy) -> list[tuple[str, str, str]]:
 
     rows = [
         row("friction, film", lambda point: _force(point.friction)),
-        row("of the oil's shear", lambda point: _force(point.viscous)),
-        row("of the asperities", lambda point: _force(point.asperity)),
-        row("friction over the moduli's scatter", _scatter),
-        row("friction by the coefficient instead", lambda p: _force(p.coefficient_friction)),
+        row("part by oil shear", lambda point: _force(point.viscous)),
+        row("part by asperities", lambda point: _force(point.asperity)),
+        row("friction, by scatter of the moduli", _scatter),
+        row("friction by friction coefficient", lambda p: _force(p.coefficient_friction)),
         row("breakaway, dry", lambda point: _force(point.breakaway)),
         row("secant damping at this speed", lambda point: _damping(point.damping)),
         row("flow towards the outer side", lambda point: _flow(point.flow)),
@@ -256,7 +259,7 @@ def operating_rows(study: SealStudy) -> list[tuple[str, str, str]]:
         rows.append(row("pressure between the rings, gauge", _between))
     if oil := study.double_stroke:
         rows.append(
-            ("oil a stroke carries out", _volume(oil.carried_out), _volume(-oil.drawn_back))
+            ("oil carried out per stroke", _volume(oil.carried_out), _volume(-oil.drawn_back))
         )
     return [
         *rows,

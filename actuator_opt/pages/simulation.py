@@ -542,7 +542,7 @@ def _meaning(simulation: Simulation, name: str) -> str:
         "rise_time": "10 to 90 %",
         "settling_time": "within 2 %",
         "cavitation_margin": "above vapour",
-        "efficiency": "load over supply",
+        "efficiency": "load / supply power",
         "supply_energy": f"in {trimmed(simulation.scenario.duration)} s",
     }
     return meanings.get(name, "")

@@ -76,7 +76,7 @@ def _nothing(swept: Swept) -> str:
         return "None of them has finite results."
     name, times = missed[0]
     whom = (
-        "them" if swept.feasible is not None else (f"{sum(swept.missed.values())} designs examined")
+        "them" if swept.feasible is not None else f"{sum(swept.missed.values())} designs examined"
     )
     words = (
         f"None meets every requirement and check; {name} is the limit missed by most "

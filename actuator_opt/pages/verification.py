@@ -94,7 +94,7 @@ def tables(verification: Verification) -> tuple[Table, ...]:
     notes = [verdict(verification), MEANING, *map(sentence, verification.notes)]
     note = " ".join([*notes, f"{verification.runs} runs."])
     both = text_table(
-        ("Requirements in the time simulation"), HEADS, [line.cells for line in lines], note
+        "Requirements in the time simulation", HEADS, [line.cells for line in lines], note
     )
     experiments = [
         (line.cells[0], *(pretty(words) or DASH for words in (row.where, row.how, row.why)))

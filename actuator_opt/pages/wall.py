@@ -411,7 +411,9 @@ def _ladder(evaluation: Evaluation, study: WallStudy) -> Block:
     }
     rungs = [
         Rung("working pressure", ladder.working, "#9ec3da", "supply"),
-        Rung("proof pressure", ladder.proof, "#9ec3da", "no yield, no crack up to here"),
+        Rung(
+            "proof pressure", ladder.proof, "#9ec3da", "no yield and no crack up to this pressure"
+        ),
     ]
     if ladder.metal_yield is not None:
         place = _place(ladder.metal_yield_place)

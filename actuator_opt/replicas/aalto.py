@@ -125,7 +125,7 @@ def _air(test: StaticTest) -> tuple[str, ...]:
             _air_up(test),
             _air_down(test),
             _bubbles(test),
-            ("The same oil explains both directions."),
+            "The same oil explains both directions.",
         )
     suspect = "The thesis suspects air that leaves the oil at 17 to 19 bar. We do not know."
     return _air_up(test), _air_down(test), _bubbles(test), suspect
@@ -797,7 +797,7 @@ def table() -> list[Block]:
     )
     return [
         text_table(
-            ("Aalto thesis: functions for its equations"), TRACE_COLUMNS, trace_rows(TRACES), note
+            "Aalto thesis: functions for its equations", TRACE_COLUMNS, trace_rows(TRACES), note
         )
     ]
 

@@ -812,6 +812,6 @@ def table(readings: Readings) -> list[Block]:
         )
     return [
         text_table(
-            ("Huang 2017: functions for its equations"), TRACE_COLUMNS, trace_rows(TRACES), note
+            "Huang 2017: functions for its equations", TRACE_COLUMNS, trace_rows(TRACES), note
         )
     ]

@@ -406,9 +406,9 @@ def _rest(table_1: Trends) -> str:
     )
     either = model.verdict(_index("O-ring surface finish"))
     turned = (
-        ("and the verdict is reversed")
+        "and the verdict is reversed"
         if either in ("agrees", "disagrees")
-        else ("with the same verdict")
+        else "with the same verdict"
     )
     return (
         significance + "Surface finish of the O-ring is taken as roughness, like that of "

@@ -394,7 +394,7 @@ def test_tables_carry_the_numbers_of_the_study(name, place):
     for point, side in ((one.drive, 0), (one.other, 1)):
         value = {name: first_number(values[side]) for name, values in rows.items()}
         assert value["friction, film"] == pytest.approx(point.friction, rel=6e-4)
-        assert value["of the asperities"] == pytest.approx(point.asperity, rel=6e-4)
+        assert value["part by asperities"] == pytest.approx(point.asperity, rel=6e-4)
         assert value["breakaway, dry"] == pytest.approx(point.breakaway, rel=6e-4)
         assert value["secant damping at this speed"] == pytest.approx(
             point.friction / point.speed / 1e3, rel=6e-4

@@ -170,9 +170,7 @@ def contour_figure(
 def _notes(drawn: SweepFigureData, field: Field) -> str:
     counts = drawn.counts()
     every = (
-        (f"; a grid of {len(field.xs)} by {len(field.ys)} of them is drawn")
-        if field.thinned
-        else ""
+        f"; a grid of {len(field.xs)} by {len(field.ys)} of them is drawn" if field.thinned else ""
     )
     return f"{counts}{every}. Hatched: at least one limit is missed."
 

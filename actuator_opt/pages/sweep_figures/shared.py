@@ -161,7 +161,7 @@ class SweepFigureData:
         if not self.swept.best:
             message = f"no feasible design among {self.swept.requested} variants"
             raise InputError(
-                Diagnostic(message, ("widen the varied ranges, or draw a contour of a grid"))
+                Diagnostic(message, "widen the varied ranges, or draw a contour of a grid")
             )
         return self.swept.best
 
