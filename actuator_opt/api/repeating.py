@@ -214,7 +214,7 @@ def parsed(command: str) -> tuple[str, argparse.Namespace]:
     verb = words[1]
     if words[0] != "actuator-opt" or verb not in OPTIMISED + EVALUATED + FRONTS:
         start = shown(" ".join(words[:2]))
-        message = f"was made by {start}, which needs more input than a design"
+        message = f"was made by {start}, which requires more input than a design"
         raise InputError(Diagnostic(message, f"run it by hand: {shown(command, 400)}"))
     options = parser().parse_args(words[2:])
     scenario = options.verify_dynamics

@@ -362,7 +362,9 @@ class Session:
     def _changed(self, changes: Changes) -> tuple[Actuator, dict[str, float]]:
         """The changed design, and the changed numbers in SI by canonical PATH."""
         if not isinstance(changes, Mapping):
-            message = f"changes: need numbers by PATH, not {type(changes).__name__}"
+            message = (
+                f"changes: must be a mapping from PATH to number, not {type(changes).__name__}"
+            )
             raise UsageError(Diagnostic(message, 'write e.g. {"cylinder.stroke": "112 mm"}'))
         actuator, numbers = self._actuator, {}
         for path, value in changes.items():
@@ -370,7 +372,7 @@ class Session:
             if isinstance(value, bool) or not isinstance(value, (int, float, str)):
                 raise InputError(
                     Diagnostic(
-                        f"need a number, not {type(value).__name__}",
+                        f"must be a number, not {type(value).__name__}",
                         'write SI, or a text with a unit such as "112 mm"',
                         path=path,
                     )
@@ -394,7 +396,9 @@ class Session:
     def _path(self, path: str) -> str:
         """The canonical PATH of a number."""
         if not isinstance(path, str):
-            raise InputError(Diagnostic(f"need a PATH, not {type(path).__name__}", "write a text"))
+            raise InputError(
+                Diagnostic(f"must be a PATH, not {type(path).__name__}", "write a text")
+            )
         design = self._actuator.design
         with located(self._actuator):
             name = canonical(path, design)

@@ -54,7 +54,7 @@ def uncertainty(
     from ..uncertainties import uncertainty as run
 
     if not LEAST <= count <= MOST:
-        message = f"{count} draws: need {LEAST} to {MOST}"
+        message = f"{count} draws: {LEAST} to {MOST} are needed"
         raise UsageError(Diagnostic(message, "10000 draws give a yield of 99 % within 0.2 %"))
     actuator, subject = checked_design(design, plugins)
     with located(actuator):

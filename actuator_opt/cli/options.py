@@ -97,7 +97,7 @@ Certify = Annotated[
     bool,
     typer.Option(
         "--certify",
-        help=("Prove an upper limit of the gap to the best possible design (takes seconds)."),
+        help="Prove an upper limit of the gap to the best possible design (takes seconds).",
     ),
 ]
 Yield = Annotated[

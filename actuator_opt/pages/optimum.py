@@ -319,10 +319,10 @@ def infeasibility_blocks(card: Infeasibility) -> list[Block]:
         words += f"Not tried, to save time: {', '.join(card.untried)}."
     if card.cures:
         rows = [_cure(entry) for entry in card.cures]
-        title = "Changes of which one is enough"
+        title = "Single changes that are enough"
         blocks.append(Table(title, _columns("what"), rows, note=words.strip()))
     elif words:
-        blocks.append(Notes("Changes of which one is enough", [words.strip()]))
+        blocks.append(Notes("Single changes that are enough", [words.strip()]))
     if card.bounds:
         blocks.append(_bounds(card))
     if card.evidence:

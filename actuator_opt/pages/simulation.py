@@ -654,8 +654,5 @@ def _step(simulation: Simulation) -> Iterator[Block]:
     done = 100 * (np.interp(over, time, values) - servo.start) / (servo.target - servo.start)
     points = [(float(t), max(float(y), 0.0)) for t, y in zip(over, done, strict=True)]
     words = LOOPS[servo.loop].words
-    title = (
-        f"Response to the step of the {words} at {number(servo.time, 3)} s, in % of the "
-        "step, over the time after it"
-    )
+    title = f"Response to the step of the {words} at {number(servo.time, 3)} s, in % of the step"
     yield TerminalFigure(title, points, 100.0, ("0", duration(end - begin)), height=11)

@@ -70,10 +70,10 @@ def _verdict(swept: Swept) -> Verdict:
 def _nothing(swept: Swept) -> str:
     """Reason of a missing best design."""
     if swept.feasible:
-        return f"None of the {swept.feasible} feasible designs has a value of the objective."
+        return f"The objective has no value for any of the {swept.feasible} feasible designs."
     missed = sorted(swept.missed.items(), key=lambda item: (-item[1], item[0]))
     if not missed:
-        return "None of them has finite results."
+        return "No variant has finite results."
     name, times = missed[0]
     whom = (
         "them" if swept.feasible is not None else f"{sum(swept.missed.values())} designs examined"
@@ -199,7 +199,7 @@ class SweepColumns:
                 for column in study.columns[:count]
             ),
             *((x, study.quantity(x).label, study.quantity(x)) for x in study.metrics),
-            (margin, "least margin of all limits limits, a share of the limit", None),
+            (margin, "least margin of all limits, a share of the limit", None),
         ]
         self._quantities = [quantity for _, _, quantity in named]
         self.fields = [

@@ -134,7 +134,7 @@ def weakest(study: Uncertainty) -> str:
         margin = (
             ""
             if low is None
-            else f": {_margin(worst, low)} at the 1 % point (99 % of draws are above it)"
+            else f": {_margin(worst, low)} at the 1 % point (99 % of the draws have more)"
         )
         return f"No draw missed a requirement; {worst.name} has the smallest margin{margin}."
     words = f"{worst.name} is missed most often: by {percent(1 - worst.rate.value)} of the draws"

@@ -13,7 +13,7 @@ from ..simulation.sensitivity import Effect, Sensitivities
 from ..simulation.verification import Verification, VerifiedRequirement
 from .simulation import label, tied
 
-HEADS = ("requirement", "limit", "evaluation", "linear", "in time", "difference", "holds")
+HEADS = ("requirement", "limit", "evaluation", "linear", "simulated", "difference", "holds")
 BESIDE = 0.02
 """Least difference between worst case and place of the experiment that is reported."""
 MEANING = (

@@ -49,8 +49,8 @@ def _notes(subject: PreparedDesign, uncertain_inputs: Sequence[Input]) -> Iterat
         twice = {"section": "section_tolerance", "squeeze": "tolerance"}.get(last)
         if twice and place.startswith("seals.") and subject.numbers.get(f"{place}.{twice}", 0.0):
             yield (
-                f"{path} scatters, but {place}.{twice}, at its worst value, covers the "
-                f"same scatter: set {place}.{twice} to 0"
+                f"{path} scatters, but {place}.{twice}, at its worst value, already covers "
+                f"the same scatter: set {place}.{twice} to 0"
             )
     yield "all inputs scatter independently, even properties of the same material"
     practice = [entry.path for entry in uncertain_inputs if entry.origin == "practice"]

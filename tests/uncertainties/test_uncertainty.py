@@ -313,6 +313,6 @@ def test_what_is_taken_at_its_worst_is_not_drawn_twice():
     text = case.block({"seals.rod.squeeze": {"distribution": "normal", "deviation": "0.5 %"}})
     notes = ao.uncertainty(ao.read(text), count=20, rows=0).notes
     assert any(
-        "seals.rod.tolerance, at its worst value, covers the same scatter" in words
+        "seals.rod.tolerance, at its worst value, already covers the same scatter" in words
         for words in notes
     )

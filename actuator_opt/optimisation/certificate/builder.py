@@ -85,7 +85,7 @@ class Builder:
         if not isinstance(value, Symbol):
             number = float(value)
             if number == 0 or not math.isfinite(number):
-                raise Unknown(f"a factor or term in its model is {number:g}")
+                raise Unknown(f"a factor or term in the model is {number:g}")
             return math.copysign(1.0, number), Form(math.log(abs(number)))
         if value.index not in self._forms:
             try:
@@ -145,21 +145,21 @@ class Builder:
         """The sampled form of a function of one value."""
         lead = self._leads.of(node)
         if lead is node:
-            raise Unknown("its model has a function of several values")
+            raise Unknown("the model has a function of several values")
         sign, argument = self.form(lead)
         if sign < 0:
-            raise Unknown("its model has a function with a negative argument")
+            raise Unknown("the model has a function with a negative argument")
         t = np.linspace(*self.relaxation.reach(argument), SAMPLES)
         if not 0 < t[-1] - t[0] < WIDEST:
-            raise Unknown("its model has a function whose argument is constant or unbounded")
+            raise Unknown("the model has a function whose argument is constant or unbounded")
         values = function([node], lead)(t)[0]
         with np.errstate(all="ignore"):
             logs = np.log(np.abs(values))
         if not np.isfinite(logs).all():
-            raise Unknown("its model is not defined within all of the bounds")
+            raise Unknown("the model is not defined within all of the bounds")
         table = SampledFunction.of(t, logs, CAUTION)
         if (values[0] > 0) != (values[-1] > 0) or values.min() * values.max() <= 0:
-            raise Unknown("its model has a function whose sign may change")
+            raise Unknown("the model has a function whose sign may change")
         least, most = float(logs.min()) - table.room, float(logs.max()) + table.room
         return math.copysign(1.0, values[0]), self._curve(table, argument, least, most)
 
@@ -225,7 +225,7 @@ class Builder:
             return 1.0, self._difference(plus, minus, low, high)
         if high < 0:
             return -1.0, self._difference(minus, plus, -high, -low)
-        raise Unknown("its model has a difference whose sign may change")
+        raise Unknown("the model has a difference whose sign may change")
 
     def _lower_bound(self, plus: Sequence[Form], minus: Sequence[Form]) -> float:
         """Lower bound of a difference of two sums of monomials."""
@@ -313,7 +313,7 @@ class Builder:
             return self.form(choice)
         kind = extreme(node)
         if kind is None:
-            raise Unknown("its model depends on a condition that the bounds do not decide")
+            raise Unknown("the model depends on a condition that the bounds do not decide")
         (s, a), (t, b) = self.form(node.args[1]), self.form(node.args[2])
         low, high = node.bounds
         if s != t:
@@ -353,7 +353,7 @@ class Builder:
             low = max(low, math.log(least)) if least > 0 else low
         _, form = self.form(argument)
         if low <= 0 <= high:
-            raise Unknown("its model has a logarithm whose sign may change")
+            raise Unknown("the model has a logarithm whose sign may change")
         sign = 1.0 if low > 0 else -1.0
         inner = form if sign > 0 else Form(0.0) - form
         ends = (low, high) if sign > 0 else (-high, -low)

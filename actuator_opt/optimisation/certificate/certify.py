@@ -116,7 +116,7 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
             with np.errstate(all="ignore"):
                 case_statics = statics(case_subject, values, out, envelopes.implicit())
         except (TypeError, AttributeError):  # symbols raise this for operations they do not support
-            raise Unknown("one of its models is not a closed formula of the variables") from None
+            raise Unknown("one of the models is not a closed formula of the variables") from None
         traced.facts += [(part, 0.0) for part in case_statics.mass_parts.values()]
         traced.facts += _along_the_stroke(envelopes, case_statics, out, positions)
         envelopes.joint(case_statics, out)
