@@ -545,8 +545,7 @@ def _lag(identification: Identification) -> str:
         return "the record cannot show whether the pressures lag, so no lag is corrected"
     low, high = (number(1e3 * x, 2) for x in (seen.lower, seen.upper))
     return (
-        f"the record shows a lag of the pressures of {low} to {high} ms, which may be "
-        "zero, so none is corrected"
+        f"by the record, the lag of the pressures is between {low} and {high} ms; none is corrected"
     )
 
 

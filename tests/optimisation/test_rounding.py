@@ -576,4 +576,4 @@ def test_a_search_without_time_says_so():
     rounding = optimum(with_angle(), max_seconds=1e-3).rounding
     assert rounding is None or not rounding.complete
     if rounding is not None:
-        assert "stopped at its limit" in rounding.sentence
+        assert "stopped at its time limit" in rounding.sentence

@@ -438,7 +438,7 @@ def test_a_piston_is_driven_away_from_its_pressure():
     crossed = next(t for t in data["tiles"] if t["label"] == "flow across, driven")
     assert first_number(crossed["value"]) == pytest.approx(1e9 * one.back.flow, rel=6e-4)
     told = shown(one, width=400) + str(blocks(one)) + str(data)
-    for words in ("outstroke", "instroke", "double stroke", "carries out", "the other side"):
+    for words in ("outstroke", "instroke", "double stroke", "carried out", "the other side"):
         assert words not in told, words
     assert "Friction, driven, N" in told
     assert "overrun" not in shown(rod) + str(blocks(rod))
