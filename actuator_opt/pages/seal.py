@@ -587,10 +587,10 @@ def notes(study: SealStudy) -> list[str]:
         "contact, leakage. Input: sizes, modulus or hardness, oil, and roughness and asperities "
         "of the surfaces.",
         "Asperity density, radius and friction "
-        f"({' and '.join(trimmed(friction) for friction in frictions)}) are literature orders "
-        "of magnitude for the compound, not measurements of this seal. The asperity part of "
-        "the friction is proportional to the asperity friction: where asperities make up "
-        "nearly all of the friction, so is the whole friction.",
+        f"({' and '.join(trimmed(friction) for friction in frictions)}) are literature "
+        "orders of magnitude for the compound, not measurements of this seal. The "
+        "asperity part of the friction is proportional to the asperity friction: where "
+        "asperities cause nearly all of the friction, the total is, too.",
         "The averaged film passes some oil at any gap, at rest too, where a real elastomer seal "
         "does not leak: its flow factors do not include the contact pressure at which the last "
         "leakage path closes. Near standstill it overstates the leakage.",

@@ -478,7 +478,7 @@ def _open(simulation: Simulation) -> Iterator[str]:
     for name in ("mass", "energy"):
         error = getattr(simulation.balance, name)
         if error >= CLOSED:
-            yield f"in doubt: the balance of {name} is open by {share_words(error)}"
+            yield f"in doubt: the balance of {name} does not close, by {share_words(error)}"
     second = simulation.second
     if second is not None and second.max_difference >= AGREE:
         apart = share_words(second.max_difference)

@@ -123,7 +123,10 @@ def _scale_block(optimisation: Optimisation) -> list[Block]:
     bound = _bound(optimisation)
     if bound is None and not _marks(optimisation):
         return []
-    note = "Left of the bound no design meets the covered limits; right of it a better design may."
+    note = (
+        "Left of the bound no design meets the limits covered by the proof; right of it a "
+        "better design may exist."
+    )
     title = "Proven bound, optimum, and other designs"
     return [Drawing(title, scale(optimisation), "" if bound is None else note)]
 

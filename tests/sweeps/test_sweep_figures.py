@@ -283,7 +283,7 @@ def test_a_metric_without_values_is_told(swept, tmp_path):
         and all(np.isnan(row[swept.study.place(name)]) for row in swept.sample.feasible.rows)
     )
     for kind in ("parallel", "scatter", "contour"):
-        with pytest.raises(InputError, match="no design of this sweep has a value of it"):
+        with pytest.raises(InputError, match="it has no value for any design of this sweep"):
             ao.draw_sweep(swept, [kind], show=["mass", missing], out=tmp_path / "figures")
     assert not (tmp_path / "figures").exists()
 

@@ -129,7 +129,7 @@ def contour_figure(
     track = drawn.metric(metric)
     table = np.where(field.failed, np.nan, track.shown(field.metric(metric)))
     if not np.isfinite(table).any():
-        message = f"--show {metric}: no design of this sweep has a value of it"
+        message = f"--show {metric}: it has no value for any design of this sweep"
         raise InputError(Diagnostic(message, "show another metric"))
     first, second = (drawn.axis(axis.path) for axis in drawn.study.plan.axes)
     xs, ys = first.shown(field.xs), second.shown(field.ys)

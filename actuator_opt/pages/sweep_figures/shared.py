@@ -179,7 +179,7 @@ class SweepFigureData:
     def require(self, metric: str, *drawn: DrawnRows) -> None:
         """Refuse a metric that no design has a value of; raises `InputError`."""
         if not any(np.isfinite(self.values(metric, x)).any() for x in drawn if len(x.rows)):
-            message = f"--show {metric}: no design of this sweep has a value of it"
+            message = f"--show {metric}: it has no value for any design of this sweep"
             raise InputError(Diagnostic(message, "show another metric"))
 
     def counts(self, *drawn: tuple[str, int]) -> str:
@@ -314,7 +314,7 @@ def sweep_figures(swept: Swept, kinds: Sequence[str], show: Sequence[str] = ()) 
     for kind in dict.fromkeys(kinds):
         pictures = figure(kind).draw(drawn, metrics, bool(show))
         if doubled := inks.keys() & pictures.keys():
-            raise ValueError(f"figure {kind}: another figure draws {', '.join(doubled)} too")
+            raise ValueError(f"figure {kind}: another figure already draws {', '.join(doubled)}")
         inks |= pictures
     return inks
 
