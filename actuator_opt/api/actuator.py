@@ -168,7 +168,7 @@ def requirement_faults(actuator: Actuator, subject: PreparedDesign) -> list[Diag
             continue
         path = f"requirements.{metric}.{'max' if limit.min is None else 'min'}"
         message = f"cannot be met: {computed.why.get(metric, 'it does not apply to this design')}"
-        remedy = "remove the requirement, or add what it needs"
+        remedy = "remove the requirement, or add the inputs that it needs"
         source = actuator.source
         if source is None:
             faults.append(Diagnostic(message, remedy, path=path))

@@ -132,7 +132,9 @@ def _packages() -> Iterator[Finding]:
             modules.setdefault(_normal(name), []).append(module)
     if not core:
         remedy = "install it with pip"
-        yield Finding("dependency", _NAME, "fault", "its list of dependencies is missing", remedy)
+        yield Finding(
+            "dependency", _NAME, "fault", "the list of its dependencies is missing", remedy
+        )
     for text in core:
         name, value, fault = _package(text, modules)
         remedy = f"pip install '{text.strip()}'" if fault else ""

@@ -294,7 +294,9 @@ def _with_values(before: Actuator, calibration: Calibration) -> tuple[Actuator, 
     doubts = []
     fixed = [path for path in values if path in design.variables or path in design.choices]
     if fixed:
-        doubts.append(f"no longer free, fixed as measured: {', '.join(fixed)}")
+        doubts.append(
+            f"these are no longer variables, but fixed at the measured value: {', '.join(fixed)}"
+        )
     seal_choices = [
         path
         for path in choices
@@ -302,8 +304,8 @@ def _with_values(before: Actuator, calibration: Calibration) -> tuple[Actuator, 
     ]
     if seal_choices:
         doubts.append(
-            "the measured friction is that of the tested seals, but choices of "
-            f"{', '.join(seal_choices)} use it too"
+            "the friction was measured with the tested seals, but is also used for the "
+            f"other choices of {', '.join(seal_choices)}"
         )
     return Actuator(after, before.source, before.plugins), doubts
 
@@ -325,7 +327,7 @@ def _require_use(
     )
     if own != other:
         message = "the record was identified with another design"
-        raise InputError(Diagnostic(message, "identify it with this one"))
+        raise InputError(Diagnostic(message, "identify it with this design"))
 
 
 def write_identification(

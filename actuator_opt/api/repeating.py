@@ -113,7 +113,9 @@ def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
         version, command, name = (_text(run, x) for x in ("actuator_opt", "command", "source_name"))
         date = _require_form(run)
         if _order(version) > _order(VERSION):
-            message = f"was made by actuator-opt {shown(version)}, this is {VERSION}"
+            message = (
+                f"was made by actuator-opt {shown(version)}, but this installation is {VERSION}"
+            )
             raise InputError(Diagnostic(message, "install that version, or a later one"))
         verb, options = parsed(command)
         if options.plugin and not plugins:
@@ -213,7 +215,7 @@ def parsed(command: str) -> tuple[str, argparse.Namespace]:
     verb = words[1]
     if words[0] != "actuator-opt" or verb not in OPTIMISED + EVALUATED + FRONTS:
         start = shown(" ".join(words[:2]))
-        message = f"was made by {start}, which needs more input than a design"
+        message = f"was made by {start}, which requires more input than a design"
         raise InputError(Diagnostic(message, f"run it by hand: {shown(command, 400)}"))
     options = parser().parse_args(words[2:])
     scenario = options.verify_dynamics
@@ -302,13 +304,13 @@ def _sentence(differences: Mapping[str, tuple[Any, Any]] | None, version: str) -
     """Sentence on whether the result is reproduced."""
     origin = f"the report was made by actuator-opt {version}"
     if version == VERSION:
-        origin += ", the same as this one"
+        origin += ", the version of this installation"
     if differences is None:
         return f"the report has no result to compare with; {origin}"
     if not differences:
         return f"the result is reproduced; {origin}"
     if version != VERSION:
-        origin += f", but this is {VERSION}"
+        origin += f", but this installation is {VERSION}"
     changes = sorted((_change(name, *x) for name, x in differences.items()), reverse=True)
     names = ", ".join(words for _, words in changes[:3])
     more = f" and {len(changes) - 3} more" if len(changes) > 3 else ""

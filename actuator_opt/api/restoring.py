@@ -132,8 +132,8 @@ def _doubts(run: Run, evaluation: Evaluation) -> list[str]:
     names = ", ".join(changed[:3]) + (f" and {len(changed) - 3} more" if len(changed) > 3 else "")
     origin = f"actuator-opt {version}" if version != VERSION else "other material data or plugins"
     return [
-        f"run {run.id} was made by {origin}; the present models (actuator-opt {VERSION}) give "
-        f"other values of {names}, which the report shows"
+        f"run {run.id} was made by {origin}; the models of this installation (actuator-opt "
+        f"{VERSION}) give other values of {names}, which the report shows"
     ]
 
 

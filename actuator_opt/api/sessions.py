@@ -280,7 +280,7 @@ class Session:
         if line.high is not None and line.high[0] < 1 - ROUNDING:
             why = f"after {100 * abs(line.high[0]):.3g} % of the change {line.high[1]}"
         if not math.isfinite(line.above):
-            why = "no design is left in this direction"
+            why = "no design meets the limits in this direction"
         return Prediction(objective + change, self._named(x + line.moves), not why, why)
 
     def price(self, path: str) -> Price:
@@ -369,7 +369,9 @@ class Session:
     def _changed(self, changes: Changes) -> tuple[Actuator, dict[str, float]]:
         """The changed design, and the changed numbers in SI by canonical PATH."""
         if not isinstance(changes, Mapping):
-            message = f"changes: need numbers by PATH, not {type(changes).__name__}"
+            message = (
+                f"changes: must be a mapping from PATH to number, not {type(changes).__name__}"
+            )
             raise UsageError(Diagnostic(message, 'write e.g. {"cylinder.stroke": "112 mm"}'))
         actuator, numbers = self._actuator, {}
         for path, value in changes.items():
@@ -377,7 +379,7 @@ class Session:
             if isinstance(value, bool) or not isinstance(value, (int, float, str)):
                 raise InputError(
                     Diagnostic(
-                        f"need a number, not {type(value).__name__}",
+                        f"must be a number, not {type(value).__name__}",
                         'write SI, or a text with a unit such as "112 mm"',
                         path=path,
                     )
@@ -401,7 +403,9 @@ class Session:
     def _path(self, path: str) -> str:
         """The canonical form of a number's PATH."""
         if not isinstance(path, str):
-            raise InputError(Diagnostic(f"need a PATH, not {type(path).__name__}", "write a text"))
+            raise InputError(
+                Diagnostic(f"must be a PATH, not {type(path).__name__}", "write a text")
+            )
         design = self._actuator.design
         with located(self._actuator):
             name = canonical(path, design)
@@ -440,7 +444,10 @@ class Session:
         if path not in numbers:
             raise UsageError(
                 Diagnostic(
-                    "has no derivative at the optimum, as the design does not state it as a number",
+                    (
+                        "has no derivative at the optimum, because the design does not "
+                        "state it as a number"
+                    ),
                     remedy(path, numbers) if get(self._actuator.design, path) is None
                     else "re-solve with it instead (session.solve)",
                     path=path,
@@ -451,8 +458,8 @@ class Session:
         if not self._differentiable[path]:
             raise UsageError(
                 Diagnostic(
-                    "has no derivative here, as it is a whole number, or affects more than the "
-                    "models read directly",
+                    "has no derivative here, because it is a whole number or also changes "
+                    "other inputs",
                     "re-solve with it instead (session.solve, session.curve)",
                     path=path,
                 )

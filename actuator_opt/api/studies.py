@@ -55,8 +55,8 @@ def uncertainty(
     from ..uncertainties import uncertainty as run
 
     if not LEAST <= count <= MOST:
-        message = f"{count} draws: need {LEAST} to {MOST}"
-        raise UsageError(Diagnostic(message, "10000 bounds a yield of 99 % within 0.2 %"))
+        message = f"{count} draws: {LEAST} to {MOST} are needed"
+        raise UsageError(Diagnostic(message, "10000 draws give a yield of 99 % within 0.2 %"))
     actuator, subject = checked_design(design, plugins)
     with located(actuator):
         return run(

@@ -194,7 +194,7 @@ def _require_distinct(files: Sequence[Path]) -> None:
             places.append(path.resolve())
     for place in places:
         if places.count(place) > 1:
-            message = f"{place.name}: one file for two of --store, --csv and --parquet"
+            message = f"{place.name}: two of --store, --csv and --parquet name this file"
             raise UsageError(Diagnostic(message, "name another file"))
 
 

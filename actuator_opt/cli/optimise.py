@@ -163,7 +163,7 @@ def pareto(
             min=CHECKS.least,
             max=CHECKS.most,
             metavar="N",
-            help="Full searches to escape local optima.",
+            help="Number of full searches, to escape local optima.",
         ),
     ] = 3,
     csv: Annotated[

@@ -96,7 +96,8 @@ StandardSizes = Annotated[
 Certify = Annotated[
     bool,
     typer.Option(
-        "--certify", help="Prove a bound on the gap to the best possible design (seconds)."
+        "--certify",
+        help="Prove an upper limit of the gap to the best possible design (takes seconds).",
     ),
 ]
 Yield = Annotated[

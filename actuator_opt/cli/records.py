@@ -58,7 +58,10 @@ Order = Annotated[
 ]
 Uncompensated = Annotated[
     bool,
-    typer.Option("--uncompensated", help="Both passes together: -6 dB at the cut-off, not -3 dB."),
+    typer.Option(
+        "--uncompensated",
+        help="Make each filter pass -3 dB at the cut-off, so that both together are -6 dB.",
+    ),
 ]
 Mass = Annotated[
     str | None,
@@ -79,7 +82,7 @@ PressureLag = Annotated[
     typer.Option(
         "--pressure-lag",
         metavar="T",
-        help='Lag of the pressures, e.g. "4 ms"; default: from the reversals.',
+        help='Lag of the pressures, e.g. "4 ms"; default: identified at the reversals.',
     ),
 ]
 Bootstrap = Annotated[
@@ -89,7 +92,10 @@ Bootstrap = Annotated[
         min=0,
         max=10000,
         metavar="N",
-        help="Bounds from N resampled records (80 or more) instead of the linearised model.",
+        help=(
+            "Compute confidence intervals from N resampled records (80 or more) instead of "
+            "the linearised model."
+        ),
     ),
 ]
 
@@ -104,7 +110,10 @@ Span = Annotated[
     typer.Option(
         "--span",
         metavar="L",
-        help='Span of a bending test (channels F_L, w), e.g. "300 mm": gives a modulus.',
+        help=(
+            'Span of a three-point bending test, e.g. "300 mm"; the record (channels F_L, '
+            "w) then gives a modulus."
+        ),
     ),
 ]
 BentPart = Annotated[
@@ -117,7 +126,10 @@ NewDesign = Annotated[
 ]
 Search = Annotated[
     bool,
-    typer.Option("--optimise/--no-optimise", help="Also optimise the design before and after."),
+    typer.Option(
+        "--optimise/--no-optimise",
+        help="Also optimise the design with its stated and with the measured values.",
+    ),
 ]
 
 
@@ -234,7 +246,7 @@ def _check_bootstrap(count: int) -> None:
     from ..identification.bootstrap import FEWEST
 
     if 0 < count < FEWEST:
-        message = f"--bootstrap {count}: too few for a 2.5 % tail"
+        message = f"--bootstrap {count}: too few for the limits of a 95 % interval"
         raise UsageError(Diagnostic(message, f"use {FEWEST} or more, usually 200"))
 
 

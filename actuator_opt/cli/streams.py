@@ -243,7 +243,10 @@ def unexpected(error: Exception) -> tuple[list[Diagnostic], ExitCode]:
 
     if isinstance(error, BrokenExecutor):
         message = "a worker process ended before its work was complete"
-        remedy = "check the memory, or give fewer --workers; a --store resumes from its rows"
+        remedy = (
+            "check the memory, or give fewer --workers; with --store the sweep resumes "
+            "from the stored rows"
+        )
         return [Diagnostic(message, remedy)], ExitCode.SOLVER_FAILED
     text = shown(f"{type(error).__name__}: {' '.join(str(error).split())}", _LONGEST)
     message = f"internal error of actuator-opt {VERSION}: {text.removesuffix(': ')}"

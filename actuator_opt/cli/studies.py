@@ -38,7 +38,13 @@ Draws = Annotated[
 ]
 Quasi = Annotated[
     bool,
-    typer.Option("--quasi", help="Use 16 scrambled Sobol sequences: narrower bounds."),
+    typer.Option(
+        "--quasi",
+        help=(
+            "Use 16 scrambled Sobol sequences, which give a narrower confidence interval of "
+            "the yield."
+        ),
+    ),
 ]
 Rows = Annotated[
     int,
@@ -47,7 +53,10 @@ Rows = Annotated[
         min=0,
         max=1_000_000,
         metavar="N",
-        help="Rows for the indices, inputs + 2 evaluations each; 0: no indices.",
+        help=(
+            "Number of samples for the sensitivity indices, each of (number of inputs + 2) "
+            "evaluations; 0: no indices."
+        ),
     ),
 ]
 Metrics = Annotated[
@@ -181,7 +190,9 @@ ScenarioFile = Annotated[
 ]
 Verify = Annotated[
     bool,
-    typer.Option("--verify", help="Integrate again by Radau and show the largest difference."),
+    typer.Option(
+        "--verify", help="Integrate again by the Radau method and show the largest difference."
+    ),
 ]
 Fast = Annotated[
     bool, typer.Option("--fast", help='Integrate by CVODES (pip install "actuator-opt[fast]").')
@@ -191,15 +202,17 @@ SignalsFile = Annotated[
 ]
 MeasuredFile = Annotated[
     str | None,
-    typer.Option("--measured", metavar="F.csv", help="Compare with a record; shows residuals."),
+    typer.Option(
+        "--measured", metavar="F.csv", help="Compare with a test record and show the residuals."
+    ),
 ]
 Fitted = Annotated[
     list[str] | None,
     typer.Option(
         "--fit",
         metavar="NAME",
-        help="Fit a parameter to the record, with bounds (e.g. air_content, valve_capacity, "
-        "piston_leakage, coulomb). Repeatable.",
+        help="Fit a parameter to the record, with its confidence interval (e.g. "
+        "air_content, valve_capacity, piston_leakage, coulomb). Repeatable.",
     ),
 ]
 RecordColumns = Annotated[

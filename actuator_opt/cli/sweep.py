@@ -142,7 +142,9 @@ def _resumable(store: Path | None, quiet: bool) -> Iterator[None]:
         yield
     except KeyboardInterrupt:
         if store is not None and not quiet:
-            streams.err(f"{store} has the rows so far; the same command resumes from there")
+            streams.err(
+                f"{store} contains the rows computed so far; the same command resumes from there"
+            )
         raise
 
 
@@ -190,7 +192,11 @@ def explore(
     ] = None,
     rows: Annotated[
         int,
-        typer.Option("--rows", metavar="N", help="Maximum number shown; of more, an even sample."),
+        typer.Option(
+            "--rows",
+            metavar="N",
+            help="Maximum number of designs shown; if there are more, an even sample is shown.",
+        ),
     ] = 5000,
     out: Annotated[
         Path, typer.Option("--out", metavar="FILE", help="File (.html) or folder of the page.")

@@ -95,7 +95,7 @@ def _columns(explored: Explored) -> list[dict[str, Any]]:
         values = quantity.to_display(numbers[:, k])
         columns.append(_column(column.name, column.name, quantity.unit, np.asarray(values)))
     percent = np.round(100 * numbers[:, -3], 9) + 0.0  # drop rounding errors around zero
-    margin = _column("least_margin", "least margin of all", "%", percent)
+    margin = _column("least_margin", "least margin of all limits", "%", percent)
     columns.append(margin | {"better": MORE_IS_BETTER})
     for k, name in enumerate(study.metrics, count):
         quantity = study.quantity(name)
@@ -203,8 +203,8 @@ def _summary(explored: Explored) -> str:
     words = f"{explored.origin}, {evaluated} design{'s' * (evaluated != 1)} evaluated"
     if explored.thinned:
         words += (
-            f"; {shown} are shown: one in {-(-evaluated // explored.most)}, spread evenly, "
-            f"and the {BEST} best feasible"
+            f"; {shown} are shown: one in {-(-evaluated // explored.most)}, evenly spread, "
+            f"and the {BEST} best feasible designs"
         )
     words += f". {feasible} of these meet every requirement and check."
     if explored.failed:
@@ -213,7 +213,7 @@ def _summary(explored: Explored) -> str:
         more = f"; and {len(reasons) - REASONS} more reasons" if len(reasons) > REASONS else ""
         words += f" {explored.failed} failed and have no results: {listing}{more}."
     if explored.damaged:
-        words += f" {explored.damaged} damaged and left out."
+        words += f" {explored.damaged} damaged rows are left out."
     return f"{pretty(words)} Models of version {VERSION}."
 
 

@@ -146,8 +146,9 @@ class Refusals:
     def warnings(self) -> tuple[str, ...]:
         """One warning for each metric that had no value at some design."""
         return tuple(
-            f"{name} gave no value at {100 * lost / self.points:.3g} % of the points tried, "
-            "which count as infeasible" + (f": {self.raised[name]}" if name in self.raised else "")
+            f"{name} had no value at {100 * lost / self.points:.3g} % of the points tried; "
+            "these points count as infeasible"
+            + (f": {self.raised[name]}" if name in self.raised else "")
             for name, lost in sorted(self.missing.items())
             if lost
         )
@@ -369,7 +370,7 @@ def _check_read(numbers: Numbers, paths: tuple[str, ...], fault: Fault | None) -
     faults = []
     for path in paths:
         if path not in numbers.read:
-            message = "no model of this design reads this variable"
+            message = "no model of this design uses this variable"
             remedy = "remove it, or check that the design uses the part it belongs to"
             place = fault(path, message, remedy) if fault else None
             faults.append(place or Diagnostic(message, remedy, path=f"variables.{path}"))
@@ -557,12 +558,12 @@ class Outcome(Enum):
     NOT_STATIONARY = (
         "feasible",
         "all requirements are met, but the optimality conditions are not satisfied to 1e-6",
-        "run again with more starts or another seed, or check custom metrics for a kink (min, "
-        "max, look-up table) or the edge of a table near this point",
+        "run again with more starts or another seed, or check custom metrics for a kink "
+        "near this point (min, max, a look-up table or its edge)",
     )
     SADDLE = (
         "feasible",
-        "all requirements are met and the gradients balance, but the point is not a minimum",
+        "all requirements are met and the point is stationary, but it is not a minimum",
         "run again with another seed or more starts",
     )
     INFEASIBLE = (

@@ -397,21 +397,28 @@ def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
         if look.sizing:
             outcome = f"{outcome}; {_SIZING[look.sizing]}"
         elif look.rounded is None and sized:
-            outcome = f"{outcome}; not searched further, as listed sizes cannot improve on the best"
+            outcome = (
+                f"{outcome}; listed sizes were not searched, because they cannot improve on the "
+                "best design"
+            )
         if checks:
-            outcome = f"misses the check {checks}, which other choices meet; {outcome}"
+            outcome = f"{outcome}, but the check {checks} is missed, which other choices meet"
     else:
         by = f" by {100 * look.violation:.2g} %" if math.isfinite(look.violation) else ""
-        outcome = f"misses {look.missed}{by}" if look.missed else "no finite values at any point"
+        outcome = (
+            f"misses {look.missed}{by}"
+            if look.missed
+            else "the models have no finite value at any point tried"
+        )
     return _WAYS[look.how] + outcome
 
 
 _SIZING = {
-    "found": "best with listed sizes",
-    "sizes of the best": "with the sizes of the best",
-    "none better": "none better with listed sizes",
-    "none": "none with listed sizes",
-    "no size fits": "no listed size within its bounds",
+    "found": "the best design with listed sizes",
+    "sizes of the best": "computed with the listed sizes of the best design",
+    "none better": "no better design with listed sizes",
+    "none": "no design with listed sizes",
+    "no size fits": "no listed size lies within the bounds",
 }
 """Words for the result of the search for listed sizes."""
 
@@ -426,11 +433,16 @@ _WAYS: dict[How, str] = {"multistart": "many starts: ", "quick": "quick look: ",
 def _sentence(choices: Choices) -> str:
     """Sentence with the numbers of combinations: all, feasible, and searched in each way."""
     total, feasible = len(choices.combinations), choices.feasible
-    result = f"none of {total} combinations meets all requirements; the nearest one is shown"
+    result = (
+        f"none of {total} combinations meets all requirements; the combination that misses them "
+        "least is shown"
+    )
     if feasible:
-        result = f"the best of {total} combinations; {feasible} meet all requirements"
+        result = (
+            f"the best of {total} combinations is shown; {feasible} of them meet all requirements"
+        )
     counts = ", ".join(_counts(choices))
-    proof = "; a quick look proves nothing" if choices.count("quick") else ""
+    proof = "; a quick look (one short search) proves nothing" if choices.count("quick") else ""
     return f"{result}; {counts}{proof}"
 
 

@@ -157,7 +157,10 @@ def _dimensions(
     for number, (path, place) in enumerate(zip(tried, limits, strict=True)):
         if len(sufficient) == ENOUGH:
             return _least_first(sufficient), (), candidates[number:]
-        tell("infeasible: searching for a sufficient fixed dimension", number / len(tried))
+        tell(
+            "infeasible: searching for a fixed dimension whose change is enough",
+            number / len(tried),
+        )
         sufficient += least_changes(problem, start, {place: limits[place]}, {place: path}, design)
     together: list[Cure] = []
     if not sufficient and len(tried) > 1:
@@ -314,7 +317,7 @@ def _choices(
             return tuple(sufficient), [
                 path for path in untried if path not in {c.path for c in sufficient}
             ]
-        tell("infeasible: searching for a sufficient choice", number / len(offered))
+        tell("infeasible: searching for a choice whose change is enough", number / len(offered))
         if repairs.near(problem, conflict.x) is not None:
             sufficient.append(cure)
     return tuple(sufficient), []

@@ -310,23 +310,27 @@ class Evaluator:
         """
         if not self.problem.has_complex_step:
             return (
-                "gradients are finite differences, as the model does not accept complex numbers",
+                (
+                    "gradients are computed by finite differences, as the model does not "
+                    "accept complex numbers"
+                ),
             )
         try:
             exact = self._complex_step(point.z[:, None], inside=True)[:, 0]
         except (TypeError, ValueError, np.exceptions.ComplexWarning) as error:
             self.complex_works = False
             return (
-                "gradients fall back to finite differences, as the model rejects complex "
-                f"numbers ({error}); avoid float(), abs and math functions in custom functions",
+                "gradients are computed by finite differences, as the model rejects "
+                f"complex numbers ({error}); avoid float(), abs and math functions in "
+                "custom functions",
             )
         wrong = self._disagreement(point, exact)
         self.difference_rows = wrong
         labels = ("objective", *self.problem.constraint_names, *self.problem.equality_names)
         return tuple(
-            f"the gradient of {labels[i]} falls back to finite differences, as the complex step "
-            "disagrees with them or is undefined; avoid abs, max, sign, float() and floor in "
-            "custom functions"
+            f"the gradient of {labels[i]} is computed by finite differences, as the "
+            "complex step differs from them or is undefined; avoid abs, max, sign, "
+            "float() and floor in custom functions"
             for i in np.flatnonzero(wrong)
         )
 

@@ -231,11 +231,11 @@ def _sentence(
     """The advice in one line: the first cure, or the smallest change of limits."""
     if laws:
         return (
-            "infeasible whatever the requirements: within the bounds the geometry conflicts "
-            f"({', '.join(laws)})"
+            "infeasible with any requirements, because within the bounds the geometry "
+            f"conflicts ({', '.join(laws)})"
         )
     if not joint:
-        return "infeasible, and the search gave no sufficient relaxation"
+        return "infeasible, and the search found no relaxation that is sufficient"
     cure = sufficient[0] if sufficient else None
     if cure is not None and cure["kind"] in _ACTS:
         enough_text = "together are enough" if "together" in cure else "alone is enough"
@@ -247,7 +247,7 @@ def _sentence(
     else:
         sentence = f"infeasible: the smallest joint change, of {len(joint)} limits, is {changes}"
     if unsafe:
-        sentence += " (weakens a safety factor: not advised)"
+        sentence += " (this weakens a safety factor: not advised)"
     if cure is not None and (unsafe or len(joint) > 1) and cure["advised"]:
         sentence += f". One change alone is also enough: {change_text(cure)}"
     return sentence
@@ -258,13 +258,13 @@ def _evidence(explanation: Explanation, solution: Solution) -> str:
     count = len(solution.starts)
     starts = f"{count} start{'' if count == 1 else 's'}"
     statement = (
-        f"no feasible design was found from {starts}, selected from {solution.samples} points"
+        f"no feasible design was found from {starts} selected from {solution.samples} points"
     )
     if explanation.laws:
         return f"{statement}: this is evidence, not proof"
     return (
-        f"{statement}: this is evidence, not proof. Each change listed as enough was confirmed by "
-        "a feasible design. The search gave no feasible design for smaller changes, or for single "
-        "changes not listed. Bounds and fixed dimensions were varied up to "
-        f"{WIDEST:g} times or down to 1/{WIDEST:g} of their value"
+        f"{statement}: this is evidence, not proof. A feasible design confirms each change "
+        "listed as enough. The search found no feasible design with smaller changes, nor "
+        "with single changes that are not listed. Bounds and fixed dimensions were varied "
+        f"up to {WIDEST:g} times or down to 1/{WIDEST:g} of their value"
     )

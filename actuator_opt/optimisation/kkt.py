@@ -31,10 +31,10 @@ ACTIVE = 1e-6
 class Curvature(Enum):
     """Sign of the Lagrangian's Hessian along the directions that the active limits leave free."""
 
-    VERTEX = "vertex: the active set leaves no direction free"
+    VERTEX = "vertex: the active limits leave no direction free"
     POSITIVE = "positive definite: a strict local minimum"
-    FLAT = "flat: some direction changes nothing to second order"
-    NEGATIVE = "negative: not a minimum"
+    FLAT = "flat: in some direction the curvature is zero"
+    NEGATIVE = "negative curvature: not a minimum"
 
 
 @dataclass(frozen=True)

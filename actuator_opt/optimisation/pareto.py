@@ -135,7 +135,8 @@ class ParetoFront(Displayed):
         """The result as a sentence."""
         if self.unsolved:
             return (
-                f"no front: the search for the best of one objective alone failed, {self.unsolved}"
+                "no front: the search for the best value of a single objective failed "
+                f"({self.unsolved})"
             )
         if self.infeasibility is not None or not self.points:
             reason = "" if self.infeasibility is None else f" {self.infeasibility.sentence}"
@@ -144,10 +145,13 @@ class ParetoFront(Displayed):
             return "the objectives do not conflict: one design is best in every objective"
         sentence = f"{len(self.points)} non-dominated designs; "
         sentence += (
-            f"{self.checked} independent searches replaced {self.improved} merely local designs"
+            f"{self.checked} independent searches replaced {self.improved} designs "
+            "that were only local optima"
         )
         if self.failed:
-            sentence += f"; no design at {self.failed} place" + "s" * (self.failed > 1)
+            sentence += f"; the search found no design at {self.failed} place" + "s" * (
+                self.failed > 1
+            )
         return sentence
 
     def to_dict(self) -> dict[str, Any]:

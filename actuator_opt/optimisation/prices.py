@@ -806,8 +806,8 @@ def buys_most(
     else:
         parts = [f"Relaxing a single requirement by {PER_CENT} % gains nothing."]
     for best, group in (
-        (best_offers.parameter, "Of the design's fixed numbers"),
-        (best_offers.material, "Of the materials"),
+        (best_offers.parameter, "Among the design's fixed values"),
+        (best_offers.material, "Among the material properties"),
     ):
         if best is not None:
             direction = "more" if best.change > 0 else "less"
@@ -818,7 +818,7 @@ def buys_most(
             f"{short_name(row)} at {_at(row, row.limit * (1 + sign * CHANGE))}"
             for row, sign in best_offers.no_design
         )
-        parts.append(f"No feasible design with {infeasible}.")
+        parts.append(f"The search found no feasible design with {infeasible}.")
     return tuple(parts)
 
 

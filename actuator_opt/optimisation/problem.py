@@ -134,7 +134,7 @@ class BoxProblem:
             try:
                 array = np.broadcast_to(array.reshape(size, -1) if size else array, (size, count))
             except ValueError:
-                message = f"the {kind} have shape {array.shape}, expected ({size}, {count})"
+                message = f"the {kind} have the shape {array.shape}, not ({size}, {count})"
                 raise InputError(message) from None
             arrays.append(array)
         return np.concatenate(arrays)

@@ -282,11 +282,13 @@ def _repairs(optimisation: Optimisation) -> list[str]:
     if optimisation.infeasibility is None:
         return []
     first_cure = next((cure for cure in optimisation.infeasibility.cures if cure["advised"]), None)
-    single = [] if first_cure is None else [f"enough alone: {change_text(first_cure)}"]
+    single = (
+        [] if first_cure is None else [f"this change alone is enough: {change_text(first_cure)}"]
+    )
     joint = optimisation.infeasibility.joint
     changes = "; ".join(change_text(row) for row in joint)
     unsafe = any(row["safety_factor"] for row in joint)
-    warned = " (weakens a safety factor: not advised)" if unsafe else ""
+    warned = " (this weakens a safety factor: not advised)" if unsafe else ""
     joint_change = (
         [f"the smallest sufficient change of limits: {changes}{warned}"] if changes else []
     )

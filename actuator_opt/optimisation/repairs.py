@@ -251,7 +251,7 @@ def by_limits(
     amounts: list[float | None] = []
     points_without = without_each(problem, groups, points[0])
     for number, (group, x) in enumerate(zip(groups, points_without, strict=True)):
-        tell("infeasible: searching for a sufficient requirement", number / len(groups))
+        tell("infeasible: searching for a requirement whose change is enough", number / len(groups))
         if x is None:
             x = _without(problem, group, points if int(group[0]) in named else points[:1])
         amounts.append(None if x is None else _least_of_all(problem, group, x, points[1:]))
@@ -392,7 +392,7 @@ def by_bounds(problem: BoxProblem, bounds: Sequence[Opening], x: Vector) -> tupl
     """The bounds, each with the value that is enough if only this bound is changed."""
     result = []
     for number, bound in enumerate(bounds):
-        tell("infeasible: searching for a sufficient bound", number / len(bounds))
+        tell("infeasible: searching for a bound whose change is enough", number / len(bounds))
         result.append(replace(bound, needed=_opened(problem, bound, x)))
     return tuple(result)
 

@@ -384,13 +384,13 @@ class Optimisation(Displayed):
         )
         if self.made is None:
             return (
-                "shows the continuous optimum, which is not the design to build: "
+                "shows the continuous optimum, which is not the design to build, because "
                 f"{self.rounding.sentence}"
             )
         to_build = "the design to build" if self.rounding.met else "which misses a requirement"
         if self.rounding.met and self.rounding.unmade:
             names = ", ".join(self.rounding.unmade)
-            to_build = f"not to be built yet: {names} not in whole plies or allowed angles"
+            to_build = f"which cannot be built yet, as {names} need whole plies or allowed angles"
         return (
             f"shows the design of {name} ({quantity.label} {rounded_text}), {to_build}; "
             f"prices refer to the continuous optimum, with {continuous_text}"

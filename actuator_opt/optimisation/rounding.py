@@ -85,14 +85,17 @@ def size_remedies(
     for assignment in assignments:
         if deadline is not None and time.perf_counter() > deadline:
             break
-        tell("rounding costs much: searching for a limit that allows a smaller size")
+        tell("standard sizes cost much: searching for a limit that allows smaller sizes")
         fixed = _FixedSizes(actuator, listed, assignment, solution.x, objective)
         remedies += [
             *fixed.relaxed(_limits(actuator, solution, size_search)),
             *fixed.with_other_pressure(),
         ]
     sign = actuator.goal.sign
-    note = f"no change of one limit, load or the supply pressure by up to {100 * SMALL:g} % "
+    note = (
+        "no change of a single limit, of a load or of the supply pressure by up to "
+        f"{100 * SMALL:g} % "
+    )
     note = f"{note}allows better sizes" if assignments and not remedies else ""
     return tuple(sorted(remedies, key=lambda remedy: sign * remedy.objective)), note
 
@@ -313,7 +316,10 @@ def unrounded(optimisation: Optimisation) -> str:
     paths = [path for path in misfits(design) if path in design.variables]
     if optimisation.rounding is not None or not paths or not optimisation.evaluation.met:
         return ""
-    return f"{', '.join(paths)}: not whole plies or allowed angles yet; see --whole-plies"
+    return (
+        f"{', '.join(paths)}: these are not yet whole numbers of plies or allowed angles; see "
+        "--whole-plies"
+    )
 
 
 def sizes_of(
@@ -470,7 +476,7 @@ def _rounding(
     failure = Rounding(
         met=False,
         sentence=f"none of {len(size_search.tried)} designs of {sizes.name} meets all requirements"
-        + ("" if size_search.complete else ", and the search stopped at its limit")
+        + ("" if size_search.complete else ", and the search stopped at its time limit")
         + _nearest(actuator, sizes, size_search),
         remedy=f"{_FINER[sizes.name]}, widen the bounds of these variables, or relax a requirement",
         name=sizes.name,
@@ -522,7 +528,7 @@ def _nearest(actuator: ActuatorProblem, sizes: ListedSizes, size_search: SizeSea
     if len(texts) > MOST_SAID:
         texts = [*texts[:MOST_SAID], "…"]
     by = 100 * size_search.missed.violation
-    return f"; the nearest, {', '.join(texts)}, misses {worst} by {by:.2g} %"
+    return f"; the nearest design, {', '.join(texts)}, misses {worst} by {by:.2g} %"
 
 
 def _values_of(
@@ -548,13 +554,13 @@ def _sentence(name: str, met: bool, complete: bool) -> tuple[str, str]:
         return f"the design of {name} misses a requirement", f"relax it, or {_FINER[name]}"
     if not complete:
         return (
-            f"all requirements are met with {name}; the search stopped at its limit, and the "
-            "best design so far is kept",
+            f"all requirements are met with {name}; the search stopped at its time limit and "
+            "returns the best design so far",
             "raise the time limit, or restrict fewer variables to sizes",
         )
     return (
-        f"all requirements are met with {name}; the best found by branch and bound, without "
-        "proof, as its bounds are local optima",
+        f"all requirements are met with {name}; this is the best design that branch and bound "
+        "found, without proof, because its bounds come from local optima",
         "",
     )
 

@@ -70,9 +70,9 @@ def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
     gap = max(1 - bound / objective, 0.0)
     condition = " with these choices" if actuator.subject.design.choices else ""
     sentence = (
-        f"no design within the bounds{condition} that meets the covered limits has a "
-        f"{quantity.label} below {quantity.text(bound, 5)}: this design is within "
-        f"{_percent(gap)} of the best possible"
+        f"no design within the bounds{condition} that meets the limits covered by the "
+        f"proof has a {quantity.label} below {quantity.text(bound, 5)}, so this design is "
+        f"within {_percent(gap)} of the best possible"
     )
     covers = tuple(dict.fromkeys(claim.limit.name for claim in relaxed.covered))
     dropped = {name: why for name, why in relaxed.dropped.items() if name not in covers}
@@ -114,9 +114,9 @@ def _percent(share: float) -> str:
 def _unsuited(actuator: ActuatorProblem, solution: Solution) -> str:
     """The reason why no bound can be proven; empty if a proof is possible."""
     if actuator.goal.single is None:
-        return "a weighted sum of metrics cannot be bounded yet; minimise one metric"
+        return "bounds for a weighted sum of metrics are not implemented; minimise a single metric"
     if actuator.goal.sign < 0:
-        return "a maximised metric cannot be bounded yet; minimise a metric"
+        return "bounds for a maximised metric are not implemented; minimise a metric"
     if not solution.objective > 0:
         return "the objective is not positive"
     return ""
@@ -134,9 +134,10 @@ def _evidence(solution: Solution) -> str:
     )
     missed = 1 - (1 - CHANCE) ** (1 / count)
     return (
-        f"{count_same} of {count} starts reached this optimum, none a better one. A better optimum "
-        f"reached by more than {100 * missed:.0f} % of all starts would have been seen with "
-        f"{100 * CHANCE:.0f} % probability (evidence, not proof)"
+        f"{count_same} of {count} starts reached this optimum, and none reached a better "
+        f"one. If more than {100 * missed:.0f} % of all starts led to a better optimum, "
+        f"this search would have found it with {100 * CHANCE:.0f} % probability (evidence, "
+        "not proof)"
     )
 
 
@@ -341,7 +342,10 @@ def _enumerated(
     assert best.subject is not None
     status, remedy = "optimal", ""
     if not best.feasible:
-        status, remedy = "infeasible", "relax the requirement it misses, or add values to choices"
+        status, remedy = (
+            "infeasible",
+            "relax the requirement that is missed, or add values to choices",
+        )
     optimisation = Optimisation(
         status=status,
         sentence=choices.sentence,

@@ -32,8 +32,8 @@ def page(bending: BendingResult) -> Page:
         kind="Modulus by a three-point bending test",
         verdict=Verdict(_STATES[modulus.verdict], f"MODULUS {modulus.verdict.upper()}"),
         sentence=(
-            f"The slope is that of {bending.samples} samples, deflections from {first} to {last} mm"
-            f"{_strains(bending)}."
+            f"The slope is fitted to {bending.samples} samples, with deflections from "
+            f"{first} to {last} mm{_strains(bending)}."
         ),
         tiles=[_tile(words, parameter, bending) for words, parameter in _parameters(bending)],
         hero=lambda room: _loop(bending, room),
@@ -45,17 +45,19 @@ def _strains(bending: BendingResult) -> str:
     if bending.strains is None:
         return ""
     low, high = (text.number(100 * v, 3) for v in bending.strains)
-    return f", strains of the outer fibre from {low} to {high} %"
+    return f" and strains of the outer fibre from {low} to {high} %"
 
 
 def _parameters(bending: BendingResult) -> list[tuple[str, Parameter]]:
     """Slope and moduli, before and after the known compliances are subtracted."""
     rows = [
         ("slope of force over deflection", bending.slope),
-        ("modulus, nothing taken off", bending.as_published),
+        ("modulus, no compliance subtracted", bending.as_published),
     ]
     if bending.taken_off:
-        rows.append((f"modulus, {' and '.join(bending.taken_off)} taken off", bending.modulus))
+        rows.append(
+            (f"modulus, with {' and '.join(bending.taken_off)} subtracted", bending.modulus)
+        )
     return rows
 
 
@@ -99,13 +101,13 @@ def _blocks(bending: BendingResult) -> Iterator[Block]:
 def _basis(bending: BendingResult) -> list[str]:
     """Sources of the confidence intervals, energy lost in the load cycle, and share of shear."""
     section = (
-        "the second moment once"
+        "the second moment of area once"
         if bending.specimen.outer_diameter is None
-        else "the outer diameter four times or more"
+        else "the outer diameter at least four times"
     )
     words = [
-        "the bounds are of 95 %, for the noise of the record; an error of the span counts three "
-        f"times in addition, that of {section}"
+        "the 95 % bounds include only the noise of the record; in addition, a relative "
+        f"error of the span counts three times, and an error of {section}"
     ]
     if bending.hysteresis is not None:
         cycles = "the cycle loses" if bending.cycles == 1 else f"{bending.cycles} cycles lose"

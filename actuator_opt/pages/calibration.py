@@ -93,9 +93,10 @@ def _sentence(calibration: Calibration) -> str:
     """The record and its result."""
     ratio = calibration.coulomb / calibration.stated
     return (
-        f"Record {calibration.identification.record.file_name}: Coulomb friction is"
-        f" {100 * ratio:.0f} % of what the design states at the record's pressures,"
-        f" {text.number(calibration.coulomb)} N instead of {text.number(calibration.stated)} N."
+        f"Record {calibration.identification.record.file_name}: Coulomb friction is "
+        f"{100 * ratio:.0f} % of the value that the design states at the pressures of the "
+        f"record: {text.number(calibration.coulomb)} N instead of "
+        f"{text.number(calibration.stated)} N."
     )
 
 
@@ -106,7 +107,7 @@ def _tiles(calibration: Calibration, redesign: Redesign) -> list[Tile]:
     largest = force(calibration.identification.largest)
     tiles = [
         tile("Coulomb friction measured", force(calibration.coulomb), stated),
-        tile("measured over stated", text.number(ratio), "one factor for all seals"),
+        tile("measured / stated value", text.number(ratio), "one factor for all seals"),
         tile("largest friction recorded", largest, "of the filtered record"),
     ]
     moved = redesign.moved
@@ -134,7 +135,7 @@ def _blocks(calibration: Calibration, redesign: Redesign) -> Iterator[Block]:
         yield _shifts(redesign)
     if rows := _best(redesign):
         yield from _best_tables(rows)
-    yield Notes("Changes, and the basis of these results", remarks(calibration, redesign))
+    yield Notes("Changes and basis of these results", remarks(calibration, redesign))
 
 
 def _values(calibration: Calibration) -> Table:
@@ -170,9 +171,9 @@ def _shifts(redesign: Redesign) -> Table:
     ]
     rows = [_shift(shift) for shift in _moved(redesign)]
     still = [shift.after for shift in redesign.shifts if shift.move == 0]
-    note = f"{len(still)} more do not depend on the measured values" if still else ""
+    note = f"{len(still)} more requirements do not depend on the measured values" if still else ""
     if missed := ", ".join(row.name for row in still if not row.met):
-        note += f"; missed among them: {missed}"
+        note += f"; of these, missed: {missed}"
     title = "Requirements that change"
     return Table(title, columns, rows, note=f"{note}." if note else "")
 
@@ -251,8 +252,8 @@ def remarks(calibration: Calibration, redesign: Redesign) -> list[str]:
     """Sentences on changed values, on values that were not measured, and on doubts."""
     said = list(redesign.sentences)
     if count := _tight(redesign):
-        said.append(f"{count_words(count)} at the best design: it lies on its limits")
-    said += [f"{key} stays as the design says: {why}" for key, why in calibration.left.items()]
+        said.append(f"{count_words(count)} at the best design, which lies on these limits")
+    said += [f"{key} keeps the value of the design: {why}" for key, why in calibration.left.items()]
     said += calibration.doubts
     return [sentence(text.pretty(words)) for words in dict.fromkeys(said)]
 

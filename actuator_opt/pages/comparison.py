@@ -48,7 +48,7 @@ _WIDTH, _RIGHT = 180.0, 20.0
 _STEP, _LEAST_STEP, _SHARE, _LINE = 7.6, 3.8, 5.6 / 7.6, 4.2
 """Usual and least spacing of bars [mm], bar height as a share of it, and line height [mm]."""
 _GAP, _TOP, _SMALL = 5.0, 8.4, 3.3
-_NOTE = "Parts of a bar in the order of their key; bold: the best."
+_NOTE = "The parts of a bar are in the order of the key; bold: best value."
 
 
 def page(comparison: Comparison) -> Page:
@@ -154,8 +154,8 @@ def unlike(comparison: Comparison) -> list[str]:
             for sense in ("min", "max")
         )
         lines.append(
-            f"{metric}: the smallest value of {least} and the largest of {most} govern, so that "
-            f"they cannot be compared"
+            f"{metric}: the worst value is the smallest for {least} and the largest for "
+            f"{most}, so that these designs cannot be compared"
         )
     return lines
 
@@ -168,8 +168,8 @@ def optimality(comparison: Comparison, *, remedy: bool = False) -> list[str]:
     many = len(labels) > 1
     names = f"{', '.join(labels[:-1])} and {labels[-1]}" if many else labels[0]
     words = (
-        f"{names} {'are' if many else 'is'} not known to be {'optima' if many else 'an optimum'}: "
-        "the differences may not be those of the best designs"
+        f"{names} {'are' if many else 'is'} not known to be "
+        f"{'optima' if many else 'an optimum'}: optimised designs may compare differently"
     )
     can = any(
         comparison.states[k].status is None and comparison.evaluations[k].design.variables
@@ -184,7 +184,12 @@ def duties(comparison: Comparison) -> list[str]:
     if not paths:
         return []
     more = f" and {len(paths) - 3} more" if len(paths) > 3 else ""
-    return [f"their duties differ ({', '.join(paths[:3])}{more}): each is judged at its own"]
+    return [
+        (
+            f"their duties differ ({', '.join(paths[:3])}{more}): each design is judged at its "
+            "own duty"
+        )
+    ]
 
 
 def part_name(part: str) -> str:
@@ -207,11 +212,11 @@ def answer(comparison: Comparison, question: Question) -> str:
         why = comparison.evaluations[unknown[0]].metrics[question.metric].why or "not computed"
         note = f"; {_NAMED[name]} of {labels} is not known: {why}"
     if question.metric in comparison.unlike:
-        return f"{name}: cannot be said{note}"
+        return f"{name}: not known{note}"
     if question.best is None or question.other is None:
         if len(unknown) + 1 >= len(question.values):
-            return f"{name}: cannot be said{note}"
-        return f"{name}: none, all are equally {_WORST[name]}{note}"
+            return f"{name}: not known{note}"
+        return f"{name}: none, as all are equally {_WORST[name]}{note}"
     best, other = (question.values[k] or 0.0 for k in (question.best, question.other))
     equal = [comparison.labels[k] for k in question.leaders]
     change = 100 * (best / other - 1) if other else 0.0

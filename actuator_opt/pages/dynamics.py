@@ -71,9 +71,9 @@ def damping_sentence(study: DynamicsStudy) -> str:
     )
     words = f"At the weakest position the damping ratio is {_ratio(whole)}: {causes}."
     if whole >= 1:
-        words += " Above one the load does not swing."
+        words += " Above 1 the load does not oscillate."
     if whole < 0:
-        words += " Below zero the motion grows: friction falls with speed."
+        words += " Below 0 the oscillation grows, because friction falls with speed."
     return words
 
 
@@ -86,9 +86,9 @@ def _compact(evaluation: Evaluation, study: DynamicsStudy) -> Block:
         study, required(evaluation, "natural_frequency"), required(evaluation, "damping_ratio")
     )
     note = (
-        f"Case {study.case}, {_line_end(study)}, {text.number(1.0 * study.mass)} kg at the rod."
-        f" {damping_sentence(study)} Dynamic stiffness counts the mass; above the resonance it is"
-        " the mass that resists."
+        f"Case {study.case}, {_line_end(study)}, {text.number(1.0 * study.mass)} kg at the "
+        f"rod. {damping_sentence(study)} Dynamic stiffness includes the mass of the load, "
+        "which resists most above the resonance."
     )
     return Chart("Dynamics", panels, note, height=COMPACT, widths=(52.0, 48.0, 62.0))
 
@@ -98,8 +98,8 @@ def _modes(evaluation: Evaluation, study: DynamicsStudy) -> Block:
         study, required(evaluation, "natural_frequency"), required(evaluation, "damping_ratio")
     )
     note = (
-        f"Case {study.case}, {text.number(study.mass)} kg at the rod; while the load shakes it:"
-        f" {_line_end(study)}. {damping_sentence(study)}"
+        f"Case {study.case}, {text.number(study.mass)} kg at the rod; lines under an "
+        f"oscillating load: {_line_end(study)}. {damping_sentence(study)}"
     )
     return Chart("Dynamics along the stroke", panels, note, height=MODES)
 
@@ -123,8 +123,8 @@ def _response(evaluation: Evaluation, study: DynamicsStudy) -> Block:
     note = f"Curves: case {study.response_case}, {_line_end(study)}."
     if cases:
         note += (
-            " Circles: load cases that shake the actuator, each at its frequency and worst place."
-            " Red: requirements there; the forbidden side is hatched."
+            " Circles: load cases with an oscillating load, each at its frequency and "
+            "worst position. Red: requirements there, with the forbidden side hatched."
         )
     note += " The position loop is open"
     note += ", so leakage lets the piston creep slowly." if study.end != "closed" else "."
@@ -148,10 +148,12 @@ def lumped_sentence(study: DynamicsStudy) -> str:
         return "1 kHz" if frequency is None else f"{text.number(frequency, 2)} Hz"
 
     words = (
-        " With transmission lines in place of the lumped ones the magnitude is within 1 % up to "
-        f"{upto(0.01)}"
+        " If the lines are modelled as transmission lines and not as lumped masses, the "
+        f"magnitude differs by less than 1 % up to {upto(0.01)}"
     )
-    return words + (f", within 10 % up to {upto(0.1)}." if reach[0.01] is not None else ".")
+    return words + (
+        f", and by less than 10 % up to {upto(0.1)}." if reach[0.01] is not None else "."
+    )
 
 
 def _poles(study: DynamicsStudy) -> Block:
@@ -160,12 +162,12 @@ def _poles(study: DynamicsStudy) -> Block:
     rows: list[list[Cell]] = []
     for pole in shown:
         if abs(pole.damping_ratio) < 1 and abs(pole.frequency / natural - 1) < 1e-3:
-            meaning = "the load on oil, walls and rod"
+            meaning = "the load, on the springs of oil, walls and rod"
         elif abs(pole.damping_ratio) < 1:
-            meaning = "lines and what ends them"
+            meaning = "the lines, with the valve or supply at their ends"
         else:
             constant = text.number(1e3 / (2 * math.pi * pole.frequency), 3)
-            meaning = f"does not swing: fades with a time constant of {constant} ms"
+            meaning = f"no oscillation: decays with a time constant of {constant} ms"
         if pole.damping_ratio < 0:
             meaning += "; grows"
         rows.append([text.number(pole.frequency), _ratio(pole.damping_ratio), meaning])
@@ -178,7 +180,7 @@ def _poles(study: DynamicsStudy) -> Block:
     note = f"At the weakest position, case {study.case}, {_line_end(study)}."
     if fast:
         plural = "poles lie" if fast > 1 else "pole lies"
-        note += f" {fast} {plural} above 10 kHz, where the model describes nothing."
+        note += f" {fast} {plural} above 10 kHz, where the model is not valid."
     return Table("Dynamics: poles", columns, rows, note=note, on="paper")
 
 
@@ -194,14 +196,15 @@ def _loop(
         required(evaluation, "bandwidth"),
     )
     note = (
-        "A curve for each place and direction of the spool that governs a margin or the bandwidth."
-        " Circles: the margins where they are least; red: requirements, hatched where forbidden."
+        "One curve for each piston position and spool direction at which a margin or the "
+        "bandwidth is least. Circles: least margins; red: requirements, with the forbidden "
+        "side hatched."
     )
     if any(_passes_behind(loop) for loop in loops):
         note += (
-            " Behind the load's resonance the curve passes -1 on its far side: there the margin is"
-            " the angle up to -180 degrees, and the loop holds as long as the gain margin is above"
-            " one."
+            " Above the resonance of the load the phase is below -180 degrees; there the "
+            "margin is the angle up to -180 degrees, and the loop is stable as long as the "
+            "gain margin is above 1."
         )
     return [
         Chart("Position loop, open", [open_panels(study, loops, limits)], note, height=OPEN),
@@ -255,8 +258,8 @@ def _loop_table(evaluation: Evaluation, loops: tuple[LoopStudy, ...]) -> Block:
     ]
     worst = first.place.partition(", ")[0]
     note = (
-        f"Both directions of the spool differ; {worst} has the least gain margin. Values are the"
-        " least over load cases, places and directions."
+        f"The two spool directions differ; {worst} has the smaller gain margin. Each value "
+        "is the least over load cases, positions and spool directions."
     )
     rows = [row(name) for name in names if name in evaluation.metrics]
     return Table("Position loop: gain, margins, bandwidth", columns, rows, note=note, on="paper")
@@ -266,7 +269,7 @@ def _remark(name: str, loop_study: LoopStudy, tuned: str) -> str:
     if name == "position_gain":
         return tuned
     if name == "ultimate_gain" and loop_study.ultimate_frequency > 0:
-        return f"swings at {text.number(loop_study.ultimate_frequency)} Hz"
+        return f"oscillates at {text.number(loop_study.ultimate_frequency)} Hz"
     if name == "gain_margin" and 0 < loop_study.gain_margin < math.inf:
         return f"{text.number(20 * math.log10(loop_study.gain_margin), 3)} dB"
     if name == "phase_margin" and loop_study.crossover is not None:

@@ -72,7 +72,11 @@ def _frequency_panel(study: DynamicsStudy, requirements: Sequence[Requirement]) 
     curves = [Curve("ports closed" if both else "", xs, closed)]
     if both:
         end = study.end.replace("_", " ")
-        words = "with the lines' oil moving" if study.end == "closed" else f"lines end at: {end}"
+        words = (
+            "including the moving oil in the lines"
+            if study.end == "closed"
+            else f"lines end at: {end}"
+        )
         curves.append(Curve(words, xs, ended))
     least = min(closed)
     floor = max([least, *(row.limit for row in requirements), *([min(ended)] if both else [])])
@@ -323,11 +327,11 @@ def _loop_magnitude_panel(
     high = max(20.0, *(float(np.max(curve.ys)) for curve in curves), -margin + 5.0)
     points, levels, note = [], [], ""
     if loop.gain_margin == math.inf:
-        note = "No gain makes the loop swing."
+        note = "The loop is stable at any gain."
     elif loop.gain_margin <= 0:
         note = "The loop is unstable at any gain."
     elif loop.gain_margin < 1:
-        note = "The closed loop swings."
+        note = "The closed loop is unstable."
     frequency = loop.ultimate_frequency
     if known and frequency > 0:
         words = f"gain margin {number(loop.gain_margin, 4)} ({_signed(margin)} dB)"
@@ -371,7 +375,7 @@ def _loop_phase_panel(
     curves = [Curve("", study.frequencies, phase) for phase in phases]
     points, note = [], ""
     if loop.crossover is None or math.isnan(loop.phase_margin):
-        note = "The magnitude stays off 0 dB."
+        note = "The magnitude does not cross 0 dB."
     else:
         x = math.log10(loop.crossover)
         phase = float(np.interp(x, np.log10(study.frequencies), phases[index]))
@@ -425,7 +429,7 @@ def closed_panel(study: DynamicsStudy, loops: Sequence[LoopStudy], limits: LoopL
             levels.append(replace(limit_level(row, row.limit, " Hz"), upright=True))
     notes = []
     if loops[governing(loops, "gain_margin")].gain_margin < 1:
-        notes.append("The loop swings: this is not its response.")
+        notes.append("The closed loop is unstable, so this is not its response.")
     if loops[least].bandwidth is None:
         notes.append("No bandwidth.")
     return Panel(

@@ -116,7 +116,7 @@ def series(identification: Identification) -> list[Series]:
 def _tiles(identification: Identification) -> list[Tile]:
     """Friction, its pressure, Coulomb friction and the friction coefficient."""
     mean, mu = identification.mean, identification.coefficient
-    largest = f"{pressure(identification.largest / identification.area)} of the maximum"
+    largest = f"{pressure(identification.largest / identification.area)} at the largest friction"
     tiles = [
         tile(
             mean_label(identification).replace("mean", "mean friction", 1),
@@ -135,7 +135,7 @@ def _tiles(identification: Identification) -> list[Tile]:
         note = f"95 %: {bounds(coulomb.lower, coulomb.upper, FORCE)}"
         tiles.append(tile("Coulomb friction", force(coulomb.value), note))
     if isinstance(mu, str):
-        tiles.append(tile("friction coefficient", DASH, "none, see below"))
+        tiles.append(tile("friction coefficient", DASH, "see below"))
     else:
         note = f"contact pressure {number(mu.contact_pressure / 1e6, 3)} MPa"
         tiles.append(tile("friction coefficient", number(mu.value, 3), note))
@@ -287,13 +287,13 @@ PARAMETERS = {
     "offset": _by(FORCE, "offset", "F_0"),
     "bristle_stiffness": _by(STIFFNESS, "bristle stiffness", "σ₀"),
     "bristle_damping": _by(_VISCOUS, "bristle damping", "σ₁"),
-    "lag": ParameterDisplay("lag left", "τ", "ms", 1e3),
+    "lag": ParameterDisplay("remaining lag", "τ", "ms", 1e3),
 }
 """Parameters of the Stribeck curve and the LuGre model."""
 _NOTHING = {
     "viscous": "no viscous friction",
     "pressure_slope": "no effect of pressure",
-    "bristle_damping": "σ₁ not parted from a lag",
+    "bristle_damping": "σ₁ not separable from a lag",
 }
 COEFFICIENTS = {
     ("power_law", "coefficient"): _by(DAMPING, "power law", "a"),
@@ -427,12 +427,12 @@ def coefficient_words(coefficient: Coefficient | str) -> str:
         return sentence(f"Friction coefficient: {coefficient}")
     low, high = (number(1e3 * v, 3) for v in coefficient.speeds)
     return (
-        f"Friction coefficient {number(coefficient.value, 3)} (95 %:"
-        f" {number(coefficient.lower, 3)} to {number(coefficient.upper, 3)}), median of"
-        f" {coefficient.windows} windows of sliding at {low} to {high} mm/s; contact pressure"
-        f" {number(coefficient.contact_pressure / 1e6, 3)} MPa, contact force"
-        f" {force(coefficient.contact_force)}, by {coefficient.law}; rise towards rest and viscous"
-        " part are in it."
+        f"Friction coefficient {number(coefficient.value, 3)} (95 %: "
+        f"{number(coefficient.lower, 3)} to {number(coefficient.upper, 3)}), median of "
+        f"{coefficient.windows} windows of sliding at {low} to {high} mm/s; contact "
+        f"pressure {number(coefficient.contact_pressure / 1e6, 3)} MPa, contact force "
+        f"{force(coefficient.contact_force)}, by {coefficient.law}; it includes the rise "
+        "towards rest and the viscous part."
     )
 
 
@@ -447,7 +447,13 @@ def subject(identification: Identification) -> str:
         low, high = (trimmed(1e3 * v, 3) for v in (min(speeds), max(speeds)))
         range_ = f"{low} to {high} mm/s" if low != high else f"{low} mm/s"
         ways = {point.velocity > 0 for point in identification.points}
-        way = "both ways" if len(ways) == 2 else "outwards alone" if True in ways else "inwards"
+        way = (
+            "in both directions"
+            if len(ways) == 2
+            else "outwards only"
+            if True in ways
+            else "inwards"
+        )
         points = "1 point" if count == 1 else f"{count} points"
         by = kind[identification.points[0].kind]
         seen = f"{points} of steady sliding by {by}, {range_}, {way}"
@@ -523,11 +529,12 @@ def conditioning(identification: Identification) -> str:
     known = load is not None and "F_L" not in identification.record
     against = f" against the stated load of {force(load)}" if known and load is not None else ""
     return (
-        f"Zero-phase Butterworth filter of order {motion.order} at {trimmed(motion.cutoff)} Hz"
-        f" ({gain}), which keeps {number(100 * spectrum.kept, 3)} % of the velocity's power:"
-        f" {spectrum.says(motion.cutoff)}. Force balance with"
-        f" {value_text(MASS, identification.mass)} moving inside the force sensor{against};"
-        f" {_lag(identification)}. {_bounds_by(identification)}"
+        f"Zero-phase Butterworth filter of order {motion.order} at "
+        f"{trimmed(motion.cutoff)} Hz ({gain}), which keeps "
+        f"{number(100 * spectrum.kept, 3)} % of the power of the velocity signal: "
+        f"{spectrum.says(motion.cutoff)}. Force balance with "
+        f"{value_text(MASS, identification.mass)} moving inside the force sensor{against}; "
+        f"{_lag(identification)}. {_bounds_by(identification)}"
     )
 
 
@@ -535,25 +542,27 @@ def _lag(identification: Identification) -> str:
     """The lag removed from the pressure signals, or why none was removed."""
     taken, seen = identification.pressure_lag, identification.lag_seen
     if identification.settings.pressure_lag is not None:
-        return f"{number(1e3 * taken, 3)} ms of lag taken off the pressures, as stated"
+        return f"{number(1e3 * taken, 3)} ms of lag, as stated, is corrected in the pressures"
     if taken:
-        return f"{number(1e3 * taken, 3)} ms taken off the pressures"
+        return f"{number(1e3 * taken, 3)} ms of lag is corrected in the pressures"
     if seen is None or not math.isfinite(seen.upper - seen.lower):
-        return "whether the pressures come late the record cannot show, none is taken off"
+        return "the record cannot show whether the pressures lag, so no lag is corrected"
     low, high = (number(1e3 * x, 2) for x in (seen.lower, seen.upper))
-    return f"lag of the pressures {low} to {high} ms by the record, none taken off"
+    return (
+        f"by the record, the lag of the pressures is between {low} and {high} ms; none is corrected"
+    )
 
 
 def mean_label(identification: Identification) -> str:
     """Label of the mean friction, with the parts of the record that it is averaged over."""
-    return "mean in sliding" if identification.slides else "mean, without sliding"
+    return "mean while sliding" if identification.slides else "mean, without sliding"
 
 
 def _bounds_by(identification: Identification) -> str:
     """Sentence on how the parameters' confidence intervals were computed."""
     if identification.settings.bootstrap:
-        return f"Bounds by {identification.settings.bootstrap} resampled records."
-    return "Bounds of the linearised models."
+        return f"95 % bounds from {identification.settings.bootstrap} resampled records."
+    return "95 % bounds from the linearised models."
 
 
 def doubts(identification: Identification) -> list[str]:

@@ -219,8 +219,8 @@ def _over_range(material: Material) -> Table:
     ]
     rows = [_oil_row(material, t) for t in (over.low, *steps, over.high)]
     note = (
-        "mm²/s and mPa·s: viscosity without pressure, then at 200 and 350 bar; K: bulk modulus "
-        f"in MPa, without air, and at 20 bar with 1 % air; vapour pressure in Pa, absolute. Laws: "
+        "mm²/s and mPa·s: viscosity at 0, 200 and 350 bar; K: bulk modulus in MPa, first "
+        "without air, then at 20 bar with 1 % air; vapour pressure in Pa, absolute. Laws: "
         f"{laws_text(material)}."
     )
     return Table("Over the service range", columns, rows, note=note)

@@ -47,7 +47,7 @@ def blocks(overlay: Overlay, fit: Fit | None) -> list[Block]:
     made.append(_residuals(overlay, None if fit is None else fit.before))
     sentences = remarks(overlay, fit)
     if sentences:
-        title = "What to know of the record"
+        title = "Notes on the record"
         made.append(Notes(title, [tied(words) for words in sentences], style="yellow"))
     return [*made, *measured_charts(overlay)]
 
@@ -107,7 +107,7 @@ def _residuals(overlay: Overlay, before: Overlay | None) -> Table:
             row.append(DASH if old is None else number(quantity.to_display(old.rms), 3))
         rows.append(row)
     file = short(Path(overlay.measured.name).name, 60)
-    return Table(f"Measured less simulated: {file}", columns, rows)
+    return Table(f"Measured minus simulated: {file}", columns, rows)
 
 
 def _parameters(fit: Fit) -> Table:
@@ -151,10 +151,10 @@ def _significant(value: float, half: float) -> str:
 
 def _verdict(fitted: Fitted, *, missed: bool) -> str:
     if fitted.at_bound is not None:
-        return f"at its {fitted.at_bound} end"
+        return f"at its {fitted.at_bound} bound"
     if not fitted.parameter.identifiable:
         return fitted.parameter.verdict
-    return "if the model were right" if missed else "identified"
+    return "if the model were exact" if missed else "identified"
 
 
 def remarks(overlay: Overlay, fit: Fit | None) -> list[str]:
@@ -180,7 +180,7 @@ def measured_charts(overlay: Overlay) -> list[Chart]:
     panels = [_panels(overlay, name, channels) for name in names]
     return [
         Chart(
-            "The record over the simulation" if first == 0 else "",
+            "Measured and simulated signals" if first == 0 else "",
             panels[first : first + columns],
             height=TALL,
         )
@@ -205,7 +205,7 @@ def _panels(
         curves=[record, curve(simulation, name, "simulated")],
     )
     below = Panel(
-        titled("Measured less simulated", quantity),
+        titled("Measured minus simulated", quantity),
         y=Axis(zero=True),
         curves=[Curve("", *_residual(overlay, name, quantity), weight="thin")],
         levels=levels,

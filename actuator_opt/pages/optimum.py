@@ -148,7 +148,10 @@ def choice_notes(optimisation: Optimisation) -> list[str]:
     if len(choices.combinations) > MOST_ROWS:
         lines.append(f"The best {MOST_ROWS} are shown; JSON has all.")
     if any(tried.cost is not None and tried.cost < 0 for tried in choices.combinations):
-        lines.append("A better objective with a check missed that other choices meet ranks lower.")
+        lines.append(
+            "A combination with a better objective ranks lower if it misses a check that "
+            "other choices meet."
+        )
     return [*lines, *map(sentence, choices.notes)]
 
 
@@ -295,10 +298,13 @@ def _sizes(optimisation: Optimisation, sizes: Mapping[str, float]) -> str:
 def infeasibility_blocks(card: Infeasibility) -> list[Block]:
     """Blocks on an infeasible design: conflicting limits, size of the conflict, and remedies."""
     conflict = text.pretty(sentence(card.sentence)).replace("->", "→")
-    blocks: list[Block] = [Notes("Why nothing fits", [conflict])]
+    blocks: list[Block] = [Notes("Why no design meets all limits", [conflict])]
     if card.joint:
         these = "this" if len(card.joint) == 1 else "all of these together"
-        note = f"With {these} a design exists: the one shown here. The search gave no smaller sum."
+        note = (
+            f"With {these} the design shown here meets all limits. The search found no smaller "
+            "total relaxation."
+        )
         if any(entry["safety_factor"] for entry in card.joint):
             note += " It weakens a safety factor, which is not advised."
         rows = [_limit(entry) for entry in card.joint]
@@ -306,17 +312,20 @@ def infeasibility_blocks(card: Infeasibility) -> list[Block]:
     others = [str(e["parameter"] or e["requirement"]) for e in card.sole if e["needed"] is None]
     words = ""
     if card.cures:
-        words = "Any single line is enough, the most advisable first; less of it was not. "
+        words = (
+            "Each of these changes alone is enough, the most advisable first; a smaller change "
+            "was not enough. "
+        )
     if others:
-        words += f"Not enough alone, however far it is relaxed: {', '.join(others)}. "
+        words += f"Not enough alone, however far they are relaxed: {', '.join(others)}. "
     if card.untried:
-        words += f"Not tried, for the time it takes: {', '.join(card.untried)}."
+        words += f"Not tried, to save time: {', '.join(card.untried)}."
     if card.cures:
         rows = [_cure(entry) for entry in card.cures]
-        title = "What is enough alone"
+        title = "Single changes that are enough"
         blocks.append(Table(title, _columns("what"), rows, note=words.strip()))
     elif words:
-        blocks.append(Notes("What is enough alone", [words.strip()]))
+        blocks.append(Notes("Single changes that are enough", [words.strip()]))
     if card.bounds:
         blocks.append(_bounds(card))
     if card.evidence:
@@ -382,10 +391,11 @@ def _bounds(card: Infeasibility) -> Block:
     ]
     total = DASH if card.total is None else f"{text.number(100 * card.total, 3)} % of the limits"
     note = (
-        f"The gap is what the joint relaxation gives up in sum, {total}; 1 % more room closes this"
-        f" much of it, to begin with. {DASH}: no design found by opening this bound alone."
+        f"Gap: the smallest total by which the limits must be relaxed together, {total}. The "
+        "column shows the share of it that the first 1 % of widening this bound closes. "
+        f"{DASH}: widening this bound alone led to no design."
     )
-    return Table("Bounds in the way", columns, rows, note=note)
+    return Table("Bounds that prevent a design", columns, rows, note=note)
 
 
 def _closes(gain: float, total: float | None) -> str:
@@ -407,8 +417,9 @@ def robust_tables(optimisation: Optimisation) -> Iterator[Table]:
         for number, step in enumerate(robust.rounds)
     ]
     note = (
-        f"Round 0 has no reserves. An independent sample of {robust.samples} draws at the design"
-        f" shown: {percent(robust.rate)} ({percent(robust.lower)} to {percent(robust.upper)})."
+        "Round 0 has no margins added for scatter. In an independent sample of "
+        f"{robust.samples} draws the design shown meets all limits in {percent(robust.rate)} "
+        f"({percent(robust.lower)} to {percent(robust.upper)})."
     )
     columns = [Column(head, width=1.0) for head in ("round", quantity.label, "all limits hold")]
     title = f"Towards a yield of {percent(robust.target)}"
@@ -419,9 +430,9 @@ def robust_tables(optimisation: Optimisation) -> Iterator[Table]:
         if 1e-3 <= share <= WORTH
     ]
     if kept:
-        columns = [Column(head, width=1.0) for head in ("limit", "reserve, of the limit")]
+        columns = [Column(head, width=1.0) for head in ("limit", "added, of the limit")]
         note = (
-            "The distance from the margin of the design to the margin that a draw falls below with"
-            " the probability allowed to a single limit."
+            "Added margin: how far the margin of a limit may fall by scatter before the share "
+            "of draws that miss this limit exceeds the share allowed to it."
         )
-        yield Table("Reserves kept beyond limits", columns, kept, note=note, on="paper")
+        yield Table("Margins added for scatter", columns, kept, note=note, on="paper")

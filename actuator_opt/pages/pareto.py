@@ -210,7 +210,7 @@ def _blocks(front: ParetoFront) -> Iterator[Block]:
     numbers = [[text.number(row.quantity.to_display(row.values[k])) for row in rows] for k in kept]
     body = [[str(k + 1), *cells, _role(front, k)] for k, cells in zip(kept, numbers, strict=True)]
     more = len(front.points) - len(kept)
-    note = f"{more} more designs between these." if more else ""
+    note = f"{more} more designs lie between those shown." if more else ""
     yield Table("Designs of the front", columns, body, note=note)
     yield Notes("How far to trust it", [text.pretty(line) for line in remarks(front)])
 
@@ -220,16 +220,20 @@ def remarks(front: ParetoFront) -> list[str]:
     lines = []
     if front.evenness is not None and len(front.points) > 2:
         lines.append(
-            f"largest gap between neighbours {text.number(front.evenness, 3)} times the median, "
-            f"in objectives over their range" + (", jumps left out" if front.jumps else "")
+            f"the largest gap between neighbours is {text.number(front.evenness, 3)} times "
+            "the median, measured in objectives divided by their range"
+            + (", without jumps" if front.jumps else "")
         )
     lines += _wide(front)
     if front.knee is not None:
         lines.append(f"knee: design {front.knee.index + 1}, where the front bends most")
     elif len(front.points) > 1:
-        lines.append("no knee: the front nowhere bends towards the ideal")
+        lines.append("no knee: the front does not bend towards the ideal point")
     worst = max(point.kkt_residual for point in front.points)
-    lines.append(f"optimality conditions hold to {text.number(worst, 2)} at every design")
+    lines.append(
+        f"the residual of the optimality conditions is at most {text.number(worst, 2)} at "
+        "every design"
+    )
     if tight := len(front.evaluation.tight):
         lines.append(
             f"{_evaluated(front)}: {count_words(tight)}; `actuator-opt uncertainty` gives the "
@@ -247,8 +251,8 @@ def _wide(front: ParetoFront) -> Iterator[str]:
     if jumps := front.jumps:
         most = text.number(100 * max(gap.reach / gap.size for gap in jumps), 2)
         yield (
-            f"the front jumps between designs {between(jumps)}: by the designs at levels on both "
-            f"sides at most {most} % of such a gap can hold more of it"
+            f"the front jumps between designs {between(jumps)}: searches from both sides "
+            f"show that further designs can lie in at most {most} % of such a gap"
         )
     if gaps := [gap for gap in front.wide if not gap.jump]:
         yield f"wide gap between designs {between(gaps)}: no design found there"
@@ -283,7 +287,7 @@ def _panel(front: ParetoFront, across: tuple[Wish, int], up: tuple[Wish, int]) -
     ]
     points = [Points("front", xs, ys, small=True, style=0)]
     if inside:
-        words = "dominated designs that the search visited"
+        words = "dominated designs that the search computed"
         pale = Points(words, [x for x, _ in inside], [y for _, y in inside], weight="guide")
         points.insert(0, pale)
     if front.knee is not None:

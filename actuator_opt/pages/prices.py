@@ -135,29 +135,31 @@ def quality(optimisation: Optimisation) -> str:
     if kkt is None:
         return "Quality: no multipliers (the design is not an optimum); prices are not exact."
     parts = [
-        f"Quality: KKT residual {text.number(kkt.residual, 2)}, {len(kkt.active)} active rows of"
-        f" rank {kkt.rank}, {kkt.curvature}."
+        f"Quality: KKT residual {text.number(kkt.residual, 2)}, {len(kkt.active)} active limits "
+        f"of rank {kkt.rank}, {kkt.curvature}."
     ]
     if len(kkt.active) > kkt.rank:
         kinks = sum(row.one_sided for row in optimisation.sensitivities)
         sides = (
-            "every price here is the same upwards and downwards"
+            "every price here is the same for an increase and a decrease"
             if not kinks
-            else f"{kinks} prices differ upwards and downwards"
+            else f"{kinks} prices differ between an increase and a decrease"
         )
-        parts.append(f"A degenerate vertex, more rows than dimensions they hold: {sides}.")
+        parts.append(
+            f"Degenerate optimum, with more active limits than variables they fix: {sides}."
+        )
     if (made := optimisation.made) is not None:
         value = text.value_text(text.metric(optimisation.objective_metric), made.objective_before)
         parts.append(f"Prices are those of the continuous optimum ({value}), before rounding.")
     parts.append(
-        f"Prices are per unit shown in the limit column; at ±{PER_CENT} %: predicted by the price,"
-        f" then solved again; rows are ranked by what that changes; {DASH}: no design found."
-        " Holds until: as far as the same limits stay active."
+        f"Prices are per unit shown in the limit column; at ±{PER_CENT} %: first the change "
+        "that the price predicts, then that of a new optimum, which also ranks the rows; "
+        f"{DASH}: no design found. Holds until: value up to which the same limits stay active."
     )
     if not all(row.straight(optimisation.objective_value) for row in optimisation.sensitivities):
         parts.append(
-            f"~: at ±{PER_CENT} % the price misses more than {round(100 * STRAIGHT)} % of the"
-            " change or one end has no design; trust the solved columns."
+            f"~: at ±{PER_CENT} % the price is wrong by more than {round(100 * STRAIGHT)} % of "
+            "the change, or no design was found on one side; trust the solved columns."
         )
     return " ".join(parts)
 
@@ -212,8 +214,8 @@ def moves(optimisation: Optimisation, *, shown: bool = False) -> Block | None:
         Column("which dimensions move, per +1 %", "left", 3.0),
     ]
     note = (
-        f"Derivative of the optimum: the {MOVING} largest movements of the first {MOST_MOVES} rows"
-        " that move any; ~ only as far as the price holds."
+        f"Derivative of the optimum: the {MOVING} largest changes of dimensions, for the first "
+        f"{MOST_MOVES} rows that change any; ~: valid only as far as the price holds."
     )
     on: Medium = "both" if shown else "paper"
     return Table("Which dimension moves", columns, rows, note=note, on=on)
@@ -240,12 +242,12 @@ def _tornado_block(optimisation: Optimisation) -> Block | None:
     if not rows:
         return None
     left = len(optimisation.sensitivities) - len(rows)
-    more = f" {left} more change less or nothing." if left else ""
+    more = f" {left} more have a smaller effect or none." if left else ""
     note = (
-        "Bars are solved again, each an optimum of its own; strokes are what the price predicts."
-        f" Ranked by the larger bar.{more}"
+        "Bars: change of the objective after optimising again; strokes: change that the price "
+        f"predicts. Ranked by the larger bar.{more}"
     )
-    return Drawing(f"What ±{PER_CENT} % of each changes", tornado(optimisation), note)
+    return Drawing(f"Effect of ±{PER_CENT} % of each", tornado(optimisation), note)
 
 
 def tornado(optimisation: Optimisation, *, width: float = 180.0) -> Ink:

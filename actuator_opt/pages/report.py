@@ -259,7 +259,7 @@ def verdict(subject: Evaluation | Optimisation) -> Verdict:
         state, words = "met", "REQUIREMENTS MET"
     counts = _counts(evaluation)
     lines, cautions = doubts(evaluation)
-    without = ", without reserves for the yield" if robust and state in _SHORT_OF else ""
+    without = ", without margins for scatter" if robust and state in _SHORT_OF else ""
     return Verdict(
         state,
         words,
@@ -301,7 +301,7 @@ def _counts(evaluation: Evaluation) -> dict[str, int]:
 def _misfit(optimisation: Optimisation | None) -> str:
     """The geometric constraints that no design meets."""
     card = None if optimisation is None else optimisation.infeasibility
-    return f"; the geometry does not fit: {', '.join(card.laws)}" if card and card.laws else ""
+    return f"; the geometry conflicts: {', '.join(card.laws)}" if card and card.laws else ""
 
 
 # ---- key figures ----
@@ -414,7 +414,7 @@ def requirements(evaluation: Evaluation, *, shown: bool = True, labelled: bool =
         Column("status", on="paper"),
         Column("governing case", "left", 1.2 if labelled else 2.0, breaks=18, drop=2, style="dim"),
     ]
-    note = "Margin is the room left, relative to the limit; the bar is full at 100 %."
+    note = "Margin: distance from the limit, relative to the limit; the bar is full at 100 %."
     note = " ".join([note, *(f"{line}." for line in _row_notes(evaluation))])
     shown_columns = [k for k, column in enumerate(columns) if labelled or column.head != "quantity"]
     return Table(
@@ -542,8 +542,8 @@ def checks(evaluation: Evaluation) -> Iterator[Block]:
         return
     counts = _counts(evaluation)
     note = (
-        f"{counts['met']} met, {counts['missed']} missed, {counts['not_checked']} not checked;"
-        " a line without a check does not claim that its limit is met."
+        f"{counts['met']} met, {counts['missed']} missed, {counts['not_checked']} not "
+        "checked; a line that is not checked does not claim that its limit is met."
     )
     columns = [
         Column("check", "left", 1.25),

@@ -121,7 +121,7 @@ def _sweep_facts(body: Mapping[str, Any]) -> list[Fact]:
     plan, request = body["plan"], body["asked"]
     store = request["store"]
     if request["reduce"]:
-        kept = f"the best {request['keep']} alone"
+        kept = f"only the best {request['keep']}"
     else:
         kept = "no rows" if store is None else f"every row in {store['path']}"
     return [

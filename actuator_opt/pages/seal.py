@@ -55,7 +55,10 @@ def page(study: SealStudy) -> Page:
 
 def blocks(study: SealStudy) -> list[Block]:
     """Blocks on the seals of piston or rod, with their gland, for the report of a design."""
-    note = "Dashed: free sections. Lands between grooves are cut where they are long."
+    note = (
+        "Dashed: sections of the free rings. Long lands between grooves are shortened in "
+        "the drawing."
+    )
     if study.place == "piston":
         note += " The bore is drawn at its size without pressure."
     ink = gland_drawing(study).ink
@@ -105,7 +108,7 @@ def _tiles(study: SealStudy) -> list[Tile]:
         flow = _flow(point.flow)
         tiles.append(tile(f"flow across, {driven}", flow, "towards the outer side"))
     else:
-        tiles.append(tile("left by a double stroke", _volume(oil.net), at))
+        tiles.append(tile("leakage per double stroke", _volume(oil.net), at))
     thinnest = min(float(ring.film.min()) for ring in point.rings)
     film = f"{number(1e6 * thinnest, 3)} µm"
     return [*tiles, tile(f"thinnest film, {driven}", film, "between the mean planes")]
@@ -189,11 +192,10 @@ def _ring_size(element: SealElement) -> str:
 
 def _squeeze(study: SealStudy) -> Drawing:
     note = (
-        "Bars from loosest to tightest over the tolerances of ring and gland, rod and bore"
-        " concentric; line: nominal. Loosest and nominal with the section as thin as its"
-        " stretch makes it, tightest with the bare section. Ring and housing swell with heat at"
-        " their own rates, where the compound states its; pressure widens the bore around the"
-        " piston."
+        "Bars from loosest to tightest over the tolerances of ring and gland, rod and bore "
+        "concentric; line: nominal. Loosest and nominal: section thinned by its stretch; "
+        "tightest: section without stretch. Ring and housing expand with heat, each by its own "
+        "coefficient if the compound states one; pressure widens the bore around the piston."
     )
     if any(row.loosest <= 0 for row in study.squeezes):
         note += " Red: the ring loses contact."
@@ -230,8 +232,8 @@ def _operating(study: SealStudy, sentences: str) -> Table:
     columns = [Column("quantity", "left", 1.6, wraps=True, least=10)]
     columns += [Column(name, "right", 1.0, wraps=True, least=9) for name in stroke_names(study)]
     note = (
-        f"{sentences} Flow and oil are negative where they return to the sealed side; residuals"
-        " are relative."
+        f"{sentences} Negative flows and oil volumes return to the sealed side; residuals are "
+        "relative."
     )
     title = f"{_seals(study)}: at {operating_point(study)}"
     return Table(title, columns, operating_rows(study), note=note)
@@ -245,10 +247,10 @@ def operating_rows(study: SealStudy) -> list[tuple[str, str, str]]:
 
     rows = [
         row("friction, film", lambda point: _force(point.friction)),
-        row("of the oil's shear", lambda point: _force(point.viscous)),
-        row("of the asperities", lambda point: _force(point.asperity)),
-        row("friction over the moduli's scatter", _scatter),
-        row("friction by the coefficient instead", lambda p: _force(p.coefficient_friction)),
+        row("part by oil shear", lambda point: _force(point.viscous)),
+        row("part by asperities", lambda point: _force(point.asperity)),
+        row("friction, by scatter of the moduli", _scatter),
+        row("friction by friction coefficient", lambda p: _force(p.coefficient_friction)),
         row("breakaway, dry", lambda point: _force(point.breakaway)),
         row("secant damping at this speed", lambda point: _damping(point.damping)),
         row("flow towards the outer side", lambda point: _flow(point.flow)),
@@ -257,7 +259,7 @@ def operating_rows(study: SealStudy) -> list[tuple[str, str, str]]:
         rows.append(row("pressure between the rings, gauge", _between))
     if oil := study.double_stroke:
         rows.append(
-            ("oil a stroke carries out", _volume(oil.carried_out), _volume(-oil.drawn_back))
+            ("oil carried out per stroke", _volume(oil.carried_out), _volume(-oil.drawn_back))
         )
     return [
         *rows,
@@ -321,8 +323,9 @@ def _contact(study: SealStudy) -> Table:
         Column("contact model", "left", 1.4, breaks=14, wraps=True, drop=5),
     ]
     note = (
-        "Static contact. Line load per length of circumference, peak above the outer side;"
-        " modulus of what is squeezed: lowest, assumed and highest over its scatter."
+        "Static contact. Line load: force per length of circumference; peak: contact pressure "
+        "above that of the outer side. Columns: lowest, assumed and highest modulus of the "
+        "squeezed part."
     )
     return Table(f"{_seals(study)}: contact", columns, contact_rows(study), note=note)
 
@@ -368,8 +371,9 @@ def _modulus(point: RingPoint) -> str:
 def _film(study: SealStudy, index: int) -> Chart:
     label = study.drive.rings[index].ring.label
     note = (
-        f"At {operating_point(study)}. Static: the contact without oil; oil and asperities share"
-        " it. The film is the distance of the mean planes of both rough surfaces."
+        f"At {operating_point(study)}. Static: contact pressure without oil; in motion, oil and "
+        "asperities carry it together. Film: distance between the mean planes of the two rough "
+        "surfaces."
     )
     title = f"{label.capitalize()}: contact pressure and oil film"
     return Chart(title, figures.contact_panels(study, index), note, height=54.0)
@@ -436,18 +440,20 @@ def stress_note(study: SealStudy) -> str:
     """Note on what the stress sections show, and on their limitations."""
     words = "Deformed to scale, sealed side left; red: the contact. "
     if study.out.rings[0].ring.element.back_ups:
-        words += "The groove is what the back-up rings leave. "
+        words += "The groove shown is the space beside the back-up rings. "
     return (
-        f"{words}Stress averaged at the corners of the elements; highest: mean of one element."
-        " Rigid walls with closed corners; no friction, no creep, no yielding."
+        f"{words}Stress is averaged at the corners of the elements; the highest value is the "
+        "mean of an element. Rigid walls with closed corners; no friction, no creep, no "
+        "yielding."
     )
 
 
 def contact_note(study: SealStudy) -> str:
     """Note on the limitations of the contact curves."""
     words = (
-        "Pressures above the outer side's; both without the bore's growth. Between the points of"
-        " the elements the line is straight, and so are contacts taken between two pressures."
+        "Pressures are relative to the outer side; neither curve includes the bore's growth. "
+        "Between the computed points of the finite elements, and between two computed "
+        "pressures, values are interpolated linearly."
     )
     elements = study.out.rings[0].ring.element.seal_type.elements
     return words if elements is None else f"{words} {elements.note}"
@@ -460,9 +466,9 @@ def _speeds(study: SealStudy, curves: FilmMap) -> Chart:
     point, note = study.drive, ""
     if point.converged:
         note = (
-            f"At {operating_point(study)} friction is {_force(point.friction)} (moduli's scatter:"
-            f" {_scatter(point)}) and secant damping {_damping(point.damping)}: at this speed"
-            " only. "
+            f"At {operating_point(study)} friction is {_force(point.friction)} (with the "
+            f"scatter of the moduli: {_scatter(point)}) and secant damping "
+            f"{_damping(point.damping)}, which applies to this speed only. "
         )
     note += (
         f"By the coefficient of friction it is {_force(point.coefficient_friction)};"
@@ -493,7 +499,7 @@ def _map(study: SealStudy, film_map: FilmMap) -> Chart:
     driven = stroke_names(study)[0].capitalize()
     note = f"{driven}.{missing(film_map)}"
     if film_map.why:
-        note += " Hatched: not known beside points without a film."
+        note += " Hatched: unknown, next to points without a film."
     title = f"{_seals(study)}: friction and damping over speed and pressure"
     return Chart(title, figures.map_panels(study, film_map), note, height=62.0)
 
@@ -542,9 +548,9 @@ def strokes(study: SealStudy) -> str:
     if study.place == "rod":
         return f"{pressure} above the atmosphere."
     return (
-        "Driven, the piston runs away from the pressure it seals; overrun, a load pushes it"
-        f" against that pressure. {pressure} above the {bars(study.outer_pressure)} of the other"
-        " chamber."
+        "Driven: the oil pressure moves the piston. Overrun: a load moves the piston against "
+        f"the pressure that its seal withstands. {pressure} above the "
+        f"{bars(study.outer_pressure)} of the other chamber."
     )
 
 
@@ -559,16 +565,16 @@ def leakage(study: SealStudy) -> str:
     pressure, speed = bars(point.pressure), speed_words(point.speed)
     if oil is None:
         return (
-            f"Flow across the piston while driven, at {pressure} and {speed}:"
-            f" {_across(point.flow, 'the chamber of higher pressure')};"
-            f" overrun: {_across(study.other.flow, 'it')}."
+            f"Leakage across the piston seal at {pressure} and {speed}. Driven: "
+            f"{_across(point.flow, 'the chamber of higher pressure')}. Overrun: "
+            f"{_across(study.other.flow, 'that chamber')}."
         )
     back = oil.drawn_back
     inwards = f"draws {_volume(back)} back" if back >= 0 else f"leaks {_volume(-back)} more"
     return (
-        f"Over {trimmed(1e3 * study.stroke)} mm the stroke out carries {_volume(oil.carried_out)}"
-        f" past the seal and the stroke in {inwards}, both at {pressure} and {speed}: a double"
-        f" stroke leaves {_volume(oil.net)} outside."
+        f"Over {trimmed(1e3 * study.stroke)} mm the outstroke carries "
+        f"{_volume(oil.carried_out)} past the seal and the instroke {inwards}, both at "
+        f"{pressure} and {speed}. A double stroke leaves {_volume(oil.net)} outside."
     )
 
 
@@ -583,30 +589,35 @@ def notes(study: SealStudy) -> list[str]:
         scatter += f", a stated modulus × or ÷ {trimmed(STATED_FACTOR)}"
     frictions = sorted({point.ring["asperity_friction"] for point in study.drive.rings})
     words = [
-        "Model: static contact, oil film with cavitation between two rough planes, asperity"
-        " contact, leakage. Input: sizes, modulus or hardness, oil, and the surfaces' numbers.",
-        "Asperity density, radius and friction"
-        f" ({' and '.join(trimmed(friction) for friction in frictions)}) are literature orders of"
-        " magnitude for the compound, not measurements of this seal. The asperity part of the"
-        " friction is proportional to the asperity friction: where it is nearly all, so is the"
-        " friction.",
-        "The averaged film passes some oil at any gap, at rest too, where a real elastomer seal"
-        " does not leak: its flow factors do not know the contact pressure at which the last path"
-        " closes. Near standstill it overstates the leakage.",
-        f"Band: {scatter}, all rings together, the oil and the surfaces as stated.",
-        "Breakaway is all oil squeezed out: asperity friction times the whole line load.",
-        "Secant damping is friction over speed: it holds at the stated speed and amplitude"
-        " alone, falls as 1/v where friction hardly depends on speed, and is not the damping"
-        " of the oil.",
+        "Model: static contact, oil film with cavitation between two rough planes, asperity "
+        "contact, leakage. Input: sizes, modulus or hardness, oil, and roughness and asperities "
+        "of the surfaces.",
+        "Asperity density, radius and friction "
+        f"({' and '.join(trimmed(friction) for friction in frictions)}) are literature "
+        "orders of magnitude for the compound, not measurements of this seal. The "
+        "asperity part of the friction is proportional to the asperity friction: where "
+        "asperities cause nearly all of the friction, the total is, too.",
+        "The averaged film passes some oil at any gap, at rest too, where a real elastomer seal "
+        "does not leak: its flow factors do not include the contact pressure at which the last "
+        "leakage path closes. Near standstill it overstates the leakage.",
+        f"Band: {scatter}, for all rings together, with the oil and the surfaces as stated.",
+        (
+            "Breakaway assumes that all oil is squeezed out: asperity friction coefficient "
+            "times the whole line load."
+        ),
+        "Secant damping is friction over speed: it is valid only at the stated speed and "
+        "amplitude, falls as 1/v where friction hardly depends on speed, and is not the damping "
+        "by the oil.",
     ]
     lugre = study.lugre
     if lugre is not None:
         words.append(
-            "LuGre for a simulation of this seal: bristle stiffness"
-            f" {number(lugre.stiffness / 1e6, 3)} N/µm (breakaway over"
-            f" {trimmed(1e3 * study.design.stiffness.seal_deflection)} mm), damping"
-            f" {number(lugre.damping / 1e3, 3)} kN·s/m (square root of stiffness times load mass)."
-            f" It cannot create energy up to {number(1e3 * lugre.passive_speed, 3)} mm/s; beyond,"
-            " taper the damping."
+            "LuGre for a simulation of this seal: bristle stiffness "
+            f"{number(lugre.stiffness / 1e6, 3)} N/µm (breakaway over "
+            f"{trimmed(1e3 * study.design.stiffness.seal_deflection)} mm), damping "
+            f"{number(lugre.damping / 1e3, 3)} kN·s/m (square root of stiffness times load "
+            "mass). The model cannot create energy up to "
+            f"{number(1e3 * lugre.passive_speed, 3)} mm/s; above that speed, reduce the damping "
+            "gradually."
         )
     return words

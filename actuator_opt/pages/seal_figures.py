@@ -139,7 +139,7 @@ def contact_panels(study: SealStudy, index: int) -> list[Panel]:
         Curve(stroke, 1e3 * point.x, 1e6 * point.film, style=style)
         for stroke, point, style in zip(strokes, points, (OIL, OTHER), strict=True)
     ]
-    return [*pressures, Panel("Film, mean planes, µm", x, Axis(zero=True), curves=films)]
+    return [*pressures, Panel("Film between mean planes, µm", x, Axis(zero=True), curves=films)]
 
 
 def _pressures(point: RingPoint) -> tuple[Array, Array, Array]:

@@ -419,7 +419,7 @@ def _balance(simulation: Simulation) -> str:
     balance = simulation.balance
     mass, energy = share_words(balance.mass), share_words(balance.energy)
     volumes = "" if balance.mass == 0 else f"mass within {mass} of a volume's content, "
-    return f"Balances: {volumes}energy within {energy} of what went through."
+    return f"Balances: {volumes}energy within {energy} of the energy converted."
 
 
 def second_words(simulation: Simulation) -> str:
@@ -429,12 +429,13 @@ def second_words(simulation: Simulation) -> str:
         return "Not compared with a second integrator."
     method = second.method.capitalize()
     if not second.signal:
-        return f"{method} on the same equations: no signal that moves was compared."
+        return f"{method} on the same equations: no signal changed, so none was compared."
     signal = simulation.told.get(second.signal)
     words = second.signal if signal is None else signal.label
     return (
-        f"{method} on the same equations: signals differ by {share_words(second.max_difference)}"
-        f" of their span at most, {words} at {number(second.time)} s."
+        f"{method} on the same equations: signals differ by at most "
+        f"{share_words(second.max_difference)} of their span, most in {words} at "
+        f"{number(second.time)} s."
     )
 
 
@@ -442,7 +443,7 @@ def event_words(simulation: Simulation) -> str:
     """The first events, and the total number of events."""
     events = simulation.events
     if not events:
-        return "No switch turned."
+        return "No discrete event occurred."
     first = [
         f"{event.name} {'on' if event.on else 'off'} at {number(event.time)} s"
         for event in events[:MOST_EVENTS]
@@ -478,7 +479,7 @@ def _open(simulation: Simulation) -> Iterator[str]:
     for name in ("mass", "energy"):
         error = getattr(simulation.balance, name)
         if error >= CLOSED:
-            yield f"in doubt: the balance of {name} is open by {share_words(error)}"
+            yield f"in doubt: the balance of {name} does not close, by {share_words(error)}"
     second = simulation.second
     if second is not None and second.max_difference >= AGREE:
         apart = share_words(second.max_difference)
@@ -542,7 +543,7 @@ def _meaning(simulation: Simulation, name: str) -> str:
         "rise_time": "10 to 90 %",
         "settling_time": "within 2 %",
         "cavitation_margin": "above vapour",
-        "efficiency": "load over supply",
+        "efficiency": "load / supply power",
         "supply_energy": f"in {trimmed(simulation.scenario.duration)} s",
     }
     return meanings.get(name, "")
@@ -572,7 +573,7 @@ def _bench(simulation: Simulation) -> list[Tile]:
 def _blocks(simulation: Simulation, more: Sequence[str]) -> Iterator[Block]:
     """Results beside the controller; on the terminal also step and energies; then accuracy."""
     sentences = trust(simulation, more)
-    notes = Notes("What this rests on", [tied(words) for words in sentences])
+    notes = Notes("Basis of these results", [tied(words) for words in sentences])
     tables = [block for block in (_results(simulation), _controller(simulation)) if block]
     beside = len(tables) == 1 and sum(map(len, sentences)) < BRIEF
     if beside:
@@ -634,7 +635,10 @@ def _controller(simulation: Simulation) -> Block | None:
     rows = controller(simulation)
     if not rows:
         return None
-    note = "Margins of the linear loop without sticking friction, at its worst place and direction."
+    note = (
+        "Margins of the linear loop without sticking friction, at its worst position and "
+        "spool direction."
+    )
     columns = [Column("controller"), Column("", width=1.0, breaks=14, wraps=True)]
     return Table("Controller and its margins", columns, rows, note=note)
 
@@ -651,5 +655,5 @@ def _step(simulation: Simulation) -> Iterator[Block]:
     done = 100 * (np.interp(over, time, values) - servo.start) / (servo.target - servo.start)
     points = [(float(t), max(float(y), 0.0)) for t, y in zip(over, done, strict=True)]
     words = LOOPS[servo.loop].words
-    title = f"Step of the {words} at {number(servo.time, 3)} s, % of the step over time after it"
+    title = f"Response to the step of the {words} at {number(servo.time, 3)} s, in % of the step"
     yield TerminalFigure(title, points, 100.0, ("0", duration(end - begin)), height=11)

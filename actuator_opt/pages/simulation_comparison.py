@@ -353,7 +353,7 @@ def page(
     static : positions [m] and static stiffness [N/m], drawn beside the dynamic ones
     extra : blocks below all others
     """
-    notes = Notes("What this rests on", [tied(words) for words in _trust(comparison)])
+    notes = Notes("Basis of these results", [tied(words) for words in _trust(comparison)])
     designs = dict.fromkeys(run.plant.design.name for _, run in comparison.runs)
     return Page(
         name=comparison.title,
@@ -476,7 +476,7 @@ def run_table(comparison: RunComparison) -> Table:
             [name, *(Status("missed", x) if key in missed else x for key, x in texts.items())]
         )
     limited = any(run.requirements for _, run in comparison.runs)
-    note = "A cross marks a result that misses the limit of its own run." if limited else ""
+    note = "A cross marks a result that misses the limit stated for its run." if limited else ""
     return Table("Runs", columns, body, note=note)
 
 
@@ -533,8 +533,8 @@ def _trust(comparison: RunComparison) -> list[str]:
     if checked:
         most = share_words(max(second.max_difference for second in checked))
         first += (
-            f" {len(checked)} of {len(simulations)} runs were integrated again by another"
-            f" method: signals differ by {most} of their span at most."
+            f" {len(checked)} of {len(simulations)} runs were integrated again by another "
+            f"method: signals differ by at most {most} of their span."
         )
     else:
         first += " No run was compared with a second integrator."

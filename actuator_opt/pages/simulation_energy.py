@@ -254,8 +254,9 @@ def doubts(simulation: Simulation) -> list[str]:
         f"{name} by {number(100 * error, 2, signed=True)} %" for name, error in wrong.items()
     )
     return [
-        f"powers at the samples add up to other energies than the integration: {errors} of all"
-        " energy; take shorter samples, and doubt the energies where that does not help"
+        "the sampled powers add up to energies that differ from the integration by "
+        f"{errors} of all energy; take shorter samples, and do not trust the energies if "
+        "that does not help"
     ]
 
 

@@ -19,8 +19,8 @@ SHARES = ((0.0, "cap end"), (0.25, "25 %"), (0.5, "50 %"), (0.75, "75 %"), (1.0,
 """Positions in the table, as shares of the stroke."""
 _TOPOLOGY = {
     "per_chamber": (
-        "Per chamber: a part's share is its part of the strain energy under a unit force, the"
-        " shares add up to 1/k"
+        "Per chamber: the share of a part is its strain energy under a unit force; the "
+        "shares add up to 1/k"
     ),
     "aalto_as_published": (
         "As published in [AaltoThesis], not per chamber: totals of oil, walls and lines in series"
@@ -110,9 +110,9 @@ def gain_sentence(curve: StrokeCurve) -> str:
     gain = 1 / (1 - share / 2) - 1
     place = text.trimmed(1e3 * float(curve.position[index]), 3)
     return (
-        f"At the weakest position, {place} mm, {name} would buy most: it is"
-        f" {per_cent(share)} of the compliance{both}; halving that would make the actuator"
-        f" {per_cent(gain)} stiffer there."
+        f"At the weakest position, {place} mm, {name} matters most: it is "
+        f"{per_cent(share)} of the compliance{both}; halving it would make the actuator "
+        f"{per_cent(gain)} stiffer there."
     )
 
 
@@ -149,7 +149,7 @@ def _budget(curve: StrokeCurve) -> Block:
         Column("part", "left", 1.3),
         *(Column(name, "right", 0.8) for _, name in SHARES),
         Column(f"weakest, {text.trimmed(1e3 * places[-1], 3)} mm", "right", 1.2, strong=True),
-        Column("alone there, kN/mm", "right", 1.2),
+        Column("of this part alone, kN/mm", "right", 1.2),
     ]
     return Table("Stiffness budget", columns, rows, note=gain_sentence(curve), total=1, on="paper")
 

@@ -73,16 +73,19 @@ def _verdict(swept: Swept) -> Verdict:
 def _nothing(swept: Swept) -> str:
     """Why there is no best design."""
     if swept.feasible:
-        return f"None of the {swept.feasible} feasible designs has a value of the objective."
+        return f"The objective has no value for any of the {swept.feasible} feasible designs."
     missed = sorted(swept.missed.items(), key=lambda item: (-item[1], item[0]))
     if not missed:
-        return "None of them has a finite answer."
+        return "No variant has finite results."
     name, times = missed[0]
-    whom = "them" if swept.feasible is not None else f"{sum(swept.missed.values())} looked at"
-    words = (
-        f"None meets every requirement and check; {name} is missed furthest in {times} of {whom}"
+    whom = (
+        "them" if swept.feasible is not None else f"{sum(swept.missed.values())} designs examined"
     )
-    return f"{words}. Widen what varies, or see why with `optimise`."
+    words = (
+        f"None meets every requirement and check; {name} is the limit missed by most "
+        f"in {times} of {whom}"
+    )
+    return f"{words}. Widen the varied ranges, or run `optimise` to see which limits conflict."
 
 
 def _tiles(swept: Swept) -> Iterator[Tile]:
@@ -208,7 +211,7 @@ class SweepColumns:
             *(_number(name, label, quantity) for name, label, quantity in named),
             FileColumn("governing_limit", "text", "limit of the least margin"),
             FileColumn("feasible", "flag", "whether every limit is met"),
-            FileColumn("failure", "text", "why there is no answer"),
+            FileColumn("failure", "text", "reason of missing results"),
         ]
 
     def values(self, chunk: Chunk) -> list[Values]:

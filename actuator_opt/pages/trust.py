@@ -61,14 +61,17 @@ def proof(optimisation: Optimisation, *, shortened: bool = False) -> list[str]:
     lines = [sentence(certificate.sentence), *_of_sizes(optimisation)]
     if certificate.covers and not shortened:
         names = ", ".join(certificate.covers)
-        lines.append(f"The proof covers, by the models or by what none of them can beat: {names}.")
+        lines.append(
+            f"The proof covers, by the models or by bounds that no model can fall below: {names}."
+        )
     if certificate.dropped:
         shown = [
             name if shortened else f"{name} ({why})" for name, why in certificate.dropped.items()
         ]
         covered = f"It covers {len(certificate.covers)} limits and does" if shortened else "It does"
         lines.append(
-            f"{covered} without these, which can only lower the bound: {'; '.join(shown)}."
+            f"{covered} not include these limits, which can only lower the bound: "
+            f"{'; '.join(shown)}."
         )
     if certificate.evidence:
         lines.append(sentence(certificate.evidence))
@@ -82,8 +85,8 @@ def _of_sizes(optimisation: Optimisation) -> list[str]:
         return []
     share = math.ceil(1e4 * (1 - bound / made.objective_after)) / 100  # rounded up
     return [
-        "The design found is the continuous optimum here; that of"
-        f" {made.name} is within {text.trimmed(share)} % of the bound."
+        f"This gap is that of the continuous optimum; the design of {made.name} is within "
+        f"{text.trimmed(share)} % of the bound."
     ]
 
 
@@ -120,7 +123,10 @@ def _scale_block(optimisation: Optimisation) -> list[Block]:
     bound = _bound(optimisation)
     if bound is None and not _marks(optimisation):
         return []
-    note = "Left of the bound no design meets the covered limits; right of it a better design may."
+    note = (
+        "Left of the bound no design meets the limits covered by the proof; right of it a "
+        "better design may exist."
+    )
     title = "Proven bound, optimum, and other designs"
     return [Drawing(title, scale(optimisation), "" if bound is None else note)]
 
@@ -192,7 +198,8 @@ def _course_block(optimisation: Optimisation) -> list[Block]:
         points = [Points("", numbers, heights, style=3)]
         panels.append(Panel("End of each start", x, _decades(heights), points=points))
     note = (
-        "Designs that meet every limit, over the evaluations of all starts; none: below 0.0001 %."
+        "Designs that meet every limit, as a share of the evaluations of all starts; none: "
+        "below 0.0001 %."
     )
     return [Chart("How the search went", panels, note, height=52.0, widths=(98.0, 64.0))]
 
@@ -273,7 +280,7 @@ def convergence_figure(
 ) -> Ink:
     """Improvements (evaluation, objective in SI, worst violation) over the evaluation count."""
     if not trace:
-        return titled(Chart(title, [], height=0.0), ["No search: nothing could move."])
+        return titled(Chart(title, [], height=0.0), ["No search: no variable was free to change."])
     quantity = of_metric(metric)
     counts = [max(float(row[0]), 1.0) for row in trace]
     values = [quantity.to_display(float(row[1])) for row in trace]

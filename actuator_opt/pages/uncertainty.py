@@ -131,7 +131,11 @@ def weakest(study: Uncertainty) -> str:
     failing = [limit for limit in study.required if limit.rate.value < 1]
     if not failing:
         low = worst.margins[0]
-        margin = "" if low is None else f": {_margin(worst, low)} at the 1 % point"
+        margin = (
+            ""
+            if low is None
+            else f": {_margin(worst, low)} at the 1 % point (99 % of the draws have more)"
+        )
         return f"No draw missed a requirement; {worst.name} has the smallest margin{margin}."
     words = f"{worst.name} is missed most often: by {percent(1 - worst.rate.value)} of the draws"
     if len(failing) > 1:
@@ -211,7 +215,10 @@ def _blocks(study: Uncertainty) -> Iterator[Block]:
     notes = [_with_checks(study), *study.notes]
     if study.dropped > 0:
         share = percent(study.dropped)
-        notes.append(f"{share} of the rows of the sensitivity indices are not computable: left out")
+        notes.append(
+            f"{share} of the samples for the sensitivity indices are not computable and "
+            "are left out"
+        )
     remarks = [sentence(text.pretty(words)) for words in notes if words]
     yield Notes("What the yield means", remarks, style="dim", headless=True)
 
@@ -252,8 +259,8 @@ def _causes(study: Uncertainty, output: str) -> Iterator[Block]:
         Column("at 95 %", "right", drop=1),
     ]
     note = (
-        "Bars: this input alone at its 95 % and 5 % point. Alone: share of the variance from "
-        "this input; with others: including its interactions."
+        "Bars: result with only this input at its 5 % and 95 % points. Alone: share of the "
+        "variance from this input; with others: share including its interactions."
     )
     table = Table(title, columns, rows, on="terminal") if rows else None
     ink = tornado(study, output)

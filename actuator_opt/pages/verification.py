@@ -13,14 +13,15 @@ from ..simulation.sensitivity import Effect, Sensitivities
 from ..simulation.verification import Verification, VerifiedRequirement
 from .simulation import label, tied
 
-HEADS = ("requirement", "limit", "evaluation", "linear", "in time", "difference", "holds")
+HEADS = ("requirement", "limit", "evaluation", "linear", "simulated", "difference", "holds")
 BESIDE = 0.02
 """Least relative difference that is reported between the linear model's worst position and
 the\nposition of the time simulation."""
 MEANING = (
-    "Evaluation: the linear tier at its worst; linear: the same where the experiment stands, on "
-    "the side on which its spool rests; the difference is from that. Beside: the linear tier is "
-    "worse on the side that the spool only passes as the load drifts; experiments stand at rest."
+    "Evaluation: worst result of the linear models. Linear: result of the same models at the "
+    "position of the experiment, for the side to which its spool is open; the difference refers "
+    "to this value. Beside: the linear result is worse for the other side, which the spool only "
+    "passes while the load drifts; experiments start at rest."
 )
 UNSURE = "?"
 """Mark after an effect that a run with half the parameter step does not confirm."""
@@ -71,7 +72,7 @@ def blocks(verification: Verification) -> list[Block]:
     rows = [
         Row([*line.cells[:-1], Status(line.state, line.cells[-1])], line.state) for line in lines
     ]
-    title = "Dynamic requirements in time"
+    title = "Dynamic requirements in the time simulation"
     made: list[Block] = [Table(title, columns, rows)] if rows else []
     made.append(Notes(title, [verdict(verification)], headless=bool(rows)))
     experiments = [
@@ -93,7 +94,9 @@ def tables(verification: Verification) -> tuple[Table, ...]:
     lines = [_line(row) for row in verification.rows]
     notes = [verdict(verification), MEANING, *map(sentence, verification.notes)]
     note = " ".join([*notes, f"{verification.runs} runs."])
-    both = text_table("Requirements in time", HEADS, [line.cells for line in lines], note)
+    both = text_table(
+        "Requirements in the time simulation", HEADS, [line.cells for line in lines], note
+    )
     experiments = [
         (line.cells[0], *(pretty(words) or DASH for words in (row.where, row.how, row.why)))
         for line, row in zip(lines, verification.rows, strict=True)
@@ -103,8 +106,8 @@ def tables(verification: Verification) -> tuple[Table, ...]:
         return (both,)
     heads = ("requirement", "case and place", "experiment", "difference, as seen")
     note = (
-        "Each share is measured: the experiment without sticking friction, then with a "
-        "fiftieth of the swing; what is left is the operating point."
+        "Each share is computed: the experiment is repeated without sticking friction, then "
+        "with a fiftieth of the amplitude; the rest is due to the operating point."
     )
     widths = (1, 1.2, 1.5, 3.5)
     return both, text_table("Experiments behind them", heads, experiments, note, widths=widths)
@@ -118,7 +121,7 @@ def verdict(verification: Verification) -> str:
     met = sum(row.met for row in rows)
     missed = [_name(row) for row in rows if not row.met and row.value is not None]
     unknown = [_name(row) for row in rows if not row.met and row.value is None]
-    words = f"{met} of {len(rows)} requirements hold in time"
+    words = f"{met} of {len(rows)} requirements are met in the time simulation"
     words += f"; missed: {', '.join(missed)}" if missed else ""
     return sentence(words + (f"; not known: {', '.join(unknown)}" if unknown else ""))
 
@@ -167,11 +170,10 @@ def sensitivity_blocks(sensitivities: Sensitivities) -> list[Block]:
     results = _affected(sensitivities)
     title = f"Sensitive parameters: {sensitivities.name}"
     note = (
-        "Change of each result in per cent for 1 % more of the parameter, or for the change stated "
-        "beside it, largest first; "
-        f"central differences of {number(100 * sensitivities.step, 2)} %. "
-        f"A {UNSURE} marks what half the step does not confirm within 10 %. "
-        f"{sensitivities.runs} runs."
+        "Change of each result in per cent if the parameter rises by 1 %, or by the change "
+        "stated beside it, largest first; central differences of "
+        f"{number(100 * sensitivities.step, 2)} %. A {UNSURE} marks values that half the step "
+        f"does not confirm within 10 %. {sensitivities.runs} runs."
     )
     columns = [
         Column("parameter", width=1.0, breaks=30, least=24),
@@ -189,7 +191,7 @@ def sensitivity_blocks(sensitivities: Sensitivities) -> list[Block]:
         rows.append((parameter.path, value, parameter.unit, *effects))
     made: list[Block] = [Table(title, columns, rows, note=note)]
     if not results:
-        made = [Notes(title, ["No parameter moves a result."], note=note)]
+        made = [Notes(title, ["No parameter changes a result."], note=note)]
     if sensitivities.skipped:
         reasons = [f"{path}: {pretty(why)}" for path, why in sensitivities.skipped.items()]
         made.append(Notes("Parameters left out", reasons))

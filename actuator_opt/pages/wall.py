@@ -307,9 +307,10 @@ def _layers(study: WallStudy) -> Block:
         Column("allowables at the hottest, MPa (share left)", "left", 2.6),
     ]
     note = (
-        "From the bore outwards; angles from the tube axis, ± a balanced pair. X along the fibre,"
-        " Y across it, t tension, c compression, S shear; the share is what temperature, moisture,"
-        " basis and process leave of the library value."
+        "From the bore outwards; angles are from the tube axis; ± is a balanced pair. X: "
+        "strength along the fibre, Y: across it, S: in shear; t: tension, c: compression. "
+        "Share left: share of the library value that remains after knock-downs for "
+        "temperature, moisture, basis and process."
     )
     return Table("Barrel wall: layers", columns, rows, note=note, on="paper")
 
@@ -319,8 +320,8 @@ def _stresses(study: WallStudy) -> Block:
     if study.rest:
         at_rest = " Dotted: stress without pressure, to be added (cure, clamp, autofrettage)."
     note = (
-        f"At supply pressure, {text.trimmed(study.ladder.working / 1e5)} bar, by the exact tube,"
-        f" far from the ends; numbers are the layers.{at_rest}"
+        f"At supply pressure, {text.trimmed(study.ladder.working / 1e5)} bar, by the exact "
+        f"layered tube, far from its ends; the numbers mark the layers.{at_rest}"
     )
     title = "Barrel wall: stress through the wall"
     return Chart(title, stress_panels(study), note, height=60.0)
@@ -332,12 +333,12 @@ def _strength(study: WallStudy) -> Block:
     if study.shares is not None:
         climate = {"cold": ", coldest", "hot": ", hottest"}.get(study.shares.climate, "")
         right = (
-            f" Right: the most severe load ({study.shares.path}{climate}), stress without pressure"
-            " included; negative is compression, or the sign of shear."
+            f" Right: the most severe load ({study.shares.path}{climate}), including "
+            "stress without pressure; negative: compression, or negative shear."
         )
     note = (
-        f"Left: plies by {criterion}, metals by von Mises, the worst climate; SR is the factor on"
-        f" the supply pressure to first failure.{right}"
+        f"Left: plies by {criterion}, metals by von Mises, in the worst climate; SR is the "
+        f"factor on the supply pressure at which the material first fails.{right}"
     )
     title = "Barrel wall: strength used through the wall"
     return Chart(title, strength_panels(study), note, height=60.0)
@@ -374,12 +375,12 @@ def _criteria(study: WallStudy) -> Block:
     ]
     key = "; ".join(f"{letter} {name}" for name, letter in letters.items())
     note = (
-        "Strength ratio: factor on the supply pressure to the first failure of the ply, with mode"
-        f" and face, cure stress included; {key}; cold and hot are the climates. ● the design's"
-        " criterion; spread is the largest over the smallest of the row."
+        "Strength ratio: factor on the supply pressure at which the ply first fails, with "
+        f"mode and face, including cure stress; {key}; cold, hot: climates. ●: criterion "
+        "of the design; spread: ratio of the largest to the smallest value of the row."
     )
     if any(row.ratio == 0.0 for row in study.ratios):
-        note += " 0: the stress without pressure is enough to fail it."
+        note += " 0: the ply fails by the stress without pressure."
     if any(_woven(study, layer) for layer in range(len(study.layers))):
         note += " Hashin and Puck are made for unidirectional plies, not for a fabric."
     if metals:
@@ -411,7 +412,9 @@ def _ladder(evaluation: Evaluation, study: WallStudy) -> Block:
     }
     rungs = [
         Rung("working pressure", ladder.working, "#9ec3da", "supply"),
-        Rung("proof pressure", ladder.proof, "#9ec3da", "no yield, no crack up to here"),
+        Rung(
+            "proof pressure", ladder.proof, "#9ec3da", "no yield and no crack up to this pressure"
+        ),
     ]
     if ladder.metal_yield is not None:
         place = _place(ladder.metal_yield_place)
@@ -433,15 +436,15 @@ def _ladder(evaluation: Evaluation, study: WallStudy) -> Block:
             )
         )
     if ladder.burst is not None:
-        place = f"the highest load carried; {_place(ladder.path)}"
+        place = f"the highest pressure carried; {_place(ladder.path)}"
         rungs.append(Rung("burst", ladder.burst, STEEL, place, limits.get("burst_factor")))
     note = ""
     if any(rung.required is not None for rung in rungs):
-        note = "Red: required by the check or the requirement. "
+        note = "Red: value that a check or requirement demands. "
     if steps:
         note += (
-            "Steps: maximum stress, starting from the cure stress; failed plies lose their matrix,"
-            " yielded metal keeps its stress."
+            "Steps are by maximum stress, starting from the cure stress; failed plies lose "
+            "their matrix stiffness, yielded metal keeps its stress."
         )
     if left_out:
         note += f" {left_out} steps are left out."
@@ -468,9 +471,9 @@ def _differences(evaluation: Evaluation, study: WallStudy) -> Block:
         Column("thin against exact", "right", 0.7),
     ]
     used = "thin laminate" if thin else "exact tube"
-    note = f"The design uses the {used}; the thin laminate is a fast mode, for thin walls."
+    note = f"The design uses the {used}; the thin laminate is a fast mode for thin walls."
     if evaluation.design.barrel.autofrettage_pressure is not None:
-        note += " It knows no autofrettage."
+        note += " It does not include autofrettage."
     rows = [row(difference) for difference in study.differences]
     return Table(
         "Barrel wall: exact tube against thin laminate", columns, rows, note=note, on="paper"
@@ -515,11 +518,12 @@ def _thicknesses(study: WallStudy) -> Block:
     if settling.radius_ratio < 5:
         shell += ", below 5: a rough figure"
     note = (
-        f"Only layer {study.main_layer + 1} is changed, which carries most of the hoop force."
-        f" Beside the pressure step under the piston seal the growth settles over"
-        f" 1/β = {text.number(1e3 * settling.decay_length, 3)} mm ({shell}):"
-        f" {text.trimmed(100 * settling.at_seal, 3)} % of it acts at the seal, {shares} into the"
-        " pressure."
+        f"Only the thickness of layer {study.main_layer + 1}, which carries most of the "
+        "hoop force, is changed. The piston seal separates high from low pressure; away "
+        "from it the growth changes over the length 1/β = "
+        f"{text.number(1e3 * settling.decay_length, 3)} mm ({shell}): "
+        f"{text.trimmed(100 * settling.at_seal, 3)} % of the full growth acts at the seal, "
+        f"{shares} into the pressurised side."
     )
     title = "Barrel wall: thickness for another bore growth"
     return Table(title, columns, rows, note=note, on="paper")
@@ -565,9 +569,10 @@ def _metals(study: WallStudy) -> Block:
         Column("against this\ndesign", "right"),
     ]
     note = (
-        "The thinnest tube of each metal of the library for the same bore, with this design's bore"
-        " growth (no axial load) and the required burst pressure (its own where that is"
-        " lower), by Lamé and Faupel, under the same axial forces; no least wall for turning."
+        "The thinnest tube of each metal of the library for the same bore, with the bore "
+        "growth of this design (without axial load) and the required burst pressure, or "
+        "that of this design if it is lower; by Lamé and Faupel, under the same axial "
+        "forces, without a minimum wall for turning."
     )
     return Table(
         "Barrel wall: metal barrels for the same duty", columns, rows, note=note, on="paper"

@@ -367,7 +367,7 @@ def _why(panel: Panel) -> str:
     if not any(len(xs) for xs in _xs(panel)):
         return "No values."
     logs = (panel.x.log and not panel.x.signed) or (panel.y.log and not panel.y.signed)
-    return "No value above zero." if logs else "No value that is a number."
+    return "No value above zero." if logs else "No value is a number."
 
 
 def _y_ticks(frame: _Frame) -> Ticks:

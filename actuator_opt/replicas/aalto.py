@@ -96,18 +96,18 @@ def stiffness_note(design: Design, figures: Sequence[Theory]) -> str:
         f"barrel {text.trimmed(1e3 * bore)}/{text.trimmed(1e3 * outer)} mm",
     ]
     return (
-        f"kN/mm at {scaled(places(design), 1e3)} mm. {other_cylinder(design)}"
-        f"{', '.join(parts)}{_moduli(design)} are assumed, so the "
-        "thesis' curves are compared in form only: its text prints no number of them. "
-        "Why ours is softer: eq. 3 puts the totals of oil, barrel and hoses in series, as if the "
-        "stiff chamber's hose could help the other chamber's oil; and eq. 23 lets the wall swell "
-        f"over the rod's annulus only (too stiff by A_A/A_B = {text.trimmed(ratio, 3)}). Together "
-        f"the printed form is up to {percent(excess[0])} (eq. 37) and {percent(excess[1])} "
-        "(eq. 38) stiffer. The "
-        "last column adds the barrel's axial stretch, which the thesis leaves out. "
-        f"K 1300 MPa is eq. 5 with {percent(air_behind(PAPER.pressure_a))} of air at 20.5 "
-        f"bar or {percent(air_behind(PAPER.pressure_b))} at 42 bar: one content does not "
-        "give one modulus in both chambers."
+        f"kN/mm at {scaled(places(design), 1e3)} mm. "
+        f"{other_cylinder(design)}{', '.join(parts)}{_moduli(design)} are assumed. The "
+        "thesis prints no values of its curves, so only their form is compared. Why ours "
+        "is softer: eq. 3 puts the totals of oil, barrel and hoses in series, as if the "
+        "stiff chamber's hose could help the other chamber's oil; and eq. 23 lets the "
+        "wall swell over the rod's annulus only (too stiff by A_A/A_B = "
+        f"{text.trimmed(ratio, 3)}). Together the printed form is up to "
+        f"{percent(excess[0])} (eq. 37) and {percent(excess[1])} (eq. 38) stiffer. The "
+        "last column adds the barrel's axial stretch, which the thesis leaves out. K 1300 "
+        f"MPa is eq. 5 with {percent(air_behind(PAPER.pressure_a))} of air at 20.5 bar or "
+        f"{percent(air_behind(PAPER.pressure_b))} at 42 bar: a single air content does not "
+        "give the same modulus in both chambers."
     )
 
 
@@ -121,7 +121,12 @@ def _air(test: StaticTest) -> tuple[str, ...]:
     up, down = test.air_up[1], test.air_down[1]
     alike = math.isfinite(up * down) and up > 0 and abs(down / up - 1) < SAME
     if alike and test.assumptions[3].down.range[0] > (1 - SAME) * PAPER.moved_down[0]:
-        return _air_up(test), _air_down(test), _bubbles(test), "One oil explains both directions."
+        return (
+            _air_up(test),
+            _air_down(test),
+            _bubbles(test),
+            "The same oil explains both directions.",
+        )
     suspect = "The thesis suspects air that leaves the oil at 17 to 19 bar. We do not know."
     return _air_up(test), _air_down(test), _bubbles(test), suspect
 
@@ -131,23 +136,28 @@ def _air_up(test: StaticTest) -> str:
     if math.isinf(content):
         return (
             f"Load up: not even {percent(CONTENTS[1])} of entrained air gives the largest "
-            "displacement measured."
+            "measured displacement."
         )
     words = f"Load up: {air_text(content)} of entrained air"
     if content > 0:
         words += f", {text.trimmed(content / ENTRAINED, 2)} times the usual {percent(ENTRAINED)},"
     if test.up.share > 0:
-        return f"{words} and the by-pass of the seals give the largest displacement measured."
-    return f"{words} under the force that the pressures show gives the largest displacement."
+        return (
+            f"{words} and leakage past the seals (by-pass) give the largest measured displacement."
+        )
+    return (
+        f"{words} gives the largest measured displacement, under the force that the "
+        "measured pressures imply."
+    )
 
 
 def _air_down(test: StaticTest) -> str:
     """Sentence on the air content and the least displacement when the load acts downwards."""
     up, down = test.air_up[1], test.air_down[1]
     if math.isinf(down):
-        words = f"Load down not even {percent(CONTENTS[1])} does"
+        words = f"Load down: not even {percent(CONTENTS[1])} is enough"
     else:
-        words = f"Load down takes {air_text(down)}"
+        words = f"Load down: this takes {air_text(down)}"
     if math.isfinite(up * down) and up * down > 0:
         alike = abs(down / up - 1) < SAME
         words += f", {'about' if alike else text.trimmed(down / up, 2) + ' times'} as much in the "
@@ -155,13 +165,16 @@ def _air_down(test: StaticTest) -> str:
     largest = test.assumptions[3].down
     share = largest.range[0] / PAPER.moved_down[0]
     if math.isnan(share):
-        return f"{words}, and ours cavitates everywhere."
+        return f"{words}; our model then cavitates at every position."
     if share > 1 - SAME:
-        return f"{words}, and nowhere moves less than was measured."
+        return f"{words}; our model then moves at no position less than was measured."
     place = test.position[int(np.nanargmin(largest.displacement))] / test.position[-1]
     where = "near the cap end" if place < 1 / 3 else "in the middle"
     where = "near the rod end" if place > 2 / 3 else where
-    return f"{words}, and {where} ours still moves {_fraction(share)} of the least measured."
+    return (
+        f"{words}; {where} our model still moves only {_fraction(share)} of the least "
+        "measured displacement."
+    )
 
 
 def _fraction(share: float) -> str:
@@ -212,8 +225,8 @@ def _pressures(test: StaticTest) -> str:
     even = [softer((answer.pressure_a, answer.pressure_b)) for answer in (ours.up, ours.down)]
     measured = [softer(PAPER.loaded_up), softer(PAPER.loaded_down)]
     words = (
-        f"The pressures show the softer chamber: at {text.trimmed(1e3 * test.place)} mm the rod "
-        f"chamber changes {text.trimmed(measured[0], 2)} (up) and "
+        f"The pressures show which chamber is softer: at {text.trimmed(1e3 * test.place)} "
+        f"mm the rod chamber changes {text.trimmed(measured[0], 2)} (up) and "
         f"{text.trimmed(measured[1], 2)} (down) times as much as the head chamber; evenly "
         "spread air gives "
     )
@@ -237,13 +250,13 @@ def _by_pass(test: StaticTest) -> str:
     up, down = test.up.share, test.down.share
     if min(up, down) >= 0:
         return (
-            "The by-pass is the share of the load that the pressures do not show: "
-            f"{percent(up)} up, {percent(down)} down."
+            "The by-pass is the share of the load that the measured pressures do not "
+            f"account for: {percent(up)} up, {percent(down)} down."
         )
     return (
-        "On the areas of this design the pressures of the thesis show "
-        f"{percent(1 - up)} (up) and {percent(1 - down)} (down) of its load: no by-pass explains "
-        "more than all of it."
+        "With the areas of this design, the pressures of the thesis correspond to "
+        f"{percent(1 - up)} (up) and {percent(1 - down)} (down) of its load; a by-pass "
+        "cannot explain more than the whole load."
     )
 
 
@@ -310,11 +323,11 @@ def _valve(test: DynamicTest) -> str:
         missed = [f"not {name} ({_range(share)})" for name, holds, share in judged if not holds]
         part = f"happens only in part: {listed(met)}" if met else "does not happen"
         words = f"the behaviour of the stiffness in the thesis {part}."
-        words += f" With these numbers the cylinder is {listed(missed)}."
+        words += f" With these parameters the cylinder is {listed(missed)}."
     if test.peak.slowest_decay >= 0:
         words += (
-            " And it is not stable: the valve feeds the oscillation, which then grows by itself, "
-            "so that these stiffnesses would not be seen."
+            " And it is not stable: the valve feeds energy into the oscillation, which "
+            "then grows, so that these stiffnesses could not be measured."
         )
     return words
 
@@ -342,18 +355,18 @@ def throttle_explained(test: DynamicTest) -> bool:
 def _throttle(test: DynamicTest) -> str:
     at = shares(test, test.read_back["reducing_valve"])
     slow, _ = _moves(
-        at[:, 0], more="stiffens at 10 Hz", less="softens at 10 Hz", none="does nothing at 10 Hz"
+        at[:, 0], more="stiffens at 10 Hz", less="softens at 10 Hz", none="changes nothing at 10 Hz"
     )
     peak = "the peak" if np.all(np.argmax(at, axis=1) == 2) else "the stiffness at 20 Hz"
     twenty, _ = _moves(
-        at[:, 2], more=f"raises {peak}", less=f"lowers {peak}", none=f"leaves {peak} as it is"
+        at[:, 2], more=f"raises {peak}", less=f"lowers {peak}", none=f"does not change {peak}"
     )
     last, acts = _moves(
-        at[:, 4], more="stiffens at 30 Hz", less="softens at 30 Hz", none="does nothing at 30 Hz"
+        at[:, 4], more="stiffens at 30 Hz", less="softens at 30 Hz", none="changes nothing at 30 Hz"
     )
     return (
-        "The throttle, if its needle drops what was measured, "
-        f"{slow} ({_times(at[:, 0])} the static stiffness), {twenty} ({_times(at[:, 2])}) and "
+        f"If its needle has the measured pressure drop, the throttle {slow} "
+        f"({_times(at[:, 0])} the static stiffness), {twenty} ({_times(at[:, 2])}) and "
         f"{last}{f' ({_times(at[:, 4])})' if acts else ''}."
     )
 
@@ -421,15 +434,15 @@ def _constant(test: DynamicTest) -> str:
     rises = all(bool(np.all(np.diff(stiffness) > 0)) for stiffness in over)
     if rises and highest < 1:
         return (
-            "With constant pressure nothing peaks: the cylinder is soft at every frequency and the "
-            "oil in the hoses moves as one mass."
+            "With constant line pressure there is no peak: the cylinder is soft at every "
+            "frequency and the oil in the hoses moves as a single mass."
         )
-    words = "nothing peaks" if rises else "the stiffness does not only rise with frequency"
+    words = "there is no peak" if rises else "the stiffness does not only rise with frequency"
     if highest < 1:
-        return f"With constant pressure {words}, but the cylinder is soft at every frequency."
+        return f"With constant line pressure {words}, but the cylinder is soft at every frequency."
     return (
-        f"With constant pressure {words}, but the cylinder is not soft at every frequency: it "
-        f"comes to {text.trimmed(highest, 3)} times the static stiffness."
+        f"With constant line pressure {words}, but the cylinder is not soft at every "
+        f"frequency: it reaches {text.trimmed(highest, 3)} times the static stiffness."
     )
 
 
@@ -444,19 +457,24 @@ def dynamic_note(design: Design, test: DynamicTest) -> str:
         f"{text.trimmed(valve.conductance * 1e11, 2)} ml/s/bar beside an opening of "
         f"{text.trimmed(valve.passive_conductance * 1e11, 2)}"
     )
-    end = "So such a valve does not explain it with these numbers."
+    end = "So a valve with these parameters does not explain the measured stiffness."
     if does_it(test):
-        end = "It shows that such a valve would explain it, not that this valve did."
+        end = (
+            "This shows that such a valve can explain the measured stiffness, not that the "
+            "valve of the test did so."
+        )
     return (
         "kN/mm at mid-stroke; line end: constant pressure, or a reducing valve. "
-        f"{other_cylinder(design)}The thesis prints no number of these curves. {_closed(test)} "
-        "That full throttling measured more than eq. 38 at 10 and 20 Hz the thesis puts down "
-        "to oil that the check valves let in (rod chamber at 70 bar), which no linear model has. "
-        f"{_constant(test)} With a reducing valve of our numbers, not the thesis' ({numbers}), "
-        f"{_valve(test)} {_throttle(test)} {_neighbours(test)} Along the stroke 20 Hz gives "
-        f"{text.trimmed(low, 2)} to {text.trimmed(high, 2)} times the static stiffness, most at "
-        f"{text.trimmed(place, 3)} mm. {end} The check valves, which open in every half cycle, "
-        "are not in a linear model: it overstates the throttle."
+        f"{other_cylinder(design)}The thesis prints no values of these curves. "
+        f"{_closed(test)} With full throttling, the stiffness measured at 10 and 20 Hz "
+        "exceeds eq. 38. The thesis attributes this to oil that the check valves let in "
+        f"(rod chamber at 70 bar), which no linear model includes. {_constant(test)} With "
+        f"a reducing valve of our parameters, not those of the thesis ({numbers}), "
+        f"{_valve(test)} {_throttle(test)} {_neighbours(test)} Along the stroke, the "
+        f"stiffness at 20 Hz is {text.trimmed(low, 2)} to {text.trimmed(high, 2)} times "
+        f"the static stiffness, most at {text.trimmed(place, 3)} mm. {end} The check "
+        "valves, which open in every half cycle, are not included in a linear model, so "
+        "it overstates the effect of the throttle."
     )
 
 
@@ -467,11 +485,11 @@ def needles_caption(test: DynamicTest) -> str:
     whose = "as the thesis states it"
     if not close(test.area, PAPER.throttle):
         whose = f"of this design, {area_text(test.area)}"
-    verdict = "which throttles nothing at these flows"
+    verdict = "which hardly throttles these flows"
     if change >= OPENINGS_SAY:
         verdict = f"which changes the stiffness at 20 Hz by up to {percent(change - 1)}"
     return (
-        "Mid-stroke, oil as designed, friction left out. Above: the needle "
+        "Mid-stroke, with the oil of the design, without friction. Above: the needle "
         f"{whose}, {verdict}. Below: the needle that drops the measured 0.4 bar."
     )
 
@@ -491,7 +509,7 @@ def peak_note(design: Design, test: DynamicTest) -> str:
     viscosity = f"ν = {text.trimmed(1e6 * needle.viscosity, 3)} mm²/s"
     warm = f"{text.trimmed(needle.temperature - 273.15, 3)} °C"
     if math.isnan(needle.temperature):
-        source = f"which {_oil(design)} has at no temperature"
+        source = f"which {_oil(design)} does not have at any temperature"
     elif low <= needle.temperature <= high:
         source = f"{_oil(design)} at {warm}: within the 25 to 30 °C of the tests"
     else:
@@ -513,20 +531,20 @@ def _drop(design: Design, test: DynamicTest) -> str:
     theirs = close(test.area, PAPER.throttle) and close(design.cylinder.bore, PAPER.bore)
     if 0.8 < less < 1.25:
         return (
-            "At 20 mm/s the open needle drops about the 0.4 bar that opened the check valve: flow, "
-            "area and pressure fit together."
+            "At 20 mm/s the open needle drops about the 0.4 bar that opened the check "
+            "valve: flow, area and pressure are consistent."
         )
     times = f"{text.trimmed(less, 2)} times less than"
     if less < 1:
         times = f"{text.trimmed(1 / less, 2)} times"
     size = "smaller" if less > 1 else "larger"
-    role = ", which explains the throttle's effect, is a guess"
+    role = ", which explains the throttle's effect, is only assumed"
     if not throttle_explained(test):
-        role = ", which does not explain the throttle's effect either, is a guess"
+        role = ", which does not explain the throttle's effect either, is only assumed"
     return (
         f"But at 20 mm/s the open needle drops {times} the 0.4 bar that opened the check "
-        f"valve: flow, area and pressure {'of the thesis' if theirs else 'of this design'} do not "
-        f"fit together. We do not know which is wrong; the {size} area{role}."
+        f"valve: flow, area and pressure {'of the thesis' if theirs else 'of this design'} "
+        f"are not consistent. We do not know which of them is wrong; the {size} area{role}."
     )
 
 
@@ -641,7 +659,7 @@ def static_table(evaluation: Evaluation) -> list[Block]:
             text.DASH,
             text.DASH,
         ),
-        ("entrained air behind the largest, no by-pass", air_text(test.air_up[0]),
+        ("air for the largest displacement, no by-pass", air_text(test.air_up[0]),
          air_text(test.air_down[0]), text.DASH, text.DASH),
         ("the same, with by-pass", air_text(test.air_up[1]),
          air_text(test.air_down[1]), text.DASH, text.DASH),
@@ -649,9 +667,9 @@ def static_table(evaluation: Evaluation) -> list[Block]:
     drawn = Drawing(
         "Aalto thesis: displacement under a force step, as its figure 42",
         static_figure(design.cylinder.stroke, test),
-        "Grey: measured, all positions and both piston directions. Load 3.45 and 4.85 kN, the "
-        "means of both runs, read as steps (the text leaves open whether they are levels); "
-        "behind the load cell; K 1600 MPa, polytropic index 1.4.",
+        "Grey: measured, all positions and both piston directions. Load 3.45 and 4.85 kN, "
+        "the means of both runs, taken as steps (the text does not state whether they are "
+        "steps or levels); including the load cell; K 1600 MPa, polytropic index 1.4.",
     )
     columns = (
         "assumption",
@@ -777,12 +795,14 @@ TRACES = equations("aalto")
 def table() -> list[Block]:
     """Every equation of the thesis with its function."""
     note = (
-        "The functions are in actuator_opt.models with formula, range and source. The thesis "
-        "prints 46 equations; dq/dt of eq. 43–45 and the force balance of eq. 40–42 are here rows "
-        "of one system."
+        "The functions are in actuator_opt.models with formula, range and source. The "
+        "thesis prints 46 equations; dq/dt of eq. 43–45 and the force balance of eq. 40–42 "
+        "are equations of a single linear system here."
     )
     return [
-        text_table("Aalto thesis: where its equations are", TRACE_COLUMNS, trace_rows(TRACES), note)
+        text_table(
+            "Aalto thesis: functions for its equations", TRACE_COLUMNS, trace_rows(TRACES), note
+        )
     ]
 
 

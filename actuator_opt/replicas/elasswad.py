@@ -82,28 +82,28 @@ def bending_table(evaluation: Evaluation) -> list[Block]:
         *(
             (name, text.DASH, text.DASH, _over_spans(written))
             for name, written in (
-                ("shear taken off", lambda x: in_gpa(tube.modulus(x, shear=True))),
-                ("dents at the rollers taken off", lambda x: in_gpa(tube.modulus(x, local=True))),
+                ("shear subtracted", lambda x: in_gpa(tube.modulus(x, shear=True))),
+                ("dents at the rollers subtracted", lambda x: in_gpa(tube.modulus(x, local=True))),
                 (
-                    f"stiff caps of {in_mm(STIFF_END)} counted",
+                    f"stiff caps of {in_mm(STIFF_END)} included",
                     lambda x: in_gpa(tube.modulus_between_caps(x)),
                 ),
             )
         ),
         (
-            "I of a solid bar in eq. 13, put right",
+            "I of a solid bar in eq. 13 corrected",
             text.DASH,
             text.DASH,
             in_gpa(tube.modulus(SPANS[0], solid=True)),
         ),
         (
-            "solid bar put right, shear and dents taken off",
+            "solid bar corrected, shear and dents subtracted",
             text.DASH,
             text.DASH,
             _over_spans(lambda x: in_gpa(tube.modulus(x, solid=True, shear=True, local=True))),
         ),
         (
-            "give that would hide woven carbon",
+            "compliance that would hide woven carbon",
             text.DASH,
             text.DASH,
             _over_spans(lambda x: _hidden(tube, x)),
@@ -130,16 +130,17 @@ def _bending_note(tube: Tube, times: float) -> str:
     most = max(tube.modulus(span, solid=True, shear=True, local=True) for span in SPANS)
     upper = f"to {in_gpa(most)}" if math.isfinite(most) else "without an upper limit"
     return (
-        "The paper prints neither span, section, k₀ nor rollers, and states that the change "
-        "of section is left out. Assumed: the spans (its two strokes), a tube "
-        f"{in_mm(tube.outer_diameter)}/{in_mm(tube.inner_diameter)} of woven carbon with "
-        f"G = {in_gpa(tube.shear_modulus)}, rollers of {in_mm(ROLLER_RADIUS)} radius at "
-        f"{in_n(FORCE)} (Hertz; a thin tube flattens as well). That leaves the modulus open from "
-        f"{in_gpa(least)} {upper}, and does not separate a soft wall from a soft test. Whatever it "
-        "is, it is stiffness along the axis; eq. 12 needs that around the bore. The two are equal "
-        "only where warp and weft are: in a hoop-wound wall they differ "
-        f"{text.trimmed(wide, 2)} times. Eq. 12 with {in_gpa(PAPER.bending_modulus)} swells the "
-        f"bore {text.trimmed(times, 3)} times as much as the design's wall."
+        "The paper states neither span, section, k₀ nor rollers, and neglects the change "
+        "of section. Assumed: the spans (its two strokes), a tube "
+        f"{in_mm(tube.outer_diameter)}/{in_mm(tube.inner_diameter)} of woven carbon with G "
+        f"= {in_gpa(tube.shear_modulus)}, rollers of {in_mm(ROLLER_RADIUS)} radius at "
+        f"{in_n(FORCE)} (Hertz; a thin tube flattens as well). The modulus may then be "
+        f"anything from {in_gpa(least)} {upper}, and a soft wall cannot be distinguished "
+        "from a soft test rig. The test gives the modulus along the axis, but eq. 12 "
+        "needs the modulus around the bore. The two are equal only where warp and weft "
+        "are equal: in a hoop-wound wall they differ by a factor of "
+        f"{text.trimmed(wide, 2)}. Eq. 12 with {in_gpa(PAPER.bending_modulus)} gives "
+        f"{text.trimmed(times, 3)} times the bore growth of the design's wall."
     )
 
 
@@ -197,12 +198,13 @@ def force_table(evaluation: Evaluation) -> list[Block]:
     first = PAPER.friction_average / PAPER.loss_average
     second = PAPER.friction_largest / PAPER.loss_largest
     note = (
-        f"Force and pressure loss together mean a piston of {in_mm2(first)} or {in_mm2(second)}, "
-        f"{text.number(first / PAPER.area, 2)} and {text.number(second / PAPER.area, 2)} times the "
-        f"{in_mm2(PAPER.area)} of the bore: forces and pressure losses cannot both be of this "
-        f"cylinder. Our forces are no check of the paper's: they hold at the "
-        f"{in_mpa(evaluation.design.supply.pressure)} assumed in the design, running and at "
-        "breakaway; the ring of the rod is under this pressure on the way in only."
+        f"Force divided by pressure loss gives a piston area of {in_mm2(first)} or "
+        f"{in_mm2(second)}, {text.number(first / PAPER.area, 2)} and "
+        f"{text.number(second / PAPER.area, 2)} times the {in_mm2(PAPER.area)} of the "
+        "bore, so forces and pressure losses cannot both belong to this cylinder. Our "
+        "forces cannot check those of the paper: they are valid at the "
+        f"{in_mpa(evaluation.design.supply.pressure)} assumed in the design, running and "
+        "at breakaway, and this pressure acts on the rod's ring on the instroke only."
     )
     return [text_table("El Asswad 2018: friction force", COLUMNS, rows, note)]
 
@@ -246,19 +248,20 @@ def coefficient_table(evaluation: Evaluation) -> list[Block]:
             in_mm(width),
         ),
         (
-            "eq. 19 over ours",
+            "eq. 19 relative to ours",
             text.DASH,
             f"+{percent(wider(0.10))} at 10 %; +{percent(wider(0.20))} at 20 %",
             text.DASH,
         ),
     )
     note = (
-        f"µ cannot be identified alone: with preload and energised rings {average} fits "
-        f"{text.number(coefficient(2e6), 3)} at 2 MPa as well as {text.number(coefficient(7e6), 3)}"
-        " at 7 MPa, and eq. 16 has no friction at all without pressure. "
-        "Eq. 19 is the chord of the unsqueezed circle, wider than the plane-strain finite "
-        "elements that ours follows within 3 %. "
-        "Ring section, squeeze and both rings under the full pressure are assumed."
+        "µ alone cannot be identified: for rings with preload that pressure energises, "
+        f"{average} agrees with {text.number(coefficient(2e6), 3)} at 2 MPa as well as "
+        f"with {text.number(coefficient(7e6), 3)} at 7 MPa, and eq. 16 gives no friction "
+        "at all without pressure. Eq. 19 is the chord of the unsqueezed circle. It is "
+        "wider than the contact by plane-strain finite elements, which our formula "
+        "follows within 3 %. Ring section, squeeze and both rings under the full pressure "
+        "are assumed."
     )
     return [text_table("El Asswad 2018: friction coefficient", COLUMNS, rows, note)]
 
@@ -290,11 +293,11 @@ def _sizes(evaluation: Evaluation) -> list[Block]:
     )
     note = (
         f"Table 1 lists a {in_mm(PAPER.piston_diameter)} piston in a {in_mm(PAPER.bore)} "
-        f"cylinder: a radial gap of {in_mm(gap)} that no ring of this size closes. "
-        f"The stroke is {in_mm(PAPER.stroke)} in table 1 and {in_mm(PAPER.damping_stroke)} in "
-        "the damping text. "
-        "Eq. 1 takes k_eq x as a spring to ground, which no cylinder is: an external load belongs "
-        "there."
+        f"cylinder, which leaves a radial gap of {in_mm(gap)} that no ring of this size "
+        f"can close. The stroke is {in_mm(PAPER.stroke)} in table 1 and "
+        f"{in_mm(PAPER.damping_stroke)} in the damping text. Eq. 1 treats the cylinder as "
+        "a spring to ground with the force k_eq x, although its force is that of an "
+        "external load."
     )
     return [text_table("El Asswad 2018: dimensions", COLUMNS, rows, note)]
 
@@ -323,7 +326,7 @@ def _oil(evaluation: Evaluation) -> list[Block]:
             text.DASH,
             f"{in_mpa(aerated(usual))} (VG 32, {percent(usual)} air)",
         ),
-        ("entrained air behind it", text.DASH, text.DASH, percent(air)),
+        ("entrained air that gives it", text.DASH, text.DASH, percent(air)),
         (
             "oil stiffness k_oil",
             in_n_per_mm(PAPER.oil_stiffness),
@@ -338,10 +341,11 @@ def _oil(evaluation: Evaluation) -> list[Block]:
         ),
     )
     note = (
-        f"Eq. 9 at mid-stroke gives {text.trimmed(bare / PAPER.oil_stiffness, 2)} times the "
-        f"published k_oil unless each side has {in_ml(volume)} of line volume, of which the paper "
-        f"says nothing. The bulk modulus is that of a mineral oil with {percent(air)} of entrained"
-        f" air at the {in_mpa(design.supply.pressure)} of this design."
+        f"Eq. 9 at mid-stroke gives {text.trimmed(bare / PAPER.oil_stiffness, 2)} times "
+        f"the published k_oil unless each side has {in_ml(volume)} of line volume, which "
+        "the paper does not mention. The bulk modulus is that of a mineral oil with "
+        f"{percent(air)} of entrained air at the {in_mpa(design.supply.pressure)} of this "
+        "design."
     )
     return [text_table("El Asswad 2018: oil stiffness", COLUMNS, rows, note)]
 
@@ -426,7 +430,7 @@ def _barrel(evaluation: Evaluation) -> list[Block]:
             "modulus of the barrel",
             f"{in_gpa(PAPER.bending_modulus)} (bending)",
             text.DASH,
-            f"{in_gpa(hoop)} (hoop, behind our growth)",
+            f"{in_gpa(hoop)} (hoop, from our growth)",
         ),
         (
             f"bore growth at {in_mpa(supply)}",
@@ -451,13 +455,14 @@ def _barrel(evaluation: Evaluation) -> list[Block]:
         ),
     )
     note = (
-        "Eq. 10, k_cyl = ΔP A/L_p, has the unit of a stiffness but is none: it grows with pressure "
-        "and at zero pressure the cylinder would have no stiffness at all; A²/(dV/dp) has. "
-        "Eq. 11 lost its divisor 4, which is restored here. "
-        "Eq. 12 is the isotropic open-ended tube, but with R as the outer radius it over-states "
-        f"the growth by the wall ratio, {text.trimmed(printed / correct, 3)} times; the inner "
-        "radius is right, and turns our growth into the hoop modulus beside it. Wall thickness "
-        f"(and ν = {text.trimmed(POISSONS_RATIO)} of the formula) are assumed."
+        "Eq. 10, k_cyl = ΔP A/L_p, has the unit of a stiffness but is not a stiffness: it "
+        "grows with pressure and is zero without pressure; A²/(dV/dp) is the correct "
+        "form. Eq. 11 lacks its divisor 4, which is restored here. Eq. 12 applies to an "
+        "isotropic open-ended tube. With R as the outer radius it overstates the growth "
+        f"by the ratio of the radii, {text.trimmed(printed / correct, 3)} times; the inner "
+        "radius is correct, and with it the bore growth of our design gives the hoop "
+        f"modulus in the table. Wall thickness (and ν = {text.trimmed(POISSONS_RATIO)} of "
+        "the formula) are assumed."
     )
     return [text_table("El Asswad 2018: barrel", COLUMNS, rows, note)]
 
@@ -489,9 +494,10 @@ def _viscous(evaluation: Evaluation) -> list[Block]:
     )
     note = (
         f"c was computed with {in_mm(PAPER.damping_stroke)}; the stroke of table 1 gives "
-        f"{in_ns_per_m(float(by_table))}. Eq. 6 is the wall shear on the barrel, not on the "
-        f"piston, and the seals' secant damping is {text.number(seal / PAPER.damping, 2)} times as "
-        "large: these are two quantities."
+        f"{in_ns_per_m(float(by_table))}. Eq. 6 is the wall shear on the barrel, not on "
+        "the piston, and the seals' secant damping is "
+        f"{text.number(seal / PAPER.damping, 2)} times as large, so these are two "
+        "different quantities."
     )
     return [text_table("El Asswad 2018: viscous damping", COLUMNS, rows, note)]
 
@@ -526,24 +532,25 @@ def _record(evaluation: Evaluation) -> list[Block]:
             "equivalent stiffness k_eq",
             text.DASH,
             f"{_range(curves.stiffness_published, 'N/mm')} (eq. 7, 10–12)",
-            f"{_range(curves.stiffness_chambers, 'kN/mm')} per chamber with the paper's numbers; "
-            f"{_range(curves.stiffness_designed, 'kN/mm')} as designed",
+            f"{_range(curves.stiffness_chambers, 'kN/mm')} per chamber with the paper's "
+            f"values; {_range(curves.stiffness_designed, 'kN/mm')} as designed",
         ),
     )
     note = (
-        "The text of the paper gives no pressure and no value of its figure 10. This record is our "
-        "own: one stroke out and back, with the pressure differences at which eq. 15–20, "
-        f"µ = {text.trimmed(PAPER.friction_coefficient)} and the assumed rings give the published "
-        "average and largest friction."
+        "The text of the paper gives neither pressures nor values for its figure 10. This "
+        "record is our own: an outstroke and an instroke, with the pressure differences "
+        f"at which eq. 15–20, µ = {text.trimmed(PAPER.friction_coefficient)} and the "
+        "assumed rings give the published average and largest friction."
     )
     drawn = Drawing(
         "El Asswad 2018: k_eq and radial expansion along a record, as its figure 10",
         record_figure(record, curves),
-        "A record of our own with the pressures behind the paper's friction, not its measured "
-        "record. Eq. 7 with eq. 10 follows the pressure and leaves no stiffness at zero pressure. "
-        "Per chamber it follows the position of the piston: with the paper's numbers "
-        f"({in_gpa(PAPER.bending_modulus)}, k_rod, its constant K and the line volume behind its "
-        f"k_oil), and as designed (case {evaluation.curve.case}, ports closed).",
+        "A record of our own, with the pressures that give the paper's friction, not its "
+        "measured record. The stiffness by eq. 7 with eq. 10 follows the pressure and is "
+        "zero without pressure. Stiffness per chamber follows the position of the piston: "
+        f"with the paper's values ({in_gpa(PAPER.bending_modulus)}, k_rod, its constant K "
+        "and the line volume that gives its k_oil), and as designed (case "
+        f"{evaluation.curve.case}, ports closed).",
     )
     return [text_table("El Asswad 2018: pressure record", COLUMNS, rows, note), drawn]
 

@@ -141,8 +141,8 @@ def cylinder_table(design: Design, study: HuangStudy) -> list[Block]:
     drawn = Drawing(
         "Huang 2017: piston cylinder, as its figure 3",
         cylinder_figure(study),
-        "Piston and rod seals on their films, driven out; the rod chamber at return pressure. "
-        "Contours over a logarithmic speed.",
+        "Piston and rod seals on their oil films, driven outstroke; the rod chamber is at "
+        "return pressure. Contours are drawn over speed on a logarithmic axis.",
     )
     note = cylinder_note(design, study)
     return [text_table("Huang 2017: piston cylinder, test A", CLAIMS, rows, note), drawn]
@@ -162,7 +162,7 @@ def simulated_table(_: Design, study: HuangStudy) -> list[Block]:
         simulated_figure(study),
     )
     note = simulated_note(study)
-    return [text_table("Huang 2017: its simulation by ours", CLAIMS, rows, note), drawn]
+    return [text_table("Huang 2017: its simulation and ours", CLAIMS, rows, note), drawn]
 
 
 def _trends(study: HuangStudy) -> list[tuple[str, ...]]:
@@ -179,7 +179,7 @@ def _trends(study: HuangStudy) -> list[tuple[str, ...]]:
     return [
         (
             *claim("huang", "plunger_speed"),
-            f"{percent(float(np.mean(falls)), 3)} of the steps fall; all of table 2",
+            f"B falls in {percent(float(np.mean(falls)), 3)} of our speed steps; in table 2 always",
             holds(bool(np.all(falls)), *np.ravel(mapped.damping)),
         ),
         (
@@ -278,7 +278,10 @@ def ring_table(_: Design, study: HuangStudy) -> list[Block]:
     drawn = Drawing(
         "Huang 2017: step ring over the sealed pressure, as its figures 17 and 18",
         ring_figure(study),
-        "Contact of a run-in face by its radial balance; films of the step ring in the tandem.",
+        (
+            "Contact of a run-in face by its radial force balance; films of the step ring "
+            "in series with the second seal."
+        ),
     )
     note = ring_note(study)
     return [text_table("Huang 2017: step ring at rest and running", CLAIMS, rows, note), drawn]
@@ -301,8 +304,8 @@ def plunger_table(design: Design, study: HuangStudy) -> list[Block]:
     drawn = Drawing(
         "Huang 2017: plunger over speed and pressure, as its figure 6",
         plunger_figure(study),
-        "Above: eq. 31 with the paper's table 2. Below: step ring and Yx seal on their films, "
-        "flows matched, outstroke.",
+        "Above: eq. 31 with the paper's table 2. Below: step ring and Yx seal on their oil "
+        "films, with the same flow past both, outstroke.",
     )
     names = ("pressure", f"table 2, MN·s/m at {at} mm/s", "our films", "ours over table 2")
     note = plunger_note(design, study)
@@ -350,7 +353,7 @@ def fits_table(_: Design, study: HuangStudy) -> list[Block]:
     drawn = Drawing(
         "Huang 2017: damping over speed and over pressure, as its figures 7 and 8",
         speed_figure(study),
-        "Left the paper's table 2, right our films.",
+        "Left: the paper's table 2; right: our oil films.",
     )
     names = (
         "curve",
@@ -383,7 +386,7 @@ def parts_table(_: Design, study: HuangStudy) -> list[Block]:
         "Huang 2017: back-up ring, as its figures 19 and 20",
         back_up_figure(study),
         "PTFE of the step ring, 15 mm wide, edges rounded by 5 µm, 0.1 MPa of mean contact "
-        "pressure: all assumed; the paper prints none.",
+        "pressure: all assumed, because the paper states none of them.",
     )
     labels = " / ".join(map(kind_name, study.sealings.plunger.rings))
     names = (
@@ -418,7 +421,7 @@ def kinds_table(_: Design, study: HuangStudy) -> list[Block]:
         "6 over 0.6 MPa",
     )
     note = kinds_note(study)
-    return [text_table("Huang 2017: why pressure acts both ways", names, rows, note)]
+    return [text_table("Huang 2017: why damping rises or falls with pressure", names, rows, note)]
 
 
 def relief_table(_: Design, study: HuangStudy) -> list[Block]:
@@ -441,8 +444,8 @@ def relief_table(_: Design, study: HuangStudy) -> list[Block]:
             Drawing(
                 "Huang 2017: relief of the step ring and the trend over pressure",
                 ink,
-                "The land is the design's while the ring has room for it, then what the relief "
-                "leaves. k: pressure balance at 3.3 MPa.",
+                "The land is that of the design as long as it fits on the ring, then the "
+                "width that the relief leaves. k: pressure balance at 3.3 MPa.",
             )
         ]
     names = (
@@ -451,7 +454,7 @@ def relief_table(_: Design, study: HuangStudy) -> list[Block]:
         "balance k",
         "B at 6 over 0.6 MPa: alone",
         "both, no pressure between",
-        "both, flows matched",
+        "both, same flow",
     )
     note = relief_note(study)
     none = [("no step ring", *(text.DASH,) * 5)]
@@ -498,8 +501,9 @@ def _dry(viscous: np.ndarray) -> str:
         return "No point has a film."
     if most < 0.05:
         return (
-            f"Oil shear is at most {percent(most)} of the friction: at these speeds asperities "
-            "carry it, so it hardly changes with speed and B falls as 1/v."
+            f"Oil shear is at most {percent(most)} of the friction. At these speeds "
+            "asperities cause nearly all of it, so friction hardly changes with speed and "
+            "B falls as 1/v."
         )
     return f"Oil shear is up to {percent(most)} of the friction."
 
@@ -520,14 +524,14 @@ def cylinder_note(design: Design, study: HuangStudy) -> str:
     i, j = int(np.argmin(np.abs(mapped.pressures - PAPER.shown_pressure))), -1
     piston, rod = float(mapped.piston.friction[i, j]), float(mapped.rod.friction[0, j])
     return (
-        f"{other_cylinder(design)}Seals, oil and their numbers are those of this "
-        "design; the paper names only the types of its seals. Nothing is fitted to its curves. At "
-        f"7.15 MPa and 10 mm/s the piston seal takes {newtons(piston)}, the rod's at return "
-        f"pressure {newtons(rod)}; wiper and guides are left out. "
+        f"{other_cylinder(design)}Seals and oil are those of this design, as the paper "
+        "names only the types of its seals. Nothing is fitted to its curves. At 7.15 MPa "
+        f"and 10 mm/s the friction of the piston seal is {newtons(piston)}, that of the "
+        f"rod seal at return pressure {newtons(rod)}; wiper and guides are neglected. "
         f"{_dry(mapped.piston.viscous)} The paper's R² of 1 (sums of squares "
-        f"{listed([text.number(x, 2) for x in PAPER.interpolation])}) belongs to surfaces drawn "
-        "through every point and does not show the errors."
-        f"{_reasons(mapped.piston.why + mapped.rod.why)}"
+        f"{listed([text.number(x, 2) for x in PAPER.interpolation])}) results from "
+        "surfaces through every point, so it does not show the "
+        f"errors.{_reasons(mapped.piston.why + mapped.rod.why)}"
     )
 
 
@@ -540,11 +544,12 @@ def plunger_note(design: Design, study: HuangStudy) -> str:
     table = [float(huang_published.secant_of(row, TYPICAL)) for row in HUANG_TABLE_2]
     theirs = table[-1] / table[0]
     if math.isnan(ours):
-        words = "Ours has no film at one of the two pressures. "
+        words = "Our model has no film at one of the two pressures. "
     elif ours > 1 + EVEN:
         words = (
             f"Table 2 falls to {text.trimmed(theirs, 2)} of its value from 0.6 to 6 MPa at "
-            f"{speed_text(TYPICAL)}, ours rises {times(ours)}: we do not meet the measured trend. "
+            f"{speed_text(TYPICAL)}, ours rises {times(ours)}, so our model does not "
+            "reproduce the measured trend. "
         )
     elif ours < 1 - EVEN:
         words = f"Both fall with pressure: to {theirs:.2f} (table 2) and {ours:.2f} (ours). "
@@ -554,10 +559,10 @@ def plunger_note(design: Design, study: HuangStudy) -> str:
     return (
         f"{words}{_dry(mapped.viscous)} {_between(study)}The measured fall is doubtful: "
         "friction is the difference of two large forces (eq. 1), and an error of "
-        f"{percent(min(share))} to {percent(max(share))} in the change of the pressure force, in "
-        "sensor or area, is as large as the whole fall at the tested speeds. The paper states no "
-        "accuracy. We do not know which of the two is right."
-        f"{_reasons(mapped.why)}"
+        f"{percent(min(share))} to {percent(max(share))} in the change of the pressure "
+        "force, in sensor or area, is as large as the whole fall at the tested speeds. "
+        "The paper states no accuracy. We do not know whether the measured or the "
+        f"computed trend is right.{_reasons(mapped.why)}"
     )
 
 
@@ -570,8 +575,9 @@ def _between(study: HuangStudy) -> str:
     i, j = mapped.at(PAPER.compared, TYPICAL)
     step, second = (float(x) for x in mapped.parts[i, j])
     return (
-        f"At 6 MPa the outer seal bears {percent(float(share[i, j]))} of the pressure when both "
-        f"pass the same flow, and makes {newtons(second)} of {newtons(step + second)}. "
+        "At 6 MPa and with the same flow past both seals, the outer seal carries "
+        f"{percent(float(share[i, j]))} of the pressure and causes {newtons(second)} of "
+        f"the {newtons(step + second)} of friction. "
     )
 
 
@@ -588,8 +594,9 @@ def fits_note(study: HuangStudy) -> str:
     errors = [max(fits.power.largest_error, fits.double.largest_error) for fits in study.published]
     if max(*exponents, *rates) < 0:
         words = (
-            "Every exponent is below 0, so the printed conditions b > 0 do not describe these "
-            "curves (our copy of the text may have lost a minus, as it did in eq. 2 and 31). "
+            "Every exponent is below 0, so the printed conditions b > 0 do not apply to "
+            "these curves (our copy of the text may lack a minus sign, as in eq. 2 and "
+            "31). "
         )
     else:
         words = "Not every exponent is below 0. "
@@ -600,12 +607,15 @@ def fits_note(study: HuangStudy) -> str:
     ]
     doubt = ""
     if loose:
-        doubt = f" At {listed(loose)} MPa of table 2 not every parameter is known to 30 %."
+        doubt = (
+            f" At {listed(loose)} MPa of table 2 at least one parameter has a larger error "
+            "than 30 %."
+        )
     return (
-        f"Bounds are for 95 % (Student's t of the linearised law), fits by least squares of B. "
-        f"{words}R² is governed by the slow points: errors of table 2's fits still reach "
-        f"{percent(max(errors))} of B at the fast points. Ours are power laws near v^−1: friction "
-        f"that does not depend on speed.{doubt}"
+        "Intervals are for 95 % (Student's t, linearised law); the fits are least squares "
+        f"in B. {words}R² depends mainly on the slow points; at the fast points the fits "
+        f"of table 2 still deviate by up to {percent(max(errors))} of B. Our curves are "
+        f"power laws near v^−1, which means friction that does not depend on speed.{doubt}"
     )
 
 
@@ -616,14 +626,15 @@ def simulated_note(study: HuangStudy) -> str:
     ours = mapped.friction[i]
     theirs = [huang_published.friction_of(HUANG_TABLE_2[-1], v) for v in PAPER.speeds]
     return (
-        "The paper gives neither the inputs of its simulation nor its static pressures, so its "
-        "curves cannot be re-computed; these are ours, from this design. Friction at 6 MPa from "
-        f"0.5 to 10 mm/s: table 2 {newtons(float(theirs[0]))} to {newtons(float(theirs[1]))}, "
-        f"ours {newtons(ours[0])} to {newtons(ours[-1])}. {_stribeck(ours, study)}"
-        f"sigma2 v is {percent(huang_published.viscous_share(HUANG_TABLE_2[0], 10e-3))} to "
-        f"{percent(huang_published.viscous_share(HUANG_TABLE_2[-1], 10e-3))} of table 2's "
-        "friction at 10 mm/s: its asymptote lies outside the tests."
-        f"{_reasons(study.fast.why)}"
+        "The paper gives neither the inputs of its simulation nor its static pressures, "
+        "so its curves cannot be recomputed; the curves here are those of this design. "
+        f"Friction at 6 MPa from 0.5 to 10 mm/s: table 2 {newtons(float(theirs[0]))} to "
+        f"{newtons(float(theirs[1]))}, ours {newtons(ours[0])} to {newtons(ours[-1])}. "
+        f"{_stribeck(ours, study)}sigma2 v is "
+        f"{percent(huang_published.viscous_share(HUANG_TABLE_2[0], 10e-3))} to "
+        f"{percent(huang_published.viscous_share(HUANG_TABLE_2[-1], 10e-3))} of the "
+        "friction of table 2 at 10 mm/s, so its asymptote lies outside the tested "
+        f"speeds.{_reasons(study.fast.why)}"
     )
 
 
@@ -634,8 +645,9 @@ def _stribeck(ours: np.ndarray, study: HuangStudy) -> str:
     i = study.plunger.at(PAPER.compared, 0.0)[0]
     share = float(np.max(np.abs(study.plunger.viscous[i])))
     return (
-        "Our films do not show the Stribeck fall of table 2: speed lifts none of them below "
-        f"10 mm/s (oil shear is {percent(share)} of the friction at most). "
+        "Our films do not show the Stribeck fall of table 2: up to 10 mm/s, speed does "
+        f"not lift the seals off their asperities (oil shear is at most {percent(share)} "
+        "of the friction). "
     )
 
 
@@ -653,10 +665,11 @@ def ring_note(study: HuangStudy) -> str:
             "mm, assumed"
         )
     words += (
-        f"; pressure balance {text.trimmed(kind.balance, 3)}. The largest stress contains the "
-        "sealed pressure itself, so it can fall only where the balance is below 0; the excess over "
-        "the oil pressure, which asperities carry, falls below 1/2. The paper's peak may be at "
-        "a tilting, unworn edge, which a run-in face does not have. "
+        f"; pressure balance {text.trimmed(kind.balance, 3)}. The largest stress includes "
+        "the sealed pressure itself, so it can fall with pressure only if the balance is "
+        "below 0. The excess over the oil pressure, which asperities carry, falls if the "
+        "balance is below 1/2. The peak in the paper may be at the edge of a tilting, "
+        "unworn ring, which a run-in face does not have. "
     )
     thickness = study.plunger.thickness[:, :, 0]
     known = thickness[np.isfinite(thickness)]
@@ -675,39 +688,42 @@ def parts_note(study: HuangStudy, dry: float) -> str:
     seals = min(total.seals * total.speed for total in study.totals)
     verdict = "can be neglected, as the paper says" if most < NEGLIGIBLE else "cannot be neglected"
     if math.isnan(most):
-        verdict = "have no film at a point"
+        verdict = "cannot be judged, as a point has no film"
     return (
-        f"Ring and chamber {verdict}: at most {percent(most)} of the seals, the chamber "
-        f"{percent(chamber, 1)}. This is so for a ring on a smooth film; its least film, "
-        f"{text.trimmed(1e6 * ring, 2)} µm, is thinner than the seals' roughness, and dry the ring "
-        f"would rub with {newtons(dry)}, {percent(dry / seals)} of the least friction of the "
-        f"seals. The chamber's printed {PAPER.chamber_shear} N·s/m comes without inputs: "
-        "eta pi d L/h_v gives it "
-        f"for L = {text.trimmed(1e3 * member.length)} mm, eta = {SEAL_VISCOSITY} Pa·s (both "
-        f'assumed) and h_v = {text.trimmed(1e3 * member.gap, 2)} mm, no "fairly large gap"; '
-        f"1 mm would need {text.trimmed(huang_published.chamber_length(gap=1e-3), 3)} m of plunger "
-        "in the oil."
+        f"Back-up ring and chamber {verdict}: together their damping is at most {percent(most)} of "
+        f"that of the seals, that of the chamber alone {percent(chamber, 1)}. This applies to a "
+        f"ring on a smooth oil film; its least film, {text.trimmed(1e6 * ring, 2)} µm, is "
+        f"thinner than the seals' roughness, and its dry friction would be {newtons(dry)}, "
+        f"{percent(dry / seals)} of the least friction of the seals. The paper prints "
+        f"{PAPER.chamber_shear} N·s/m for the chamber without inputs. The formula eta pi d L/h_v "
+        f"gives this value for L = {text.trimmed(1e3 * member.length)} mm, "
+        f"eta = {SEAL_VISCOSITY} Pa·s (both assumed) and "
+        f'h_v = {text.trimmed(1e3 * member.gap, 2)} mm, which is not a "fairly large gap"; '
+        f"with 1 mm it would take {text.trimmed(huang_published.chamber_length(gap=1e-3), 3)} m "
+        "of plunger in the oil."
     )
 
 
 def kinds_note(study: HuangStudy) -> str:
     """Note on why pressure may raise or lower the damping."""
     words = (
-        "The balance k is the rise of a face's load with pressure over its width. Oil that falls "
-        "evenly across the face carries half of the pressure; where asperities cause the friction, "
-        "B rises with pressure above k = 1/2 and falls below it. "
+        "The balance k is the increase of the load on a sealing face with pressure, "
+        "divided by the width of the face. If the oil pressure falls evenly across the "
+        "face, the oil carries half of the sealed pressure. Where asperities cause the "
+        "friction, B therefore rises with pressure for k above 1/2 and falls for k below "
+        "1/2. "
     )
     compact = study.kinds[0]
     if compact.rise > 1 + EVEN:
         share = text.trimmed(compact.balance, 2)
-        words += f"The piston's seal has k = {share} and rises {times(compact.rise)}. "
+        words += f"The piston seal has k = {share}, and its B rises {times(compact.rise)}. "
     whole = [kind for kind in study.kinds if kind.name == BOTH]
     for kind in whole:
         words += (
-            f"The tandem rises {times(kind.rise)}, because its outer seal bears most of the "
-            "pressure when both pass the same flow. "
+            f"B of the two rod seals in series rises {times(kind.rise)}, because the outer "
+            "seal carries most of the pressure when the same flow passes both. "
             if kind.rise > 1 + EVEN
-            else "The tandem does not rise. "
+            else "B of the two rod seals in series does not rise. "
         )
     return words + (_proven(study) if whole else "")
 
@@ -716,13 +732,16 @@ def relief_note(study: HuangStudy) -> str:
     """Note on the relief at which the trend over pressure reverses."""
     turn = study.turn
     if turn is None:
-        return "This design's first rod seal is no step ring: nothing turns its trend."
+        return (
+            "The first rod seal of this design is not a step ring, so no relief can "
+            "reverse its trend."
+        )
     if math.isnan(turn.relief):
-        return "No relief turns the trend of its step ring. " + _tandem(study)
+        return "No relief reverses the trend of its step ring. " + _tandem(study)
     return (
-        f"Alone, the step ring turns from rising to falling at a relief of "
-        f"{1e3 * turn.relief:.2f} mm, {percent(turn.share)} of its width, where "
-        f"k = {turn.balance:.2f}; the design has "
+        "For the step ring alone, the trend of B turns from rising to falling at a relief "
+        f"of {1e3 * turn.relief:.2f} mm, {percent(turn.share)} of its width, where k = "
+        f"{turn.balance:.2f}; the design has "
         f"{text.trimmed(1e3 * study.sealings.plunger.rings[0]['relief'])} mm. " + _tandem(study)
     )
 
@@ -738,15 +757,16 @@ def _tandem(study: HuangStudy) -> str:
         if rise < 1 - EVEN
     ]
     words = (
-        f"With both seals passing the same flow no relief shown turns it (B rises at least "
-        f"{times(least)}): the Yx behind bears the pressure. "
+        "With the same flow past both seals no relief shown reverses the trend (B rises "
+        f"at least {times(least)}), because the Yx seal behind the step ring carries the "
+        "pressure. "
         if least > 1
-        else "With both seals passing the same flow some reliefs turn it too. "
+        else "With the same flow past both seals some reliefs reverse the trend too. "
     )
     if falls:
         relief, rise = falls[-1]
         words += (
-            "Without pressure between the seals, as if the room there were drained, B "
+            "Without pressure between the seals, as if the space there were drained, B "
             f"falls to {text.number(rise, 2)} at a relief of {1e3 * relief:.2f} mm. "
         )
     return words
@@ -757,13 +777,14 @@ def _proven(study: HuangStudy) -> str:
     measured = study.kinds[-1]
     drained = study.kinds[-2]
     return (
-        "Shown: seal types alone can make B rise on one cylinder and fall on the other. Not "
-        "shown: that they did in this one. A fall needs a long relief and no pressure between the "
-        "seals, neither of which the paper states, and table 2 falls to "
-        f"{text.number(measured.rise, 2)} from {mega(measured.damping[0])} MN·s/m at 0.6 MPa, "
-        f"{times(measured.damping[0] / drained.damping[0])} ours without pressure between. "
-        "Chosen by us: relief, land, squeeze, lip, oil and roughness; given by the paper: dry "
-        f"friction {listed([text.trimmed(x) for x in PAPER.dry_friction])}."
+        "This shows that seal types alone can make B rise on one cylinder and fall on the "
+        "other. It does not show that they did so in the tests: a fall requires a long "
+        "relief and no pressure between the seals, and the paper states neither. Table 2 "
+        f"falls to {text.number(measured.rise, 2)} from {mega(measured.damping[0])} MN·s/m "
+        f"at 0.6 MPa, {times(measured.damping[0] / drained.damping[0])} our value without "
+        "pressure between the seals. We chose relief, land, squeeze, lip, oil and "
+        "roughness; the paper gives only the dry friction "
+        f"{listed([text.trimmed(x) for x in PAPER.dry_friction])}."
     )
 
 
@@ -781,13 +802,16 @@ def table(readings: Readings) -> list[Block]:
     if readings.shift == readings.shift:
         thinner = "thinner" if readings.shift > 0 else "thicker"
         note += (
-            "Effect of the equations as printed on the first seal alone at 6 MPa and 5 mm/s: "
-            f"without the rigid shift its film of {text.trimmed(1e6 * readings.mean, 3)} µm would "
-            f"be {text.trimmed(1e6 * abs(readings.shift), 2)} µm {thinner} and carry "
-            f"{percent(abs(readings.excess))} {'more' if readings.excess > 0 else 'less'} than "
-            "presses it down, so no film meets eq. 12; with the rough side on the rod it passes "
-            f"{percent(readings.swapped / readings.flow - 1)} more."
+            "The equations as printed were tried on the first seal alone at 6 MPa and 5 "
+            "mm/s. Without the rigid shift its film of "
+            f"{text.trimmed(1e6 * readings.mean, 3)} µm would be "
+            f"{text.trimmed(1e6 * abs(readings.shift), 2)} µm {thinner} and carry "
+            f"{percent(abs(readings.excess))} {'more' if readings.excess > 0 else 'less'} "
+            "than the load on it, so no film meets eq. 12. With the roughness on the rod "
+            f"side the flow is {percent(readings.swapped / readings.flow - 1)} larger."
         )
     return [
-        text_table("Huang 2017: where its equations are", TRACE_COLUMNS, trace_rows(TRACES), note)
+        text_table(
+            "Huang 2017: functions for its equations", TRACE_COLUMNS, trace_rows(TRACES), note
+        )
     ]

@@ -302,8 +302,8 @@ COEFFICIENT, FILM = reasons("aalto", "coefficient"), reasons("aalto", "film")
 
 OTHERWISE: Mapping[Verdict, str] = {
     "agrees": "as printed",
-    "disagrees": "we do not know why",
-    "no effect": "it does not enter",
+    "disagrees": "reason unknown",
+    "no effect": "not in the model",
 }
 """Words for a verdict for which the notes state no reason."""
 
@@ -313,7 +313,7 @@ def trends_table(evaluation: Evaluation) -> Table:
     table_1 = trends(evaluation.design)
     printed = [f"{PRINTED[factor.direction]} {factor.name}" for factor in FACTORS]
     if table_1 is None:
-        note = "No load case moves: friction that runs needs a speed above zero."
+        note = "No load case has a speed above zero, which running friction requires."
         return text_table(
             TITLE, COLUMNS, [(factor, text.DASH, text.DASH) for factor in printed], note
         )
@@ -321,9 +321,9 @@ def trends_table(evaluation: Evaluation) -> Table:
         "ratio": text.trimmed(table_1.stribeck_ratio, 2),
         "roughness": text.trimmed(table_1.roughness_ratio, 2),
         "contact": f"{100 * table_1.contact_share:.0f} %",
-        "oil": "and thin oil acts like less speed: less friction as well"
+        "oil": "and thin oil acts like less speed, which also reduces friction"
         if table_1.film.elasticities[_index("relative motion speed")] > 0
-        else "which counts for more than the lift that thin oil loses",
+        else "which outweighs the lift lost by thin oil",
     }
     rows = [
         (
@@ -349,8 +349,8 @@ def _cell(model: FrictionTrend, known: Reasons, index: int) -> str:
 def _note(table_1: Trends) -> str:
     dry, two = table_1.coefficient, table_1.film
     point = (
-        f"Numbers: relative change of friction over that of the factor (no effect below "
-        f"{text.trimmed(NEGLIGIBLE)}), both rings together, in the case "
+        "Numbers: relative change of friction divided by that of the factor (no effect "
+        f"below {text.trimmed(NEGLIGIBLE)}), both rings together, in load case "
         f"{table_1.case}: {text.trimmed(dry.running, 3)} N by coefficient, "
     )
     point += (
@@ -360,9 +360,11 @@ def _note(table_1: Trends) -> str:
         "with all oil squeezed out). "
     )
     return (
-        point
-        + "Temperature is absolute: 1 % is 3 K. All pressures move together, squeeze stays a share "
-        "of the section. " + _rings(table_1) + _pressure(table_1) + _rest(table_1)
+        point + "Temperature is absolute: 1 % is 3 K. All pressures change together; squeeze "
+        "remains the same share of the section. "
+        + _rings(table_1)
+        + _pressure(table_1)
+        + _rest(table_1)
     )
 
 
@@ -370,8 +372,8 @@ def _rings(table_1: Trends) -> str:
     if not table_1.replaced:
         return ""
     return (
-        f"The table is on O-rings: the design's {listed(table_1.replaced)} got an O-ring of "
-        f"{ELASTOMER} with the same section and squeeze. "
+        f"The table applies to O-rings, so an O-ring of {ELASTOMER} with the same section "
+        f"and squeeze replaces the {listed(table_1.replaced)} of the design. "
     )
 
 
@@ -380,15 +382,16 @@ def _pressure(table_1: Trends) -> str:
     odd = [factor.name for factor in FACTORS if factor.direction != factor.handbook]
     said = table_1.coefficient.verdict(_index("hydraulic pressure"))
     ours = {
-        "agrees": "ours falls here too",
-        "disagrees": "ours rises, as an energised ring must",
-    }.get(said, "ours sees no pressure here")
+        "agrees": "our friction falls here too",
+        "disagrees": "our friction rises, as that of a ring pressed on by the pressure must",
+    }.get(said, "our friction does not depend on pressure here")
     return (
-        f"One row is reversed: less {listed(odd)} cannot press a ring on harder. In the "
-        "scanned text all ten rows print opposite words left and right: no column is swapped. But "
-        "the O-ring handbook's own table (ORingFriction, A6-1), which prints nine rows alike, "
-        f"prints Increase there; {ours}. A fall with pressure was measured on other seals: Huang "
-        "2017, table 2, a step ring with a lip seal. "
+        f"One row of the thesis is reversed: less {listed(odd)} cannot press a ring "
+        "harder. In all ten rows of the scanned text the left and right words are "
+        "opposite, so no column is swapped. The table of the O-ring handbook "
+        "(ORingFriction, A6-1) agrees in the nine other rows and prints Increase in this "
+        f"row; {ours}. Friction that falls with pressure was measured on other seals "
+        "(Huang 2017, table 2: a step ring with a lip seal). "
     )
 
 
@@ -397,16 +400,21 @@ def _rest(table_1: Trends) -> str:
     model = table_1.coefficient if table_1.film.why else table_1.film
     order = table_1.order(model)
     significance = (
-        f"The thesis lists the factors in order of significance, metal finish second; 1 % more "
-        f"weighs most for {listed(order[:3])} here. "
+        "The thesis lists the factors in order of significance, metal finish second; "
+        f"here, 1 % more has the largest effect for {listed(order[:3])}. "
         if order
         else ""
     )
     either = model.verdict(_index("O-ring surface finish"))
-    turned = "and the verdict turns" if either in ("agrees", "disagrees") else "to the same effect"
+    turned = (
+        "and the verdict is reversed"
+        if either in ("agrees", "disagrees")
+        else "with the same verdict"
+    )
     return (
-        significance + "Surface finish of the O-ring is read as roughness like the metal's; read "
-        f"as quality, a decrease means rougher rubber, {turned}."
+        significance + "Surface finish of the O-ring is taken as roughness, like that of "
+        "the metal; taken as quality, a decrease means rougher rubber, "
+        f"{turned}."
     )
 
 

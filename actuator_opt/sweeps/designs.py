@@ -128,9 +128,9 @@ class Designs:
         checks = [self._varies_in(axis, self.plan.texts(int(variant))) for variant in variants]
         varies = all(check.varies for check in checks)
         if varies and len(variants) == count and not any(check.read for check in checks):
-            remedy = "vary another, or check that the design uses the part it belongs to"
+            remedy = "vary another number, or check that the design uses the part it belongs to"
             raise InputError(
-                Diagnostic("no model of this design reads this number", remedy, path=axis.path)
+                Diagnostic("no model of this design uses this number", remedy, path=axis.path)
             )
         return varies
 

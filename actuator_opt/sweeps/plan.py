@@ -101,7 +101,7 @@ def read_axis(text: str, design: Design, metrics: Metrics = None) -> SweepAxis:
         raise UsageError(Diagnostic(f"--vary {shown(text)}: no values", FORM))
     path = canonical(path.strip(), design)
     if path.partition(".")[0] in DESCRIPTIVE:
-        message = "is descriptive text that no model reads"
+        message = "is descriptive text that no model uses"
         raise InputError(Diagnostic(message, "vary a dimension, a material or a limit", path=path))
     match = _RANGE.fullmatch(values.strip())
     if match is None:
@@ -143,7 +143,8 @@ def _number(path: str, text: str, design: Design, metrics: Metrics) -> float:
         raise InputError(Diagnostic(message, "list its values: PATH=a,b,c"))
     if not _is_number(path, text, value, design, metrics):
         message = (
-            f"{shown(text)} differs in kind from the value of the design, so it cannot have a range"
+            f"{shown(text)} has another unit or type than the value of the design, so "
+            "it cannot have a range"
         )
         remedy = "list the values: PATH=a,b,c, or set one such value with --set first"
         raise InputError(Diagnostic(message, remedy, path=path))
@@ -187,7 +188,7 @@ def _listed(path: str, parts: list[str], design: Design, metrics: Metrics) -> Sw
     parts = _with_unit(parts)
     values = [_value(path, part, design, metrics) for part in dict.fromkeys(parts)]
     if len(set(values)) < len(parts):  # finds duplicates such as 20 mm and 2 cm
-        raise UsageError(Diagnostic(f"--vary {path}: a value twice", FORM))
+        raise UsageError(Diagnostic(f"--vary {path}: a value is given twice", FORM))
     if all(
         isinstance(value, (int, float))
         and not isinstance(value, bool)
@@ -333,7 +334,7 @@ def plan(axes: Sequence[SweepAxis], *, method: Method, count: int | None, seed: 
         if count is not None:
             raise UsageError(
                 Diagnostic(
-                    "-n: a grid takes its number of points from its steps", "write PATH=A..B:N"
+                    "-n: the steps of a grid determine its number of points", "write PATH=A..B:N"
                 )
             )
         for axis in axes:
@@ -343,7 +344,7 @@ def plan(axes: Sequence[SweepAxis], *, method: Method, count: int | None, seed: 
         points = math.prod(axis.size for axis in axes)
         if points > MOST_GRID:
             message = f"{points:,} points".replace(",", " ")
-            raise UsageError(Diagnostic(message, "take fewer steps, or --method sobol -n N"))
+            raise UsageError(Diagnostic(message, "use fewer steps, or --method sobol -n N"))
         return Plan(tuple(axes), method, points, seed)
     if count is None or not 1 <= count <= MOST:
         message = f"--method {method}: number of points missing" if count is None else f"-n {count}"

@@ -261,7 +261,7 @@ def swept_again(
         for first in range(0, study.plan.count, size):
             rows, missing_count = stored_rows(base, study, first, size)
             if missing_count:
-                message = f"study {number} lacks rows of this sweep, or holds damaged ones"
+                message = f"study {number} lacks rows of this sweep, or contains damaged rows"
                 remedy = "run the sweep again with --store to compute them"
                 raise refused(store, message, remedy)
             chunk = study.judged(first, rows, 0)

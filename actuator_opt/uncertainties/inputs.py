@@ -117,7 +117,7 @@ def _stated(subject: PreparedDesign, path: str, entry: dict[str, Any], is_read: 
     place = f"uncertainty.{path}.distribution"
     value = subject.numbers.get(path, 1.0 if path.endswith(_FACTOR) else None)
     if value is None or not is_read:
-        message = "no model of this design reads this value, so its uncertainty has no effect"
+        message = "no model of this design uses this value, so its uncertainty has no effect"
         raise InputError(Diagnostic(message, "remove the entry", path=place))
     message, remedy = misfit(entry["distribution"], entry, value, quantity)
     if message:
@@ -209,7 +209,7 @@ def _moduli(subject: PreparedDesign) -> Iterator[Input]:
         stated = {"lower": min(ratios), "upper": max(ratios)}
         distribution = about("loguniform", stated, 1.0, _ANYTHING)
         references = " and ".join(law.reference for law in MODULUS_LAWS.values())
-        why = f"the laws for modulus from hardness differ: {references}"
+        why = f"published laws for modulus from hardness differ: {references}"
         quantity = quantity_of(path, subject.design)
         value = subject.numbers.get(path, 1.0)
         yield Input(path, quantity, value, distribution, "library", why, "verified")

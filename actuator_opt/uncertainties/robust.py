@@ -246,7 +246,7 @@ class _RobustSearch:
         optimisation, reserves, draws = self._last()
         if self.ordinary.choices is not None:
             choices = self.ordinary.choices
-            words = f"{choices.sentence}; all choices were compared without yield reserves"
+            words = f"{choices.sentence}; all choices were compared without margins for scatter"
             optimisation = replace(optimisation, choices=replace(choices, sentence=words))
         count = round(float(np.clip(200 / self.allowed, 10_000, 400_000)))
         rate = _covered_rate(draws.model, self.covered, count, self.seed)
@@ -272,7 +272,7 @@ class _RobustSearch:
         sentence = f"the yield is below the requested {_percent(self.target)}"
         if self.infeasible:
             none = _no_design_meets(optimisation)
-            sentence = f"{none} all requirements with the reserves for this yield"
+            sentence = f"{none} all requirements with the margins that this yield needs"
         remedy = f"{optimisation.remedy or 'relax a requirement'}, or request a lower yield"
         return replace(optimisation, robust=outcome, sentence=sentence, remedy=remedy)
 
@@ -295,7 +295,7 @@ class _RobustSearch:
         """Return the certificate with a remark that it does not cover the reserves."""
         if certificate.lower_bound is None:
             return certificate
-        words = "the bound is for the limits themselves, without yield reserves"
+        words = "the bound is for the limits themselves, without margins added for scatter"
         if self.ordinary.choices is not None:
             words += ", and for the chosen options only"
         return replace(certificate, sentence=f"{certificate.sentence}; {words}")
@@ -320,32 +320,38 @@ class _RobustSearch:
             f"{_percent(outcome.rate)} ({_percent(outcome.lower)} to {_percent(outcome.upper)})"
         )
         cost = (
-            f"{quantity.label} is {after}, against {before} without reserves at a yield of "
-            f"{_percent(outcome.nominal_rate)}"
+            f"{quantity.label} is {after}, against {before} without margins for scatter, at a "
+            f"yield of {_percent(outcome.nominal_rate)}"
         )
         remarks = ""
         if self.ordinary.choices is not None:
-            remarks = "; choices come from the optimum without reserves: try others with --set"
+            remarks = (
+                "; the choices are those of the optimum without margins for scatter: try others "
+                "with --set"
+            )
         if outcome.left_out:
             missed = ", ".join(outcome.left_out)
-            remarks += f"; not covered, as the optimum without reserves misses them: {missed}"
+            remarks += (
+                "; the yield does not cover these limits, which the optimum misses even "
+                f"without scatter: {missed}"
+            )
         if self.infeasible:
             return (
-                f"{_no_design_meets(optimisation)} the reserves needed for a yield of"
-                f" {_percent(self.target)}: "
-                f"{self._shortfalls()}. The design shown meets all limits in {yield_text} of "
-                f"{outcome.samples} independent draws; without reserves {quantity.label} is "
-                f"{before} at a yield of {_percent(outcome.nominal_rate)}{remarks}. The changes "
-                "suggested assume these reserves, which grow when a limit is relaxed: apply "
-                "them and optimise again"
+                f"{_no_design_meets(optimisation)} the limits with the margins that scatter "
+                f"needs for a yield of {_percent(self.target)}: {self._shortfalls()}. The "
+                f"design shown meets all limits in {yield_text} of {outcome.samples} "
+                f"independent draws; without margins for scatter {quantity.label} is {before} "
+                f"at a yield of {_percent(outcome.nominal_rate)}{remarks}. The suggested "
+                "changes assume these margins, which grow when a limit is relaxed, so apply "
+                "the changes and optimise again"
             )
         if not outcome.reached:
             return (
-                f"the reserves did not settle in {len(outcome.rounds) - 1} rounds: all limits are "
-                f"met in {yield_text} of {outcome.samples} independent draws, not "
-                f"{_percent(self.target)}; {cost}{remarks}"
+                f"the margins added for scatter did not converge in {len(outcome.rounds) - 1} "
+                f"rounds: all limits are met in {yield_text} of {outcome.samples} independent "
+                f"draws, not {_percent(self.target)}; {cost}{remarks}"
             )
-        remark = "" if self.converged else ", though the reserves did not settle"
+        remark = "" if self.converged else ", though the margins added for scatter did not converge"
         return (
             f"all limits are met in {yield_text} of {outcome.samples} independent draws, "
             f"{_percent(self.target)} requested{remark}; {cost}{remarks}"

@@ -27,37 +27,42 @@ def _notes(subject: PreparedDesign, uncertain_inputs: Sequence[Input]) -> Iterat
     strengths = sorted(path for path in drawn_paths if "strength" in path)
     if not uncertain_inputs:
         yield (
-            "no input is uncertain: the yield is 100 % if the nominal design meets all "
-            "requirements, else 0"
+            "no input is uncertain, so the yield is 100 % if the nominal design meets all "
+            "requirements, and 0 % if not"
         )
     yield (
-        "strengths are not drawn: they stay at their allowables, with all knock-downs, so the "
-        "yield is conservative for material strength"
+        "strengths do not scatter in this study: they stay at their allowables, with all "
+        "knock-downs, so the yield is conservative for material strength"
         if not strengths
         else (
-            "drawn without their basis knock-down, which covers the same scatter: "
-            f"{', '.join(strengths)}; all other strengths stay at their allowables"
+            "these strengths scatter, without the knock-down for their basis, which "
+            f"covers the same scatter: {', '.join(strengths)}; all other strengths stay at "
+            "their allowables"
         )
     )
     yield (
-        "squeeze, gland fill and extrusion gap are checked at the worst tolerances of ring and "
-        "gland, so these tolerances are not drawn"
+        "squeeze, gland fill and extrusion gap are checked at the worst tolerances of ring "
+        "and gland, so these tolerances do not scatter in addition"
     )
     for path in sorted(drawn_paths):
         place, _, last = path.rpartition(".")
         twice = {"section": "section_tolerance", "squeeze": "tolerance"}.get(last)
         if twice and place.startswith("seals.") and subject.numbers.get(f"{place}.{twice}", 0.0):
-            yield f"{path} is drawn, and {place}.{twice} is applied at its worst too: set it to 0"
-    yield "all inputs are drawn independently, even properties of the same material"
+            yield (
+                f"{path} scatters, but {place}.{twice}, at its worst value, already covers "
+                f"the same scatter: set {place}.{twice} to 0"
+            )
+    yield "all inputs scatter independently, even properties of the same material"
     practice = [entry.path for entry in uncertain_inputs if entry.origin == "practice"]
     if practice:
         yield (
-            f"scatter from common practice, not from a verified source: {', '.join(practice)}; "
-            "state your own under uncertainty"
+            "scatter assumed from common practice, without a verified source: "
+            f"{', '.join(practice)}; state your own under uncertainty"
         )
     if films_asked(subject.design):
         yield (
-            "oil films follow the uncertain inputs to first order, within the range of their tables"
+            "the effect of the uncertain inputs on oil films is linearised and limited "
+            "to the range of the film tables"
         )
 
 

@@ -54,7 +54,7 @@ def test_a_report_repeats_to_the_byte(reports, tmp_path, kind):
     assert ("kkt" in data) == (kind == "o")
     assert (tmp_path / "small one.pdf").read_bytes() == reports[kind].read_bytes()
     told = run("rerun", reports[kind])
-    assert told.err.endswith("the same as this one\n")
+    assert told.err.endswith("the version of this installation\n")
     assert run("rerun", reports[kind], "--quiet").out == ""
 
 
@@ -116,8 +116,8 @@ FACTS = {"actuator_opt": "0.6.0", "command": "actuator-opt evaluate a.yaml", "so
         ({"actuator_opt": "99.0.0"}, "was made by actuator-opt 99.0.0"),
         ({"command": ""}, "made by a script"),
         ({"command": "actuator-opt 'evaluate"}, "made by actuator-opt ?"),
-        ({"command": "actuator-opt simulate s.yaml"}, "needs more input than a design"),
-        ({"command": "rm -rf x"}, "needs more input than a design"),
+        ({"command": "actuator-opt simulate s.yaml"}, "requires more input than a design"),
+        ({"command": "rm -rf x"}, "requires more input than a design"),
         ({"command": "actuator-opt evaluate a --frob 3"}, "cannot be repeated"),
         ({"command": "actuator-opt optimise a --seed x"}, "cannot be repeated"),
         ({"command": "actuator-opt optimise"}, "cannot be repeated"),

@@ -115,7 +115,7 @@ def test_a_measured_coefficient_is_no_variable_any_more():
     )
     found = ao.calibrate(identified("plateaus"), design=ao.read(text), search=False)
     assert path not in found.actuator.design.variables
-    assert any("fixed as measured" in words for words in found.calibration.doubts)
+    assert any("fixed at the measured value" in words for words in found.calibration.doubts)
 
 
 @pytest.mark.parametrize("verb", ["identify", "calibrate"])
@@ -230,5 +230,5 @@ def test_other_compounds_take_the_measured_friction_over_and_it_is_said():
     found = ao.calibrate(identified("plateaus"), design=ao.read(text), search=False)
     assert set(found.actuator.design.choices) == {"seals.rod.compound"}
     said = " ".join(found.calibration.doubts)
-    assert "choices of seals.rod.compound use it too" in said
-    assert "fixed as measured: seals.rod.friction_coefficient" in said
+    assert "other choices of seals.rod.compound" in said
+    assert "fixed at the measured value: seals.rod.friction_coefficient" in said

@@ -161,8 +161,9 @@ def test_what_buys_the_most():
     assert lines == [
         "Relaxing stiffness_min by 10 % (to 9 kN/mm) saves 14.8 g (7.2 %), the most of any"
         " requirement.",
-        "Of the design's fixed numbers, 10 % less supply.pressure (189 bar) saves 7.90 g (3.8 %).",
-        "No feasible design with friction_running at 283.5 N.",
+        "Among the design's fixed values, 10 % less supply.pressure (189 bar) saves 7.90 g"
+        " (3.8 %).",
+        "The search found no feasible design with friction_running at 283.5 N.",
     ]
     told_in_json = fixture.build_optimisation().to_dict()["what_buys_most"]["sentence"]
     assert text.pretty(told_in_json) == " ".join(lines)

@@ -142,7 +142,7 @@ def test_a_block_that_does_not_fit_leaves_the_optimum_and_says_so(wide):
     design = subject.design.model_copy(update={"uncertainty": entry})
     found = quick_yield(replace(subject, design=design), wide)
     assert found.value is None
-    assert "no model of this design reads this" in found.why
+    assert "no model of this design uses this" in found.why
 
 
 def test_the_yield_asked_for_is_told_by_its_own_sample(optimum):

@@ -401,7 +401,7 @@ def test_a_bore_of_standard_size_alone_is_no_design_to_build():
     assert loose.rounding.met
     assert path in misfits(loose.best)
     assert path in loose.rounding.unmade
-    assert "not to be built yet" in loose.shown
+    assert "which cannot be built yet" in loose.shown
     assert any(path in note for note in loose.rounding.notes)
     fibres = ao.optimise(ao.read(bench((BORE, block))), starts=1, prices=False)
     assert fibres.rounding.unmade == (path, "barrel.layup[2].thickness")
@@ -576,4 +576,4 @@ def test_a_search_without_time_says_so():
     rounding = optimum(with_angle(), max_seconds=1e-3).rounding
     assert rounding is None or not rounding.complete
     if rounding is not None:
-        assert "stopped at its limit" in rounding.sentence
+        assert "stopped at its time limit" in rounding.sentence

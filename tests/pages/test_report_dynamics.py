@@ -256,7 +256,7 @@ def test_the_part_that_buys_most_is_named_with_what_it_buys():
     halved = sum(parts.values()) - parts[name] / 2
     gain = sum(parts.values()) / halved - 1
     said = stiffness_page.gain_sentence(curve)
-    assert f"{name} would buy most" in said
+    assert f"{name} matters most" in said
     assert f"would make the actuator {100 * gain:.0f} % stiffer" in said
 
 
@@ -494,9 +494,11 @@ def test_a_tuned_gain_says_its_rule():
 def test_a_swinging_loop_is_no_response():
     """Beyond the ultimate gain both figures say so."""
     found = blocks_of(evaluated("swinging"))
-    assert "The closed loop swings." in texts(ink_of(found["Position loop, open"]))
+    assert "The closed loop is unstable." in texts(ink_of(found["Position loop, open"]))
     closed = texts(ink_of(found["Position loop, closed"]))
-    assert any(t.startswith("The loop swings: this is not its response.") for t in closed)
+    assert any(
+        t.startswith("The closed loop is unstable, so this is not its response.") for t in closed
+    )
 
 
 def test_open_loop_of_an_integrator_and_its_drawing():
@@ -516,7 +518,7 @@ def test_open_loop_of_an_integrator_and_its_drawing():
         closed_magnitude=np.abs(1 / (1 + s)),
     )
     ink = ink_of_panels(*bode.open_panels(study, [one], bode.LoopLimits()))
-    assert "No gain makes the loop swing." in texts(ink)
+    assert "The loop is stable at any gain." in texts(ink)
     blue = (m["path"][0] for m in ink.marks if m.get("stroke") == BLUE)
     curve = next(line for line in blue if len(line) > 2)
     zero = level_y(ink, 0.0, (("0", 0.0), ("−40", -40.0)))

@@ -267,7 +267,7 @@ def test_energies_that_powers_do_not_confirm_are_doubted():
     assert "supply" not in simulation_energy.over_time(wrong)
     page = subject.page(wrong)
     assert page.verdict.text == "SIMULATED, IN DOUBT"
-    assert "Powers at the samples add up to other energies" in words_of(page)
+    assert "The sampled powers add up to energies that differ" in words_of(page)
 
 
 # ---- words ----
@@ -337,7 +337,7 @@ def test_trust_tells_the_second_integrator():
     found = replace(case.simulated("step"), requirements=())
     assert "Radau on the same equations" in subject.second_words(found)
     apart = Second("radau", 0.2, "position", 0.3, {"position": 0.2})
-    assert "by 0.2 of their span at most, position of the piston at 0.3000 s" in (
+    assert "by at most 0.2 of their span, most in position of the piston at 0.3000 s" in (
         subject.second_words(replace(found, second=apart))
     )
     assert subject.verdict(replace(found, second=apart)).state == "checks"

@@ -23,7 +23,7 @@ PROVEN = Certificate(
     lower_bound=0.195,
     gap=0.049,
     covers=("stiffness_min", "seal_gap"),
-    dropped={"first-ply (leak) pressure": "its model is not a closed expression"},
+    dropped={"first-ply (leak) pressure": "its model is not a closed formula of the variables"},
     boxes=12,
 )
 
@@ -34,7 +34,9 @@ def test_the_page_tells_what_is_proven_and_what_is_not():
     said = trust.proof(replace(best, certificate=PROVEN))
     assert said[0].endswith("within 4.9 %.")
     assert "stiffness_min, seal_gap" in said[1]
-    assert "first-ply (leak) pressure (its model is not a closed expression)" in said[2]
+    assert (
+        "first-ply (leak) pressure (its model is not a closed formula of the variables)"
+    ) in said[2]
     assert "6 of 6" in said[3]
     short = trust.proof(replace(best, certificate=PROVEN), shortened=True)
     assert "It covers 2 limits" in short[1]

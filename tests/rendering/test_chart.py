@@ -128,7 +128,7 @@ def test_any_value_is_drawn_or_left_out(panel):
     [
         (Panel("F, N"), "No values."),
         (Panel("F, N", note="The record lies outside the stroke."), "outside the stroke"),
-        (Panel("F, N", curves=[Curve("a", [1.0], [math.nan])]), "No value that is a number."),
+        (Panel("F, N", curves=[Curve("a", [1.0], [math.nan])]), "No value is a number."),
         (Panel("F, N", y=Axis(log=True), curves=[Curve("a", [1, 2], [0, -1])]), "above zero"),
     ],
 )

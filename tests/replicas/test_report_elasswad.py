@@ -87,15 +87,15 @@ def test_bending_modulus_by_hand(tables, span, where):
     shear, dents = SHEAR / span**2, DENTS / lever
     solid = 1 / (FLEXURAL / (1 - (25 / 30) ** 4))
     for name, modulus in (
-        ("shear taken off", 1 / (1 / FLEXURAL - shear)),
+        ("shear subtracted", 1 / (1 / FLEXURAL - shear)),
         ("dents at the rollers", 1 / (1 / FLEXURAL - dents)),
         ("stiff caps", FLEXURAL * (1 - 0.999 * (2 * 20e-3 / span) ** 3)),
-        ("solid bar put right", 1 / (solid - shear - dents)),
+        ("solid bar corrected", 1 / (solid - shear - dents)),
     ):
         assert shown(name) == pytest.approx(modulus / 1e9, rel=3e-3), name
     assert shown("bending modulus", 2) == pytest.approx(FLEXURAL / lever / 1e3, rel=1e-3)
     hidden = (1 / FLEXURAL - 1 / 60.8e9 - shear) * lever
-    assert shown("give that would hide") == pytest.approx(1e9 * hidden, rel=3e-3)
+    assert shown("compliance that would hide") == pytest.approx(1e9 * hidden, rel=3e-3)
 
 
 def test_a_solid_bar_in_eq_13_does_not_depend_on_the_span(tables):

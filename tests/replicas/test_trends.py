@@ -409,7 +409,7 @@ def test_verdict_follows_from_the_number():
 
 
 def test_every_verdict_here_is_explained(found):
-    """No cell of these designs is left to "we do not know why", none names an unknown factor."""
+    """No cell of these designs is left to "reason unknown", none names an unknown factor."""
     for model, known in ((found.coefficient, trends.COEFFICIENT),
                          (found.film, trends.FILM)):  # fmt: skip
         assert set(known) <= set(NAMES)
@@ -429,7 +429,11 @@ def test_the_table_shows_numbers_and_reasons():
     pressure = table.rows[NAMES.index("hydraulic pressure")]
     assert pressure[0].startswith("decrease")
     assert all("disagrees: the pressure presses the ring on" in cell for cell in pressure[1:])
-    for words in ("prints Increase there", "and rod got an O-ring of nbr_70", "in the case down"):
+    for words in (
+        "prints Increase in this row",
+        "an O-ring of nbr_70 with the same section and squeeze replaces",
+        "in load case down",
+    ):
         assert words in table.note
 
 
@@ -447,7 +451,7 @@ def test_without_a_moving_case_there_is_no_friction_to_follow():
     changes = {f"load_cases[{case}].speed": "0 m/s" for case in ("stance", "swing")}
     table = trends.trends_table(evaluated("knee", **changes))
     assert {cell for row in table.rows for cell in row[1:]} == {"–"}
-    assert "needs a speed above zero" in table.note
+    assert "has a speed above zero" in table.note
 
 
 def test_the_strongest_come_first(found):

@@ -227,7 +227,7 @@ def test_every_channel_is_drawn_with_what_is_left_over(count):
     made = [chart_ink.drawn(chart) for chart in measured_charts(found)]
     assert [boxes_collide(ink) for ink in made] == [[]] * len(made)
     words = [one[0] for ink in made for one in ink.text_boxes()]
-    assert sum(one.startswith("Measured less simulated, ") for one in words) == count
+    assert sum(one.startswith("Measured minus simulated, ") for one in words) == count
     assert words.count("±2σ of noise") == count
     assert {"Pressure A, bar", "measured", "simulated"} <= set(words)
     assert not [one for one in words if "…" in one]

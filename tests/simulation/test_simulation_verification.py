@@ -272,7 +272,7 @@ def test_verification_reads_as_tables():
         assert plain.isascii()
         assert max(map(len, plain.splitlines())) <= width
     held = sum(one.met for one in found.rows)
-    assert f"{held} of {len(found.rows)} requirements hold in time" in plain
+    assert f"{held} of {len(found.rows)} requirements are met in the time simulation" in plain
     tables = pages.tables(found)
     assert len(tables[0].rows) == len(found.rows)
     for table in tables:

@@ -370,7 +370,7 @@ def test_a_mass_changed_by_hand_is_not_taken_over(tmp_path):
             if number in (1, 4):
                 connection.execute("UPDATE rows SET numbers = ? WHERE id = ?", (lighter, number))
     refused = cli("report", "last", "--out", tmp_path / "out", "--json")
-    assert "or holds damaged ones" in refused.errors[0]["message"]
+    assert "or contains damaged rows" in refused.errors[0]["message"]
     told = cli(*words)
     assert "2 rows in the store were damaged and computed again." in told.out
     again = cli(*words, "--json").json
@@ -544,9 +544,9 @@ def test_temperatures_that_leave_strengths_alone_move_together(tmp_path):
 def test_a_path_that_no_model_reads_is_refused():
     """A constant of another law of the oil, whatever else varies."""
     law = "materials.iso_vg_32.tait_modulus=1..2 GPa:3"
-    with pytest.raises(InputError, match=r"tait_modulus: no model of this design reads"):
+    with pytest.raises(InputError, match=r"tait_modulus: no model of this design uses"):
         ao.sweep(KNEE, [law])
-    with pytest.raises(InputError, match=r"tait_modulus: no model of this design reads"):
+    with pytest.raises(InputError, match=r"tait_modulus: no model of this design uses"):
         ao.sweep(KNEE, [law, "rod.material=steel_42crmo4,ti_6al4v"])
 
 

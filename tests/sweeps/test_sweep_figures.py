@@ -283,7 +283,7 @@ def test_a_metric_without_values_is_told(swept, tmp_path):
         and all(np.isnan(row[swept.study.place(name)]) for row in swept.sample.feasible.rows)
     )
     for kind in ("parallel", "scatter", "contour"):
-        with pytest.raises(InputError, match="no design of this sweep has a value of it"):
+        with pytest.raises(InputError, match="it has no value for any design of this sweep"):
             ao.draw_sweep(swept, [kind], show=["mass", missing], out=tmp_path / "figures")
     assert not (tmp_path / "figures").exists()
 
@@ -337,7 +337,7 @@ def test_the_page_of_a_sweep(knee, tmp_path):
     assert "Best designs" in html.document(sheet, origin)
     missed = page(ao.sweep(STEEL, ["cylinder.bore=18..20 mm:3"], workers=1))
     assert not missed.hero(100.0).marks
-    assert "is missed furthest in 3 of them" in terminal.text(missed, width=200)
+    assert "is the limit missed by most in 3 of them" in terminal.text(missed, width=200)
 
 
 @pytest.mark.parametrize("kind", SWEEP_FIGURES)

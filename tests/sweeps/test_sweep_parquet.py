@@ -211,7 +211,7 @@ def test_one_file_for_two_things_is_refused(tmp_path):
     ao.sweep(STEEL, ["cylinder.bore=18..26 mm:3"], store=store)
     before = store.read_bytes()
     for name in ("csv", "parquet"):
-        with pytest.raises(UsageError, match="one file for two"):
+        with pytest.raises(UsageError, match="two of --store"):
             ao.sweep(STEEL, ["cylinder.bore=18..26 mm:3"], store=store, **{name: str(store)})
     assert store.read_bytes() == before
 

@@ -103,11 +103,11 @@ def test_axes_as_written():
         ("cylinder.bore=18..40 mm:", "nothing steps"),
         ("cylinder.bore=20 mm..20 mm:3", "both ends are equal"),
         ("cylinder.bore=20 mm,,30 mm", "an empty value"),
-        ("cylinder.bore=20 mm,20 mm", "a value twice"),
-        ("cylinder.bore=20 mm,2 cm", "a value twice"),
+        ("cylinder.bore=20 mm,20 mm", "a value is given twice"),
+        ("cylinder.bore=20 mm,2 cm", "a value is given twice"),
         (
             "load_cases[stance].position=10 %..90 %:3",
-            "differs in kind from the value",
+            "has another unit or type than the value",
         ),
         ("name=one,two", "that no model reads"),
         ("objective.minimise=mass,seal_gap", "that no model reads"),
@@ -132,7 +132,7 @@ def test_what_is_no_axis_is_said_in_one_line(text, words):
     [
         ([], "grid", None, "nothing to vary"),
         ([numbers("p", 0, 1)], "grid", None, "has no steps"),
-        ([numbers("p", 0, 1, 3)], "grid", 5, "a grid takes its number of points from its steps"),
+        ([numbers("p", 0, 1, 3)], "grid", 5, "the steps of a grid determine its number of points"),
         ([numbers("p", 0, 1)], "lhs", None, "number of points missing"),
         ([numbers("p", 0, 1)], "sobol", 0, "-n 0"),
         ([numbers("p", 0, 1)], "sobol", 2**31, "1 to 1073741824"),

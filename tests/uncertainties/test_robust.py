@@ -92,7 +92,7 @@ def test_no_room_for_the_reserve_is_infeasible_in_words():
     """The rod may not grow as far as the yield asks: infeasible, with the limit named."""
     found = optimum(0.99, upper="15.1 mm")
     assert found.status == "infeasible"
-    assert "no design meets the reserves" in found.robust.sentence
+    assert "no design meets the limits with the margins" in found.robust.sentence
     assert "thick_rod" in found.robust.sentence
     assert found.infeasibility is not None
     assert not found.robust.reached
@@ -125,7 +125,7 @@ def test_no_size_with_enough_yield_saves_nothing(tmp_path):
     assert result.code == 1
     assert not saved.exists()
     assert "not written" in result.err
-    assert "without reserves for the yield" in " ".join(result.out.split())
+    assert "without margins for scatter" in " ".join(result.out.split())
 
 
 def test_choices_are_those_of_the_plain_optimum_and_said_so():
@@ -137,8 +137,8 @@ def test_choices_are_those_of_the_plain_optimum_and_said_so():
     )
     assert found.choices.best == plain.choices.best
     assert found.best.rod.material == found.choices.best["rod.material"].split()[0]
-    assert found.choices.sentence.endswith("without yield reserves")
-    assert "choices come from the optimum without reserves" in found.robust.sentence
+    assert found.choices.sentence.endswith("without margins for scatter")
+    assert "choices are those of the optimum without margins" in found.robust.sentence
     assert found.robust.reached
 
 
@@ -161,7 +161,7 @@ def test_the_certificate_speaks_of_limits_without_reserves():
     assert found.certificate is not None
     if found.certificate.lower_bound is not None:
         assert found.certificate.lower_bound <= found.robust.nominal_objective * (1 + 1e-6)
-        assert "without yield reserves" in found.certificate.sentence
+        assert "without margins added for scatter" in found.certificate.sentence
 
 
 def test_reserves_refused_are_those_of_the_yield():
@@ -175,13 +175,13 @@ def test_reserves_refused_are_those_of_the_yield():
 
 
 def test_what_does_not_settle_is_said(monkeypatch):
-    """Too few rounds: the sentence says that the reserves did not settle, and what holds."""
+    """Too few rounds: the sentence says that the margins did not converge, and what holds."""
     monkeypatch.setattr(robust, "ROUNDS", 1)
     monkeypatch.setattr(robust, "AIM", 8.0)
     found = optimum(0.95)
     assert not found.robust.converged
     assert not found.robust.reached
-    assert "did not settle" in found.robust.sentence
+    assert "did not converge" in found.robust.sentence
     assert found.robust.upper < 0.95
 
 

@@ -304,7 +304,7 @@ def test_strengths_stand_at_their_allowables_unless_stated():
         exact = factor / knocked if own else factor
         assert changed.factors[name, key, cold] == pytest.approx(exact, rel=1e-14)
     notes = ao.uncertainty(ao.read(case.block(stated)), count=20, rows=0).notes
-    assert any("without their basis knock-down" in words for words in notes)
+    assert any("without the knock-down for their basis" in words for words in notes)
 
 
 def test_what_is_taken_at_its_worst_is_not_drawn_twice():
@@ -312,4 +312,7 @@ def test_what_is_taken_at_its_worst_is_not_drawn_twice():
     assert not any(one.endswith((".section", ".squeeze", "tolerance")) for one in found_inputs())
     text = case.block({"seals.rod.squeeze": {"distribution": "normal", "deviation": "0.5 %"}})
     notes = ao.uncertainty(ao.read(text), count=20, rows=0).notes
-    assert any("seals.rod.tolerance is applied at its worst too" in words for words in notes)
+    assert any(
+        "seals.rod.tolerance, at its worst value, already covers the same scatter" in words
+        for words in notes
+    )

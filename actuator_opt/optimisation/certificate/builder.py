@@ -86,7 +86,7 @@ class Builder:
         if not isinstance(value, Symbol):
             number = float(value)
             if number == 0 or not math.isfinite(number):
-                raise Unknown(f"a part of it is {number:g}")
+                raise Unknown(f"a factor or term in the model is {number:g}")
             return math.copysign(1.0, number), Form(math.log(abs(number)))
         if value.index not in self._forms:
             try:
@@ -146,21 +146,21 @@ class Builder:
         """The sampled form of a value that is a function of a single other value."""
         lead = self._leads.of(node)
         if lead is node:
-            raise Unknown("it depends on several values")
+            raise Unknown("the model has a function of several values")
         sign, argument = self.form(lead)
         if sign < 0:
-            raise Unknown("its argument is negative")
+            raise Unknown("the model has a function with a negative argument")
         t = np.linspace(*self.relaxation.reach(argument), SAMPLES)
         if not 0 < t[-1] - t[0] < WIDEST:
-            raise Unknown("its argument is fixed or unbounded")
+            raise Unknown("the model has a function whose argument is constant or unbounded")
         values = function([node], lead)(t)[0]
         with np.errstate(all="ignore"):
             logs = np.log(np.abs(values))
         if not np.isfinite(logs).all():
-            raise Unknown("it is not defined everywhere")
+            raise Unknown("the model is not defined within all of the bounds")
         table = SampledFunction.of(t, logs, CAUTION)
         if (values[0] > 0) != (values[-1] > 0) or values.min() * values.max() <= 0:
-            raise Unknown("its sign is not known")
+            raise Unknown("the model has a function whose sign may change")
         least, most = float(logs.min()) - table.room, float(logs.max()) + table.room
         return math.copysign(1.0, values[0]), self._curve(table, argument, least, most)
 
@@ -226,7 +226,7 @@ class Builder:
             return 1.0, self._difference(plus, minus, low, high)
         if high < 0:
             return -1.0, self._difference(minus, plus, -high, -low)
-        raise Unknown("the sign of a difference is not known")
+        raise Unknown("the model has a difference whose sign may change")
 
     def _lower_bound(self, plus: Sequence[Form], minus: Sequence[Form]) -> float:
         """Lower bound on the difference of two sums of monomials."""
@@ -314,7 +314,7 @@ class Builder:
             return self.form(choice)
         kind = extreme(node)
         if kind is None:
-            raise Unknown("it depends on a condition that is not decided")
+            raise Unknown("the model depends on a condition that the bounds do not decide")
         (s, a), (t, b) = self.form(node.args[1]), self.form(node.args[2])
         low, high = node.bounds
         if s != t:
@@ -341,7 +341,7 @@ class Builder:
         if op == "tanh" and low > 0:
             _, form = self.form(argument)
             return 1.0, self._curve("tanh", form, math.log(low), math.log(high))
-        raise Unknown(f"{op} has no relaxation")
+        raise Unknown(f"no bound is implemented for the function {op}")
 
     def _logarithm(
         self, graph: object, argument: Any, low: float, high: float
@@ -354,7 +354,7 @@ class Builder:
             low = max(low, math.log(least)) if least > 0 else low
         _, form = self.form(argument)
         if low <= 0 <= high:
-            raise Unknown("the sign of a logarithm is not known")
+            raise Unknown("the model has a logarithm whose sign may change")
         sign = 1.0 if low > 0 else -1.0
         inner = form if sign > 0 else Form(0.0) - form
         ends = (low, high) if sign > 0 else (-high, -low)
@@ -503,10 +503,10 @@ class Envelopes:
             the wall has single plies, or is a membrane
         """
         if kind(design, stock.materials) != "layered":
-            raise Unknown("a membrane wall has no envelope")
+            raise Unknown("no bound is implemented for a membrane wall")
         layers = plies.layers(v, stock, design.barrel.layup, "barrel.layup", (), [])
         if not all(layer.balanced for layer in layers):
-            raise Unknown("a wall of unbalanced single plies, which twists, has no envelope")
+            raise Unknown("no bound is implemented for a wall of unbalanced plies, which twists")
         walls = [solid_rotated(stiffness=layer.solid, angle=layer.angle) for layer in layers]
         thicknesses = [layer.thickness for layer in layers]
         self.bearable = _bearable(v, design, stock, g)
@@ -538,8 +538,8 @@ class Envelopes:
             thin_ratio=(g.outer_radius - g.inner_radius) / g.inner_radius,
             layered=len(layers) > 1,
             axial_line_stiffness=stiffness / (math.pi * (g.inner_radius + g.outer_radius)),
-            why_no_mismatch="not covered by the relaxation",
-            missing=["not covered by the relaxation"],
+            why_no_mismatch="the proof does not cover it",
+            missing=["the proof does not cover it"],
         )
 
     def _elastic(
@@ -652,7 +652,7 @@ def refuse(design: Design) -> None:
         (any(element.friction_law.film for element in elements), "a seal with an oil film"),
     ):
         if present:
-            raise Unknown(f"{model} has no envelope yet")
+            raise Unknown(f"no bound is implemented yet for {model}")
 
 
 def layered(subject: PreparedDesign) -> bool:

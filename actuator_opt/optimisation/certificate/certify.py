@@ -118,7 +118,7 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
             with np.errstate(all="ignore"):
                 case_statics = statics(case_subject, values, out, envelopes.implicit())
         except (TypeError, AttributeError):  # symbols raise this for unsupported operations
-            raise Unknown("one of its models is not a closed expression of the variables") from None
+            raise Unknown("one of the models is not a closed formula of the variables") from None
         traced.facts += [(part, 0.0) for part in case_statics.mass_parts.values()]
         traced.facts += _along_the_stroke(envelopes, case_statics, out, positions)
         envelopes.joint(case_statics, out)
@@ -189,7 +189,7 @@ def _collect(
         limit_value = limit.value(values)
         varies = isinstance(limit_value, Symbol)
         if varies and not limit_value.bounds[0] > 0:
-            traced.dropped[limit.name] = "its limit varies and may be zero"
+            traced.dropped[limit.name] = "its limit depends on the variables and may be zero"
             continue
         bound = 1.0 if varies else float(np.squeeze(limit_value))
         for place, value in rows:
@@ -201,9 +201,9 @@ def _collect(
                 label = f"{limit.name} ({location})"
                 traced.claims.append(TracedLimit(limit, label, limited, bound))
             else:
-                traced.dropped.setdefault(limit.name, "no variable affects its traced value")
+                traced.dropped.setdefault(limit.name, "no variable affects it")
         if not rows and (is_first or limit.case is not None):
-            traced.dropped[limit.name] = "its model is not a closed expression"
+            traced.dropped[limit.name] = "its model is not a closed formula of the variables"
 
 
 def _applying(out: MetricArrays, metric: str, case: str) -> Iterator[tuple[str, Any]]:
@@ -514,9 +514,9 @@ def certify(
     try:
         relaxed, search = _search(trace(actuator, x), objective, deadline, max_boxes)
     except Empty:
-        raise Unknown("the design misses a limit") from None
+        raise Unknown("the design itself misses a limit") from None
     if not _meets(search.layout, relaxed.atoms(actuator, x)):
-        raise Unknown("the design misses a limit")
+        raise Unknown("the design itself misses a limit")
     if search.root_bound() < math.log(objective) + math.log1p(-WIDE):
         coarse, bound = _coarse(actuator, x, objective * (1 - AIM), deadline, max_boxes, report)
         if bound.boxes > EASY:

@@ -361,7 +361,7 @@ def front(objectives: Objectives, settings: FrontSettings) -> Front | NoAnchor:
     for attempt in range(2 if settings.checks else 0):
         places = _places(search, settings)
         previous = [search.designs[k] for k in places]
-        tell("searching for overlooked designs")
+        tell("searching for designs that were missed")
         reseeded = replace(effort, seed=settings.seed + 1 + attempt)
         improvements = overlooked(tracer, previous, reseeded)
         searched += len(places)

@@ -271,7 +271,7 @@ def _fill_holes(search: FrontSearch, count: int) -> None:
         missing = int(np.ceil(SURPLUS * count)) - len(indices)
         if missing <= 0:
             return
-        tell("filling holes of the front", number / ROUNDS)
+        tell("filling gaps in the front", number / ROUNDS)
         designs = [search.designs[k] for k in indices]
         references += designs
         pairs = _neighbour_pairs(search, indices)

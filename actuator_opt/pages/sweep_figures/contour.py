@@ -130,7 +130,7 @@ def contour_figure(
     track = drawn.metric(metric)
     table = np.where(field.failed, np.nan, track.shown(field.metric(metric)))
     if not np.isfinite(table).any():
-        message = f"--show {metric}: no design of this sweep has a value of it"
+        message = f"--show {metric}: it has no value for any design of this sweep"
         raise InputError(Diagnostic(message, "show another metric"))
     first, second = (drawn.axis(axis.path) for axis in drawn.study.plan.axes)
     xs, ys = first.shown(field.xs), second.shown(field.ys)
@@ -170,8 +170,10 @@ def contour_figure(
 
 def _notes(drawn: SweepFigureData, field: Field) -> str:
     counts = drawn.counts()
-    every = f"; {len(field.xs)} by {len(field.ys)} of them drawn" if field.thinned else ""
-    return f"{counts}{every}. Hatched: some limit is missed."
+    every = (
+        f"; a grid of {len(field.xs)} by {len(field.ys)} of them is drawn" if field.thinned else ""
+    )
+    return f"{counts}{every}. Hatched: at least one limit is missed."
 
 
 def _paper(axes: Axes, points: Array, scale: Sequence[Any]) -> list[Point]:
@@ -287,7 +289,7 @@ def _name(
         if place is None:
             letter = chr(ord("A") + len(key) % 26)
             place = labels.place(edges[number], letter, bold=True)
-            key.append((letter, words if place else f"{words} (no room to mark its line)"))
+            key.append((letter, words if place else f"{words} (its line has no label)"))
             words = letter
         if place is not None:
             _say(labels.axes.ink, place, words, color, bold=True)
@@ -330,7 +332,7 @@ def _below(
         texts.append(f"missed by every design: {', '.join(missed)}")
     own = _everywhere(drawn, field)
     if own:
-        texts.append(f"requirements that every design meets: {', '.join(own)}")
+        texts.append(f"met by every design: {', '.join(own)}")
     for line in (line for text in texts for line in wrap(text, _WIDTH - 4.0, _SIZE)):
         y += 3.6
         ink.text(2.0, y, line, size=_SIZE, color=GREY)

@@ -112,11 +112,11 @@ def _directions(
     parts = ["frames about the feasible designs"] if len(drawn.swept.sample.others.rows) else []
     parts += [
         f"{words}: {', '.join(named)}"
-        for words, way in (("more is better", 1), ("less is better", -1), ("neither", 0))
+        for words, way in (("higher is better", 1), ("lower is better", -1), ("neither", 0))
         if (named := [name for name in metrics if ways[name] == way])
     ]
     if not all(exact for _, exact in lines.values()):
-        parts.append("Pareto lines of the kept designs alone")
+        parts.append("Pareto lines of the kept designs only")
     words = "; ".join(parts)
     return words[:1].upper() + words[1:]
 

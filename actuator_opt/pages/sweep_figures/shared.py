@@ -160,7 +160,9 @@ class SweepFigureData:
         """The best designs; raises `InputError` if no design is feasible."""
         if not self.swept.best:
             message = f"no feasible design among {self.swept.requested} variants"
-            raise InputError(Diagnostic(message, "widen what varies, or draw a contour of a grid"))
+            raise InputError(
+                Diagnostic(message, "widen the varied ranges, or draw a contour of a grid")
+            )
         return self.swept.best
 
     def feasible(self, most: int) -> tuple[DrawnRows, list[str]]:
@@ -177,7 +179,7 @@ class SweepFigureData:
     def require(self, metric: str, *drawn: DrawnRows) -> None:
         """Raise `InputError` if no design has a value for a metric."""
         if not any(np.isfinite(self.values(metric, x)).any() for x in drawn if len(x.rows)):
-            message = f"--show {metric}: no design of this sweep has a value of it"
+            message = f"--show {metric}: it has no value for any design of this sweep"
             raise InputError(Diagnostic(message, "show another metric"))
 
     def counts(self, *drawn: tuple[str, int]) -> str:
@@ -289,7 +291,7 @@ def watched(study: Study, kinds: Sequence[str], show: Sequence[str]) -> tuple[st
     metrics = chosen(study, show)
     if not study.full and any(own.every for own in figures):
         every = " and ".join(kind for kind in SWEEP_FIGURES if figure(kind).every)
-        message = f"--reduce keeps the best alone, {every} need every design"
+        message = f"--reduce keeps only the best designs, but {every} need every design"
         raise UsageError(Diagnostic(message, "leave out --reduce"))
     for own in figures:
         own.check(study, metrics)
@@ -312,7 +314,7 @@ def sweep_figures(swept: Swept, kinds: Sequence[str], show: Sequence[str] = ()) 
     for kind in dict.fromkeys(kinds):
         pictures = figure(kind).draw(drawn, metrics, bool(show))
         if doubled := inks.keys() & pictures.keys():
-            raise ValueError(f"figure {kind}: another figure draws {', '.join(doubled)} too")
+            raise ValueError(f"figure {kind}: another figure already draws {', '.join(doubled)}")
         inks |= pictures
     return inks
 
