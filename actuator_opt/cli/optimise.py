@@ -63,7 +63,7 @@ def optimise(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Find the best design and what each limit costs; write the report."""
+    """Find the best design and what each limit costs."""
     from .. import api as verbs
 
     job = Job(

@@ -239,6 +239,6 @@ def ways(parameters: Mapping[str, Parameter], error: Unequal | None) -> Iterator
         )
     else:
         yield (
-            "friction differs between both directions by an offset that does not grow with "
-            "pressure; the cause is sensor zeros or direction-dependent seals, but not the areas"
+            "friction differs between the directions by an offset independent of pressure, from "
+            "sensor zeros or direction-dependent seals, not from the areas"
         )

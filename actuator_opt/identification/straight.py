@@ -463,9 +463,8 @@ class Spectrum(NamedTuple):
             )
         if 0 < self.floor < cutoff:
             return (
-                f"99.9 % of the motion lies below {self.motion:.3g} Hz, and above {self.floor:.3g} "
-                "Hz the position is mere noise; a cut-off between these frequencies loses no "
-                "motion and reduces noise"
+                f"99.9 % of the motion lies below {self.motion:.3g} Hz, only noise above "
+                f"{self.floor:.3g} Hz; a cut-off between them reduces noise and loses no motion"
             )
         return f"99.9 % of the motion lies below {self.motion:.3g} Hz, within the cut-off"
 

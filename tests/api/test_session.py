@@ -252,7 +252,7 @@ def test_a_curve_marks_where_no_design_is_found(steel):
         (lambda s: s.solve({STROKE: "5 N"}), ao.InputError, "need a length"),
         (lambda s: s.solve({STROKE: None}), ao.InputError, "must be a number"),
         (lambda s: s.solve({STROKE: True}), ao.InputError, "must be a number"),
-        (lambda s: s.solve([STROKE]), ao.ActuatorError, "by PATH"),
+        (lambda s: s.solve([STROKE]), ao.ActuatorError, "mapping from PATH"),
         (lambda s: s.solve({"cylinder.bore": 0.02}), ao.ActuatorError, "free dimension"),
         (lambda s: s.predict({"requirements.mass.max": 1.0}), ao.ActuatorError, "no derivative"),
         (lambda s: s.price("cylinder.bore"), ao.ActuatorError, "free dimension"),

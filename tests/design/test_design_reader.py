@@ -318,7 +318,7 @@ def test_groove_depth():
     wide = GOOD.replace("    section: 3.53 mm", "    section: 8 mm")
     (fault,) = faults(wide)
     assert fault.path == "seals.rod.section"
-    assert "it reaches 26.08 mm" in fault.message
+    assert "its diameter is 26.08 mm" in fault.message
     both = faults(wide.replace("    diameter: 10 mm", "    diameter: 12 mm"))
     assert [f.path for f in both] == ["seals.piston.section", "seals.rod.section"]
     assert "10.92 mm core" in both[0].message

@@ -173,14 +173,14 @@ def test_a_toe_inside_the_range_is_cut_and_said():
     found = bending(a_record(slope_of(6e10), toe=2e-4, top=0.004), Specimen(**TUBE))
     assert found.slope.value == pytest.approx(slope_of(6e10), rel=5e-3)
     assert found.strains[0] > 0.0007
-    assert any("curved" in one for one in found.doubts)
+    assert any("not straight" in one for one in found.doubts)
 
 
 def test_hysteresis_is_work_lost():
     """Friction f F both ways loses 2 f/(1 + f) of the work."""
     found = bending(a_record(slope_of(6e10), friction=0.1, toe=1e-6), Specimen(**TUBE))
     assert found.hysteresis == pytest.approx(2 * 0.1 / 1.1, rel=0.01)
-    assert any("steeper than unloading" in one for one in found.doubts)
+    assert any("steeper than that of unloading" in one for one in found.doubts)
 
 
 def test_loading_alone_is_said():
@@ -190,7 +190,7 @@ def test_loading_alone_is_said():
     found = bending(Record(record.time[:300], half, "up.csv"), Specimen(**TUBE))
     assert found.unloading is None
     assert found.hysteresis is None
-    assert any(one.startswith("loading only") for one in found.doubts)
+    assert any("covers loading only" in one for one in found.doubts)
 
 
 def test_unloading_alone_is_said():
@@ -205,7 +205,7 @@ def test_unloading_alone_is_said():
         assert found.loading is None
         assert found.unloading == pytest.approx(4e5, rel=1e-9)
         assert found.hysteresis is None
-        assert any(one.startswith("unloading only") for one in found.doubts)
+        assert any("covers unloading only" in one for one in found.doubts)
         # the percentile of the force that is taken for zero lies 1 % of the range above it
         top = 2e-3 / STRAIN
         assert found.strains == pytest.approx((0.0005, 0.8 * top), rel=0.02)
@@ -232,7 +232,7 @@ def test_bending_both_ways_loses_what_friction_takes(phase, cycles, count, slope
     assert 0 <= found.hysteresis == pytest.approx(2 * friction / (1 + friction), abs=0.02)
     assert found.slope.value == pytest.approx(slope, rel=0.02)
     assert found.deflections[1] <= 1e-3
-    assert any(one.startswith("bent both ways") for one in found.doubts)
+    assert any("is bent both ways" in one for one in found.doubts)
 
 
 def test_a_loop_that_wins_work_has_no_hysteresis():

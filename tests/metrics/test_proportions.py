@@ -52,7 +52,7 @@ FIRES = {
     ("load.mass", "load"): {"load.mass": "500 t"},
     ("load_cases", "strokes"): {"load_cases[stance].speed": "0.0001 mm/s"},
     ("fluid.temperature", "oil"): {"fluid.temperature": "-90 degC"},
-    ("environment", "coldest"): {
+    ("environment", "lowest"): {
         "environment.temperature_min": "-90 degC", "environment.temperature_max": "250 degC",
     },
 }  # fmt: skip

@@ -280,7 +280,7 @@ def test_bad_problems_are_refused(change, message):
 def test_wrong_shapes_are_refused():
     """An evaluation with the wrong number of constraints is an input error that says so."""
     problem = box(lambda x: PointValues(x[0], np.stack([x[0]] * 3)), constraints=("a", "b"))
-    with pytest.raises(InputError, match="constraints have shape"):
+    with pytest.raises(InputError, match="constraints have the shape"):
         solve(problem)
 
 

@@ -142,7 +142,7 @@ def test_key_figures_are_those_of_the_json(kind):
     found = case.identified(kind).to_dict()
     tiles = {tile["label"]: tile for tile in paged(kind)["tiles"]}
     force = found["friction"]
-    slides = "in sliding" if force["slides"] else "without sliding"
+    slides = "while sliding" if force["slides"] else "without sliding"
     mean = tiles[next(name for name in tiles if name.startswith("mean") and name.endswith(slides))]
     assert agrees(mean["value"], force["mean"])
     low, _, high = mean["note"].removeprefix("95 %: ").partition(" to ")

@@ -94,7 +94,7 @@ def test_an_input_that_ends_early_is_held_and_told(replay):
     moving = [f"{k / 1e3:.3f},{0.01 * k}" for k in range(191)]
     found = ao.simulate(replay(moving))
     assert found.values["hold_drift"] is None
-    assert found.why["hold_drift"].endswith("still cause motion in the last tenth")
+    assert found.why["hold_drift"].endswith("still cause motion in the last tenth of the time")
 
 
 def test_an_input_that_begins_late_is_told(replay):
@@ -367,7 +367,7 @@ def test_a_fit_at_the_end_of_a_range_says_which_way():
         trial().scenario, own, {}, AlignedRecord({"pressure_a": (time, more)}), ("air_content",)
     )
     assert found.parameters["air_content"].at_bound == "upper"
-    assert any("upper end of its range, 20 %: the record suggests more" in o for o in found.doubts)
+    assert any("upper end of its range, 20 %: the record suggests a larger" in o for o in found.doubts)
 
 
 @pytest.mark.parametrize("kind", case.KINDS)

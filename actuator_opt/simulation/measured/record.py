@@ -123,7 +123,7 @@ def parse_measured(
         text, name=name, columns=columns, channels=COLUMNS, units=units, needed=SIGNALS
     )
     notes = [
-        f"{note}; channels are {', '.join(SIGNALS)}" if note.startswith("columns that") else note
+        f"{note}; channels are {', '.join(SIGNALS)}" if note.startswith("columns ignored") else note
         for note in record.notes
     ]
     return AlignedRecord.of(replace(record, notes=tuple(notes)))
