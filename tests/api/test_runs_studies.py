@@ -132,7 +132,7 @@ def test_the_record_of_a_large_sweep_stays_small(folder, design, monkeypatch):
     kept = run("runs", "show", "last", "--json").json
     assert kept["result"]["best"] == most["best"][:2]
     assert kept["asked"]["keep"] == 9
-    assert "the best 9 alone" in run("runs", "show", "last").out
+    assert "only the best 9" in run("runs", "show", "last").out
     assert small["best"][0] == most["best"][0]
     many = ao.sweep(design, [VARY[1]])
     many.failures = {f"reason {k}": 1 + k % 7 for k in range(5000)}

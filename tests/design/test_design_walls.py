@@ -169,7 +169,7 @@ FAULTS = [
     (changed((BALANCE, BALANCE + "      balanced: perhaps\n")), "barrel.layup[2].balanced",
      "perhaps", "need true or false", "write true or false"),
     (changed((MODEL, "  model: isotropic  ")), "barrel.model", "isotropic",
-     "has a single layer", "auto"),
+     "supports a single layer", "auto"),
     (changed((MODEL, "  criterion: tsai_hu\n" + MODEL)), "barrel.criterion", "tsai_hu",
      "not a choice", "tsai_wu"),
     (changed((MODEL, "  autofrettage_pressure: 90 bar\n" + MODEL)), "barrel.autofrettage_pressure",

@@ -255,5 +255,5 @@ def test_a_section_that_bounds_no_solid_is_named():
     with pytest.raises(ao.InputError) as caught:
         bodies(replace(evaluation, outlines=tuple(outlines)))
     (fault,) = caught.value.diagnostics
-    assert fault.message.startswith("piston: its section crosses itself")
+    assert fault.message.startswith("piston: the outline of its section crosses itself")
     assert fault.remedy

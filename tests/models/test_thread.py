@@ -139,7 +139,7 @@ def test_a_thread_into_plies_is_refused_by_the_name_of_the_layer():
         ({"barrel.layup[0].thickness": "1.61 mm"}, "barrel.layup[0].thickness", "leaves 0.9966 mm"),
         ({"retention.thread.diameter": "25.9 mm"}, "barrel.layup[0].thickness", "leaves 0.8366 mm"),
         ({"retention.thread.diameter": "27.3 mm"}, "retention.thread.diameter", "barrel (27 mm)"),
-        ({"retention.material": "steel_42crmo4"}, "retention.material", "without effect"),
+        ({"retention.material": "steel_42crmo4"}, "retention.material", "has no effect"),
         ({"retention.thread.pitch": "6 mm"}, "retention.length", "less than one turn"),
     ],
 )
