@@ -24,7 +24,7 @@ from ..evaluation.result import NO_RESERVE, NO_ROOM, Check, Evaluation, Requirem
 from ..metrics import METRICS
 from ..pages.section import section
 from ..rendering.paper import images
-from .words import plain
+from .dxf import plain
 
 TOLERANCE = "0.000001"
 """Largest violation of a limit that still counts as met, as text for formulas."""

@@ -179,8 +179,8 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
         doubts.append("friction does not rise towards rest, so F_S and v_s cannot be determined")
     elif "exponent" not in best.parameters:
         doubts.append(
-            f"the exponent is fixed at {EXPONENT:g}; the intervals allow for {OTHER:g} as well; seven "
-            "speeds would determine it"
+            f"the exponent is fixed at {EXPONENT:g}; the intervals allow for {OTHER:g} as well; "
+            "seven speeds would determine it"
         )
     slowest, *_, fastest = sorted(points, key=lambda point: point.speed)
     falls = abs(fastest.friction) < abs(slowest.friction)

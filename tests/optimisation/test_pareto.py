@@ -163,4 +163,4 @@ def test_an_end_that_is_not_found_is_named(tmp_path):
     asked = ["--objective", "mass:min", "--objective", "own:max", "--plugin", plugin]
     result = run("pareto", "-", *asked, "-n", "5", "--checks", "0", stdin=bench().encode())
     assert result.code == 4
-    assert "failed, own:max: all requirements are met" in " ".join(result.out.split())
+    assert "failed (own:max: all requirements are met" in " ".join(result.out.split())

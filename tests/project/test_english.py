@@ -51,7 +51,7 @@ BANNED = {
     r"\bstand(s|ing)? for\b": "say: is, means, represents",
     r"\b(it|this|they) stands?\b": "say where it is",
     r"\b(tells?|told)\b": "say: state, show, report, return",
-    r"\b(the|a|is|was|what) founds?\b(?! (by|in|at|out|from|to))": "`found` is no noun",
+    r"\b(the|a|is|was|what) founds?\b(?! (by|in|at|on|out|from|to))": "`found` is no noun",
     r"\b(is|are|was|were) to (?!(the|a|an|its|their)\b)[a-z]+\b(?! (zero|one)\b)": "say: must, may",
     r"\basks? of\b|\basked of\b": "say: requires, demands",
     r"\bwhat\b[\w ]*\b(is|are) made of\b": "list the parts",

@@ -367,7 +367,9 @@ def test_a_fit_at_the_end_of_a_range_says_which_way():
         trial().scenario, own, {}, AlignedRecord({"pressure_a": (time, more)}), ("air_content",)
     )
     assert found.parameters["air_content"].at_bound == "upper"
-    assert any("upper end of its range, 20 %: the record suggests a larger" in o for o in found.doubts)
+    assert any(
+        "upper end of its range, 20 %: the record suggests a larger" in o for o in found.doubts
+    )
 
 
 @pytest.mark.parametrize("kind", case.KINDS)
