@@ -402,7 +402,7 @@ def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
                 "best design"
             )
         if checks:
-            outcome = f"{outcome}, but the check {checks} is missed, which other choices meet"
+            outcome = f"misses the check {checks}, which other choices meet; {outcome}"
     else:
         by = f" by {100 * look.violation:.2g} %" if math.isfinite(look.violation) else ""
         outcome = (

@@ -68,7 +68,7 @@ CASES = [
     (f"{O_RING}, guide: {{material: guide_acetal, thickness: 8 mm, width: 5 mm}}",
      "guide.thickness", "too deep"),
     (f"{O_RING}, guide: {{material: guide_acetal, thickness: 1 mm, width: 38 mm}}",
-     "", "outside the piston"),
+     "", "do not fit into the piston"),
 ]  # fmt: skip
 
 

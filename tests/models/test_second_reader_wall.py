@@ -309,7 +309,7 @@ def test_reasons(linerless, thin):
     for name in ("liner_mismatch_factor", "liner_bond_factor"):
         assert "no liner" in linerless.why(name)
     assert "no metal layer" in linerless.why("liner_range_factor")
-    assert "thin laminate" in thin.why("liner_bond_factor")
+    assert "thin-laminate model" in thin.why("liner_bond_factor")
     uncured = evaluated(("  cure_temperature: 120 degC\n", ""))
     unknown = evaluated((ROWS, ROWS.replace("t700_epoxy, angle: 28", "t700_2510, angle: 28")))
     for name in ("liner_mismatch_factor", "liner_bond_factor"):

@@ -95,7 +95,7 @@ def test_ties_have_no_winner_and_groups_do(base):
     """Equal designs in a respect are equal in words; two that lead are both named."""
     slow = base.changed({"load_cases[swing].speed": 0.15})
     found = ao.compare(base, slow)
-    assert sentences(found)[0] == "lighter: none, all are equally light"
+    assert sentences(found)[0] == "lighter: none, as all are equally light"
     heavy = base.changed({"caps.thickness": 0.012})
     three = ao.compare(base, slow, heavy)
     assert three.questions[0].leaders == (0, 1)
@@ -376,7 +376,7 @@ def test_values_of_other_senses_are_not_compared(base):
     found = ao.compare(most, least)
     first, second = (e.metrics["end_stop_pressure"] for e in found.evaluations)
     assert (first.sense, second.sense) == ("max", "min")
-    assert "end_stop_pressure: the smallest value of B and the largest of A govern" in " ".join(
+    assert "end_stop_pressure: the worst value is the smallest for B and the largest for A" in " ".join(
         ao.comparison_json(found)["notes"]
     )
     limit = "friction_running:\n    max: 500 N"

@@ -448,8 +448,8 @@ def test_flow_across_a_piston_is_told_with_its_way():
     """Both flows stand in the sentence without sign: out of the higher pressure, or back in."""
     one = studied("tandem", "piston")
     assert one.drive.flow < 0 < one.other.flow
-    driven, overrun = seal.leakage(one).split("; overrun: ")
-    assert first_number(driven.partition(": ")[2]) == pytest.approx(-1e9 * one.drive.flow, rel=6e-4)
+    driven, overrun = seal.leakage(one).split(" Overrun: ")
+    assert first_number(driven.partition("Driven: ")[2]) == pytest.approx(-1e9 * one.drive.flow, rel=6e-4)
     assert "back into" in driven
     assert first_number(overrun) == pytest.approx(1e9 * one.other.flow, rel=6e-4)
     assert "out of" in overrun
