@@ -449,7 +449,9 @@ def test_flow_across_a_piston_is_told_with_its_way():
     one = studied("tandem", "piston")
     assert one.drive.flow < 0 < one.other.flow
     driven, overrun = seal.leakage(one).split(" Overrun: ")
-    assert first_number(driven.partition("Driven: ")[2]) == pytest.approx(-1e9 * one.drive.flow, rel=6e-4)
+    assert first_number(driven.partition("Driven: ")[2]) == pytest.approx(
+        -1e9 * one.drive.flow, rel=6e-4
+    )
     assert "back into" in driven
     assert first_number(overrun) == pytest.approx(1e9 * one.other.flow, rel=6e-4)
     assert "out of" in overrun

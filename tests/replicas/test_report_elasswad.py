@@ -104,7 +104,7 @@ def test_a_solid_bar_in_eq_13_does_not_depend_on_the_span(tables):
 
 
 def test_a_flexural_modulus_is_no_hoop_modulus(evaluation, tables):
-    """Eq. 12 with 3.48 GPa grows the 19 times the bore growth; the hoop modulus gives our growth back.
+    """Eq. 12 with 3.48 GPa grows the bore 19 times as much; the hoop modulus gives our growth back.
 
     By hand at 2.2 MPa: 15 mm 2.2/3480 (2.44/0.44 + 0.3) = 55.43 um. Isotropic in the plane the
     tube is a little softer than its hoop modulus of 58.25 GPa: it gives through the thickness.
