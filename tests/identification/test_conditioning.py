@@ -612,9 +612,7 @@ def test_spectrum_of_a_sine_in_noise(quantum):
     assert 5.0 <= found.motion < 6.0
     assert found.motion < found.floor < 15.0
     assert found.kept == pytest.approx(1.0, abs=1e-3)
-    assert "a cut-off between these frequencies loses no motion and reduces noise" in found.says(
-        motion.cutoff
-    )
+    assert "a cut-off between them reduces noise and loses no motion" in found.says(motion.cutoff)
     assert "within the cut-off" in found.says(found.motion + 0.1)
 
 
