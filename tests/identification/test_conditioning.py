@@ -629,7 +629,7 @@ def test_spectrum_warns_of_motion_beyond_the_cutoff(width):
     lost = 0.04**2 / (0.04**2 + 0.04**2)
     assert found.kept == pytest.approx(1 - lost, abs=0.02)
     assert "above the cut-off; raise --cutoff" in found.says(motion.cutoff)
-    assert "within the cut-off" in found.says(60.0) or "between these" in found.says(60.0)
+    assert "within the cut-off" in found.says(60.0) or "between them" in found.says(60.0)
 
 
 @pytest.mark.parametrize("speed", [1e-3, 3.3e-3, 0.02])
