@@ -80,8 +80,8 @@ class Specimen:
             )
         if outer is not None and self.inner_diameter >= outer:
             _refuse(
-                f"the inner diameter of {1000.0 * self.inner_diameter:g} mm leaves no material "
-                f"within the outer one of {1000.0 * outer:g} mm",
+                f"the inner diameter of {1e3 * self.inner_diameter:g} mm leaves no material "
+                f"within the outer diameter of {1e3 * outer:g} mm",
                 "swap or correct the diameters",
             )
         if self.shear_modulus is not None and (outer is None or self.shear_compliance is not None):
@@ -307,7 +307,7 @@ def _result(loop: Loop, specimen: Specimen, straight_part: Straight) -> BendingR
     if not isfinite(modulus.value):
         raise record.fault(
             "shear and indentation alone exceed the measured compliance of "
-            f"{1000000.0 / slope.value:.4g} um/N",
+            f"{1e6 / slope.value:.4g} um/N",
             "check the shear modulus, the local compliance and the span",
         )
     shear, slender = specimen.shear, 12 * specimen.inertia / specimen.span**2
@@ -452,7 +452,7 @@ def _doubts_of_specimen(result: BendingResult) -> list[str]:
     if stated is not None and abs(ratio - 1) > STATED:
         part = _percent(ratio) if ratio <= 10 else "more than 1000 %"
         part = "less than 1 %" if ratio < 0.01 else part
-        words = f"the modulus is {part} of the material's value, {1e-09 * stated:.4g} GPa"
+        words = f"the modulus is {part} of the material's value, {1e-9 * stated:.4g} GPa"
         doubts.append(f"{words}: check part, span and units")
     if share is None:
         doubts.append(

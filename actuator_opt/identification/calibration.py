@@ -47,7 +47,7 @@ def of_curve(
     if abs(share) > MISFIT:
         yield (
             f"the measured friction deviates from the contact law by {100 * share:+.0f} % of F_C "
-            f"at {points[worst].pressure / 100000.0:.3g} bar: the factor is a mean over the "
+            f"at {points[worst].pressure / 1e5:.3g} bar: the factor is a mean over the "
             "record's pressures, and its confidence interval covers the factors at all of them"
         )
 
@@ -75,8 +75,8 @@ def extrapolated(bench: Bench, points: Sequence[FrictionPoint]) -> Iterator[str]
     speed, pressure = max(point.speed for point in points), max(point.pressure for point in points)
     if fastest > FARTHER * speed or bench.supply_pressure > FARTHER * pressure:
         yield (
-            f"the record reaches {1000.0 * speed:.3g} mm/s and {pressure / 100000.0:.3g} bar, the "
-            f"design {1000.0 * fastest:.3g} mm/s and {bench.supply_pressure / 100000.0:.3g} bar; "
+            f"the record reaches {1e3 * speed:.3g} mm/s and {pressure / 1e5:.3g} bar, the "
+            f"design {1e3 * fastest:.3g} mm/s and {bench.supply_pressure / 1e5:.3g} bar; "
             "beyond the record, friction is extrapolated by the contact law and the Stribeck "
             "curve"
         )

@@ -236,9 +236,7 @@ def _timing(steps: Array, step: float, cutoff: float) -> list[str]:
     if skipped > 0:
         notes.append(f"{skipped:.0f} samples are missing from the sequence and were interpolated")
     if np.abs(steps[steps < 1.5 * step] - step).max() > 0.01 * step:
-        notes.append(
-            f"sample times are uneven, so the record was resampled at {1000.0 * step:.4g} ms"
-        )
+        notes.append(f"sample times are uneven, so the record was resampled at {1e3 * step:.4g} ms")
     return notes
 
 

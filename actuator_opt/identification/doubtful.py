@@ -180,14 +180,14 @@ def hidden(parameters: Mapping[str, Parameter], fastest: float, falls: bool) -> 
     if speed is None:
         if falls and "viscous" in parameters:
             return (
-                f"friction falls up to {1000.0 * fastest:.3g} mm/s, and the points do not resolve "
+                f"friction falls up to {1e3 * fastest:.3g} mm/s, and the points do not resolve "
                 "its rise towards rest, so F_C and σ₂ are unknown; give more and faster speeds"
             )
         return None
     if fastest < REACH * speed.value:
         return (
-            f"the record ends at {1000.0 * fastest:.3g} mm/s, within the Stribeck rise (v_s "
-            f"{1000.0 * speed.value:.3g} mm/s): F_C, σ₂ and v_s cannot be separated; move faster"
+            f"the record ends at {1e3 * fastest:.3g} mm/s, within the Stribeck rise (v_s "
+            f"{1e3 * speed.value:.3g} mm/s): F_C, σ₂ and v_s cannot be separated; move faster"
         )
     return None
 

@@ -71,7 +71,7 @@ def lag_to_correct(parameter: Parameter | None) -> tuple[float, str]:
     if not isfinite(upper - lower):
         return 0.0, CANNOT
     if not -EARLIEST <= parameter.value <= 0.99 * LAG:
-        beyond = f"beyond {-1000.0 * EARLIEST:g} to {1000.0 * LAG:g} ms, which no sensor has"
+        beyond = f"beyond {-1e3 * EARLIEST:g} to {1e3 * LAG:g} ms, which no sensor has"
         return 0.0, f"the reversals suggest a lag {beyond}, so none is corrected; {STATE}"
     bounds = f"{lower:.2f} to {upper:.2f}"
     if upper < 0:
@@ -96,8 +96,8 @@ def rejected_correction(parameter: Parameter, remaining: Parameter | None) -> st
     if remaining is None or remaining.lower <= 0 <= remaining.upper:
         return ""
     return (
-        f"correcting the pressures by {1000.0 * parameter.value:.2f} ms leaves a lag of "
-        f"{1000.0 * remaining.value:.2f} ms: it imitates some other effect, so no lag is "
+        f"correcting the pressures by {1e3 * parameter.value:.2f} ms leaves a lag of "
+        f"{1e3 * remaining.value:.2f} ms: it imitates some other effect, so no lag is "
         f"corrected; {STATE}"
     )
 
@@ -218,13 +218,13 @@ def _check_motion(
     noise = quality.noise * np.sqrt(motion.band)
     if travel <= max(STEPS * quality.resolution, NOISES * noise):
         raise record.fault(
-            f"the rod never moves: x changes by {1000.0 * travel:.2g} mm, within its resolution "
+            f"the rod never moves: x changes by {1e3 * travel:.2g} mm, within its resolution "
             "and noise",
             "give a record of a moving rod, and x with more digits",
         )
     if travel > (1 + OUTSIDE) * bench.stroke:
         raise record.fault(
-            f"x travels {1000.0 * travel:.4g} mm, but the stroke is {1000.0 * bench.stroke:.4g} mm",
+            f"x travels {1e3 * travel:.4g} mm, but the stroke is {1e3 * bench.stroke:.4g} mm",
             "check the unit of x, and cylinder.stroke of the design",
         )
     if any(sliding.moving.any() for sliding in slidings):
@@ -238,8 +238,8 @@ def _outside(slidings: Sequence[Sliding], bench: Bench) -> list[str]:
     if place.min() >= -beyond and place.max() <= bench.stroke + beyond:
         return []
     return [
-        f"x ranges from {1000.0 * place.min():.1f} to {1000.0 * place.max():.1f} mm, but the "
-        f"stroke is {1000.0 * bench.stroke:.1f} mm: its zero is not at the cap end, and no "
+        f"x ranges from {1e3 * place.min():.1f} to {1e3 * place.max():.1f} mm, but the "
+        f"stroke is {1e3 * bench.stroke:.1f} mm: its zero is not at the cap end, and no "
         "stiffness is computed outside the stroke"
     ]
 

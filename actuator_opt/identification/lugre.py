@@ -534,9 +534,9 @@ def fit_lugre(
     if not hidden_lag:
         return fit
     doubt = (
-        f"the position resolution hides reversals for {1000.0 * reversals.blur:.0f} ms, so no lag "
+        f"the position resolution hides reversals for {1e3 * reversals.blur:.0f} ms, so no lag "
         "of the pressures is fitted; the confidence intervals allow for a lag of "
-        f"{1000.0 * USUAL:.0f} ms; move faster or state --pressure-lag"
+        f"{1e3 * USUAL:.0f} ms; move faster or state --pressure-lag"
     )
     return replace(fit, doubts=(*fit.doubts, doubt))
 

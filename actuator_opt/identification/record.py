@@ -590,7 +590,8 @@ def _columns(
                     fault(message, "correct one of them", given.name)
     if faults:
         raise InputError(faults)
-    notes = _column_notes(sheet, set(places.values()), [cells[i][0] for i in unitless])
+    left_out = [cells[i][0] for i in unitless]
+    notes = _column_notes(sheet, channels, set(places.values()), left_out)
     used = [i for i in places.values() if i not in unitless and not in_header[i][1]]
     if used:
         source = "SI units" if given.si else f"units of {shown(Path(given.name).name)}"
@@ -633,10 +634,17 @@ def _place_by_header(
         )
 
 
-def _column_notes(sheet: Sheet, used: set[int], unitless: Sequence[str]) -> list[str]:
+def _column_notes(
+    sheet: Sheet, channels: Collection[str], used: set[int], unitless: Sequence[str]
+) -> list[str]:
     """Notes on columns that are no channels or have no unit."""
     unused = [cell for k, cell in enumerate(sheet.header) if cell and k not in used]
-    notes = [f"columns ignored, as they are not channels: {_list(unused)}"] if unused else []
+    notes = []
+    if unused:
+        known = ", ".join(name for name in channels if name != "t")
+        notes.append(
+            f"columns ignored, as they are not channels: {_list(unused)}; channels are {known}"
+        )
     if unitless:
         notes.append(f"columns without a unit, left out: {_list(unitless)}")
     return notes

@@ -393,7 +393,7 @@ def study(
     if not pressure >= 0:
         raise InputError(
             Diagnostic(
-                f"pressure {pressure / 100000.0:g} bar is below the pressure on the outer side",
+                f"pressure {pressure / 1e5:g} bar is below the pressure on the outer side",
                 "state the sealed pressure relative to the outer side, 0 bar or more",
                 path=f"seals.{place}",
             )

@@ -736,10 +736,10 @@ def _unidentified(fitted: Mapping[str, Fitted]) -> Iterator[str]:
         if side is not None:
             low = side == "lower"
             end = parameter.entry.lower if low else parameter.entry.upper
+            size = "smaller" if low else "larger"
             yield (
                 f"{name} is at the {side} end of its range, {quantity.text(end)}: the record "
-                f"suggests a {('smaller' if low else 'larger')} value, or the model lacks some "
-                "other effect"
+                f"suggests a {size} value, or the model lacks some other effect"
             )
         elif value.verdict == "identifiable":
             continue

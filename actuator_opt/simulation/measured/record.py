@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import replace
 from math import comb, sqrt
 from typing import Any
 
@@ -122,11 +121,7 @@ def parse_measured(
     record = parse_record(
         text, name=name, columns=columns, channels=COLUMNS, units=units, needed=SIGNALS
     )
-    notes = [
-        f"{note}; channels are {', '.join(SIGNALS)}" if note.startswith("columns ignored") else note
-        for note in record.notes
-    ]
-    return AlignedRecord.of(replace(record, notes=tuple(notes)))
+    return AlignedRecord.of(record)
 
 
 def named(names: Collection[str], all_names: Collection[str]) -> str:
@@ -415,8 +410,8 @@ def _coarse_sampling(
     record_step = min(float(np.median(np.diff(t))) for t, _ in samples.values())
     if simulated_step > WIDE * record_step:
         yield (
-            f"the simulation is sampled every {1000.0 * simulated_step:.3g} ms, but the record "
-            f"every {1000.0 * record_step:.3g} ms, so peaks may be missed: state sample_time"
+            f"the simulation is sampled every {1e3 * simulated_step:.3g} ms, but the record "
+            f"every {1e3 * record_step:.3g} ms, so peaks may be missed: state sample_time"
         )
 
 

@@ -573,7 +573,7 @@ def ultimate_gain(stand: Stand, expected: float, frequency: float) -> Experiment
     share = float(brentq(growth, low, high, xtol=2 * EXACT))
     nearest = min(records, key=lambda candidate: abs(candidate - share))
     facts = stand.facts(records[nearest])
-    how += f", amplitude {1000.0 * facts.swing:.2g} mm"
+    how += f", amplitude {1e3 * facts.swing:.2g} mm"
     return ExperimentResult({"ultimate_gain": expected * exp(share)}, how, facts)
 
 
@@ -622,7 +622,7 @@ def dynamic_stiffness(
         force=parts,
     ).within(settle)
     facts = stand.facts(record)
-    how = f"force of {swing:.3g} N at {frequency:.3g} Hz, amplitude {1000.0 * facts.swing:.2g} mm"
+    how = f"force of {swing:.3g} N at {frequency:.3g} Hz, amplitude {1e3 * facts.swing:.2g} mm"
     names = ("dynamic_stiffness", "dynamic_phase")
     if facts.stopped:
         return ExperimentResult(dict.fromkeys(names), how, facts, "the piston creeps onto its stop")
@@ -653,7 +653,7 @@ def decay(stand: Stand, ends: str, resonance: float) -> ExperimentResult:
         force=(ForceSignal(shape="constant", value=push),),
     )
     facts = stand.facts(record)
-    how = f"step of {push:.3g} N, amplitude {1000.0 * facts.swing:.2g} mm"
+    how = f"step of {push:.3g} N, amplitude {1e3 * facts.swing:.2g} mm"
     names = ("natural_frequency", "damping_ratio")
     if facts.stopped:
         return ExperimentResult(dict.fromkeys(names), how, facts, "the piston creeps onto its stop")
@@ -919,7 +919,7 @@ def evidence(facts: Facts | None, cause: str) -> str:
     low, high = (0.0, 0.0) if facts.spool is None else facts.spool
     if high - low > STILL * max(abs(low), abs(high)):
         words.append(f"the spool oscillates between {low:.2g} and {high:.2g} V")
-    return "; ".join(words) or f"the pressure in A oscillates by {1e-05 * facts.pulse:.2g} bar"
+    return "; ".join(words) or f"the pressure in A oscillates by {1e-5 * facts.pulse:.2g} bar"
 
 
 def _seals(facts: Facts) -> str:

@@ -188,7 +188,10 @@ def test_huge_and_negative_numbers_stay():
 def test_unused_columns_are_noted():
     """Columns that are no channel are named once, text among them read without harm."""
     record = parse_record("t [s],state,x [mm],,valve [V]\n0,run;go,1,,2\n1,#,2,,\n")
-    assert record.notes == ('columns ignored, as they are not channels: "state", "valve [V]"',)
+    (note,) = record.notes
+    words, _, channels = note.partition("; channels are ")
+    assert words == 'columns ignored, as they are not channels: "state", "valve [V]"'
+    assert channels == "p1, p2, x, v, F_L, T, w"
 
 
 @pytest.mark.parametrize(
