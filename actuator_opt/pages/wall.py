@@ -399,7 +399,7 @@ def _woven(study: WallStudy, index: int) -> bool:
 
 def _place(label: str) -> str:
     """A location in the wall, converted to the layer numbers of the page."""
-    label = label.replace("first ply with the liner yielding", "with the liner yielding")
+    label = label.removeprefix("first ply ")
     return _PLACE.sub(lambda m: f"layer {int(m[1]) + 1}", label)
 
 
