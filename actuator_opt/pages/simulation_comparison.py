@@ -158,7 +158,7 @@ def _steps(runs: Runs, pens: Sequence[Pen], measured: Measured) -> list[Sequence
         titled(words.capitalize(), quantity),
         curves=[
             *overlay(first, servo.loop, measured, start=servo.time),
-            curve(first, "reference", "asked", REFERENCE, start=servo.time),
+            curve(first, "reference", "reference", REFERENCE, start=servo.time),
             *of_runs(lambda run, _: scaled(quantity, run.signals[servo.loop])),
         ],
         share=0.6,

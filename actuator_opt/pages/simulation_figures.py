@@ -292,9 +292,9 @@ def response(simulation: Simulation, measured: Measured) -> Panel | None:
         return None
     words, quantity, *_ = LOOPS[name]
     curves = overlay(simulation, name, measured)
-    for reference, own in (("reference", "asked"), ("drive_position", "machine")):
-        if reference in simulation.signals:
-            curves.append(curve(simulation, reference, own, REFERENCE))
+    for signal, label in (("reference", "reference"), ("drive_position", "machine")):
+        if signal in simulation.signals:
+            curves.append(curve(simulation, signal, label, REFERENCE))
             break
     curves.append(curve(simulation, name, "response" if curves else ""))
     return Panel(titled(words.capitalize(), quantity), curves=curves)
@@ -410,10 +410,10 @@ def step_panel(simulation: Simulation, servo: Servo, measured: Measured) -> Pane
     size = target - start
     own = curve(simulation, servo.loop, "", start=servo.time)
     own = replace(own, weight="normal")
-    asked = curve(simulation, "reference", "asked, ±2 %", REFERENCE, start=servo.time)
-    at_target = np.abs(np.asarray(asked.ys) - target) <= 1e-9 * abs(size)
+    reference = curve(simulation, "reference", "reference, ±2 %", REFERENCE, start=servo.time)
+    at_target = np.abs(np.asarray(reference.ys) - target) <= 1e-9 * abs(size)
     bounds = (np.where(at_target, target + way * BAND * abs(size), np.nan) for way in (-1, 1))
-    asked = replace(asked, low=next(bounds), high=next(bounds))
+    reference = replace(reference, low=next(bounds), high=next(bounds))
     under = overlay(simulation, servo.loop, measured, start=servo.time)
     marks, points, levels = _rise(servo, own, start, size)
     note = ""
@@ -437,7 +437,7 @@ def step_panel(simulation: Simulation, servo: Servo, measured: Measured) -> Pane
     panel = Panel(
         titled(f"Step of {words}" if under else f"Step of the {words}", quantity),
         y=Axis(range=(low, high + spare) if size > 0 else (low - spare, high)),
-        curves=[*under, asked, own, *marks],
+        curves=[*under, reference, own, *marks],
         points=points,
         levels=levels,
         note=note,

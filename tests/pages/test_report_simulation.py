@@ -477,9 +477,9 @@ def test_measured_values_lie_under_the_simulated_ones():
     found = case.simulated("step")
     measured = {"position": (found.time, found.signals["position"]), "nothing": ([0.0], [1.0])}
     first = figures.strips(found, measured)[0].panel
-    assert [one.words for one in first.curves] == ["measured", "asked", "response"]
+    assert [one.words for one in first.curves] == ["measured", "reference", "response"]
     alone = figures.strips(found, {})[0].panel
-    assert [one.words for one in alone.curves] == ["asked", "response"]
+    assert [one.words for one in alone.curves] == ["reference", "response"]
 
 
 def test_a_static_stiffness_is_drawn_beside_the_dynamic_one():
