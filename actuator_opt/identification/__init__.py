@@ -2,10 +2,9 @@
 
 from .bending import BendingResult, Specimen, bending
 from .calibration import Calibration, calibration
-from .column import parse_column
 from .column_units import ColumnUnits, column_units
 from .identify import identify
-from .record import CHANNELS, Record, decode_record, parse_record
+from .record import CHANNELS, Record, decode_record, parse_column, parse_record
 from .result import Identification, Settings
 
 __all__ = [

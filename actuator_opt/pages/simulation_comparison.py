@@ -30,7 +30,8 @@ from ..rendering.blocks import (
     tile,
 )
 from ..rendering.chart import Axis, Curve, Level, Panel
-from ..rendering.chart_ink import LINES, ROW as KEY_ROW, drawn
+from ..rendering.chart_ink import drawn
+from ..rendering.chart_layout import LINES, ROW as KEY_ROW
 from ..rendering.ink import Ink, text_width
 from ..rendering.text import DASH, number, pretty, sentence, unit_text, value_text, with_unit
 from ..simulation.components.circuit import LOOPS

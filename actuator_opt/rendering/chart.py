@@ -1,7 +1,7 @@
 """A chart as data: panels with axes, curves, points, limits and shaded maps.
 
 Scales are straight, logarithmic, logarithmic in both directions, or rows by name. A chart contains
-values and words; `chart_ink` places them on paper by rule.
+values and words; `chart_layout` finds their positions and `chart_ink` draws them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A chart as ink: frames, legends and labels are placed by rule.
+"""A chart as ink: curves, points, areas, levels and labels in the frames of the layout.
 
 Legends are above their frame, names of limits and curve ends to its right, without overlaps.
 Curves are cut at the frame. A frame without values states the reason.
@@ -9,13 +9,12 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import field, replace
+from dataclasses import replace
 from itertools import pairwise
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
-from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from . import contours
 from .axes import AREAS, Axes, Box, Ticks, band, fitted, thinned
@@ -26,20 +25,39 @@ from .chart import (
     Level,
     Panel,
     Points,
-    PointWeight,
     Scale,
     Stretch,
-    Values,
     known,
-    scale,
+)
+from .chart_layout import (
+    BETWEEN,
+    DOTS,
+    GAP,
+    GUIDE,
+    LINES,
+    MARKS,
+    NAMES,
+    OVER,
+    RIGHT,
+    ROW,
+    SIZE,
+    SKETCH,
+    SMALL,
+    TITLE,
+    ColumnLayout,
+    Entry,
+    Frame,
+    curves_named_at_end,
+    level_style,
+    line_style,
+    point_style,
+    upright_limits,
+    y_ticks,
 )
 from .heights import wrap
 from .ink import (
     BLACK,
-    BLUE,
-    GREEN,
     GREY,
-    OCHRE,
     PALE,
     RED,
     WHITE,
@@ -51,41 +69,8 @@ from .ink import (
     text_width,
 )
 
-LINES: tuple[dict[str, Any], ...] = (
-    {"stroke": BLUE, "pen": 0.4},
-    {"stroke": OCHRE, "pen": 0.4, "dash": (1.6, 0.8)},
-    {"stroke": GREEN, "pen": 0.35, "dash": (0.8, 0.5)},
-    {"stroke": "#7a5a8c", "pen": 0.4, "dash": (2.4, 0.7, 0.4, 0.7)},
-    {"stroke": BLACK, "pen": 0.35, "dash": (3.2, 0.8)},
-    {"stroke": "#4f86a8", "pen": 0.4, "dash": (0.4, 0.5)},
-)
-"""Curves differ in dash as well as in colour."""
-MARKS = (
-    (BLUE, WHITE), (BLACK, "#9ec3da"), (OCHRE, WHITE), (BLACK, BLUE), (GREEN, WHITE),
-    ("#7a5a8c", "#d9c9e3"),
-)  # fmt: skip
-"""Edge and fill of points."""
 STRETCHES = ("#e2e7eb", "#f1f3f5", "#f6efdc")
 """Fills of shaded stretches of x."""
-THIN, GUIDE = 0.2, {"stroke": GREY, "pen": 0.18}
-BROAD: dict[str, Any] = {"stroke": "#a9b4bc", "pen": 0.7}
-LIMIT: dict[str, Any] = {"stroke": RED, "pen": 0.25, "dash": (1.8, 1.0)}
-DOTS = {"normal": (0.75, 0.3), "guide": (0.55, 0.1), "strong": (1.15, 0.45)}
-"""Radius and pen of points by weight [mm]."""
-SKETCH, BETWEEN = 4.6, 2.6
-"""Length of the line samples in the legend, and gap between its entries [mm]."""
-GAP, ROW, BELOW = 6.0, 3.7, 2.2
-"""Gap between columns, height of a row of words above a frame, gap between two frames [mm]."""
-FOOT, APART = 8.4, 1.8
-"""Height of ticks and label below a frame, and gap to the title of the next frame [mm]."""
-OVER = 2.8
-"""Height of a line of words directly above a frame, which name a position on x [mm]."""
-LEAST = 4.0
-"""Least height of a frame [mm]."""
-RIGHT, NAMES = 26.0, 36.0
-"""Greatest width of words to the right and to the left of a frame [mm]."""
-SHADES = 13.0
-"""Width of the colour scale of a map [mm]."""
 SWATCH = 2.8
 """Width of the swatch before the name of an area [mm]."""
 LOOP = 4
@@ -94,7 +79,6 @@ JUMPS = 500
 """Largest number of jumps (x with two values) that a thinned curve keeps."""
 DENSE = 10.0
 """Values of a curve, or points, drawn per mm of paper (our choice: finer than the pen)."""
-TITLE, SIZE, SMALL = 6.8, 6.5, 6.2
 Line: TypeAlias = list[Point]
 
 
@@ -103,7 +87,7 @@ def drawn(chart: Chart, *, width: float = 180.0, height: float | None = None) ->
     tall = chart.height if height is None else height
     ink = Ink(width, tall)
     top = _key(ink, chart.key)
-    columns = [_Column(parts) for parts in chart.columns if parts]
+    columns = [ColumnLayout(parts) for parts in chart.columns if parts]
     shares = [*chart.widths, *[1.0] * len(columns)][: len(columns)]
     room = width - GAP * (len(columns) - 1)
     wides = [room * share / sum(shares) for share in shares]
@@ -114,7 +98,7 @@ def drawn(chart: Chart, *, width: float = 180.0, height: float | None = None) ->
             column.fit(wide, top, tall, head)
     left = 0.0
     for column, wide in zip(columns, wides, strict=True):
-        column.draw(ink, left)
+        _column(ink, column, left)
         left += wide + GAP
     return ink
 
@@ -123,7 +107,7 @@ def _key(ink: Ink, curves: Sequence[Curve]) -> float:
     """Draw names of curves in equal columns above all panels; return the height of their rows."""
     if not curves:
         return 0.0
-    entries = [_Entry(curve.words, _line(curve, k)) for k, curve in enumerate(curves)]
+    entries = [Entry(curve.words, line_style(curve, k)) for k, curve in enumerate(curves)]
     longest = min(max(entry.width() for entry in entries), ink.width / 2)
     columns = max(1, min(len(entries), int(ink.width / longest)))
     wide = ink.width / columns
@@ -152,315 +136,17 @@ def titled(chart: Chart, notes: Sequence[str] = (), *, width: float = 180.0) -> 
     return ink
 
 
-# ---- layout ----
+def _column(ink: Ink, column: ColumnLayout, left: float) -> None:
+    """Draw all frames of a column, and the inks below them."""
+    for frame in column.frames:
+        _draw(ink, (left + column.left, frame.top, column.wide, frame.height), frame, left)
+    top = column.top
+    for own in column.inks:
+        ink.paste(own, left, top)
+        top += own.height
 
 
-@dataclass(frozen=True, slots=True)
-class _Entry:
-    """A name of the legend with its line, its point, or both."""
-
-    words: str
-    line: dict[str, Any] | None = None
-    point: tuple[str, str] | None = None
-    small: int | None = None
-    weight: PointWeight = "normal"
-
-    @property
-    def sketch(self) -> float:
-        """Width of line or point before the words."""
-        return SKETCH + 1.3 if self.line else 2.0 + DOTS[self.weight][0]
-
-    def width(self) -> float:
-        """Width with the gap after the entry."""
-        return self.sketch + text_width(self.words, SIZE) + BETWEEN
-
-
-@dataclass(slots=True)
-class _Frame:
-    """A panel with its scales, the words above it, and its position."""
-
-    panel: Panel
-    x: Scale
-    y: Scale
-    why: str
-    label: str = ""
-    shared: bool = False
-    notes: list[str] = field(default_factory=list)
-    rows: list[list[_Entry]] = field(default_factory=list)
-    beside: bool = True
-    above: float = 0.0
-    right: float = 0.0
-    top: float = 0.0
-    height: float = 20.0
-
-    @property
-    def head(self) -> float:
-        """Height of title, note and legend."""
-        lines = len(self.rows) - (1 if self.rows and self.beside else 0)
-        return ROW * (1 + lines) + 3.0 * len(self.notes) + OVER * self.over + 0.9
-
-    @property
-    def over(self) -> int:
-        """Number of lines of words above the frame that name positions on x."""
-        if self.why:
-            return 0
-        named = (part.words for part in self.panel.stretches if part.words)
-        stretches = max((words.count("\n") + 1 for words in named), default=0)
-        return stretches + any(level.words for level in _upright_limits(self.panel))
-
-
-class _Column:
-    """Panels above each other; those with a common x axis are a group."""
-
-    def __init__(self, parts: Sequence[Panel | Ink]) -> None:
-        self.frames: list[_Frame] = []
-        self.inks = [part for part in parts if isinstance(part, Ink)]
-        panels = [part for part in parts if isinstance(part, Panel)]
-        group: list[Panel] = []
-        for panel in panels:
-            group.append(panel)
-            if panel.x.label or panel is panels[-1]:
-                x = _x_scale(group)
-                members = [_frame(member, x) for member in group]
-                members[-1].label = panel.x.label or " "
-                members[-1].shared = any(not member.why for member in members)
-                self.frames += members
-                group = []
-        self.left = self.right = self.wide = self.top = 0.0
-
-    @property
-    def head(self) -> float:
-        """Height of the words above the first frame."""
-        return self.frames[0].head if self.frames else 0.0
-
-    def fit(self, room: float, top: float, bottom: float, head: float) -> None:
-        """Place the frames in a width `room` and a height [mm]; the first begins below `head`."""
-        self.top = top if not self.frames else bottom - sum(ink.height for ink in self.inks)
-        if not self.frames:
-            return
-        ticks = [words for frame in self.frames for _, words in _y_ticks(frame)]
-        self.left = min(max([text_width(w, SIZE) for w in ticks], default=0.0), NAMES) + 2.0
-        self.right = max(_right_room(frame) for frame in self.frames)
-        for frame in self.frames:
-            before, after = _overhang(frame, room - self.left - self.right)
-            self.left, self.right = max(self.left, before), max(self.right, after)
-        self.wide = max(room - self.left - self.right, 8.0)
-        for frame in self.frames:
-            _fit_head(frame, self.wide, self.right)
-        height = self.top - top
-        heads = [max(self.frames[0].head, head)]
-        for upper, lower in pairwise(self.frames):
-            heads.append((FOOT + APART if upper.label else BELOW) + lower.head)
-        free = height - sum(heads) - FOOT
-        shares = [frame.panel.share for frame in self.frames]
-        for frame, above, share in zip(self.frames, heads, shares, strict=True):
-            frame.top, frame.right = top + above, self.right
-            frame.above = above if frame is self.frames[0] else frame.head
-            frame.height = max(free * share / sum(shares), LEAST)
-            top = frame.top + frame.height
-
-    def draw(self, ink: Ink, left: float) -> None:
-        """Draw all frames, and the inks below them."""
-        for frame in self.frames:
-            _draw(ink, (left + self.left, frame.top, self.wide, frame.height), frame, left)
-        top = self.top
-        for own in self.inks:
-            ink.paste(own, left, top)
-            top += own.height
-
-
-def _overhang(frame: _Frame, wide: float) -> tuple[float, float]:
-    """Lengths by which the tick labels of x extend beyond the left and right end of a frame."""
-    low, high = frame.x.range
-    before = after = 0.0
-    for place, words in frame.x.ticks(wide, across=True) if frame.label else ():
-        half, at = text_width(words, SIZE) / 2, (place - low) / (high - low) * wide
-        before, after = max(before, half - at), max(after, at + half - wide)
-    return before, after
-
-
-def _x_scale(panels: Sequence[Panel]) -> Scale:
-    """The common scale of x; it ends exactly at the values if all panels show functions of x."""
-    axis = panels[-1].x
-    values = [
-        value
-        for panel in panels
-        for xs in _xs(panel)
-        for value in known(xs, log=axis.log and not axis.signed)
-    ]
-    for panel in panels:
-        for points in panel.points:
-            if points.across:
-                values += known([*points.low, *points.high])
-        if panel.surface is not None and not values:
-            values += known(panel.surface.xs)
-    bare = not any(panel.points for panel in panels)
-    lines = [xs for panel in panels for xs in _xs(replace(panel, points=()))]
-    functions = all(map(_rises, lines))
-    return scale(axis, values, exact=bare and functions)
-
-
-def _xs(panel: Panel) -> list[Values]:
-    drawn_over: list[Curve | Points | Area] = [*panel.curves, *panel.points, *panel.areas]
-    return [part.xs for part in drawn_over]
-
-
-def _rises(values: Values) -> bool:
-    array = np.asarray(values, dtype=float)
-    finite = array[np.isfinite(array)]
-    return bool(np.all(finite[1:] >= finite[:-1]))
-
-
-def _frame(panel: Panel, x: Scale) -> _Frame:
-    log = panel.y.log and not panel.y.signed
-    ends = [v for points in panel.points for v in known(points.ys, log=log)]
-    for points in panel.points:
-        if not points.across:
-            ends += known([*points.low, *points.high], log=log)
-    curves = [v for curve in panel.curves for v in _seen(curve, curve.ys, x, log)]
-    bands = [v for c in panel.curves for b in (c.low, c.high) for v in _seen(c, b, x, log)]
-    for more in (curves, [] if panel.points else bands):
-        ends += _near(ends, more, log) if ends else more
-    if panel.surface is not None and not ends:
-        ends += known(panel.surface.ys, log=log)
-    ends += [v for area in panel.areas for v in known([*area.low, *area.high], log=log)]
-    levels = known([level.value for level in panel.levels if not level.upright], log=log)
-    why = "" if ends or levels else _why(panel)
-    if ends:
-        levels = _near(ends, levels, log, 3.0, cut=False)
-    return _Frame(panel, x, scale(panel.y, [*ends, *levels]), why)
-
-
-def _seen(curve: Curve, values: Values, x: Scale, log: bool) -> list[float]:
-    """Values of a curve, or of a bound of its band, within the range of x."""
-    if not len(values):
-        return []
-    places = x.at(curve.xs)
-    inside = (places >= x.range[0] - 1e-9) & (places <= x.range[1] + 1e-9)
-    return known(np.asarray(values, dtype=float)[inside], log=log)
-
-
-def _near(
-    ends: Sequence[float],
-    values: Sequence[float],
-    log: bool,
-    most: float = 0.5,
-    *,
-    cut: bool = True,
-) -> list[float]:
-    """Values that lie at most `most` spans beyond the ends of a range.
-
-    Values farther away are moved to that distance (`cut`), or left out.
-    """
-    low, high = (math.log10(f(ends)) if log else f(ends) for f in (min, max))
-    spare = most * ((high - low) or max(abs(high), 1.0))
-    low, high = (10.0 ** min(max(v, -100), 150) if log else v for v in (low - spare, high + spare))
-    if not cut:
-        return [v for v in values if low <= v <= high]
-    return [min(max(v, low), high) for v in values]
-
-
-def _why(panel: Panel) -> str:
-    """Why a panel is empty."""
-    if panel.note:
-        return panel.note
-    if not any(len(xs) for xs in _xs(panel)):
-        return "No values."
-    logs = (panel.x.log and not panel.x.signed) or (panel.y.log and not panel.y.signed)
-    return "No value above zero." if logs else "No value is a number."
-
-
-def _y_ticks(frame: _Frame) -> Ticks:
-    return [] if frame.why else frame.y.ticks(frame.height, across=False)
-
-
-def _fit_head(frame: _Frame, wide: float, right: float) -> None:
-    """Rows of the legend: beside the title if they fit, else below it."""
-    panel = frame.panel
-    note = "" if frame.why else panel.note
-    frame.notes = wrap(note, wide + right - 0.5, SMALL) if note else []
-    entries = [] if frame.why else list(_entries(frame, wide))
-    whole = text_width(panel.title, TITLE, bold=True) + 2.0 - BETWEEN
-    whole += sum(entry.width() for entry in entries)
-    frame.beside = not frame.notes and whole <= wide
-    frame.rows = []
-    room = 0.0
-    for entry in entries:
-        if not frame.rows or (not frame.beside and entry.width() > room + BETWEEN):
-            frame.rows.append([])
-            room = wide
-        frame.rows[-1].append(entry)
-        room -= entry.width()
-
-
-def _entries(frame: _Frame, wide: float) -> Iterator[_Entry]:
-    """Legend entries of points, curves and full-width levels, without duplicates."""
-    panel, entries = frame.panel, dict[str, _Entry]()
-
-    def add(words: str, **sketch: Any) -> None:
-        if words:
-            known = entries.get(words)
-            line = sketch.get("line") or (known.line if known else None)
-            point = sketch.get("point") or (known.point if known else None)
-            room = wide - (SKETCH + 1.3 if line else 2.8)
-            small, weight = sketch.get("small"), sketch.get("weight", "normal")
-            entries[words] = _Entry(fitted(words, room, SIZE), line, point, small, weight)
-
-    for k, points in enumerate(panel.points):
-        style = k if points.style is None else points.style
-        if points.small:
-            add(points.words, small=style)
-        else:
-            add(points.words, point=_mark(points, style), weight=points.weight)
-    for k, curve in enumerate(panel.curves):
-        words = curve.words or ("" if curve in _at_end(frame) else curve.end)
-        if words:
-            line = _line(curve, k)
-            add(words, line=line | {"pen": max(line["pen"], 0.4)})
-    for level in panel.levels:
-        if not level.sense and level.between is None:
-            add(level.words, line=_level_style(level))
-    yield from entries.values()
-
-
-def _line(curve: Curve, index: int) -> dict[str, Any]:
-    style = LINES[(index if curve.style is None else curve.style) % len(LINES)]
-    if curve.weight == "thin":
-        style = style | {"pen": THIN}
-    elif curve.weight != "normal":
-        style = GUIDE if curve.weight == "guide" else BROAD
-    if curve.dash is None:
-        return style
-    return style | {"dash": LINES[curve.dash % len(LINES)].get("dash", ())}
-
-
-def _level_style(level: Level) -> dict[str, Any]:
-    if level.sense and level.between is not None:
-        return LIMIT | {"pen": 0.4, "dash": ()}
-    return LIMIT if level.sense else LINES[level.style % len(LINES)] | {"pen": 0.3}
-
-
-def _at_end(frame: _Frame) -> list[Curve]:
-    """Curves with words at their right end; empty if the frame is too low for all of them."""
-    curves = [curve for curve in frame.panel.curves if curve.end]
-    limits = sum(bool(level.sense) for level in frame.panel.levels if not level.upright)
-    limits += len(frame.panel.areas)
-    return curves if 2.7 * (len(curves) + limits) <= frame.height - 1.0 else []
-
-
-def _right_room(frame: _Frame) -> float:
-    words = [curve.end for curve in _at_end(frame)]
-    limits = [level for level in frame.panel.levels if level.sense and not level.upright]
-    words += [level.words + " ↑" for level in limits if level.words]
-    words += [area.words + " " * 3 for area in frame.panel.areas]  # blanks leave the swatch space
-    room = min(max(text_width(w, SIZE) for w in words), RIGHT) + 2.0 if words else 0.5
-    return room + (SHADES if frame.panel.surface is not None and not frame.why else 0.0)
-
-
-# ---- drawing ----
-
-
-def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
+def _draw(ink: Ink, box: Box, frame: Frame, edge: float) -> None:
     """Draw a frame with its content; `edge` is the left end of its column."""
     panel, x, label = frame.panel, frame.x, frame.label
     _head(ink, box, frame, edge)
@@ -471,17 +157,17 @@ def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
         if frame.shared:
             axes.frame_at("", label, x_ticks, [])
         return
-    y_ticks = [(at, fitted(words, NAMES, SIZE)) for at, words in _y_ticks(frame)]
+    heights = [(at, fitted(words, NAMES, SIZE)) for at, words in y_ticks(frame)]
     if panel.surface is not None:
         bounds = _shaded(axes, frame, x)
-        _outside_ticks(axes, x_ticks, y_ticks, label)
+        _outside_ticks(axes, x_ticks, heights, label)
     else:
         bounds = []
         _stretches(axes, panel.stretches, x)
         for curve in panel.curves:
             if len(curve.low):
                 _band(axes, curve, frame.y, x)
-        axes.frame_at("", label, x_ticks, y_ticks, upright=True)
+        axes.frame_at("", label, x_ticks, heights, upright=True)
         for area in panel.areas:
             _area(axes, area, frame.y, x)
         _zero_lines(axes, frame, x)
@@ -524,7 +210,7 @@ def _band(axes: Axes, curve: Curve, y: Scale, x: Scale) -> None:
     band(axes, places.tolist(), np.where(inside, low, np.nan).tolist(), high.tolist())
 
 
-def _head(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
+def _head(ink: Ink, box: Box, frame: Frame, edge: float) -> None:
     """Draw title, note and legend, from the frame upwards."""
     left, wide = box[0] - 1.4, box[2] + frame.right
     title, y = frame.panel.title, box[1] - frame.above + 1.6
@@ -543,7 +229,7 @@ def _head(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
         _legend(ink, box[0], y, row)
 
 
-def _legend(ink: Ink, x: float, y: float, row: Sequence[_Entry]) -> None:
+def _legend(ink: Ink, x: float, y: float, row: Sequence[Entry]) -> None:
     for entry in row:
         if entry.line is not None:
             ink.line((x, y), (x + SKETCH, y), **entry.line)
@@ -565,7 +251,7 @@ def _empty(ink: Ink, box: Box, why: str) -> None:
         ink.text(box[0] + box[2] / 2, first + 3.1 * k, line, anchor="center", color=GREY)
 
 
-def _zero_lines(axes: Axes, frame: _Frame, x: Scale) -> None:
+def _zero_lines(axes: Axes, frame: Frame, x: Scale) -> None:
     """Draw lines at zero inside linear and signed axes."""
     (left, right), (bottom, top) = axes.x_range, axes.y_range
     own = frame.panel
@@ -578,7 +264,7 @@ def _zero_lines(axes: Axes, frame: _Frame, x: Scale) -> None:
 def _curve(axes: Axes, curve: Curve, index: int, y: Scale, x: Scale) -> list[Line]:
     """Draw a curve: thinned, interrupted where it has no value, cut at the frame."""
     xs, ys = x.at(curve.xs), y.at(curve.ys)
-    style = _line(curve, index)
+    style = line_style(curve, index)
     defined = np.flatnonzero(np.isfinite(xs) & np.isfinite(ys))
     lines: list[Line] = []
     most = int(DENSE * axes.width)
@@ -643,7 +329,7 @@ def _spots(
 ) -> list[Point]:
     """Draw points with error bars; crowded points are thinned."""
     style = index if points.style is None else points.style
-    edge, fill = _mark(points, style)
+    edge, fill = point_style(points, style)
     radius, pen = DOTS[points.weight]
     color = str(LINES[style % len(LINES)]["stroke"]) if points.small else edge
     xs, ys = x.at(points.xs), y.at(points.ys)
@@ -668,15 +354,6 @@ def _spots(
         else:
             axes.ink.circle(*at, radius, fill=fill, stroke=edge, pen=pen)
     return [*(places[n] for n in inside), *bars]
-
-
-def _mark(points: Points, style: int) -> tuple[str, str]:
-    """Edge and fill of points."""
-    if points.weight == "guide":
-        return PALE, PALE
-    if points.weight == "strong":
-        return RED, WHITE
-    return MARKS[style % len(MARKS)]
 
 
 def _bar(axes: Axes, points: Points, k: int, at: Point, y: Scale, x: Scale, color: str) -> Line:
@@ -727,16 +404,12 @@ def _level(axes: Axes, level: Level, y: Scale, x: Scale) -> None:
     at, left, right = axes.y(place), axes.left, axes.left + axes.width
     if level.between is not None:
         left, right = sorted(_ends(axes, level.between, x))
-    axes.ink.line((left, at), (right, at), **_level_style(level))
+    axes.ink.line((left, at), (right, at), **level_style(level))
     if level.sense:
         side = 1.3 if level.sense == "min" else -1.3
         edge = min(max(at + side, axes.top), axes.top + axes.height)
         strip = [(left, at), (right, at), (right, edge), (left, edge)]
         axes.ink.path(hatch([strip], angle=45.0, spacing=0.9), pen=0.1, stroke=RED)
-
-
-def _upright_limits(panel: Panel) -> list[Level]:
-    return [level for level in panel.levels if level.upright and level.sense]
 
 
 def _upright(axes: Axes, level: Level, x: Scale) -> None:
@@ -745,7 +418,7 @@ def _upright(axes: Axes, level: Level, x: Scale) -> None:
     if not axes.x_range[0] <= place <= axes.x_range[1]:
         return
     at, top, bottom = axes.x(place), axes.top, axes.top + axes.height
-    axes.ink.line((at, top), (at, bottom), **_level_style(level))
+    axes.ink.line((at, top), (at, bottom), **level_style(level))
     if level.sense:
         side = -1.3 if level.sense == "min" else 1.3
         edge = min(max(at + side, axes.left), axes.left + axes.width)
@@ -776,7 +449,7 @@ def _ends(axes: Axes, between: tuple[float, float], x: Scale) -> tuple[float, fl
 def _words_over(axes: Axes, panel: Panel, x: Scale) -> None:
     """Write names of stretches and of vertical limits above the frame, if they fit."""
     y, right = axes.top - 1.7, axes.left + axes.width
-    limits = [level for level in _upright_limits(panel) if level.words]
+    limits = [level for level in upright_limits(panel) if level.words]
     limits = sorted((level for level in limits if math.isfinite(x.place(level.value))),
                     key=lambda level: x.place(level.value))  # fmt: skip
     if limits:
@@ -805,7 +478,7 @@ def _words_over(axes: Axes, panel: Panel, x: Scale) -> None:
                 free = middle + half + 0.8
 
 
-def _right_words(axes: Axes, frame: _Frame, lines: Sequence[Sequence[Line]]) -> None:
+def _right_words(axes: Axes, frame: Frame, lines: Sequence[Sequence[Line]]) -> None:
     """Write names of curve ends, limits and areas right of the frame, near their positions."""
     low, high = axes.top, axes.top + axes.height
     labels: list[tuple[float, str, str]] = []
@@ -815,11 +488,11 @@ def _right_words(axes: Axes, frame: _Frame, lines: Sequence[Sequence[Line]]) -> 
         if np.isfinite(known_ends).all():
             labels.append((axes.y(float(np.mean(known_ends))), area.words, BLACK))
             paints[area.words] = AREAS[area.fill % len(AREAS)]
-    ends = _at_end(frame)
+    ends = curves_named_at_end(frame)
     for k, (curve, parts) in enumerate(zip(frame.panel.curves, lines, strict=True)):
         if curve in ends and parts:
             last = max((line[-1] for line in parts), key=lambda at: at[0])
-            labels.append((last[1], curve.end, str(_line(curve, k)["stroke"])))
+            labels.append((last[1], curve.end, str(line_style(curve, k)["stroke"])))
     for level in frame.panel.levels:
         if level.sense and level.words and not level.upright:
             place = frame.y.place(level.value)
@@ -860,7 +533,7 @@ def _beside(axes: Axes, level: Level, y: Scale, x: Scale, drawn_points: Sequence
         sides += [(start - 1.2 * way, before, dy), (end + 1.2 * way, beyond, dy)]
     sides += [((start + end) / 2, "center", dy) for dy in (-2.0, 2.0)]
     sides = [(across, anchor, at + dy) for across, anchor, dy in sides]
-    _written(axes, level.words, sides, drawn_points, str(_level_style(level)["stroke"]))
+    _written(axes, level.words, sides, drawn_points, str(level_style(level)["stroke"]))
 
 
 def _written(
@@ -896,7 +569,7 @@ def _written(
         )
 
 
-def _level_lines(axes: Axes, frame: _Frame, x: Scale) -> Iterator[Line]:
+def _level_lines(axes: Axes, frame: Frame, x: Scale) -> Iterator[Line]:
     """Lines of all levels on paper."""
     left, right = axes.left, axes.left + axes.width
     for level in frame.panel.levels:
@@ -949,7 +622,7 @@ def _dotted(line: Line) -> Iterator[Point]:
     yield from line[-1:]
 
 
-def _shaded(axes: Axes, frame: _Frame, x: Scale) -> list[float]:
+def _shaded(axes: Axes, frame: Frame, x: Scale) -> list[float]:
     """Draw the surface in bands with its scale; returns the levels between them."""
     surface = frame.panel.surface
     assert surface is not None
@@ -974,10 +647,10 @@ def _shaded(axes: Axes, frame: _Frame, x: Scale) -> list[float]:
     return bounds
 
 
-def _outside_ticks(axes: Axes, x_ticks: Ticks, y_ticks: Ticks, label: str) -> None:
+def _outside_ticks(axes: Axes, x_ticks: Ticks, heights: Ticks, label: str) -> None:
     """A closed frame with ticks outside and no grid across the bands."""
     ink, bottom = axes.ink, axes.top + axes.height
-    for value, words in y_ticks:
+    for value, words in heights:
         y = axes.y(value)
         ink.line((axes.left - 1.0, y), (axes.left, y), pen=0.13)
         ink.text(axes.left - 1.6, y, words, anchor="right")

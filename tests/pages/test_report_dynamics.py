@@ -23,7 +23,8 @@ from actuator_opt.pages.stiffness import PARTS, fills
 from actuator_opt.rendering import paper, paper_plain as fallback, text
 from actuator_opt.rendering.axes import AREAS, Axes
 from actuator_opt.rendering.blocks import Chart
-from actuator_opt.rendering.chart_ink import MARKS, drawn
+from actuator_opt.rendering.chart_ink import drawn
+from actuator_opt.rendering.chart_layout import MARKS
 from actuator_opt.rendering.ink import BLACK, BLUE, RED, Ink
 
 SOURCE = {"source_text": "a: 1\n", "source_name": "a.yaml", "command": "x", "date": None}
