@@ -33,6 +33,11 @@ def namespace(*values: Array) -> Any:
     return np
 
 
+def array_of(value: Array) -> Array:
+    """The value as an array of its own array-API namespace."""
+    return namespace(value).asarray(value)
+
+
 def real(value: Array) -> Array:
     """The real part of a real or complex value."""
     if isinstance(value, (np.ndarray, float, int, complex)):
@@ -45,7 +50,9 @@ def where(condition: Array, yes: Array, no: Array) -> Array:
     """Elementwise choice; `condition` must come from real parts."""
     if type(condition) is np.ndarray:  # the common case must be fast: models call it most often
         choice: Any = np.where(condition, yes, no)
-        return choice.item() if choice.dtype.hasobject else choice  # a traced value is a scalar
+        if choice.dtype.hasobject and type(choice) is np.ndarray:
+            return choice.item()  # a single symbol
+        return choice
     if isinstance(condition, (bool, np.bool_)):
         return yes if condition else no
     return namespace(condition, yes, no).where(condition, yes, no)
@@ -243,7 +250,7 @@ def _checked(value: Any) -> tuple[Any, Any]:
 
 
 def _masked(impossible: Any, value: Any) -> tuple[Any, Any]:
-    """Replace impossible values by NaN; return also their mask. Symbols are unchanged."""
+    """Replace impossible values by NaN; return also their mask. A single symbol is unchanged."""
     if impossible is False:
         return value, False
     if impossible is True:
@@ -251,6 +258,8 @@ def _masked(impossible: Any, value: Any) -> tuple[Any, Any]:
     if isinstance(impossible, np.bool_ | np.ndarray) and impossible.dtype.kind == "b":
         if not impossible.any():
             return value, False
+        return where(impossible, np.nan, value), impossible
+    if isinstance(impossible, np.ndarray):  # symbols, recorded for all values
         return where(impossible, np.nan, value), impossible
     return value, False
 
@@ -269,6 +278,6 @@ def _with_nan(result: Any, impossible: Any) -> Any:
         )
     if isinstance(result, float | complex | np.floating | np.complexfloating):
         return where(impossible, np.nan, result)
-    if isinstance(result, np.ndarray) and result.dtype.kind in "fc":
+    if isinstance(result, np.ndarray) and result.dtype.kind in "fcO":
         return np.where(impossible, np.nan, result)
     return result

@@ -250,19 +250,36 @@ def _scaled_roots(coefficients: np.ndarray) -> np.ndarray:
     return result
 
 
-def root_motion(polynomial: Polynomial, root: Array) -> Array:
-    """Complex step of a simple root that follows from the complex steps of the coefficients.
+def root_parts(polynomial: Polynomial) -> Parts:
+    """Real and imaginary parts of all roots, each (..., degree); see `roots`."""
+    if len(polynomial) > 1:
+        recorded = getattr(namespace(*polynomial), "root_parts", None)
+        if recorded is not None:
+            return Parts(*recorded([real(coefficient) for coefficient in polynomial]))
+    found = roots(polynomial)
+    return Parts(found.real, found.imag)
 
-    It is -dP(root)/P'(root), with the complex step dP of the polynomial's value.
+
+def moved_root(polynomial: Polynomial, root: Parts) -> Parts:
+    """A simple root with the complex step that follows from those of the coefficients.
+
+    The root moves by -dP(root)/P'(root), with the complex step dP of the polynomial's value.
     """
-    change: Array = 0.0
-    slope: Array = 0.0
+    x, y = root
+    value, slope = Parts(0.0, 0.0), Parts(0.0, 0.0)
     for power in range(len(polynomial) - 1, -1, -1):
         coefficient = polynomial[power]
-        change = change * root + namespace(coefficient).imag(coefficient + 0j)
+        value = Parts(value.real * x - value.imaginary * y + coefficient,
+                      value.real * y + value.imaginary * x)  # fmt: skip
         if power:
-            slope = slope * root + power * real(coefficient)
-    return -change / slope
+            slope = Parts(slope.real * x - slope.imaginary * y + power * real(coefficient),
+                          slope.real * y + slope.imaginary * x)  # fmt: skip
+    across, along = value.real - real(value.real), value.imaginary - real(value.imaginary)
+    size = slope.real * slope.real + slope.imaginary * slope.imaginary
+    return Parts(
+        x - (across * slope.real + along * slope.imaginary) / size,
+        y - (along * slope.real - across * slope.imaginary) / size,
+    )
 
 
 def positive_root(polynomial: Polynomial, start: Array) -> Array:

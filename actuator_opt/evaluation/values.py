@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from ..base.numeric import Array, namespace
+from ..base.numeric import Array, array_of
+from ..base.symbolic.expression import Symbol
 
 
 class Values:
@@ -57,9 +58,9 @@ def stacked(rows: Sequence[Array]) -> Array:
     """Stack one float or array (designs,) per load case to (cases, 1) or (cases, designs)."""
     if all(isinstance(row, float) for row in rows):
         return np.array(rows)[:, None]
-    if len(rows) == 1 and namespace(rows[0]) is not np:  # a traced value is a scalar
+    if len(rows) == 1 and isinstance(rows[0], Symbol):
         return rows[0]
-    return np.stack(np.broadcast_arrays(*[np.atleast_1d(np.asarray(row)) for row in rows]))
+    return np.stack(np.broadcast_arrays(*[np.atleast_1d(array_of(row)) for row in rows]))
 
 
 def of_case(value: Array, index: int) -> float:

@@ -15,15 +15,17 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, absolute, angle, positive, real, sqrt, where
+from ..base.numeric import Array, absolute, angle, array_of, positive, real, sqrt, where
 from ..base.polynomial import (
+    Parts,
     Polynomial,
     add,
     at_frequency,
     even_and_odd,
+    moved_root,
     multiply,
     positive_root,
-    root_motion,
+    root_parts,
     roots,
     scale,
     square_of_magnitude,
@@ -114,40 +116,43 @@ def load_mode(*, model: LinearActuator, near: Array) -> Mode:
     159.15 Hz, 0.0050
     """
     polynomial = _without_integrators(model.characteristic)
-    found = roots(polynomial)
-    near = np.asarray(real(near))
-    if found.shape[-1] < 2:
-        still = 0.0 * near + np.zeros(found.shape[:-1])
+    found = root_parts(polynomial)
+    near = array_of(real(near))
+    if found.real.shape[-1] < 2:
+        still = 0.0 * near + np.zeros(found.real.shape[:-1])
         return Mode(still, still + math.inf)
-    shape = np.broadcast_shapes(found.shape[:-1], near.shape)
-    found, near = np.broadcast_to(found, (*shape, found.shape[-1])), np.broadcast_to(near, shape)
+    shape = np.broadcast_shapes(found.real.shape[:-1], near.shape)
+    found = Parts(*(np.broadcast_to(part, (*shape, part.shape[-1])) for part in found))
+    near = np.broadcast_to(near, shape)
     with np.errstate(all="ignore"):
-        one, two = _load_pair(found, near)
-        motion = root_motion(polynomial, one), root_motion(polynomial, two)
-        product = (one * two).real + 1j * (one * motion[1] + two * motion[0]).real
-        total = (one + two).real + 1j * (motion[0] + motion[1]).real
-        apart = product.real < 0  # one real pole grows, the other fades: the growing pole counts
-        grows = where(one.real > 0, one.real + 1j * motion[0].real, two.real + 1j * motion[1].real)
+        one, two = (moved_root(polynomial, root) for root in _load_pair(found, near))
+        product = one.real * two.real - one.imaginary * two.imaginary
+        apart = real(product) < 0  # one real pole grows, the other fades: the growing pole counts
+        grows = where(real(one.real) > 0, one.real, two.real)
         omega = where(np.isnan(near), math.nan, sqrt(where(apart, -product, product)))
-        frequency, ratio = omega / (2 * pi), -where(apart, grows, 0.5 * total) / omega
-    stepped = any(np.iscomplexobj(c) for c in polynomial)
-    return Mode(frequency, ratio) if stepped else Mode(real(frequency), real(ratio))
+        ratio = -where(apart, grows, 0.5 * (one.real + two.real)) / omega
+        return Mode(omega / (2 * pi), ratio)
 
 
-def _load_pair(found: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _load_pair(found: Parts, near: Array) -> tuple[Parts, Parts]:
     """The pole next to a frequency with its conjugate, or with the next real pole."""
-    swings = np.abs(found.imag) > 1e-9 * np.abs(found)
-    far = np.abs(np.log(np.abs(found) / (2 * pi * near[..., None])))
+    size = np.hypot(found.real, found.imaginary)
+    swings = np.abs(found.imaginary) > 1e-9 * size
+    far = np.abs(np.log(size / (2 * pi * near[..., None])))
     far = np.where(np.isfinite(far), far, 1e300)
     single = np.sum(~swings, axis=-1, keepdims=True) < 2
     far = np.where(single & ~swings, np.inf, far)
-    first_at = np.argmin(far, axis=-1)[..., None]
-    first = np.take_along_axis(found, first_at, axis=-1)
-    others = np.where(swings, np.inf, far)
-    np.put_along_axis(others, first_at, np.inf, axis=-1)
-    second = np.take_along_axis(found, np.argmin(others, axis=-1)[..., None], axis=-1)
-    pair = np.take_along_axis(swings, first_at, axis=-1)
-    return first[..., 0], np.where(pair, np.conj(first), second)[..., 0]
+    first = np.argmin(far, axis=-1)[..., None]
+    others = np.where(swings | (np.arange(far.shape[-1]) == first), np.inf, far)
+    second = np.argmin(others, axis=-1)[..., None]
+    pair = np.take_along_axis(swings, first, axis=-1)
+
+    def parts(index: Array) -> list[Array]:
+        return [np.take_along_axis(part, index, axis=-1) for part in found]
+
+    (x, y), (other_x, other_y) = parts(first), parts(second)
+    other_x, other_y = np.where(pair, x, other_x), np.where(pair, -y, other_y)
+    return Parts(x[..., 0], y[..., 0]), Parts(other_x[..., 0], other_y[..., 0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,9 +203,9 @@ def open_loop(
 
 def _crossings(polynomial: Polynomial) -> np.ndarray:
     """Positive real roots in w = omega^2, NaN elsewhere, (..., n)."""
-    found = roots(polynomial)
-    near_axis = np.abs(found.imag) <= 1e-6 * np.abs(found)
-    return np.where(near_axis & (found.real > 0), found.real, np.nan)
+    along, across = root_parts(polynomial)
+    near_axis = np.abs(across) <= 1e-6 * np.hypot(along, across)
+    return np.where(near_axis & (along > 0), along, np.nan)
 
 
 def _value(polynomial: Polynomial, point: Array) -> Array:
@@ -213,7 +218,7 @@ def _value(polynomial: Polynomial, point: Array) -> Array:
 
 def _lifted(polynomial: Polynomial) -> Polynomial:
     """Real parts of the coefficients with one axis more, for many points each."""
-    return tuple(np.asarray(real(coefficient))[..., None] for coefficient in polynomial)
+    return tuple(array_of(real(coefficient))[..., None] for coefficient in polynomial)
 
 
 def _chosen(crossings: np.ndarray, score: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -298,16 +303,17 @@ def _holds(loop: PositionOpenLoop) -> Array:
     A pressure that cannot leak away leaves a pole at zero, which does no harm.
     """
     low = _without_integrators(loop.denominator)
-    poles_open = roots(low)
-    sizes = np.where(np.isfinite(poles_open), np.abs(poles_open), 0.0)
+    along, across = root_parts(low)
+    finite = np.isfinite(along) & np.isfinite(across)
+    sizes = np.where(finite, np.hypot(along, across), 0.0)
     slow = sizes <= 1e-12 * np.max(sizes, axis=-1, keepdims=True, initial=0.0)
-    stable = np.all((poles_open.real < 0) | (slow & np.isfinite(poles_open)), axis=-1)
+    stable = np.all((along < 0) | (slow & finite), axis=-1)
     integrators = len(loop.denominator) - len(low)
     if not integrators:
         return stable
     top, low = (*loop.numerator[integrators - 1 :], 0.0, 0.0), (*low, 0.0)
     with np.errstate(all="ignore"):
-        slowly, faster = (real(top[i]) / np.asarray(real(low[i])) for i in (0, 1))
+        slowly, faster = (real(top[i]) / array_of(real(low[i])) for i in (0, 1))
         leads = where(real(low[0]) == 0, faster, slowly)
         return stable & ~(leads < -1e-9 * np.nan_to_num(np.abs(faster), posinf=0.0))
 

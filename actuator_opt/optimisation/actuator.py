@@ -18,7 +18,7 @@ import numpy as np
 
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
-from ..base.numeric import STEP, Array, real, where
+from ..base.numeric import STEP, Array, namespace, real, where
 from ..base.quantities import Sense
 from ..design import with_values
 from ..design.material import Material
@@ -28,6 +28,7 @@ from ..evaluation.build import names_of_materials
 from ..evaluation.kernel import extreme, worst_of
 from ..evaluation.limits import UNLIMITED, LimitRow, MetricArrays, all_limits, margin, rows_of
 from ..evaluation.values import Values as Numbers
+from ..base.symbolic.recorded import RecordedFunction
 from .evaluator import Evaluator, Point
 from .kkt import KktResidual
 from .problem import BoxProblem, ParametricProblem, PointValues, Vector
@@ -170,6 +171,9 @@ class ActuatorProblem:
     read any."""
     refusals: Refusals = field(default_factory=Refusals)
     """Counts the designs where a custom metric has no value."""
+    recorded: RecordedFunction | None = None
+    """Objective and margins as a recorded function of the variables and all positive numbers; None
+    with custom metrics, whose code may do anything."""
 
     def parametric(self, parameters: tuple[str, ...]) -> ParametricProblem:
         """The problem with the numbers at the PATHs `parameters` as parameters."""
@@ -209,7 +213,32 @@ class ActuatorProblem:
 
         Adds the computed metrics to `outputs`.
         """
-        varied = dict(parameters or {}) | dict(zip(self.paths, points, strict=True))
+        known = parameters or {}
+        names = () if self.recorded is None or outputs is not None else self.recorded.names
+        if names and known.keys() <= set(names):
+            rows = self.recorded(self._inputs(points, known))
+            return PointValues(rows[0], rows[1:])
+        return self._by_models(points, known, outputs)
+
+    def _inputs(self, points: Array, parameters: Mapping[str, Array]) -> Array:
+        """All inputs of the recorded function (inputs, designs)."""
+        assert self.recorded is not None
+        kind = np.result_type(points, *parameters.values()) if parameters else points.dtype
+        inputs = np.empty((len(self.recorded.names), points.shape[1]), dtype=kind)
+        inputs[: len(self.paths)] = points
+        inputs[len(self.paths) :] = self.recorded.present[len(self.paths) :, None]
+        for path, value in parameters.items():
+            inputs[self.recorded.names.index(path)] = value
+        return inputs
+
+    def _by_models(
+        self,
+        points: Array,
+        parameters: Mapping[str, Array],
+        outputs: list[MetricArrays] | None = None,
+    ) -> PointValues:
+        """As `evaluate`, through the models themselves."""
+        varied = dict(parameters) | dict(zip(self.paths, points, strict=True))
         numbers = self.subject.values(varied)
         count = points.shape[1]
         run = compute(self.subject, numbers, self.metrics)
@@ -244,22 +273,30 @@ def _margins(
     """Margins (rows, designs) of the limits, less their reserves, in one vectorised operation."""
     if not rows:
         return np.empty((0, count))
-    complex_ = any(np.iscomplexobj(value) for value in numbers.varied.values())
-    value = np.empty((len(rows), count), dtype=complex if complex_ else float)
-    bounds = [row.limit_of.value(numbers) for row in rows]
-    width = max(getattr(bound, "size", 1) for bound in bounds)
-    bound = np.empty((len(rows), width), dtype=value.dtype)
-    for i, row in enumerate(rows):
+    values, bounds = [], [row.limit_of.value(numbers) for row in rows]
+    for row in rows:
         array = computed.metrics[row.limit_of.metric][row.place]
-        if row.case_index is not None:
-            array = array[row.case_index]
-        value[i], bound[i] = array, bounds[i]
+        values.append(array if row.case_index is None else array[row.case_index])
+    width = max(getattr(bound, "size", 1) for bound in bounds)
+    value, bound = _stacked(values, count), _stacked(bounds, width)
     value = where(real(value) == np.inf, UNLIMITED, value)
     sign = np.array([[1.0 if row.limit_of.sense == "min" else -1.0] for row in rows])
     margins = sign * margin(value, bound, "min")
     if reserves:
         margins = margins - np.array([[reserves.get(row.limit_of.name, 0.0)] for row in rows])
     return _bounded(margins)
+
+
+def _stacked(values: Sequence[Array], width: int) -> Array:
+    """The values as rows (values, width) of an array; faster than `stack` for NumPy's arrays."""
+    xp = namespace(*values)
+    if xp is not np:
+        return xp.stack([xp.broadcast_to(xp.asarray(value), (width,)) for value in values])
+    stepped = any(np.iscomplexobj(value) for value in values)
+    result = np.empty((len(values), width), dtype=complex if stepped else float)
+    for k, value in enumerate(values):
+        result[k] = value
+    return result
 
 
 @np.errstate(all="ignore")  # the solver handles values that are not finite
@@ -329,8 +366,31 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
     plugin_names = {plugin.name for plugin in subject.plugins}
     refusals, lenient = Refusals(metrics & plugin_names), replace(subject, lenient=True)
     required = None if plugin_names else metrics
-    holder.append(ActuatorProblem(lenient, goal, paths, rows, fixed, problem, required, refusals))
-    return holder[0]
+    actuator = ActuatorProblem(lenient, goal, paths, rows, fixed, problem, required, refusals)
+    if not plugin_names:
+        others = sorted(
+            path
+            for path in numbers.read
+            if path not in paths and subject.numbers.get(path, 0.0) > 0
+        )
+        actuator = replace(actuator, recorded=_recorded(actuator, (*paths, *others)))
+    holder.append(actuator)
+    return actuator
+
+
+def _recorded(actuator: ActuatorProblem, names: tuple[str, ...]) -> RecordedFunction:
+    """The objective and the margins as a recorded function of all inputs."""
+    count = len(actuator.paths)
+
+    def rows(inputs: Array) -> Array:
+        numbers = dict(zip(names[count:], inputs[count:], strict=True))
+        values = actuator._by_models(inputs[:count], numbers)
+        xp = namespace(values.constraints)
+        objective = xp.broadcast_to(values.objective, (1, inputs.shape[1]))
+        return xp.concatenate([objective, values.constraints])
+
+    present = np.array([actuator.subject.numbers[name] for name in names])
+    return RecordedFunction(rows, names, present)
 
 
 def idle_metrics(actuator: ActuatorProblem) -> tuple[str, ...]:

@@ -110,7 +110,8 @@ def test_roots_move_as_the_differences_say():
                 for c in (base + change, base - change, base)
             )
             slope = (high - low) / (2e-5 * abs(base[k]))
-            found = polynomial.root_motion(stepped, root) / STEP
+            moving = polynomial.moved_root(stepped, polynomial.Parts(root.real, root.imag))
+            found = (np.imag(moving.real) + 1j * np.imag(moving.imaginary)) / STEP
             assert abs(found - slope) <= 1e-6 * abs(slope)
         polished = polynomial.positive_root(stepped, 4.001)
         assert polished.real == pytest.approx(4.0, rel=1e-12)

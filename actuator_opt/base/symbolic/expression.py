@@ -184,6 +184,9 @@ class Graph:
     """Tabulated functions of time, such as measured inputs."""
     slopes: dict[int, int] = field(default_factory=dict)
     """Index of a tabulated function whose slope this function is."""
+    truth: Callable[[Symbol], bool] | None = None
+    """Decides a truth value that a model asks for; given for exact graphs only, whose operations
+    are those of NumPy (NaN and rounding included) and are never simplified."""
 
     def variable(self, name: str, limits: Bounds = ANY) -> Symbol:
         """Add a variable: a number within limits, called `name` in generated code."""
@@ -224,6 +227,20 @@ class Graph:
             self.known[key] = symbol
         return symbol
 
+    def exact_node(self, op: str, *args: Any) -> Symbol:
+        """Node of an operation, without simplification; -0 and 0 are different operands."""
+        key = (op, *args)
+        for a in args:
+            if a == 0.0 and math.copysign(1.0, a) < 0:
+                key = (op, *("-0" if a == 0.0 and math.copysign(1.0, a) < 0 else a for a in args))
+                break
+        symbol = self.known.get(key)
+        if symbol is None:
+            symbol = Symbol(self, op, args, len(self.nodes), ANY)
+            self.nodes.append(symbol)
+            self.known[key] = symbol
+        return symbol
+
 
 class Symbol:
     """A node of a graph that behaves like a number of the array-API standard."""
@@ -252,6 +269,8 @@ class Symbol:
         return id(self)
 
     def __bool__(self) -> bool:
+        if self.graph.truth is not None:
+            return self.graph.truth(self)
         raise TypeError("a symbol has no truth value: use `where`")
 
     def __add__(self, other: Any) -> Any:

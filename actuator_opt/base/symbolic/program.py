@@ -1,0 +1,197 @@
+"""Programs: the operations that results depend on, on numbered slots, run by a small machine.
+
+The machine is a C extension. It is built at installation if there is a C compiler; without it,
+callers use the models themselves, through NumPy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import field
+from typing import Any, Final
+
+import numpy as np
+
+from ..dataclass import dataclass
+from ..numeric import Array
+from .expression import Symbol, needed
+
+try:
+    from ._machine import OPERATIONS, follow, run
+except ImportError:
+    OPERATIONS, follow, run = (), None, None
+
+AVAILABLE: Final = run is not None
+"""Whether the machine was built at installation."""
+WIDTHS: Final = (4, 8, 16)
+"""Numbers of directions that the machine differentiates along at once."""
+SHARED: Final = ("real", "part")
+"""Operations that compute nothing: a value without its derivatives, and one root of several. They
+share the slot of their operand."""
+_FROZEN: Final = 16
+"""Flag of an instruction whose first operand counts as constant; doubled for each further one."""
+
+
+@dataclass(slots=True)
+class Program:
+    """Instructions that compute outputs from inputs.
+
+    Parameters
+    ----------
+    code : (instructions, 6), each an operation, flags, the slot of the result, three operands
+    extra : slots of the coefficients of polynomials
+    outputs : slot of every output
+    frozen : whether an output has no derivatives in any case
+    constants : values of the slots after the first `slots`
+    slots : number of slots that instructions write
+    inputs : number of inputs; they are in the first slots
+    """
+
+    code: Array
+    extra: Array
+    outputs: Array
+    frozen: Array
+    constants: Array
+    slots: int
+    inputs: int
+    _followed: dict[bytes, tuple[Array, Array]] = field(default_factory=dict)
+
+    def values(self, points: Array) -> Array:
+        """Outputs (points, outputs) at points (points, inputs)."""
+        results = np.empty((len(points), len(self.outputs)))
+        self._run(self.code, self.frozen, points, np.empty(0), 0, results)
+        return results
+
+    def slopes(self, points: Array, seeds: Array) -> tuple[Array, Array]:
+        """Outputs (points, outputs) and their slopes (points, outputs, directions).
+
+        Parameters
+        ----------
+        points : (points, inputs)
+        seeds : change of every input in every direction, (points, inputs, directions)
+        """
+        code, varies = self._for(seeds.any(axis=(0, 2)))
+        count, inputs, directions = seeds.shape
+        parts, values = [], np.empty(0)
+        for first in range(0, max(directions, 1), WIDTHS[-1]):
+            part = seeds[:, :, first : first + WIDTHS[-1]]
+            used = part.shape[2]
+            width = next(width for width in WIDTHS if width >= used)
+            padded = np.zeros((count, inputs, width))
+            padded[:, :, :used] = part
+            results = np.empty((count, len(self.outputs), 1 + width))
+            self._run(code, varies, points, padded, width, results)
+            values = results[:, :, 0]
+            parts.append(results[:, :, 1 : 1 + used])
+        return values, parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
+
+    def _for(self, moving: Array) -> tuple[Array, Array]:
+        """The code that carries derivatives of the moving inputs only, and which outputs vary."""
+        key = moving.tobytes()
+        if key not in self._followed:
+            assert follow is not None
+            code, active = self.code.copy(), np.zeros(self.slots, dtype=np.uint8)
+            active[: self.inputs] = moving
+            follow(code, active, self.slots)
+            ends = np.append(active, np.zeros(len(self.constants), dtype=np.uint8))[self.outputs]
+            self._followed[key] = code, np.where(self.frozen, 0, ends).astype(np.int32)
+        return self._followed[key]
+
+    def _run(
+        self, code: Array, varies: Array, points: Array, seeds: Array, width: int, results: Array
+    ) -> None:
+        assert run is not None
+        points = np.ascontiguousarray(points, dtype=float)
+        run(code, self.extra, self.outputs, varies, self.constants,
+            self.slots, self.inputs, points, seeds, width, results)  # fmt: skip
+
+
+def program(inputs: Sequence[Symbol], outputs: Sequence[Any]) -> Program:
+    """Program of outputs, each a symbol or a number, from inputs.
+
+    A slot is used again once its value is no longer needed, so that all slots stay in fast memory.
+    """
+    return _Writer(inputs, outputs).program()
+
+
+def _owner(node: Symbol) -> Symbol:
+    """The node whose slot a node shares."""
+    while node.op in SHARED:
+        node = node.args[0]
+    return node
+
+
+class _Writer:
+    """Assigns slots to the operations that outputs depend on, and writes the instructions."""
+
+    def __init__(self, inputs: Sequence[Symbol], outputs: Sequence[Any]) -> None:
+        self.inputs, self.outputs = inputs, outputs
+        self.nodes = [n for n in needed(outputs) if n.op != "variable" and n.op not in SHARED]
+        self.slot: dict[int, int] = {node.index: k for k, node in enumerate(inputs)}
+        self.constants: dict[bytes, int] = {}
+        self.values: list[float] = []
+        self.extra: list[int] = []
+        self.code: list[tuple[int, ...]] = []
+        self.count = len(inputs)
+
+    def program(self) -> Program:
+        """Write all instructions."""
+        codes = {name: k for k, name in enumerate(OPERATIONS)}
+        last = {_owner(a).index: k for k, node in enumerate(self.nodes) for a in node.operands}
+        kept = {_owner(out).index for out in self.outputs if isinstance(out, Symbol)}
+        kept |= {node.index for node in self.inputs}
+        free: list[int] = []
+        for k, node in enumerate(self.nodes):
+            if node.op == "roots":
+                kept.add(node.index)  # its slots are neighbours and are not used again
+                words = [len(self.extra), len(node.args) - 1, 0]
+                self.extra += [self._place(a) for a in node.args]
+            else:
+                words = [self._place(a) for a in node.args]
+            flags = 0
+            for place in range(3):  # a place without an operand repeats the first
+                operand = node.args[place] if place < len(node.args) else None
+                if operand is None or (isinstance(operand, Symbol) and operand.op == "real"):
+                    flags |= _FROZEN << place
+            for index in {_owner(operand).index for operand in node.operands}:
+                if last[index] == k and index not in kept:
+                    free.append(self.slot[index])
+            wide = 2 * words[1] if node.op == "roots" else 1
+            if wide == 1 and free:
+                slot = free.pop()
+            else:
+                slot, self.count = self.count, self.count + wide
+            self.slot[node.index] = slot
+            words += [words[0]] * (3 - len(words))
+            self.code.append((codes[node.op], flags, slot, *words))
+        return self._finished()
+
+    def _place(self, value: Any) -> int:
+        """Slot of an operand; constants count down from -1 until all slots are known."""
+        if isinstance(value, Symbol):
+            at = 0
+            while value.op in SHARED:
+                at += value.args[1] if value.op == "part" else 0
+                value = value.args[0]
+            return self.slot[value.index] + at
+        number = float(value)
+        key = np.float64(number).tobytes()
+        if key not in self.constants:
+            self.constants[key] = -1 - len(self.values)
+            self.values.append(number)
+        return self.constants[key]
+
+    def _finished(self) -> Program:
+        outputs = [self._place(out) for out in self.outputs]
+        frozen = [isinstance(out, Symbol) and out.op == "real" for out in self.outputs]
+
+        def settled(places: Any) -> Array:
+            array = np.array(places, dtype=np.int32)
+            return np.where(array < 0, self.count - 1 - array, array).astype(np.int32)
+
+        code = np.array(self.code, dtype=np.int32).reshape(-1, 6)
+        code[:, 3:] = settled(code[:, 3:])
+        return Program(
+            np.ascontiguousarray(code), settled(self.extra), settled(outputs),
+            np.array(frozen, dtype=np.int32), np.array(self.values), self.count, len(self.inputs),
+        )  # fmt: skip

@@ -1,0 +1,173 @@
+"""Functions of many inputs that record themselves once and are then run by the machine.
+
+The function is called with symbols in place of numbers; every operation becomes an instruction. A
+branch that depends on values is recorded as a guard: points that would take the other branch go
+through the function itself. The recording is checked against the function before it is used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from ..dataclass import dataclass
+from ..numeric import STEP, Array
+from .arrays import Trace, elements
+from . import program as programs
+from .program import Program
+
+PATIENCE = 3
+"""Number of calls with derivatives after which a recording pays (our choice: recording costs as
+much as some 40 calls)."""
+RECORDINGS = 3
+"""Largest number of recordings at different branches."""
+FEW = 20
+"""Number of points outside the recorded branches before their share is judged."""
+OFTEN = 0.25
+"""Share of points outside the recorded branches that calls for a new recording."""
+AGREEMENT = 1e-9
+"""Largest difference of a checked recording, relative to a value or to 1."""
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """A program whose last outputs are guards, with the answers for which it holds."""
+
+    program: Program
+    answers: Array
+
+    @property
+    def rows(self) -> int:
+        """Number of results, without the guards."""
+        return len(self.program.outputs) - len(self.answers)
+
+    def holds(self, results: Array) -> Array:
+        """Whether each point (points, outputs) takes the recorded branches."""
+        return ((results[:, self.rows :] != 0) == self.answers).all(axis=1)
+
+
+class RecordedFunction:
+    """A function of points (inputs, k), real or complex, with results (rows, k).
+
+    Parameters
+    ----------
+    function : accepts NumPy arrays and arrays of symbols
+    names : label of every input
+    present : present value of every input (inputs,)
+
+    Attributes
+    ----------
+    reason : why the function is not run by the machine, if it is not
+    """
+
+    def __init__(
+        self,
+        function: Callable[[Array], Array],
+        names: Sequence[str],
+        present: Array,
+    ) -> None:
+        self.function = function
+        self.names = tuple(names)
+        self.present = present
+        self.reason = "" if programs.AVAILABLE else "the machine was not built at installation"
+        self.recording: Recording | None = None
+        self.recordings = 0
+        self.calls = 0
+        self.points = 0
+        self.outside = 0
+
+    def __call__(self, points: Array) -> Array:
+        """Results (rows, k) at points (inputs, k), by the machine once that pays."""
+        if self.reason:
+            return self.function(points)
+        stepped = np.iscomplexobj(points)
+        if self.recording is None:
+            self.calls += stepped
+            if self.calls <= PATIENCE:
+                return self.function(points)
+            self._record(points[:, 0].real)
+            if self.recording is None:
+                return self.function(points)
+        return self._slopes(points) if stepped else self._values(points)
+
+    def _values(self, points: Array) -> Array:
+        assert self.recording is not None
+        results = self.recording.program.values(points.T)
+        holds = self.recording.holds(results)
+        rows = np.ascontiguousarray(results[:, : self.recording.rows].T)
+        self._complete(points, rows, holds)
+        return rows
+
+    def _slopes(self, points: Array) -> Array:
+        """Results with their complex steps; columns with equal real parts share their values."""
+        assert self.recording is not None
+        real, steps = points.real, points.imag / STEP
+        new = np.append(True, (real[:, 1:] != real[:, :-1]).any(axis=0))
+        firsts = np.flatnonzero(new)
+        sizes = np.diff(np.append(firsts, len(new)))
+        widest = int(sizes.max())
+        seeds = np.zeros((len(firsts), len(real), widest))
+        group = np.cumsum(new) - 1
+        place = np.arange(len(new)) - firsts[group]
+        seeds[group, :, place] = steps.T
+        values, slopes = self.recording.program.slopes(real[:, firsts].T, seeds)
+        holds = self.recording.holds(values)
+        count = self.recording.rows
+        rows = values[group, :count].T + 1j * STEP * slopes[group, :count, place].T
+        self._complete(points, rows, holds[group])
+        return rows
+
+    def _complete(self, points: Array, rows: Array, holds: Array) -> None:
+        """Compute the columns outside the recorded branches; record again if they are many."""
+        self.points += len(holds)
+        if holds.all():
+            return
+        missing = ~holds
+        rows[:, missing] = self.function(points[:, missing])
+        self.outside += int(missing.sum())
+        if self.outside > FEW and self.outside > OFTEN * self.points:
+            self._record(points[:, np.flatnonzero(missing)[0]].real)
+
+    def _record(self, point: Array) -> None:
+        """Record the function at a point (inputs,), and check it there and nearby."""
+        self.recording = None
+        self.points = self.outside = 0
+        if self.recordings >= RECORDINGS:
+            self.reason = "its branches differ between designs"
+            return
+        self.recordings += 1
+        trace = Trace()
+        try:
+            with np.errstate(all="ignore"):
+                symbols = trace.variables(self.names, point)
+                results = elements(self.function(symbols))
+        except Exception as error:  # any model may meet an operation that is not recorded
+            self.reason = f"a model cannot be recorded ({error})"
+            return
+        written = programs.program(elements(symbols), [*results, *trace.guards])
+        recording = Recording(written, np.array(list(trace.guards.values()), dtype=bool))
+        if self._agrees(recording, point):
+            self.recording = recording
+        else:
+            self.reason = "the recording differs from the models"
+
+    def _agrees(self, recording: Recording, point: Array) -> bool:
+        """Whether the recording equals the function at a point and at one nearby."""
+        points = np.stack([point, point * (1 + 1e-3)], axis=1)
+        with np.errstate(all="ignore"):
+            expected = self.function(points)
+            results = recording.program.values(points.T)
+        rows = results[:, : recording.rows].T[:, (holds := recording.holds(results))]
+        return bool(holds[0]) and same(rows, expected[:, holds])
+
+
+def same(first: Array, second: Array) -> bool:
+    """Whether results agree: NaN and infinity in the same places, values to rounding."""
+    finite = np.isfinite(second)
+    if not np.array_equal(finite, np.isfinite(first)):
+        return False
+    if not np.array_equal(first[~finite], second[~finite], equal_nan=True):
+        return False
+    room = AGREEMENT * np.maximum(np.abs(second[finite]), 1.0)
+    return bool((np.abs(first[finite] - second[finite]) <= room).all())
