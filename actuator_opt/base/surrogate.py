@@ -15,7 +15,7 @@ from math import cos, exp, log, pi
 import numpy as np
 
 from .dataclass import dataclass
-from .numeric import Array, clip
+from .numeric import Array, array_of, clip
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +111,7 @@ class Surrogate:
 
         With `slope`, return derivatives with respect to the logarithm of that axis instead.
         """
-        point = {name: np.asarray(inputs.get(name, value)) for name, value in self.base.items()}
+        point = {name: array_of(inputs.get(name, value)) for name, value in self.base.items()}
         names = [axis.name for axis in self.axes] + list(self.linear)
         shape = np.broadcast_shapes(*(point[name].shape for name in names))
         table = np.broadcast_to(self.coefficients, shape + self.coefficients.shape)

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, Unsolvable
-from ..base.numeric import Array
+from ..base.numeric import Array, array_of
 from ..base.surrogate import Interpolation, Surrogate, SurrogateAxis, surrogate
 from ..design.model import Design
 from .film import FilmRow, Solved, Stroke, floats, of_place, on_stroke, ring_films, slopes, solve
@@ -383,7 +383,7 @@ def _row(ring: Ring, case: int) -> Ring:
     """Inputs of a ring in one load case, floats or arrays (designs,)."""
 
     def row(value: Array) -> Array:
-        array = np.asarray(value)
+        array = array_of(value)
         return array[min(case, array.shape[0] - 1)] if array.ndim == 2 else array
 
     return ring.at(**{name: row(value) for name, value in ring.numbers.items()})

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, real
+from ..base.numeric import Array, array_of, real
 from ..design.model import Design
 from ..models import dynamics, lugre, stiffness, stiffness_published as published
 from .barrel import Wall
@@ -278,12 +278,12 @@ def _softest(curve: Callable[[Array], Array], stroke: Array) -> Array:
     Only real parts are used: at a minimum, a small change of position does not affect the
     stiffness, so derivatives need no change of position.
     """
-    length = np.asarray(real(stroke))
+    length = array_of(real(stroke))
     middle, reach = 0.5 * length, 0.5 * length
     for _ in range(5):
         grid = middle + np.linspace(-1.0, 1.0, 33).reshape(-1, 1, 1) * reach
         grid = np.clip(grid, 1e-6 * length, (1 - 1e-6) * length)
-        values = np.asarray(real(curve(grid)))
+        values = array_of(real(curve(grid)))
         grid = np.broadcast_to(grid, values.shape)
         best = np.argmin(values, axis=0)[None]
         middle = np.take_along_axis(grid, best, axis=0)[0]

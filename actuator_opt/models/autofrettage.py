@@ -34,6 +34,7 @@ from ..base.dataclass import dataclass
 from ..base.numeric import (
     Array,
     absolute,
+    array_of,
     geometry,
     maximum,
     minimum,
@@ -115,7 +116,7 @@ def _liner(layer: TubeLayer, inner_radius: Array, change: Array, force: Array) -
     """Constants of the liner, which must be isotropic."""
     c11, c12, c13, c22, c23, c33, _ = layer.stiffness
     for one, other in ((c22, c11), (c33, c11), (c13, c12), (c23, c12)):
-        if np.any(np.asarray(real(absolute(one - other)) > 1e-6 * real(c11))):
+        if np.any(array_of(real(absolute(one - other)) > 1e-6 * real(c11))):
             message = "the first layer of an autofrettaged tube must be isotropic"
             raise ValueError(message)
     outer = inner_radius + positive(layer.thickness)

@@ -10,7 +10,7 @@ from math import pi
 
 import numpy as np
 
-from ..base.numeric import Array, geometry, namespace, positive, real, sqrt
+from ..base.numeric import Array, array_of, geometry, namespace, positive, real, sqrt
 
 
 @geometry
@@ -332,7 +332,7 @@ def wall_ratio_for_strain(
     """
     ratio = strain * youngs_modulus / pressure
     excess = ratio - 1 - poissons_ratio
-    if np.any(np.asarray(real(excess)) <= 0):
+    if np.any(array_of(real(excess)) <= 0):
         message = (
             "no wall is thick enough for so small a bore strain: "
             "strain*youngs_modulus/pressure must exceed 1 + poissons_ratio"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..base.dataclass import dataclass
-from ..base.numeric import STEP, Array, absolute, geometry, namespace, real, where
+from ..base.numeric import STEP, Array, absolute, array_of, geometry, namespace, real, where
 from .layered_tube import TubeLayer, layered_tube, tube_state
 from .strength import mises_product
 from .strength_modes import Stress
@@ -163,7 +163,7 @@ def layer_thickness_for_strain(
     value, slope = trial(highest)
     start = highest + 0 * value
     spare = _bore_strain(others, *plain) <= aim if others else start < 0
-    if np.any(np.asarray(((value > aim) & ~spare) | (aim <= 0))):
+    if np.any(array_of(((value > aim) & ~spare) | (aim <= 0))):
         message = "the bore strain exceeds its limit even with the largest thickness of this layer"
         raise ValueError(message)
     thickness, slope = _search(xp, trial, aim, (start, value, slope), spare)

@@ -20,6 +20,7 @@ from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..base.numeric import STEP, Array, namespace, real, where
 from ..base.quantities import Sense
+from ..base.symbolic.recorded import RecordedFunction
 from ..design import with_values
 from ..design.material import Material
 from ..design.materials import Library
@@ -28,7 +29,6 @@ from ..evaluation.build import names_of_materials
 from ..evaluation.kernel import extreme, worst_of
 from ..evaluation.limits import UNLIMITED, LimitRow, MetricArrays, all_limits, margin, rows_of
 from ..evaluation.values import Values as Numbers
-from ..base.symbolic.recorded import RecordedFunction
 from .evaluator import Evaluator, Point
 from .kkt import KktResidual
 from .problem import BoxProblem, ParametricProblem, PointValues, Vector
@@ -219,6 +219,13 @@ class ActuatorProblem:
             rows = self.recorded(self._inputs(points, known))
             return PointValues(rows[0], rows[1:])
         return self._by_models(points, known, outputs)
+
+    def confirmed(self, x: Vector) -> bool:
+        """Whether the recorded models agree with the models at the point x (n,)."""
+        if self.recorded is None:
+            return True
+        with np.errstate(all="ignore"):
+            return self.recorded.confirmed(self._inputs(x[:, None], {}))
 
     def _inputs(self, points: Array, parameters: Mapping[str, Array]) -> Array:
         """All inputs of the recorded function (inputs, designs)."""

@@ -199,15 +199,18 @@ def optimise(
     else:
         actuator = build(subject, fault)
         require_movable_objective(actuator)
-        solution = solve(
-            actuator.problem,
-            algorithm=algorithm,
-            starts=starts,
-            samples=SAMPLES,
-            seed=seed,
-            max_seconds=max_seconds,
-            keep_interrupted=keep_interrupted,
-        )
+        for _ in range(2):  # again with the models themselves, should their recording be wrong
+            solution = solve(
+                actuator.problem,
+                algorithm=algorithm,
+                starts=starts,
+                samples=SAMPLES,
+                seed=seed,
+                max_seconds=max_seconds,
+                keep_interrupted=keep_interrupted,
+            )
+            if actuator.confirmed(solution.x):
+                break
     follow_up = _FollowUp(solution)
     try:
         if sizes is not None and solution.feasible and not solution.interrupted:

@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..base.numeric import Array, maximum, minimum, real, where
+from ..base.numeric import Array, array_of, maximum, minimum, real, where
 from ..models import contact_profile
 from .contact import SealContact
 
@@ -62,7 +62,7 @@ def contact(tables: Sequence[PressureProfile], pressure: Array) -> SealContact:
         np.interp(knots, place, table.stresses) for place, table in zip(places, tables, strict=True)
     ]
     mixed = sum(
-        np.asarray(share)[..., None] * row for share, row in zip(shares, at_knots, strict=True)
+        array_of(share)[..., None] * row for share, row in zip(shares, at_knots, strict=True)
     )
     highest = np.argmax(real(mixed), axis=-1)[..., None]  # piecewise linear: peak at a node
     peak = np.take_along_axis(mixed, highest, axis=-1)[..., 0]

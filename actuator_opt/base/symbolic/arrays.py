@@ -447,7 +447,7 @@ def _einsum(subscripts: str, *operands: Any, **_: Any) -> Any:
     letters = [*output, *sorted(set("".join(parts)) - set(output))]
     total: Any = None
     for part, operand in zip(parts, operands, strict=True):
-        order = sorted(range(len(part)), key=lambda k: letters.index(part[k]))  # noqa: B023
+        order = sorted(range(len(part)), key=lambda k: letters.index(part[k]))
         turned = np.transpose(NAMESPACE.asarray(operand), order)
         present = {part[k] for k in order}
         turned = turned[tuple(slice(None) if x in present else None for x in letters)]

@@ -13,8 +13,8 @@ import numpy as np
 
 from ..dataclass import dataclass
 from ..numeric import STEP, Array
-from .arrays import Trace, elements
 from . import program as programs
+from .arrays import Trace, elements
 from .program import Program
 
 PATIENCE = 3
@@ -90,6 +90,16 @@ class RecordedFunction:
             if self.recording is None:
                 return self.function(points)
         return self._slopes(points) if stepped else self._values(points)
+
+    def confirmed(self, points: Array) -> bool:
+        """Whether the machine and the function agree at points (inputs, k).
+
+        If they do not, the function is used from then on.
+        """
+        if self.recording is None or same(self._values(points), self.function(points)):
+            return True
+        self.recording, self.reason = None, "the recording differs from the models"
+        return False
 
     def _values(self, points: Array) -> Array:
         assert self.recording is not None

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ...base.dataclass import dataclass
-from ...base.numeric import Array, maximum, real, where
+from ...base.numeric import Array, array_of, maximum, real, where
 from ...design.model import Design
 from ...models import burst_ladder, column, liner, rod, strength, tube_burst
 from ...models.autofrettage import Autofrettage, autofrettage
@@ -216,7 +216,7 @@ def _autofrettage(
     change: Array = 0.0
     if design.environment is not None and design.environment.cure_temperature is not None:
         change = v["environment.assembly_temperature"] - v["environment.cure_temperature"]
-    none = 0.0 * np.atleast_1d(np.asarray(g.inner_radius))
+    none = 0.0 * np.atleast_1d(array_of(g.inner_radius))
     return autofrettage(
         layers=[layer.as_tube() for layer in layers],
         yield_strength=layers[0].yield_strength,

@@ -18,7 +18,7 @@ from math import pi
 import numpy as np
 
 from ...base.dataclass import dataclass
-from ...base.numeric import Array, maximum
+from ...base.numeric import Array, array_of, maximum
 from ...design.model import Design
 from ...joints.joint import Clamp
 from ...models import barrel, barrel_ends, column, laminate, ply, rod
@@ -92,7 +92,7 @@ def load_path(
         cases = barrel_ends.axial_force_head_mounted(
             cap_side_pressure=state.moving_a, cap_side_area=g.area_a
         )
-    zero = 0.0 * np.atleast_1d(np.asarray(g.area_a))
+    zero = 0.0 * np.atleast_1d(array_of(g.area_a))
     name = STOP if design.cylinder.end_stop == "internal" else LARGEST
     worst = {name: zero + largest_area(design, g)}
     if not clamped(design):

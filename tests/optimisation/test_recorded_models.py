@@ -1,0 +1,145 @@
+"""The recorded models of whole designs: equal to the models at random points, and on the way."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import actuator_opt as ao
+from actuator_opt.base.numeric import STEP
+from actuator_opt.base.symbolic import program as programs
+from actuator_opt.base.symbolic.recorded import PATIENCE
+from actuator_opt.optimisation.actuator import build
+from actuator_opt.optimisation.run import optimise
+
+pytestmark = pytest.mark.skipif(not programs.AVAILABLE, reason="the machine was not built")
+ROOT = Path(__file__).parents[2]
+FREE = {
+    "aalto_40_25_220": "cylinder.bore: {lower: 38 mm, upper: 44 mm}",
+    "course_cylinder": "cylinder.bore: {lower: 28 mm, upper: 40 mm}",
+    "elasswad_knee": "cylinder.bore: {lower: 10 mm, upper: 30 mm}",
+    "huang_110_80_560": "cylinder.stroke: {lower: 300 mm, upper: 700 mm}",
+}
+"""A variable for every shipped design without any."""
+DESIGNS = sorted(path.stem for path in ROOT.glob("designs/*.yaml"))
+
+
+def text_of(name):
+    """Text of a shipped design, with a variable and an objective."""
+    text = (ROOT / f"designs/{name}.yaml").read_text("utf-8")
+    if name in FREE:
+        text += f"\nvariables:\n  {FREE[name]}\n"
+        if "\nobjective:" not in text:
+            text += "objective: {minimise: mass}\n"
+    return text
+
+
+def problem_of(name):
+    """The problem of a design, with its models recorded."""
+    actuator = build(ao.read(text_of(name)).subject())
+    steps = complex_steps(actuator.problem.start[:, None])
+    for _ in range(PATIENCE + 1):
+        with np.errstate(all="ignore"):
+            actuator.evaluate(steps)
+    return actuator
+
+
+def complex_steps(points):
+    """Copies of points (n, k) with a complex step in each input, (n, k n)."""
+    count, k = points.shape
+    repeated = np.repeat(points, count, axis=1).astype(complex)
+    return repeated + 1j * STEP * np.tile(np.diag(points.mean(axis=1)), k)
+
+
+def rows(values, count):
+    """Objective and margins as an array (rows, points)."""
+    return np.concatenate([np.broadcast_to(values.objective, (1, count)), values.constraints])
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_a_recorded_design_equals_its_models(name):
+    """200 points: half of them random within the bounds, half near the start; NaN in the same
+    places, values to 1e-11, slopes to 1e-9 of the largest in their row."""
+    actuator = problem_of(name)
+    assert actuator.recorded.reason == ""
+    rng = np.random.default_rng(200)
+    low, high = actuator.problem.lower[:, None], actuator.problem.upper[:, None]
+    start = actuator.problem.start[:, None]
+    wide = low + (high - low) * rng.random((len(low), 100))
+    near = np.clip(start * (1 + 0.02 * rng.standard_normal((len(low), 100))), low, high)
+    points = np.concatenate([wide, near], axis=1)
+    with np.errstate(all="ignore"):
+        mine = rows(actuator.evaluate(points), 200)
+        theirs = rows(actuator._by_models(points, {}), 200)
+        few = points[:, ::20]
+        my_steps, their_steps = (
+            rows(values, few.size).imag / STEP
+            for values in (
+                actuator.evaluate(complex_steps(few)),
+                actuator._by_models(complex_steps(few), {}),
+            )
+        )
+    np.testing.assert_allclose(mine, theirs, rtol=1e-11, atol=1e-11, equal_nan=True)
+    sound = np.isfinite(theirs[:, ::20].repeat(len(low), axis=1)) & np.isfinite(their_steps)
+    room = 1e-9 * np.maximum(1.0, np.abs(their_steps))
+    assert np.all(np.abs(my_steps - their_steps)[sound] <= room[sound])
+    assert actuator.recorded.outside <= 0.3 * actuator.recorded.points
+
+
+def test_every_number_is_an_input():
+    """One recording serves changed limits, forces, pressures and material values."""
+    actuator = problem_of("knee")
+    x = actuator.problem.start
+    paths = actuator.fixed_numbers(x)
+    assert set(paths) <= set(actuator.recorded.names)
+    assert len(paths) > 100
+    with np.errstate(all="ignore"):
+        mine = actuator.number_steps(x, paths)
+        actuator.recorded.reason = "compared"
+        theirs = actuator.number_steps(x, paths)
+    np.testing.assert_allclose(mine.constraints.real, theirs.constraints.real, rtol=1e-11)
+    room = 1e-9 * np.maximum(1.0, np.abs(theirs.constraints.imag / STEP))
+    assert np.all(np.abs(mine.constraints.imag - theirs.constraints.imag) / STEP <= room)
+
+
+def test_custom_metrics_are_not_recorded():
+    """Code of a user may do anything: such designs stay with NumPy."""
+    own = ao.metric("own")(lambda v: 1.0)
+    design = ao.read(text_of("steel_baseline"), plugins=[own])
+    assert build(design.subject()).recorded is None
+
+
+def test_the_optimum_is_that_of_the_models(monkeypatch):
+    """The search over recorded models ends at the same optimum as the search over the models."""
+    subject = ao.read(text_of("knee")).subject()
+    recorded = optimise(subject, prices=False)
+    monkeypatch.setattr(programs, "AVAILABLE", False)
+    plain = optimise(subject, prices=False)
+    assert recorded.objective_value == pytest.approx(plain.objective_value, rel=1e-10)
+    for mine, theirs in zip(recorded.variables, plain.variables, strict=True):
+        assert mine.value == pytest.approx(theirs.value, rel=1e-6), mine.name
+
+
+def test_a_wrong_recording_repeats_the_search(monkeypatch):
+    """The optimum is compared with the models; if it differs, the search runs without recording."""
+    subject = ao.read(text_of("steel_baseline")).subject()
+    plain = optimise(subject, prices=False)
+    values = programs.Program.values
+
+    def wrong(program, points):
+        result = values(program, points)
+        return result if len(points) == 2 else result + 1e-6
+
+    monkeypatch.setattr(programs.Program, "values", wrong)
+    repeated = optimise(subject, prices=False)
+    assert repeated.objective_value == pytest.approx(plain.objective_value, rel=1e-10)
+
+
+def test_a_changed_subject_is_recorded_anew():
+    """A recording belongs to its problem: another number that is no input gives other results."""
+    subject = ao.read(text_of("steel_baseline")).subject()
+    changed = replace(subject, reserves={"buckling_factor": 0.1})
+    assert build(subject).recorded is not build(changed).recorded
