@@ -94,7 +94,7 @@ def doctor(
         findings.append(_folder("runs", Path(runs), "set ACTUATOR_OPT_RUNS to another folder"))
     if terminal:
         findings.append(Finding("terminal", "output", "ok", terminal))
-    return Installation((*findings, _machine()))
+    return Installation((*findings, _machine(), _compiled()))
 
 
 def _python() -> Finding:
@@ -238,6 +238,16 @@ def _machine() -> Finding:
         usable = os.cpu_count() or 1
     words = f"{usable} of {os.cpu_count() or usable} to be used; {_system()}"
     return Finding("machine", "cores", "ok", words)
+
+
+def _compiled() -> Finding:
+    from ..base.symbolic.program import AVAILABLE
+
+    if AVAILABLE:
+        return Finding("machine", "recorded models", "ok", "the compiled program runs them")
+    words = "NumPy runs the models: there was no C compiler at installation"
+    remedy = f"install {_NAME} again with a C compiler"
+    return Finding("machine", "recorded models", "missing", words, remedy)
 
 
 def _system() -> str:

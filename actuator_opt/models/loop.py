@@ -134,6 +134,12 @@ def load_mode(*, model: LinearActuator, near: Array) -> Mode:
         return Mode(omega / (2 * pi), ratio)
 
 
+def _least_at(values: Array) -> Array:
+    """Index of the least value along the last axis, which stays as an axis of length 1."""
+    index: Array = np.argmin(values, axis=-1)
+    return index[..., None]
+
+
 def _load_pair(found: Parts, near: Array) -> tuple[Parts, Parts]:
     """The pole next to a frequency with its conjugate, or with the next real pole."""
     size = np.hypot(found.real, found.imaginary)
@@ -142,17 +148,19 @@ def _load_pair(found: Parts, near: Array) -> tuple[Parts, Parts]:
     far = np.where(np.isfinite(far), far, 1e300)
     single = np.sum(~swings, axis=-1, keepdims=True) < 2
     far = np.where(single & ~swings, np.inf, far)
-    first = np.argmin(far, axis=-1)[..., None]
+    first = _least_at(far)
     others = np.where(swings | (np.arange(far.shape[-1]) == first), np.inf, far)
-    second = np.argmin(others, axis=-1)[..., None]
-    pair = np.take_along_axis(swings, first, axis=-1)
+    second = _least_at(others)
+    pair: Array = np.take_along_axis(swings, first, axis=-1)
 
-    def parts(index: Array) -> list[Array]:
-        return [np.take_along_axis(part, index, axis=-1) for part in found]
+    def parts(index: Array) -> Parts:
+        return Parts(*(np.take_along_axis(part, index, axis=-1)[..., 0] for part in found))
 
-    (x, y), (other_x, other_y) = parts(first), parts(second)
-    other_x, other_y = np.where(pair, x, other_x), np.where(pair, -y, other_y)
-    return Parts(x[..., 0], y[..., 0]), Parts(other_x[..., 0], other_y[..., 0])
+    one, two = parts(first), parts(second)
+    return one, Parts(
+        np.where(pair[..., 0], one.real, two.real),
+        np.where(pair[..., 0], -one.imaginary, two.imaginary),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,7 +233,7 @@ def _chosen(crossings: np.ndarray, score: np.ndarray) -> tuple[np.ndarray, np.nd
     """The crossing of least score, or 1 without a crossing, and whether a crossing exists."""
     if not score.shape[-1]:
         return np.ones(score.shape[:-1]), np.zeros(score.shape[:-1], dtype=bool)
-    best = np.argmin(score, axis=-1)[..., None]
+    best = _least_at(score)
     square = np.take_along_axis(crossings, best, axis=-1)[..., 0]
     found = np.isfinite(np.take_along_axis(score, best, axis=-1)[..., 0])
     return np.where(found, square, 1.0), found

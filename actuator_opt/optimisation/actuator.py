@@ -214,11 +214,17 @@ class ActuatorProblem:
         Adds the computed metrics to `outputs`.
         """
         known = parameters or {}
-        names = () if self.recorded is None or outputs is not None else self.recorded.names
-        if names and known.keys() <= set(names):
-            rows = self.recorded(self._inputs(points, known))
+        recorded = None if outputs is not None else self.recorded
+        if recorded is not None and known.keys() <= set(recorded.names):
+            rows = recorded(self._inputs(points, known))
             return PointValues(rows[0], rows[1:])
         return self._by_models(points, known, outputs)
+
+    @property
+    def models_run_by(self) -> str:
+        """What has evaluated most points: the compiled program of the recorded models, or NumPy."""
+        recorded = self.recorded is not None and self.recorded.recording is not None
+        return "compiled program" if recorded else "NumPy"
 
     def confirmed(self, x: Vector) -> bool:
         """Whether the recorded models agree with the models at the point x (n,)."""

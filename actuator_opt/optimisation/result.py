@@ -329,6 +329,8 @@ class Optimisation(Displayed):
     choices: Choices | None = None
     """All combinations of the design's choices, if it has any."""
     robust: Robust | None = None
+    models_run_by: str = "NumPy"
+    """What evaluated the models in the search: "compiled program" or "NumPy"."""
 
     @property
     def made(self) -> Rounding | None:
@@ -466,6 +468,7 @@ class Optimisation(Displayed):
                 "choices": None if self.choices is None else self.choices.to_dict(),
                 "evaluations": self.evaluations,
                 "algorithm": self.algorithm,
+                "models_run_by": self.models_run_by,
                 "seed": self.seed,
                 "seconds": self.seconds,
             }

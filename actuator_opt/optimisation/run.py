@@ -310,6 +310,7 @@ def _result(
         ),
         trace=tuple((n, actuator.goal.shown(f), missed) for n, f, missed in solution.trace),
         algorithm=solution.algorithm,
+        models_run_by=actuator.models_run_by,
         warnings=(
             *solution.warnings,
             *(f"variable without effect: {name}" for name in solution.without_effect),

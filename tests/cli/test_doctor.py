@@ -125,3 +125,14 @@ def test_python_must_be_new_enough(monkeypatch):
 def test_versions(version, bounds, fits):
     """Bounds as pip reads them, for the plain versions that dependencies have."""
     assert installation._fits(version, bounds) is fits
+
+
+def test_models_without_a_compiler(monkeypatch):
+    """An installation without a C compiler works; `doctor` says what is slower, and what to do."""
+    from actuator_opt.base.symbolic import program
+
+    monkeypatch.setattr(program, "AVAILABLE", False)
+    rows, ok = found()
+    row = rows["machine", "recorded models"]
+    assert ok
+    assert (row.status, "C compiler" in row.remedy) == ("missing", True)

@@ -61,8 +61,10 @@ def rows(values, count):
 
 @pytest.mark.parametrize("name", DESIGNS)
 def test_a_recorded_design_equals_its_models(name):
-    """200 points: half of them random within the bounds, half near the start; NaN in the same
-    places, values to 1e-11, slopes to 1e-9 of the largest in their row."""
+    """At 200 points, half of them random in the box and half near the start.
+
+    NaN in the same places, values to 1e-11, slopes to 1e-9.
+    """
     actuator = problem_of(name)
     assert actuator.recorded.reason == ""
     rng = np.random.default_rng(200)
@@ -118,6 +120,8 @@ def test_the_optimum_is_that_of_the_models(monkeypatch):
     recorded = optimise(subject, prices=False)
     monkeypatch.setattr(programs, "AVAILABLE", False)
     plain = optimise(subject, prices=False)
+    assert recorded.to_dict()["models_run_by"] == "compiled program"
+    assert plain.to_dict()["models_run_by"] == "NumPy"
     assert recorded.objective_value == pytest.approx(plain.objective_value, rel=1e-10)
     for mine, theirs in zip(recorded.variables, plain.variables, strict=True):
         assert mine.value == pytest.approx(theirs.value, rel=1e-6), mine.name

@@ -61,7 +61,7 @@ class SymbolArray(np.ndarray):
         return (self[k] for k in range(len(self)))
 
     @property
-    def real(self) -> Any:  # type: ignore[override]
+    def real(self) -> Any:  # type: ignore[misc]  # NumPy's may be assigned to
         """The values without their derivatives."""
         return wrapped(_REAL(self.view(np.ndarray)))
 
@@ -72,10 +72,6 @@ class SymbolArray(np.ndarray):
         """A number stays a number; a symbol has no number."""
         value = self.view(np.ndarray).item(*index)
         return wrapped(_boxed(value)) if isinstance(value, Symbol) else value
-
-    def astype(self, dtype: Any, **_: Any) -> Any:  # type: ignore[override]
-        """Symbols have one type; booleans count as 0 and 1."""
-        return self
 
 
 def _boxed(value: Any) -> Any:
@@ -255,7 +251,6 @@ _ELEMENTS: dict[Any, Callable[..., Any]] = {
     np.power: _power,
     np.float_power: _power,
     np.square: lambda a: _multiply(a, a),
-    np.reciprocal: lambda a: _DIVIDE(1.0, a),
     np.conjugate: lambda a: a,
     np.positive: lambda a: a,
     np.less: _less,
@@ -295,7 +290,8 @@ for _op, _ufunc in (
 ):  # fmt: skip
     _ELEMENTS[_ufunc] = _recorded(_op, _ufunc)
     OPERATIONS[_op] = _ufunc
-_DIVIDE = _ELEMENTS[np.divide]
+_DIVIDE: Callable[..., Any] = _ELEMENTS[np.divide]
+_ELEMENTS[np.reciprocal] = lambda a: _DIVIDE(1.0, a)
 _UFUNCS: dict[Any, Any] = {
     ufunc: np.frompyfunc(element, ufunc.nin, 1) for ufunc, element in _ELEMENTS.items()
 }
@@ -354,13 +350,18 @@ def _where(condition: Any, yes: Any, no: Any) -> Any:
     return wrapped(_WHERE(_plain(condition), _plain(yes), _plain(no)))
 
 
-for _function, _ufunc in (
+for _function, _reducing in (
     (np.sum, np.add), (np.prod, np.multiply), (np.any, np.logical_or), (np.all, np.logical_and),
     (np.max, np.maximum), (np.min, np.minimum), (np.nanmax, np.fmax), (np.nanmin, np.fmin),
 ):  # fmt: skip
 
     def _reduction(
-        values: Any, axis: Any = None, keepdims: bool = False, *, _u: Any = _ufunc, **options: Any
+        values: Any,
+        axis: Any = None,
+        keepdims: bool = False,
+        *,
+        _u: Any = _reducing,
+        **options: Any,
     ) -> Any:
         options.pop("out", None)
         return _reduced(_UFUNCS[_u], _plain(NAMESPACE.asarray(values)), axis, keepdims, **options)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import field
+from importlib import import_module
 from typing import Any, Final
 
 import numpy as np
@@ -17,11 +18,11 @@ from ..numeric import Array
 from .expression import Symbol, needed
 
 try:
-    from ._machine import OPERATIONS, follow, run
+    _MACHINE: Any = import_module("._machine", __package__)
 except ImportError:
-    OPERATIONS, follow, run = (), None, None
-
-AVAILABLE: Final = run is not None
+    _MACHINE = None
+OPERATIONS: Final[tuple[str, ...]] = getattr(_MACHINE, "OPERATIONS", ())
+AVAILABLE: Final = _MACHINE is not None
 """Whether the machine was built at installation."""
 WIDTHS: Final = (4, 8, 16)
 """Numbers of directions that the machine differentiates along at once."""
@@ -89,10 +90,9 @@ class Program:
         """The code that carries derivatives of the moving inputs only, and which outputs vary."""
         key = moving.tobytes()
         if key not in self._followed:
-            assert follow is not None
             code, active = self.code.copy(), np.zeros(self.slots, dtype=np.uint8)
             active[: self.inputs] = moving
-            follow(code, active, self.slots)
+            _MACHINE.follow(code, active, self.slots)
             ends = np.append(active, np.zeros(len(self.constants), dtype=np.uint8))[self.outputs]
             self._followed[key] = code, np.where(self.frozen, 0, ends).astype(np.int32)
         return self._followed[key]
@@ -100,9 +100,8 @@ class Program:
     def _run(
         self, code: Array, varies: Array, points: Array, seeds: Array, width: int, results: Array
     ) -> None:
-        assert run is not None
         points = np.ascontiguousarray(points, dtype=float)
-        run(code, self.extra, self.outputs, varies, self.constants,
+        _MACHINE.run(code, self.extra, self.outputs, varies, self.constants,
             self.slots, self.inputs, points, seeds, width, results)  # fmt: skip
 
 
