@@ -23,7 +23,8 @@ def recorded(function, point):
     """Trace and program of a function of (n,) at a point."""
     trace = Trace()
     symbols = trace.variables([str(k) for k in range(len(point))], point)
-    results = function(symbols[:, 0])
+    with np.errstate(all="ignore"):
+        results = function(symbols[:, 0])
     return trace, program(elements(symbols), elements(results))
 
 

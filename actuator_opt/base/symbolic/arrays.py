@@ -60,8 +60,8 @@ class SymbolArray(np.ndarray):
     def __iter__(self) -> Any:
         return (self[k] for k in range(len(self)))
 
-    @property
-    def real(self) -> Any:  # type: ignore[misc]  # NumPy's may be assigned to
+    @property  # type: ignore[misc]  # NumPy's may be assigned to
+    def real(self) -> Any:
         """The values without their derivatives."""
         return wrapped(_REAL(self.view(np.ndarray)))
 
