@@ -12,7 +12,7 @@ from . import units
 from .dataclass import dataclass
 
 Sense = Literal["min", "max"]
-"""Sense of a limit (at least, at most) or of a worst value (smallest, largest)."""
+"""Sense of a limit ("min": at least, "max": at most), or which value is the worst."""
 
 INFINITY = float("inf")
 
@@ -31,10 +31,10 @@ def short(value: float, digits: int = 4, *, full: bool = False) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A named physical quantity; limits in SI, `lower` and `upper` included.
+    """A named physical quantity, with the lowest and highest permitted value in SI.
 
-    `worst` states whether the smallest or largest value of a metric, over load cases and locations,
-    is the worst.
+    `worst` states which value of a metric is the worst among load cases and locations: the smallest
+    or the largest.
     """
 
     name: str
@@ -227,7 +227,8 @@ RECORDS = _table("""
  pressure_lag         | tau    | time        | ms     | -100  | 100    | time by which the pressure signals lag
  span                 | L      | length      | mm     | 1     | 20000  | span between the supports
 """)
-"""Quantities of a test record's settings; only forces and times may be negative."""
+"""Quantities of the settings with which a test record is evaluated; only forces and times may be
+negative."""
 
 SCENARIOS = _table("""
  duration             | T      | time        | s      | 1e-5  | 100000 | simulated time
