@@ -156,7 +156,7 @@ class Prices(Displayed):
         return {key: data[key] for key in keys if key in data}
 
     def page(self) -> Page:
-        """The page: prices and movement of the optimum, or the reason why there is none."""
+        """The page: prices and movement of the optimum, or the reason for a missing optimum."""
         from ..pages.report import prices_page
 
         return prices_page(self.optimisation)

@@ -120,7 +120,7 @@ def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
         verb, options = parsed(command)
         if options.plugin and not plugins:
             message = f"was made with --plugin {options.plugin[0]}, which is a program"
-            raise InputError(Diagnostic(message, "to run this program, name it with --plugin"))
+            raise InputError(Diagnostic(message, "name it with --plugin to run it"))
         pairs = [_pair(text) for text in options.set]
     except InputError as error:
         raise InputError(

@@ -107,7 +107,7 @@ def named_plugins(run: Run, plugins: Plugins) -> tuple[Plugin, ...]:
     files = [plugin["file"] or "a function of a script" for plugin in run.body["input"]["plugins"]]
     if files and not loaded_plugins:
         message = f"its custom metrics came from {', '.join(files)}, which is a program"
-        raise InputError(Diagnostic(message, "to run it, name it with --plugin", str(run.path)))
+        raise InputError(Diagnostic(message, "name it with --plugin to run it", str(run.path)))
     return loaded_plugins
 
 
@@ -143,7 +143,7 @@ def report_run(
     """Write the report of a recorded run, identical to that of its command.
 
     For a Pareto front, this writes its page, figure and CSV file (``NAME_pareto.csv``), or nothing
-    if no design was found. For a sweep see `report_sweep`.
+    if the front has no designs. For a sweep see `report_sweep`.
 
     Parameters
     ----------

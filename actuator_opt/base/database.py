@@ -120,8 +120,7 @@ class Database:
         return [k for k, key in enumerate(keys) if key in lacking], len(known) - len(sound)
 
     def known(self, keys: Sequence[bytes]) -> dict[int, tuple[Array | None, str | None]]:
-        """Rows already stored, by the index of their key in `keys`; damaged rows are omitted.
-        """
+        """Rows already stored, by the index of their key in `keys`; damaged rows are omitted."""
         rows = self._known(keys)
         stored: dict[int, tuple[Array | None, str | None]] = {}
         for k, key in enumerate(keys):

@@ -132,8 +132,7 @@ class FittedParameters(NamedTuple):
 
 
 def quantile(spare: float) -> float:
-    """Student's t for two-sided 95 % confidence bounds; infinite without degrees of freedom.
-    """
+    """Student's t for two-sided 95 % confidence bounds; infinite without degrees of freedom."""
     from scipy.special import stdtrit  # slow to import, rarely needed
 
     return float(stdtrit(spare, (1 + CONFIDENCE) / 2)) if spare > 0 else np.inf

@@ -182,8 +182,7 @@ def _fitted(
     values: Sequence[np.ndarray],
     results: Sequence[Interpolation],
 ) -> np.ndarray:
-    """Fit coefficients (terms of every axis, outputs) to values, and with `hermite` to slopes.
-    """
+    """Fit coefficients (terms of every axis, outputs) to values, and with `hermite` to slopes."""
     rows, targets = [_basis(axes, points)], [np.array(values)]
     for axis in axes:
         if axis.hermite:
