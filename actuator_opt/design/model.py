@@ -316,7 +316,7 @@ class Ply(Section):
     balanced: Annotated[
         bool,
         Boolean(
-            "true: a balanced pair at +-angle; false: one ply at the signed angle; the wall may twist"
+            "true: a balanced pair at +-angle; false: one ply at the signed angle (wall may twist)"
         ),
     ] = True
     ply_thickness: Annotated[
