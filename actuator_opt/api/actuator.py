@@ -1,7 +1,7 @@
 """A design as read, its faults, and the stamp that marks a saved optimum.
 
-The stamp is the first line of the file. It contains a hash of the design and its material values,
-and the program's version. After any change of the design the hash no longer matches, and the file
+The stamp is the first line of the file. It contains a hash of the design, its material values and
+the program's version. After any change of the design the hash no longer matches, and the file
 counts as an ordinary design.
 """
 

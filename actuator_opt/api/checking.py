@@ -68,7 +68,7 @@ def examine(
 
 
 def _of_models(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
-    """Faults that the models reveal: missing metrics, unread variables, impossible choices."""
+    """Faults that only the models reveal: missing metrics, unused variables, impossible choices."""
     try:
         faults = requirement_faults(actuator, subject)
         if faults:

@@ -140,7 +140,7 @@ def comparison_json(comparison: Comparison) -> dict[str, Any]:
 
 
 def report_comparison(comparison: Comparison, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
-    """Draw the report of a comparison; its PNG and SVG have no title block."""
+    """Write the report of a comparison: figures without a title block, or HTML, or both."""
     folder, form = Path(paper.get("folder", "reports")), paper.get("format", "pdf")
     files = [] if form == "html" else report_files(draw_comparison(comparison, folder))
     if form == "pdf":

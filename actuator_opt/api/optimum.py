@@ -138,7 +138,10 @@ def estimated(optimisation: Optimisation, plugins: tuple[Plugin, ...]) -> Optimi
 def sensitivity(
     design: Actuator | Design | str | Path, *, seed: int = 0, plugins: Plugins = ()
 ) -> tuple[Sensitivity, ...]:
-    """Compute the prices of requirements and parameters at the design's optimum."""
+    """Compute the prices of requirements and parameters at the design's optimum.
+
+    A price is the change of the best objective per unit change of a limit or parameter.
+    """
     return optimise(design, seed=seed, plugins=plugins).sensitivities
 
 
@@ -149,7 +152,7 @@ class Prices(Displayed):
     optimisation: Optimisation
 
     def to_dict(self) -> dict[str, Any]:
-        """The object of `sensitivity --json`; its prices are those of the continuous optimum."""
+        """The object of `sensitivity --json`; prices are those of the optimum before rounding."""
         data = replace(self.optimisation, rounding=None).to_dict()
         keys = ["name", "version", "status", "outcome", "objective", "sensitivities"]
         keys += ["what_buys_most", "kkt", "infeasibility"]

@@ -200,7 +200,7 @@ def bending(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Calibrated(Displayed):
-    """A design with measured seal friction, and how this changes its requirements.
+    """A design with measured seal friction, and the effect on its requirements.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ _LAST_SECOND = 253_402_300_799
 
 
 def _seal_studies(subject: PreparedDesign) -> list[SealStudy]:
-    """Seal studies for a report, one for every seal location of the design with an oil film."""
+    """Seal studies for a report: of piston or rod seals whose friction follows from an oil film."""
     from ..studies.seal import study
 
     if not any(case.moves for case in subject.design.load_cases):

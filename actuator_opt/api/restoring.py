@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Restored(Displayed):
-    """A result restored from its record, and how today's models differ from the record."""
+    """A result restored from its record, and values that the present models compute differently."""
 
     run: Run
     result: Optimisation | ParetoFront | KeptSweep

@@ -112,7 +112,7 @@ def _unrounded(result: Any) -> list[str]:
 
 
 def kinds(*declared: ResultKind) -> dict[str, ResultKind]:
-    """The kinds by their type; rejects a type that is declared twice."""
+    """Index the declared kinds by their type; reject a type that is declared twice."""
     by_type = {kind.type: kind for kind in declared}
     if len(by_type) != len(declared):
         raise TypeError("a type of result is declared twice")

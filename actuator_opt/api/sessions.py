@@ -288,10 +288,10 @@ class Session:
         return Prediction(objective + change, self._named(x + line.moves), not why, why)
 
     def price(self, path: str) -> Price:
-        """Price a number at the session's optimum.
+        """Compute the price of a number at the session's optimum (see `Price`).
 
-        The slope is the derivative of the Lagrangian by the number [Fiacco1983]; at a degenerate
-        vertex it differs for an increase and a decrease [Gauvin1982].
+        The slope is the derivative of the Lagrangian with respect to the number [Fiacco1983]; at a
+        degenerate vertex it differs for an increase and a decrease [Gauvin1982].
 
         Parameters
         ----------
@@ -308,7 +308,7 @@ class Session:
         return self.prices([path])[0]
 
     def prices(self, paths: Sequence[str]) -> tuple[Price, ...]:
-        """Price several numbers as `price` does, computing their derivatives together."""
+        """Compute the prices of several numbers; their derivatives are computed together."""
         names = [self._path(path) for path in paths]
         values = {path: self._priced(path) for path in names}
         self._warm.differentiate(names)

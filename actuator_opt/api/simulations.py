@@ -159,7 +159,7 @@ def simulate(
 
 @contextmanager
 def placed(trial: Trial) -> Iterator[None]:
-    """Add the line in the file to faults of a scenario's values."""
+    """Give faults of a scenario's values their line in the scenario file."""
     try:
         yield
     except InputError as error:

@@ -124,7 +124,7 @@ def seal(
     InputError
         the speed is not positive, or the pressure lies beyond the stated contact profiles
     ActuatorError
-        this seal has no finite-element model, or no equilibrium
+        this seal has no finite-element model, or the model finds no equilibrium
     """
     from ..friction import film
     from ..studies.seal import study, with_elements

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ..sweeps.screen import Engine
 
 LARGE = 1_000_000
-"""A full sweep of this many points or more must be confirmed by the user."""
+"""A full sweep of more points than this must be confirmed by the user."""
 
 MOST_WORKERS = 1024
 """Maximum number of processes on a machine: our choice; a larger number is probably a typing error
@@ -72,7 +72,7 @@ def sweep(
     scheduler : address of a Dask scheduler, used instead of local processes (extra `cluster`)
     engine : array library with which `reduce` rules out designs, "numpy" or "jax" (extra `gpu`);
         NumPy is used if JAX is missing
-    yes : whether a full sweep of a million points or more is confirmed
+    yes : whether a full sweep of more than a million points is confirmed
     plugins : the user's metrics and constraints
     figures : figures to draw as PNG and SVG: "parallel", "scatter", "contour", "ucurves"
     show : metrics in the figures; default: the objective and the requirements

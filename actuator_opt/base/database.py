@@ -251,7 +251,7 @@ def _retried(act: Callable[[], None]) -> None:
 
 
 def _prepare(connection: sqlite3.Connection, path: Path, version: str) -> None:
-    """Create the tables of a new file; refuse a foreign database."""
+    """Create the tables of a new file; refuse a database of another program."""
     tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}
     if tables and not tables >= TABLES:
         raise refused(path, "is another program's database", "name another file")

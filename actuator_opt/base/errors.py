@@ -193,7 +193,7 @@ class InputError(ActuatorError):
 
 
 class UsageError(ActuatorError):
-    """A command line that cannot be understood (exit 2)."""
+    """A wrong use of a command or function, such as an unknown option (exit 2)."""
 
     exit_code = ExitCode.USAGE
 

@@ -148,9 +148,9 @@ def known(
 ) -> FittedParameters:
     """Confidence bounds from the linearised model and Student's t [SeberWild1989].
 
-    The covariance is s^2 (J^T J)^-1 with s^2 = sum r^2/(n - p), for the slopes J and residuals r of
-    n points and p parameters. It covers only directions that the points determine; a parameter with
-    a component in another direction is undetermined.
+    The covariance is s^2 (J^T J)^-1 with s^2 = sum r^2/(n - p), where J is the Jacobian `slopes`
+    and r the residuals of n points and p parameters. It covers only directions that the points
+    determine; a parameter with a component in another direction is undetermined.
 
     Parameters
     ----------

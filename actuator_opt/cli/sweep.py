@@ -78,7 +78,7 @@ Show = Annotated[
         help="Metric to draw; default: objective and requirements. Repeatable.",
     ),
 ]
-Yes = Annotated[bool, typer.Option("--yes", help="Allow a million or more full evaluations.")]
+Yes = Annotated[bool, typer.Option("--yes", help="Allow more than a million full evaluations.")]
 Screening = Annotated[
     str,
     typer.Option("--engine", help="Library for --reduce: numpy, or jax (extra gpu)."),

@@ -72,8 +72,8 @@ def _reach(view: FileView) -> _Reach | None:
 def linkage(view: FileView) -> Iterator[Fault]:
     """Check that the linkage reaches no dead point between the stops.
 
-    |a - r| < l < a + r, with the distances a and r of the two pivots from the joint axis and the
-    pin-to-pin length l.
+    At both stops, |a - r| < l < a + r must hold, where l is the pin-to-pin length and a and r are
+    the distances of the two pivots from the joint axis.
     """
     reach = _reach(view)
     if reach is None:
@@ -246,7 +246,7 @@ def control(view: FileView) -> Iterator[Fault]:
 
 
 def held_pressures(view: FileView) -> Iterator[Fault]:
-    """Check that held pressures are stated for both chambers or for neither."""
+    """Check that held pressures are stated for both chambers or neither, and below proof."""
     for index in range(len(view.items("load_cases"))):
         loc = ("load_cases", index)
         a, b = view.has(*loc, "pressure_a"), view.has(*loc, "pressure_b")

@@ -171,7 +171,7 @@ class Material:
 
     @property
     def isotropic(self) -> bool:
-        """Whether a single modulus describes the material (metals, polymers, apparent values)."""
+        """Whether a single modulus describes the material, as for metals and polymers."""
         return "youngs_modulus" in self.properties and "youngs_modulus_1" not in self.properties
 
     @property

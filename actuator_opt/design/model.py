@@ -334,7 +334,7 @@ MOST_LAYERS = 24
 
 
 class Barrel(Section):
-    """The pressure tube; a single isotropic layer is a metal barrel."""
+    """The pressure tube, from layers; a metal barrel has a single isotropic layer."""
 
     layup: Annotated[tuple[Ply, ...], Field(min_length=1, max_length=MOST_LAYERS)]
     model: choices.WallModel = "auto"

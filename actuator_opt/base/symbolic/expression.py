@@ -120,7 +120,7 @@ def _of_wave(op: str, low: float, high: float) -> Bounds:
     room = ROUNDING * (1 + max(abs(low), abs(high)))
 
     def passes(place: float) -> bool:
-        """Whether the interval contains an angle, plus a whole number of turns."""
+        """Whether the interval contains this angle plus any whole number of turns."""
         turn = 2 * math.pi
         return math.ceil((low - place) / turn - room) <= math.floor((high - place) / turn + room)
 
