@@ -31,7 +31,7 @@ STARTS, SAMPLES = 6, 2048
 """Number of local searches and of sampled designs for the first solution, as in `optimise`."""
 
 NUDGE = 1e-4
-"""Relative change of a number that tests whether it affects other numbers."""
+"""Relative change of a number, to test whether it affects other numbers."""
 
 ROUNDING = 1e-9
 """Share of a change, or of a number, that counts as zero."""
@@ -282,7 +282,7 @@ class Session:
         change = self._shown(line.above)
         why = ""
         if line.high is not None and line.high[0] < 1 - ROUNDING:
-            why = f"after {100 * abs(line.high[0]):.3g} % of the change {line.high[1]}"
+            why = f"after {100 * abs(line.high[0]):.3g} % of the change, {line.high[1]}"
         if not math.isfinite(line.above):
             why = "no design meets the limits in this direction"
         return Prediction(objective + change, self._named(x + line.moves), not why, why)
@@ -524,7 +524,7 @@ def _require_continuous(actuator: Actuator, sizes: object) -> None:
     if sizes is not None:
         raise UsageError(
             Diagnostic(
-                "a session re-solves continuous dimensions, but variables take listed sizes",
+                "a session re-solves continuous dimensions, but some variables take listed sizes",
                 "remove `sizes` and `step` of the variables",
                 path="variables",
             )

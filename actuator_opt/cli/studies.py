@@ -115,13 +115,18 @@ SealPlace = Annotated[
 Speed = Annotated[
     str | None,
     typer.Option(
-        "--speed", metavar="V", help='Sliding speed, e.g. "0.1 m/s"; default: from a load case.'
+        "--speed",
+        metavar="V",
+        help='Sliding speed, e.g. "0.1 m/s"; default: that of the moving load case with the highest '
+        "pressure.",
     ),
 ]
 Pressure = Annotated[
     str | None,
     typer.Option(
-        "--pressure", metavar="P", help='Sealed pressure, e.g. "60 bar"; default: highest.'
+        "--pressure",
+        metavar="P",
+        help='Sealed pressure, e.g. "60 bar"; default: the highest of all moving load cases.',
     ),
 ]
 Mapped = Annotated[
@@ -193,7 +198,8 @@ ScenarioFile = Annotated[
 Verify = Annotated[
     bool,
     typer.Option(
-        "--verify", help="Integrate again by the Radau method and show the largest difference."
+        "--verify",
+        help="Integrate again by the Radau method; show the largest difference of the results.",
     ),
 ]
 Fast = Annotated[

@@ -189,7 +189,7 @@ def ports(view: FileView) -> Iterator[Fault]:
         yield Fault(
             ("ports", "end"),
             f"{end}: its block is missing",
-            f"add {'.'.join(block)}, or write closed or constant_pressure",
+            f'add {".".join(block)}, or write "end: closed" or "end: constant_pressure"',
         )
     if end != "reducing_valve" and view.has("ports", "reducing_valve"):
         yield Fault(

@@ -131,7 +131,7 @@ def housings_for(element: str, place: Place, diameter: float) -> tuple[Housing, 
     listed = housings(element, place)
     fitting = [housing for housing in listed if housing.fits(diameter)]
     if not fitting:
-        message = f"no {place} housing of a {element} for {diameter * 1e3:.4g} mm"
+        message = f"no standard {place} groove of a {element} for {diameter * 1e3:.4g} mm"
         advice = "a wiper sits on the rod"
         if listed:
             low = min(housing.diameter_min for housing in listed) * 1e3

@@ -294,7 +294,7 @@ class _Reader:
     ) -> Spread | None:
         match = _SCATTER.fullmatch(text)
         if match is None:
-            advice = 'write "not stated", "3 % CV", "+-5 %" or "factor 2", remarks after ";"'
+            advice = 'write "not stated", "3 % CV", "+-5 %" or "factor 2", then remarks after ";"'
             self.fault(loc, f'unknown scatter "{shown(text)}"', advice)
             return None
         if match["cv"]:
