@@ -117,8 +117,8 @@ Speed = Annotated[
     typer.Option(
         "--speed",
         metavar="V",
-        help='Sliding speed, e.g. "0.1 m/s"; default: that of the moving load case with the highest '
-        "pressure.",
+        help='Sliding speed, e.g. "0.1 m/s"; default: that of the moving load case with the '
+        "highest pressure.",
     ),
 ]
 Pressure = Annotated[
@@ -126,7 +126,7 @@ Pressure = Annotated[
     typer.Option(
         "--pressure",
         metavar="P",
-        help='Sealed pressure, e.g. "60 bar"; default: the highest of all moving load cases.',
+        help='Sealed pressure, e.g. "60 bar"; default: the highest of the moving load cases.',
     ),
 ]
 Mapped = Annotated[
