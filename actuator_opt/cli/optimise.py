@@ -134,7 +134,7 @@ def sensitivity(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Show how each requirement and parameter affects the optimum."""
+    """Show what each requirement and parameter costs."""
     from .. import api as verbs
 
     job = Job(
@@ -181,7 +181,7 @@ def pareto(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Find the Pareto front of two to four objectives, and its knee."""
+    """Pareto front of two to four objectives, and its knee."""
     from .. import api as verbs
 
     job = Job(

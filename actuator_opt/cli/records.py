@@ -161,7 +161,7 @@ def identify(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Identify friction and damping from a test record, with confidence bounds."""
+    """Identify friction and damping from a test record."""
     from .. import api as verbs
 
     job = Job(
@@ -211,7 +211,7 @@ def calibrate(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Update a design with the friction measured in a test; show the effects."""
+    """Update a design with the friction measured in a test."""
     from .. import api as verbs
 
     job = Job(

@@ -90,7 +90,7 @@ def uncertainty(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Compute production yield under scatter, Sobol indices and a tornado chart."""
+    """Production yield under scatter, Sobol indices, tornado."""
     from .. import api as verbs
 
     job = Job(

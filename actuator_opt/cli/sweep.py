@@ -208,7 +208,7 @@ def explore(
     quiet: Quiet = False,
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> None:
-    """Write a stored sweep or Pareto front as one offline HTML page."""
+    """Write a sweep or Pareto front as one offline HTML page."""
     from .. import api as verbs
 
     pages = verbs.explore(store, out=out, study=study, rows=rows, plugins=plugin or [])
