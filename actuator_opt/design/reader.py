@@ -29,7 +29,11 @@ SET: Final = "--set"
 
 
 class Override(NamedTuple):
-    """A value that replaces a file's value; `file` and `loc` give its origin in another file."""
+    """A value that replaces a value of the file.
+
+    If the new value comes from another file, `file` and `loc` are its location there; `file` is
+    None for the command line.
+    """
 
     path: str
     value: str
@@ -48,15 +52,15 @@ class Override(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class FileSource:
-    """Locations of the values of a file, for faults found later by evaluation or plug-in."""
+    """Locations of the values of a file, so that faults found later can name line and column."""
 
     document: Document
     overrides: Mapping[Loc, Override] = field(default_factory=dict)
-    """Values set from outside the file."""
+    """Values that the command line or another file sets, by location."""
     root: type[Section] = Design
-    """Section type of the file."""
+    """Type of the section that the whole file describes."""
     metrics: Mapping[str, Quantity] | None = None
-    """Allowed names of metrics in requirements; default: `metrics.METRICS`."""
+    """Metrics that requirements may name; default: `metrics.METRICS`."""
 
     @property
     def file(self) -> str:
@@ -97,7 +101,10 @@ class FileSource:
         return span[:2] if isinstance(span, NodeSpan) else (0, 0)
 
     def _find(self, fault: Fault) -> NodeSpan | Override | None:
-        """Nearest location in the text at or above a fault, or the override of the value."""
+        """Location in the text of the faulty value, else of the nearest block around it.
+
+        If the value was set from outside the file, its override.
+        """
         for depth in range(len(fault.loc), -1, -1):
             loc = fault.loc[:depth]
             if loc in self.overrides:
@@ -238,7 +245,7 @@ def _unusable(fault: Fault, document: Document) -> bool:
 
 
 def _once(faults: Sequence[Fault], document: Document) -> list[Fault]:
-    """Drop repeated faults that the layers of a compact entry share."""
+    """Keep one of the equal faults that the layers of one compact lay-up entry have."""
     unique, seen = [], set()
     for fault in faults:
         shorthand = document.shorthand(fault.loc)
@@ -254,7 +261,7 @@ def _once(faults: Sequence[Fault], document: Document) -> list[Fault]:
 def _in_order(
     source: FileSource, diagnostics: Sequence[Diagnostic], faults: Sequence[Fault]
 ) -> list[Diagnostic]:
-    """Sort faults by line and column; keep at most `MOST_FAULTS` and count the omitted faults.
+    """Sort faults by line and column; keep at most `MOST_FAULTS` and state how many are omitted.
 
     Faults of other files and of the command line come first.
     """
@@ -282,7 +289,7 @@ def _bare_is_si(value: str, quantity: Quantity | None) -> str:
 
 
 def opened(source: str | Path, kind: str = "design") -> tuple[str, str]:
-    """Read text and name of a file, of standard input, or of a text of several lines."""
+    """Text and name of a source: a file, standard input, or a text of several lines."""
     if isinstance(source, str) and ("\n" in source or "\r" in source):
         return source, TEXT
     name = STDIN if source == "-" else str(source)
@@ -291,7 +298,7 @@ def opened(source: str | Path, kind: str = "design") -> tuple[str, str]:
 
 
 def library() -> MaterialLookup:
-    """The shipped material library, loaded when a design is read."""
+    """Load the shipped material library."""
     from .materials import load_library
 
     return load_library()
