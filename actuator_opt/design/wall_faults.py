@@ -131,7 +131,7 @@ def laminated_rod(view: FileView) -> Iterator[Fault]:
     if wall is not None and wall > room * (1 + 1e-9):
         yield Fault(
             ("rod", "fitting", "wall"),
-            f"{length_text(wall)}: more than the radius of the rod's bore, {length_text(room)}",
+            f"{length_text(wall)}: too thick for a bore with a radius of {length_text(room)}",
             f"write at most {length_text(room)}, or remove it for a solid fitting",
         )
 
