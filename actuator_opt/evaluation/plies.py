@@ -64,7 +64,7 @@ class Layer:
 
     @property
     def strength(self) -> PlyStrength | None:
-        """Ply strengths at the highest temperature, where the matrix is weakest; None for a metal."""
+        """Ply strengths at the highest temperature (weakest matrix); None for a metal."""
         return self.strengths[-1] if self.strengths else None
 
     @property
