@@ -4,7 +4,7 @@
 ``requirements.stiffness_min.min`` · ``variables.cylinder.bore.upper`` ·
 ``materials.NAME.PROPERTY``. A load case is given by name or by its index from 0; the canonical PATH
 uses the name. All functions accept a `Design` or its tree of dicts and lists; `resolve` also
-accepts other roots.
+accepts other types of file, such as scenarios.
 """
 
 from __future__ import annotations
@@ -160,7 +160,7 @@ def _index(path: str, text: str, node: Any, loc: Loc) -> int:
 
 
 def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quantity]) -> Target:
-    """Find a value of a table whose keys are free names (PATHs, metrics, materials)."""
+    """Find the value that a PATH names in a table with free keys (PATHs, metrics, materials)."""
     path = f"{head}.{rest}"
     name, _, last = rest.rpartition(".")
     if head in _TEXTS:

@@ -1,6 +1,6 @@
 """Read and check design files in one pass; every fault has its line and column.
 
-`load` reads files of other root sections in the same way.
+`load` reads other types of file, such as scenarios, in the same way.
 """
 
 from __future__ import annotations
@@ -181,13 +181,13 @@ def load(
     overrides: Iterable[Override | tuple[str, str]] = (),
     metrics: Mapping[str, Quantity] | None = None,
 ) -> tuple[Root, FileSource]:
-    """Build the section that a document describes, and record the locations of its values.
+    """Build the object that a document describes, and record the locations of its values.
 
     Parameters
     ----------
     document : parsed YAML
-    root : section type of the whole file
-    build_section : builds the section from a tree, or lists the faults of the tree
+    root : type of the object, a section
+    build_section : function that builds the object from a tree, or lists the faults of the tree
     overrides : values that replace those of the document, as for `read_design`
     metrics : metrics that may be named; default: `metrics.METRICS`
 
@@ -220,7 +220,7 @@ def load(
 
 
 _MARKS = {"design": "cylinder", "scenario": "design"}
-"""Key that identifies each kind of file."""
+"""Key by which each kind of file is recognised."""
 
 
 def is_scenario(source: str | Path) -> bool:
@@ -230,7 +230,7 @@ def is_scenario(source: str | Path) -> bool:
 
 
 def _require_kind(document: Document) -> None:
-    """Refuse a scenario in place of a design, or a design in place of a scenario."""
+    """Raise an error if a scenario is given where a design is required, or the reverse."""
     for kind, mark in _MARKS.items():
         if mark in document.data and _MARKS[document.kind] not in document.data:
             remedy = "give the design file that it names"

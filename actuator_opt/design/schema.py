@@ -145,7 +145,7 @@ def value_schema(kind: ValueKind | None, materials: MaterialLookup | None) -> Sc
 
 
 def entry_schema(entry: KeyEntry, materials: MaterialLookup | None) -> Schema:
-    """Schema of the value of a section's key."""
+    """Schema for the value of a key."""
     if entry.shape == "choice":
         help = entry.kind.help if entry.kind is not None else ""
         schema: Schema = {"description": help, "type": "string", "enum": list(entry.choices)}

@@ -28,7 +28,7 @@ def elements(view: FileView) -> Iterator[Loc]:
 
 
 def fields(view: FileView) -> Iterator[Fault]:
-    """Check that a seal has exactly the sizes of its type, and that a piston has no wiper."""
+    """Check that a seal states all sizes of its type and no others, and a piston has no wiper."""
     for loc in elements(view):
         kind = _kind(view, loc)
         if kind is not None:
@@ -87,7 +87,7 @@ def _back_ups(view: FileView, loc: Loc) -> Iterator[Fault]:
 
 
 def widths(view: FileView) -> Iterator[Fault]:
-    """Check that rings fit the width of their groove, and that no land is wider than its ring."""
+    """Check that rings fit into the width of their groove, and no land is wider than its ring."""
     for loc in elements(view):
         kind = _kind(view, loc)
         if kind is None:

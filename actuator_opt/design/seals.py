@@ -114,7 +114,7 @@ class SealElement(Section):
         return BACK_UPS[self.back_up]
 
     def stated_sizes(self) -> dict[str, float]:
-        """Sizes of the element's type that the design states, SI."""
+        """Sizes that the seal type requires and the design states, SI."""
         sizes = {size.key: getattr(self, size.key) for size in SIZES}
         return {key: value for key, value in sizes.items() if value is not None}
 
@@ -152,7 +152,7 @@ class Guide(Section):
 
 
 class Seal(SealElement):
-    """Seals of piston or rod: the pressure-sealing element, with wiper and guides."""
+    """Seals of piston or rod: the element that seals the pressure, with wiper and guide rings."""
 
     counterface_roughness: Annotated[
         float, Of("rms_roughness", "RMS roughness of the rod or the bore")

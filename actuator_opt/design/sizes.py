@@ -111,7 +111,7 @@ def _read_step(loc: Loc, bounds: dict[str, Any], quantity: Quantity) -> Iterator
 
 
 def _difference(quantity: Quantity) -> Quantity:
-    """Quantity of a step: its range is from zero to the width of the variable's range."""
+    """Quantity of a step: like that of the variable, but without negative values."""
     if quantity.dimension == "temperature":
         raise ValueFault("a temperature has no step", "list its sizes")
     return replace(quantity, lower=0.0)
@@ -158,7 +158,7 @@ def groups(
 
     Returns
     -------
-    groups, and faults of variables without a suitable size
+    groups of variables, and faults of variables that no size suits
     """
     view = FileView(tree)
     rules = {path: rule for path in _paths(tree) if (rule := _rule(view, path, plies, standard))}
@@ -188,7 +188,7 @@ class _NoSize(Exception):
 
 
 def _paths(tree: Any) -> list[str]:
-    """List the variables that are numbers with valid bounds."""
+    """PATHs of the variables that are numbers with valid bounds."""
     block = child(tree, "variables")
     numeric = []
     for path in block if isinstance(block, dict) else ():
@@ -205,7 +205,10 @@ def _paths(tree: Any) -> list[str]:
 
 
 def _rule(view: FileView, path: str, plies: bool, standard: bool) -> _Rule | None:
-    """Rule for the sizes of a variable, from file or option; None if it varies continuously."""
+    """Rule for the sizes of a variable, from the file or a command-line option.
+
+    None if the variable is continuous.
+    """
     sizes, step = (child_at(view.tree, ("variables", path, key)) for key in ("sizes", "step"))
     lower, upper = _bounds(view, path)
     if isinstance(step, float):

@@ -275,7 +275,7 @@ def gland(section: float, use: Use = "reciprocating", *, table: str | None = Non
     ----------
     section : free section, m
     use : ``reciprocating`` or ``static``
-    table : ``as568``, ``metric`` or ``series_g``; default: AS568 for AS568 sections, else metric
+    table : ``as568``, ``metric`` or ``series_g``; default: ``as568`` for its sections, else metric
 
     Raises
     ------
@@ -318,7 +318,7 @@ def _between(rows: Sequence[Gland], section: float) -> Gland:
 def nearest_standard(
     kind: Literal["bore", "rod", "section"], value: float, direction: Direction = "nearest"
 ) -> float:
-    """The standard size next to a value, m.
+    """The standard size nearest to a value, or next above or below it, m.
 
     Parameters
     ----------
@@ -346,7 +346,7 @@ def nearest_standard(
 
 
 WHOLE = 1e-6
-"""Fraction of a ply, and angle (rad), below which a value counts as zero."""
+"""Tolerance below which a difference counts as zero: in plies, or for angles in rad."""
 Bounds = tuple[float, float]
 
 
@@ -370,7 +370,7 @@ class SizeSeries:
     needs_parent: bool = False
 
     def fault(self, view: FileView, path: str) -> tuple[str, str] | None:
-        """Why the series does not apply to a variable, and the remedy."""
+        """Reason and remedy if the series does not apply to a variable; None if it applies."""
         return None
 
     def parent(self, path: str) -> str | None:

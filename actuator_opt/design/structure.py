@@ -19,7 +19,7 @@ from .kinds import Choice, Fraction, Of, PositionKind, Section, ValueKind
 from .model import Design
 
 Loc: TypeAlias = tuple[str | int, ...]
-"""Keys and indices from the root to a value."""
+"""Location of a value: keys and indices from the root of the tree."""
 
 Shape: TypeAlias = Literal["value", "choice", "section", "list", "table"]
 
@@ -43,7 +43,7 @@ class KeyEntry:
     section: type[Section] | None = None
     least: int = 0
     most: int | None = None
-    """Smallest and largest number of entries of a list."""
+    """`least` and `most` are the smallest and largest number of entries of a list."""
 
     def quantity(self, value: object = None) -> Quantity | None:
         """Quantity of the key's number; a position is a length or a fraction, as `value` is."""

@@ -156,7 +156,7 @@ def log_deviation(entry: Stated) -> float:
 
 
 def misfit(shape: str, entry: Stated, value: float, quantity: Quantity) -> tuple[str, str]:
-    """Fault and remedy of a distribution around a value; empty texts if valid."""
+    """Message and remedy if a distribution is invalid for a value; empty texts if it is valid."""
     try:
         low, high = limits(shape, entry, value)
     except ValueFault as fault:

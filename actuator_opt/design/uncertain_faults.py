@@ -1,4 +1,4 @@
-"""Faults of the block ``uncertainty``: PATHs, keys and sizes of distributions."""
+"""Faults of the block ``uncertainty``: PATHs, keys and widths of distributions."""
 
 from __future__ import annotations
 

@@ -311,7 +311,7 @@ def _compare(
     writer: _Leaves,
     edits: list[_Edit],
 ) -> None:
-    """Compare a block with the document and collect its edits."""
+    """Compare a block with the document, and add the necessary edits to `edits`."""
     if not isinstance(old, dict) or any(key not in node for key in old):
         raise _CannotEdit
     table = loc in _TABLES

@@ -78,7 +78,7 @@ class Document:
     shorthands: tuple[Shorthand, ...] = ()
     """Entries in compact notation, which `layup.expanded` replaces by layers."""
     kind: str = "design"
-    """Kind of the file, in words."""
+    """Kind of the file: design, scenario or units."""
 
     def shorthand(self, loc: Loc) -> Shorthand | None:
         """The compact entry that contains a location."""
@@ -246,7 +246,7 @@ class _Builder:
             self.document.keys[loc] = _span(event)
 
     def _refuse_key(self, frame: _Frame, event: Any) -> None:
-        """Read and discard a key that is a block or list, and its value."""
+        """Skip a key that is itself a block or list, together with its value."""
         frame.key, frame.drop = "", True
         if isinstance(event, (yaml.MappingStartEvent, yaml.SequenceStartEvent)):
             node: Any = {} if isinstance(event, yaml.MappingStartEvent) else []

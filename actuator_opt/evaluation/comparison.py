@@ -29,9 +29,9 @@ Name: TypeAlias = Literal["lighter", "stiffer", "smoother"]
 SAME = 1e-9
 """Relative difference up to which two numbers count as equal. Our choice, above rounding errors."""
 _IDLE = ("name", "notes")
-"""Keys of a design without effect on the result."""
+"""Keys of a design that do not affect its results."""
 _DUTY = ("supply", "load", "load_cases", "fluid", "environment", "linkage")
-"""Keys of a design that state its duty: supply, load and environment."""
+"""Blocks of a design that state its duty."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ class Question:
 
     @property
     def steps(self) -> tuple[tuple[str, float], ...]:
-        """Change of each part's contribution (SI) from `other` to `best`, largest first."""
+        """Change of each part's contribution (SI) from design `other` to `best`, largest first."""
         if self.best is None or self.other is None:
             return ()
         rows = [(part, x[self.best] - x[self.other]) for part, x in self.parts.items()]
@@ -72,7 +72,7 @@ class Question:
 
     @property
     def leaders(self) -> tuple[int, ...]:
-        """Indices of the best design and of designs equal to it; empty without a best design."""
+        """Indices of the best design and of designs with an equal value; empty if none is best."""
         best = None if self.best is None else self.values[self.best]
         if best is None:
             return ()

@@ -1,4 +1,4 @@
-"""Life and service of an actuator: pressure cycles, end stop, temperature, trapped oil."""
+"""Life and service limits of an actuator: pressure cycles, end stop, temperature, trapped oil."""
 
 from __future__ import annotations
 

@@ -195,7 +195,7 @@ class LoopStudy:
     crossover: float | None
     bandwidth: float | None
     governs: tuple[str, ...]
-    """Metrics whose least value occurs here: gain_margin, phase_margin, bandwidth."""
+    """Those of gain_margin, phase_margin and bandwidth whose least value occurs in this loop."""
     open_magnitude: Array
     open_phase: Array
     """Phase of the open loop [rad], from near -pi/2 at low frequency, without jumps by 2 pi."""
@@ -234,7 +234,7 @@ class DynamicsStudy:
     """Dynamic stiffness at the weakest position, with the lines as transmission lines; None without
     lines."""
     shaken: tuple[ShakenCase, ...]
-    """Load cases with excitation, each at its worst stroke position."""
+    """Load cases with an oscillating load, each at its position of least dynamic stiffness."""
     position_loop: LoopStudy | None
     """Position loop with the least gain margin; None without a valve."""
     other_loops: tuple[LoopStudy, ...] = ()
@@ -344,7 +344,7 @@ def _distributed(
 
 
 def _row(value: Array, index: int, along: Array) -> Array:
-    """The values of one load case from an array (cases, points)."""
+    """The values of one load case, at the points of `along`, from an array (cases, points)."""
     array = np.broadcast_to(np.atleast_2d(value), (np.shape(np.atleast_2d(value))[0], along.size))
     return array[min(index, array.shape[0] - 1)]
 

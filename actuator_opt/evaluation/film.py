@@ -65,7 +65,7 @@ _NOT_OF_FILM = frozenset(
         "viscous_friction",
     }
 )
-"""Inputs of a ring that do not affect its film, or that both rings of a pair share."""
+"""Numbers of a ring that do not affect its film, or that both rings of a pair share."""
 
 SHARED = ("speed", "viscosity", "viscosity_coefficient")
 """Inputs that both rings of a pair share, in addition to the pressures."""
@@ -215,7 +215,7 @@ class RingFilm(NamedTuple):
     drag: Array
     """Viscous drag, positive against the motion [N/m]."""
     load: Array
-    """Normal force between the asperities [N/m]."""
+    """Normal force that the asperities carry [N/m]."""
     thickness: Array
     """Mean film thickness [m]."""
 
@@ -244,7 +244,7 @@ class Solved:
 
     @property
     def between(self) -> float:
-        """Absolute interseal pressure [Pa]; NaN for a single ring."""
+        """Absolute pressure between two rings [Pa]; NaN for a single ring."""
         return nan if self.pair is None else self.pair.pressure
 
     @property
@@ -260,7 +260,7 @@ class Solved:
 
 
 def solve(row: FilmRow, last: Solved | None = None) -> Solved:
-    """Solve the films of one or two rings, starting from the films of a nearby operating point."""
+    """Solve the films of one or two rings; the films of a nearby point are the initial guess."""
     if len(row.rings) == 1:
         if opened := _opened(row.rings[0]):
             return Solved(row, (), opened)

@@ -50,7 +50,7 @@ class Running:
     Parameters
     ----------
     viscous : viscous drag, positive against the motion [N]
-    load : normal force between the asperities [N]
+    load : normal force that the asperities carry [N]
     thickness : mean film [m]
     viscous_slope, load_slope : derivatives of `viscous` and `load` with respect to speed [N s/m]
     flow : flow towards the outer side [m^3/s]
@@ -104,7 +104,7 @@ class FilmTable:
 
 
 class _Walker:
-    """Solve films at a sequence of nearby points, each starting from the previous film."""
+    """Solves films at a sequence of nearby points; each previous film is the initial guess."""
 
     def __init__(self, row: FilmRow) -> None:
         self.row = row
@@ -354,9 +354,9 @@ def _with_corners(
 def running(
     tables: Mapping[Key, FilmTable], rings: Sequence[Ring], stroke: Stroke, cases: int
 ) -> tuple[Running, ...]:
-    """Films of the piston's or rod's rings in every load case, (cases, designs); 0 at rest.
+    """Films of the rings of piston or rod in every load case, (cases, designs); 0 at rest.
 
-    Empty if no load case has a film on this stroke.
+    The result is empty if no load case has a film on this stroke.
     """
     film_rings = rings and of_place(rings, rings[0].name)
     case_tables = [

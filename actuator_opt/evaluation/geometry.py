@@ -23,7 +23,7 @@ from .values import Values
 
 
 class Numbers:
-    """Values of the block `retention` by key, from the values of an evaluation."""
+    """Values of the block `retention` by key, in an evaluation, where they may be arrays."""
 
     def __init__(self, v: Values) -> None:
         self._v = v
@@ -197,7 +197,7 @@ def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[
 
 
 def groove_totals(grooves: Sequence[Groove]) -> tuple[Array, Array, Array]:
-    """Total axial length of all grooves, their number, and the largest depth."""
+    """Sum of the axial lengths of all grooves, number of grooves, and largest depth."""
     length: Array = 0.0
     count: Array = 0.0
     deepest: Array = 0.0

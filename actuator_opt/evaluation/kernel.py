@@ -153,7 +153,7 @@ def compute_flow(
 def _compute_lines(
     v: Values, design: Design, state: LoadState, flow: dict[str, Array], out: MetricArrays
 ) -> None:
-    """Compute velocity, pressure drop, hammer and resonance of the lines."""
+    """Compute velocity, pressure drop, water hammer and resonance of the lines."""
     velocity, drop, hammer = {}, {}, {}
     lengths: dict[str, Array] = {}
     times: dict[str, Array] = {}  # travel time of a wave through the lines of a chamber
@@ -222,9 +222,9 @@ class PreparedDesign:
     """Whether a user metric that raises an exception is NaN with a reason, instead of stopping the
     run."""
     constants: dict[str, dict[str, Array]] = field(default_factory=dict, compare=False)
-    """Ply constants by material, cached."""
+    """Elastic constants of materials as plies, by name; a cache."""
     films: dict[Key, FilmTable] = field(default_factory=dict, compare=False)
-    """Tables of the seals' oil films, cached."""
+    """Tables of the seals' oil films; a cache."""
 
     @property
     def quantities(self) -> Mapping[str, Quantity]:
@@ -307,7 +307,7 @@ def base(subject: PreparedDesign, v: Values, implicit: Implicit = IMPLICIT) -> B
 
 @dataclass(frozen=True, slots=True)
 class Statics:
-    """All results that do not depend on the position of least stiffness, and the moving mass."""
+    """All results that do not depend on the position of least stiffness."""
 
     base: Base
     rod: RodSection
@@ -566,7 +566,8 @@ def extreme(
 def governing(metric: str, computed: MetricArrays, v: Values, subject: PreparedDesign) -> Array:
     """Governing value of a metric for every design (designs,), SI.
 
-    Infinite for an unloaded part; NaN if a value is missing or the metric is not computed.
+    It is infinite for a part without load, and NaN if a value is missing or the metric is not
+    computed.
     """
     sense = sense_of(metric, subject)
     if sense is not None:

@@ -355,8 +355,8 @@ class MaterialValues:
     def allowable(self, name: str, *properties: str, cold: bool = False) -> Array:
         """A strength after all applicable knock-downs; None if not stated.
 
-        The knock-downs are for the highest temperature of oil, load cases and environment; with
-        `cold`, for the lowest.
+        The knock-downs are those for the highest temperature of oil, load cases and environment;
+        with `cold`, for the lowest.
         """
         for key in properties:
             if key in self.materials[name].numbers:

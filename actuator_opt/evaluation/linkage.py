@@ -68,10 +68,11 @@ class DrivenJoint:
 
     @property
     def largest(self) -> Array:
-        """Largest lever arm over the stroke: the shorter radius, at a right angle to the actuator.
+        """Largest lever arm within the stroke.
 
-        There the pin-to-pin length is sqrt(|a^2 - r^2|), with base radius a and crank radius r. If
-        the actuator cannot reach this length, the lever arm is largest at a stop.
+        The lever arm is largest, and equal to the shorter radius, where this radius is at a right
+        angle to the actuator. There the pin-to-pin length is sqrt(|a^2 - r^2|), with base radius a
+        and crank radius r. If the actuator cannot reach this length, it is largest at a stop.
         """
         square = absolute(self.base_radius * self.base_radius - self.crank_radius**2)
         return self.lever_arm(clip(sqrt(square) - self.closed, 0.0, self.stroke))
@@ -114,7 +115,7 @@ def arms(joint: DrivenJoint, positions: Sequence[Array | None]) -> dict[str, Arr
 
 
 def demand(v: Values, design: Design, lever_arm: Array = None) -> Demand:
-    """Force, speed and mass that every load case demands, with `lever_arm` (cases, designs)."""
+    """Force, speed and mass that every load case demands, for `lever_arm` (cases, designs)."""
     forces, speeds = [], []
     for i, case in enumerate(design.load_cases):
         at = f"load_cases[{case.name}]."
@@ -188,7 +189,7 @@ def compute(
     net: Array,
     out: MetricArrays,
 ) -> None:
-    """Compute torque and range of the joint; `net` is the force delivered in every load case."""
+    """Compute torque and range of the joint; `net` is the actuator's force in each load case."""
     if joint is None:
         for name in METRICS:
             out.skip(name, "no linkage stated: add linkage")

@@ -40,7 +40,7 @@ position of least stiffness."""
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """Position-independent inputs of the linear model; arrays (cases, designs)."""
+    """Inputs of the linear model that do not depend on the position; arrays (cases, designs)."""
 
     springs: Springs
     mass: Array

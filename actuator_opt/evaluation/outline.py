@@ -289,7 +289,7 @@ MOST = 24
 
 
 SAME = 1e-7
-"""Largest error of a coordinate drawn from a template [m]."""
+"""Largest permissible error of a coordinate that is drawn from a template [m]."""
 
 
 STEP = 1e-4
@@ -320,7 +320,7 @@ class Template:
     origin: Array
 
     def at(self, dimensions: Array) -> Array:
-        """Coordinates and lengths (numbers, designs) for other dimensions (dimensions, designs)."""
+        """Coordinates and lengths (numbers, designs) of designs with these dimensions."""
         numbers: Array = self.numbers[:, None] + self.slopes @ (dimensions - self.origin[:, None])
         return numbers
 

@@ -123,7 +123,7 @@ def stress_of(parts: Iterable[Array]) -> Stress:
 
 
 def _of_climate(values: Sequence[Any], climate: int | None, combine: Callable[..., Any]) -> Any:
-    """The value in a climate, or the combined values of all climates; None if missing."""
+    """The value in one climate, or, without `climate`, the combined values of all climates."""
     if not values:
         return None
     if climate is not None:
@@ -226,7 +226,7 @@ def _solid(constants: dict[str, Array]) -> Solid:
 
 
 def worst(values: Array, axes: tuple[int, ...]) -> Array:
-    """Largest value by real part over some axes; its complex part keeps the derivative."""
+    """Largest value along some axes, by real part; its imaginary part (a derivative) is kept."""
     other_axes = [i for i in range(values.ndim) if i not in axes]
     flattened = np.transpose(values, (*axes, *other_axes)).reshape(
         -1, *(values.shape[i] for i in other_axes)
@@ -288,7 +288,7 @@ def utilisations(
 
 
 def _strengths(plies: Sequence[Layer], name: str, extra: int) -> Array:
-    """One strength for every ply and climate, (plies, climates, ...)."""
+    """The strength `name` of every ply and climate, (plies, climates, ...)."""
     rows = [
         np.stack(
             np.broadcast_arrays(

@@ -80,7 +80,7 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Plugin:
-    """A user metric; with a `sense`, it is also a constraint with the limit zero."""
+    """A user metric; if it has a `sense`, it is also a constraint with the limit zero."""
 
     name: str
     quantity: Quantity
@@ -301,7 +301,7 @@ def collect(*functions: Callable[[View], Array]) -> tuple[Plugin, ...]:
 
 
 def _marked(values: Iterable[object]) -> list[Plugin]:
-    """Plugins among the values of a module; skip values that raise an exception on access."""
+    """Plugins among the values of a module; values whose access raises an exception are skipped."""
     plugins = []
     for value in values:
         with contextlib.suppress(Exception):

@@ -198,7 +198,7 @@ INCOMPRESSIBLE = 0.495
 
 
 def seal_contact(ring: Ring) -> SealContact:
-    """Contact of a ring at its `squeeze_left` and `pressure`."""
+    """Contact pressure of a ring, at its numbers `squeeze_left` and `pressure`."""
     if ring.element.contact:
         return stated_profile.contact(ring.element.contact, ring["pressure"])
     return ring.element.seal_type.contact(ring.sizes)

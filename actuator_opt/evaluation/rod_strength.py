@@ -38,7 +38,7 @@ tangent. Our choice: results are then finite even for designs far beyond bucklin
 buckling check rejects."""
 
 LEAST = 1e-6
-"""Least rod length outside the head [m], to avoid a division by zero."""
+"""Smallest rod length outside the head in calculations [m]; avoids a division by zero."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -327,7 +327,7 @@ def cycles(
 
 
 def _unit_load(section: RodSection, rows: list[int], load: int) -> list[Array]:
-    """Ply stresses of the layers in `rows` per unit load, (faces, layers, 1, 1, 1, designs)."""
+    """Ply stresses of layers `rows` under a unit load, (faces, layers, 1, 1, 1, designs)."""
     assert section.unit is not None
     return [part[:, rows][:, :, load][:, :, None, None, None] for part in section.unit]
 

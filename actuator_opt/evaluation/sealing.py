@@ -224,7 +224,7 @@ POINTS = 81
 
 
 def room(ring: Ring) -> float:
-    """Axial groove length between the back-up rings [m]."""
+    """Axial length of the groove without its back-up rings [m]."""
     backs = ring.element.back_ups * (ring.element.back_up_thickness or 0.0)
     return float(ring["groove_width"]) - backs
 
@@ -276,7 +276,7 @@ def contacts(ring: Ring, supply: float) -> tuple[MountedContact, ...]:
 
 
 def profiles(mounted_contacts: Iterable[MountedContact]) -> tuple[ContactProfile, ...]:
-    """Contact profiles in the form that a design file has."""
+    """Contact profiles in the form of the design file."""
     return tuple(
         _profile(
             mounted_contact.pressure, mounted_contact.positions, mounted_contact.contact_pressure

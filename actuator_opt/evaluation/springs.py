@@ -1,4 +1,4 @@
-"""The stiffness budget: all compliances between load and ground, over the stroke."""
+"""The stiffness budget: all compliances between load and ground, along the stroke."""
 
 from __future__ import annotations
 

@@ -113,7 +113,7 @@ def _pressure_factors(
 ) -> None:
     """Compute yield, first-ply and burst pressures of the barrel over working and proof pressure.
 
-    `yields` and `bursts` are the yield and burst pressures by location, including the joint's.
+    `yields` and `bursts` are the yield and burst pressures by location, in barrel and joint.
     """
     proof = v["supply.proof_ratio"] * supply
     liner = {place: p / supply for place, p in wall.yield_pressure.items()}
@@ -189,7 +189,7 @@ def joint_metrics(loaded_joint: LoadedJoint | None, out: MetricArrays) -> None:
 
 
 def _fittings(stock: MaterialValues, bond: Overlap | str, push: Array, out: MetricArrays) -> None:
-    """Compute the strength of the rod fittings' bonds under the push, which exceeds any pull."""
+    """Compute the strength of the rod fittings' bonds under the push, the larger of the forces."""
     if isinstance(bond, str):
         out.skip("fitting_factor", bond)
     else:

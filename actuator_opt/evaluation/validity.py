@@ -92,7 +92,7 @@ def model_of(
 
 
 FILM_ERROR = 0.02
-"""Relative error of a film surrogate above which a warning is given."""
+"""Relative interpolation error of an oil film above which a warning is given."""
 _SURROGATES = {
     "friction": "friction_running",
     "flow": "rod_leakage",
@@ -152,7 +152,7 @@ def _leak_at_rest(subject: PreparedDesign) -> Iterable[tuple[str, str]]:
 
 
 def _film(name: str, table: FilmTable) -> Iterable[tuple[str, str]]:
-    """Warn of a film surrogate with a large error, outside its range, or with unsolved points."""
+    """Warn of film tables with large errors or unsolved points, or that exclude the design."""
     for quantity, metric in _SURROGATES.items():
         if table.errors[quantity] > FILM_ERROR:
             error = 100 * table.errors[quantity]

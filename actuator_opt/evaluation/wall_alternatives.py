@@ -27,7 +27,7 @@ from .values import Values
 METALS = ("steel_e355", "al_7075_t6")
 """Metals with which every wall is compared: a common honed steel tube and a common light alloy."""
 FACTORS = (0.8, 1.25)
-"""Bore growths for which a thickness is computed, as multiples of the actual growth."""
+"""Bore growths for which a layer thickness is computed, as multiples of the actual growth."""
 LARGEST = 2.0
 """Largest thickness of a layer in the search, as a multiple of the bore radius."""
 

@@ -96,7 +96,7 @@ def order(view: FileView) -> Iterator[Fault]:
 
 
 def sampling(view: FileView) -> Iterator[Fault]:
-    """Check that the run and every period of its sines have a reasonable number of samples."""
+    """Check that the number of samples is reasonable, for the run and for each period of a sine."""
     duration, stated = view.number("duration"), view.number("sample_time")
     if duration is None or (stated is None and view.has("sample_time")):
         return
@@ -335,7 +335,7 @@ def supply(view: FileView) -> Iterator[Fault]:
 
 
 def cushion(view: FileView) -> Iterator[Fault]:
-    """Check that a cushion reduces the flow area of the oil."""
+    """Check that a cushion reduces the flow area of the oil, but not to zero."""
     loc = ("stops", "cushion")
     opened, closed = view.number(*loc, "open_area"), view.number(*loc, "end_area")
     if opened is not None and closed is not None and closed >= opened:

@@ -39,7 +39,7 @@ class SignalSegment(Section):
 
 
 class ValveSignal(SignalSegment):
-    """A part of the valve signal."""
+    """A part of the signal that drives the valve."""
 
     value: Annotated[
         float | None, Of("signal_value", "height of this part, or amplitude of a sine")
@@ -175,7 +175,7 @@ class ValveSupply(Section):
         float | None, Of("rated_flow", "flow of a fixed pump, or largest flow of a controlled pump")
     ] = None
     pump: PumpMachine | None = None
-    """Pump with Wilson's model, instead of a constant `flow`."""
+    """Pump with losses by Wilson's model, instead of a constant `flow`."""
     relief: ReliefValve | None = None
     gain: Annotated[float | None, Of("pump_gain", "controller gain of a controlled pump")] = None
     time_constant: Annotated[
@@ -359,7 +359,7 @@ class Controller(Section):
 
 
 class Analysis(Section):
-    """Settings for the evaluation of the signals."""
+    """Settings for the analysis of the simulated signals."""
 
     window_cycles: Annotated[
         float,

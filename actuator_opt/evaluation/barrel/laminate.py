@@ -244,7 +244,7 @@ def _load(solution: WallSolution, rows: list[int], axial: Array) -> Stress:
 
 
 def _by_climate(values: Sequence[Array]) -> Array:
-    """Give the strengths of a layer, one per climate, the same axes as its stresses."""
+    """Arrange the strengths of a layer, one per climate, on the same axes as its stresses."""
     rows = np.stack(np.broadcast_arrays(*[np.atleast_1d(value) for value in values]))
     return rows[None, None, :, None]
 
@@ -302,8 +302,8 @@ def _metal(
     """Calculate the yield pressure of a metal layer, and its stress under pulsating pressure.
 
     The pulse goes from the residual stress to the stress at supply pressure. The mean stress is the
-    larger equivalent stress at the two ends of the pulse, minus half the range. A negative mean
-    counts as zero: it gives no credit.
+    larger of the equivalent stresses at both ends of the pulse, minus half the range. A negative
+    mean counts as zero, so compression does not increase the life.
     """
     limit = _by_climate(layer.yields)
     utilisation = strength.yield_utilisation(stress=load, yield_strength=limit, residual=residual)
