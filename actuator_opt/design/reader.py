@@ -245,7 +245,7 @@ def _unusable(fault: Fault, document: Document) -> bool:
 
 
 def _once(faults: Sequence[Fault], document: Document) -> list[Fault]:
-    """Keep one of the equal faults that the layers of one compact lay-up entry have."""
+    """Keep only the first of equal faults in the layers of one compact lay-up entry."""
     unique, seen = [], set()
     for fault in faults:
         shorthand = document.shorthand(fault.loc)

@@ -323,7 +323,7 @@ def reach(view: FileView) -> Iterator[Fault]:
 
 
 def films(view: FileView) -> Iterator[Fault]:
-    """Check the number of rings where friction is by film, and that two in tandem share one law."""
+    """Check that two seals in tandem have one friction law, and that a film has one ring or two."""
     for name in ("piston", "rod"):
         both: list[Loc] = [("seals", name)]
         if view.has("seals", name, "secondary"):

@@ -97,7 +97,10 @@ def autofrettage(view: FileView) -> Iterator[Fault]:
 
 
 def laminated_rod(view: FileView) -> Iterator[Fault]:
-    """Check that layers of a rod leave a bore that is not stated, and that fittings have layers."""
+    """Check a laminated rod: its layers leave a bore, which the file does not state.
+
+    Only a laminated rod may have fittings.
+    """
     layers = len(view.items("rod", "layup"))
     if not layers:
         if view.has("rod", "fitting"):

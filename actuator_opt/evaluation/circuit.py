@@ -141,7 +141,7 @@ def valve_edges(v: Values, design: Design, state: LoadState) -> Edges:
 
 
 def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) -> LinearValve | None:
-    """Linearise the valve where it holds the load and replaces the leakage; None without valve."""
+    """Linearise the valve while it holds the load and makes up for leakage; None without valve."""
     if design.valve is None:
         return None
     edges = valve_edges(v, design, state)

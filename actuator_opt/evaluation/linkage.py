@@ -1,8 +1,8 @@
 """The driven joint of a linkage: lever arms, angles, torque, inertia.
 
 From one dead point to the other, the lever arm rises to a maximum and then falls. Within the stroke
-it is therefore shortest at one of the stops. Each stop has its own result. Otherwise the result
-would have a kink in the optimiser where the shorter arm changes from one stop to the other.
+it is therefore shortest at one of the stops. Each stop has its own result. A single result
+would have a kink, bad for the optimiser, where the shorter arm changes from one stop to the other.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ class Demand:
     force: Array
     speed: Array
     mass: Array
-    """Mass of the load as felt at the rod, including the inertia of a driven joint."""
+    """Effective mass of the load at the rod, including the inertia of a driven joint."""
 
 
 def derive(v: Values, design: Design, g: Geometry) -> DrivenJoint | None:

@@ -1,7 +1,7 @@
 """Alternatives to the barrel wall: other thicknesses, thin-wall theory, metal.
 
-The module also computes how bore growth decays on both sides of the pressure step under the piston
-seal. All values are plain floats.
+The module also computes bore growth near the pressure step under the piston seal. All values are
+plain floats.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class Settling:
-    """Decay of bore growth beside the pressure step under the piston seal.
+    """Bore growth near the pressure step under the piston seal.
 
     `decay_length` is the length 1/beta of shell theory [m]. `radius_ratio` is mid-radius divided by
     thickness; thin-shell theory applies above about 5. `at_seal` is the growth at the step, as a

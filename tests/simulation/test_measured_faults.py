@@ -86,8 +86,8 @@ def test_an_input_that_ends_early_is_held_and_told(replay):
     """Its last value stands to the end, and so nothing asks for motion there: the creep is told."""
     found = ao.simulate(replay(course(end=0.15)))
     assert found.notes[0] == (
-        'column "x" of in.csv (control.position[0]) ends at 0.15 s, the scenario at 0.2 s: its '
-        "last value is kept"
+        'column "x" of in.csv (control.position[0]) ends at 0.15 s, the scenario at 0.2 s: in '
+        "between the signal keeps its last value"
     )
     assert found.signals["reference"][-1] == pytest.approx(0.042)
     assert found.values["hold_drift"] is not None

@@ -59,8 +59,8 @@ class LoadPath:
 
     `per_pressure` is the force per unit pressure for each load path, (designs,) [m^2]. `held` is
     the force at zero pressure [N]. `cases` are the forces in the load cases, including `held`,
-    (cases, designs) [N]. `share` is the share that the barrel carries of a force
-    that separates its ends.
+    (cases, designs) [N]. `share` is the barrel's share of a force that separates
+    its ends.
     """
 
     per_pressure: dict[str, Array]
