@@ -130,7 +130,7 @@ def _resolve_section(
     node, loc = child(node, name), (*loc, name)
     if entry.shape in ("value", "choice"):
         if rest:
-            raise ValueFault(f"{path}: {spell(loc, tree)} is a single value", "name just that")
+            raise ValueFault(f"{path}: {spell(loc, tree)} is a single value", "write only this")
         return Target(spell(loc, tree), loc, entry.quantity(node), entry)
     if entry.shape == "list":
         if not rest or not rest[0].bracket:

@@ -240,7 +240,7 @@ def objective(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator
     stated = [key for key in ("minimise", "maximise") if key in block]
     if len(stated) != 1:
         if stated:
-            message = "both minimise and maximise"
+            message = "both minimise and maximise are stated"
             yield Fault(("objective", stated[1]), message, "keep one of them", at_key=True)
         else:
             yield Fault(("objective", "minimise"), "missing", 'add e.g. "minimise: mass"')

@@ -132,7 +132,10 @@ def value_schema(kind: ValueKind | None, materials: MaterialLookup | None) -> Sc
         schema |= {"title": "material", "examples": [kind.example]}
         if materials is not None:
             names = [n for n in materials.names() if materials.kind(n) in ROLES[kind.role]]
-            schema |= {"enum": names, "errorMessage": "unknown material, or unsuitable kind"}
+            schema |= {
+                "enum": names,
+                "errorMessage": "unknown material, or a material of an unsuitable kind",
+            }
         return schema
     # names such as 12 or true are text to the reader, but numbers or booleans to an editor
     schema["type"] = ["string", "number", "boolean"]
@@ -499,7 +502,11 @@ def _waivers(metrics: Mapping[str, Quantity]) -> Schema:
         "description": "Checks that do not apply: METRIC with the reason, which reports print.",
         "additionalProperties": False,
         "properties": {
-            name: {"type": "string", "title": metric.label, "description": "why it does not apply"}
+            name: {
+                "type": "string",
+                "title": metric.label,
+                "description": "reason why the check does not apply",
+            }
             for name, metric in metrics.items()
         },
     }

@@ -77,7 +77,9 @@ def read(loc: Loc, bounds: dict[str, Any], quantity: Quantity) -> Iterator[Fault
             )
         elif SERIES[sizes].paths.fullmatch(str(loc[-1])) is None:
             series = SERIES[sizes]
-            yield Fault(here, f"{sizes} has no sizes for {loc[-1]}", f"it is for {series.suits}")
+            yield Fault(
+                here, f"{sizes} has no sizes for {loc[-1]}", f"this series is for {series.suits}"
+            )
     elif not isinstance(sizes, list):
         yield Fault(
             here, f"need sizes, not {shape_in_words(sizes)}", f"write {sample}, or a series"

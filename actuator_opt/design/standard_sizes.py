@@ -110,7 +110,9 @@ class Gland:
         widths = ((self.width_min, self.width_max), *self.back_up_widths)
         if not 0 <= back_up_rings < len(widths):
             message = f"no width with {back_up_rings} back-up rings in the {self.table} table"
-            raise InputError(Diagnostic(message, f"it has widths for 0 to {len(widths) - 1}"))
+            raise InputError(
+                Diagnostic(message, f"the table has widths for 0 to {len(widths) - 1} rings")
+            )
         return widths[back_up_rings]
 
     @property
@@ -230,7 +232,7 @@ def section_tolerance(section: float) -> StandardSize:
         if section <= metres(size) * (1 + 1e-9):
             return StandardSize(metres(tolerance), bands["confidence"], citation(bands["source"]))
     message = f"no tolerance for a section of {section * 1e3:.4g} mm"
-    raise InputError(Diagnostic(message, "the bands end at 8.4 mm"))
+    raise InputError(Diagnostic(message, "the table of size bands ends at 8.4 mm"))
 
 
 @functools.cache

@@ -104,7 +104,7 @@ def laminated_rod(view: FileView) -> Iterator[Fault]:
     layers = len(view.items("rod", "layup"))
     if not layers:
         if view.has("rod", "fitting"):
-            remedy = "remove it, or add the layers: rod.layup"
+            remedy = "remove it, or add the layers as rod.layup"
             yield Fault(
                 ("rod", "fitting"), "only a rod with layup has fittings", remedy, at_key=True
             )
@@ -179,7 +179,7 @@ def _kinds(view: FileView, materials: MaterialLookup) -> Iterator[Fault]:
         yield Fault(
             ("rod", "fitting"),
             "missing: a laminated rod needs bonded end fittings",
-            'add a block "fitting:" with adhesive, length',
+            'add a block "fitting:" with adhesive and length',
         )
 
 

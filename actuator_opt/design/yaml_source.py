@@ -185,7 +185,7 @@ class _Builder:
             if isinstance(event, yaml.DocumentStartEvent):
                 documents += 1
                 if documents > 1:
-                    advice = f"one {self.document.kind} per file"
+                    advice = f"write one {self.document.kind} per file"
                     self._stop(event, "a second document starts here", advice)
             elif isinstance(event, yaml.NodeEvent):
                 nodes += 1

@@ -76,7 +76,7 @@ def sizes(design: Design) -> Check:
         if abs(near - value) > 1e-9:
             nonstandard.append(f"{part} {1e3 * value:.4g} mm (nearest {1e3 * near:g} mm)")
     if nonstandard:
-        reason = "free sizes: " + ", ".join(nonstandard)
+        reason = "sizes that are not standard: " + ", ".join(nonstandard)
         return Check(_SIZES, "not_checked", reason, source="ISO 3320")
     return Check(_SIZES, "met", "bore and rod are standard sizes", source="ISO 3320")
 
@@ -86,7 +86,10 @@ def glands(rings: Iterable[Ring]) -> Check:
     nonstandard = [text for ring in rings for text in _remarks(floats(ring, 0))]
     if nonstandard:
         return Check(
-            _GLANDS, "not_checked", "free glands: " + "; ".join(nonstandard), source=_SECTIONS
+            _GLANDS,
+            "not_checked",
+            "glands that are not standard: " + "; ".join(nonstandard),
+            source=_SECTIONS,
         )
     return Check(_GLANDS, "met", "all glands are standard", source=_SECTIONS)
 
@@ -143,8 +146,8 @@ def _housing(ring: Ring) -> Iterator[str]:
         for housing in standard_housings[:2]
     )
     yield (
-        f"{ring.label}: groove {1e3 * depth:.3g} x {1e3 * length:.3g} mm, "
-        f"{standard_housings[0].standard} has {listed} mm"
+        f"{ring.label}: the groove is {1e3 * depth:.3g} x {1e3 * length:.3g} mm, in "
+        f"{standard_housings[0].standard} it is {listed} mm"
     )
 
 
@@ -414,7 +417,7 @@ def _against(check: Check) -> str:
         return check.reason
     quantity = METRICS[check.metric]
     word = "at least" if check.sense == "min" else "at most"
-    return f"{quantity.text(check.value)}, should be {word} {quantity.text(check.limit)}"
+    return f"{quantity.text(check.value)}, but should be {word} {quantity.text(check.limit)}"
 
 
 def _curve(run: ModelRun, v: Values, case: str | None) -> StrokeCurve:

@@ -280,7 +280,9 @@ def _opened(ring: Ring) -> str:
     pressure = ring["pressure"]
     if seal_contact(ring.at(pressure=abs(pressure))).excess > 0:
         return ""
-    return f"{pressure / 1e6:.4g} MPa lifts the {ring.label} off: its contact load is too small"
+    return (
+        f"a sealed pressure of {pressure / 1e6:.4g} MPa lifts the {ring.label} off its counterface"
+    )
 
 
 def _tandem(row: FilmRow, start: Tandem | None) -> Tandem:

@@ -367,7 +367,7 @@ def _ports(
             yield (
                 metric,
                 "ports.end is closed, so damping ratio and dynamic stiffness exclude the leakage "
-                "of the holding valve; write end: valve to include it",
+                'of the holding valve; write "ports.end: valve" to include it',
             )
     slow = np.ravel(np.real(state.speed)) == 0
     excited = [case.frequency is not None for case in design.load_cases]

@@ -158,11 +158,11 @@ _WIDE = "our choice"
 TABLE: tuple[Proportion, ...] = (
     Proportion(
         "cylinder.dead_volume_a", "times the swept volume of the piston", 0.0, 1.0,
-        "our choice: most of the oil moves", _dead("a"),
+        "our choice: most of the oil should be swept", _dead("a"),
     ),
     Proportion(
         "cylinder.dead_volume_b", "times the swept volume of the piston", 0.0, 1.0,
-        "our choice: most of the oil moves", _dead("b"),
+        "our choice: most of the oil should be swept", _dead("b"),
     ),
     Proportion(
         "lines", "times the swept volume of the piston (volume of one line)", 0.0, 20.0, _WIDE,
@@ -190,8 +190,8 @@ TABLE: tuple[Proportion, ...] = (
         "barrel.layup", "times the inner radius (wall thickness)", 0.005, 2.0, _WIDE, _wall,
     ),
     Proportion(
-        "supply.pressure", "MPa (mean hoop stress, pressure times radius over wall)", 0.2,
-        2500.0, "our choice: more than the fibres of the library withstand", _hoop,
+        "supply.pressure", "MPa (mean hoop stress: pressure x radius / wall thickness)", 0.2,
+        2500.0, "our choice: the fibres of the library do not withstand more", _hoop,
     ),
     Proportion(
         "supply.return_pressure", "times the supply pressure", 0.0, 0.5, _WIDE,

@@ -133,8 +133,8 @@ def _contact(subject: PreparedDesign, ring: Ring) -> Iterable[tuple[str, str]]:
     elif not np.all(np.real(seal_contact(ring).excess) > 0):
         yield (
             "friction_running",
-            f"{ring.label}: the sealed pressure would lift the ring off, because its contact load "
-            "is too small",
+            f"{ring.label}: the sealed pressure would lift the ring off its counterface, because "
+            "its contact load is too small",
         )
 
 
@@ -220,7 +220,11 @@ def seal_models(
             doubted=worst > FILM_ERROR,
         )
     if any("extrusion_gap_max" not in subject.materials[r.element.compound].numbers for r in rings):
-        yield _use(gland.extrusion_gap_limit, "gap limit by hardness and pressure", doubted=False)
+        yield _use(
+            gland.extrusion_gap_limit,
+            "limit of the extrusion gap by hardness and pressure",
+            doubted=False,
+        )
 
 
 def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:

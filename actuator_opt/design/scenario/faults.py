@@ -105,13 +105,13 @@ def sampling(view: FileView) -> Iterator[Fault]:
     if sample < finest * (1 - _SLACK):
         yield Fault(
             ("sample_time",),
-            f"{_short(sample)}: more than {MOST_SAMPLES / 1e6:g} million samples",
+            f"{_short(sample)}: gives more than {MOST_SAMPLES / 1e6:g} million samples",
             f"write at least {_short(_rounded(finest, math.ceil))}, or shorten duration",
         )
     elif sample > coarsest * (1 + _SLACK):
         yield Fault(
             ("sample_time",),
-            f"{_short(sample)}: fewer than {FEWEST_SAMPLES} samples in {_time(duration)}",
+            f"{_short(sample)}: gives fewer than {FEWEST_SAMPLES} samples in {_time(duration)}",
             f"write at most {_short(_rounded(coarsest, math.floor))}",
         )
     else:
@@ -133,7 +133,7 @@ def _sines(view: FileView, duration: float, sample: float, stated: bool) -> Iter
         return
     if needed < duration / MOST_SAMPLES * (1 - _SLACK):
         message = (
-            f"{_hertz(frequency)} over {_time(duration)}: "
+            f"a sine of {_hertz(frequency)} during {_time(duration)} "
             f"would need more than {MOST_SAMPLES / 1e6:g} million samples"
         )
         yield Fault(loc, message, "lower the frequency, or shorten duration")
@@ -342,7 +342,9 @@ def cushion(view: FileView) -> Iterator[Fault]:
         message = f"{_area(closed)}: not smaller than open_area ({_area(opened)})"
         yield Fault((*loc, "end_area"), message, f"write less than {_area(opened)}")
     elif closed == 0:
-        message = f"{_area(closed)}: the piston would never reach its stop"
+        message = (
+            f"{_area(closed)}: the oil could not escape, and the piston would never reach its stop"
+        )
         yield Fault((*loc, "end_area"), message, "write the area of the remaining gap")
 
 
@@ -471,7 +473,7 @@ def _missing_components(scenario: Scenario, design: Design) -> Iterator[Fault]:
         yield Fault(missing[0], "the design has no valve", remedy, at_key=True)
     if scenario.ends == "reducing_valve" and design.ports.reducing_valve is None:
         remedy = "add ports.reducing_valve to the design, or change ends"
-        yield Fault(("ends",), "reducing_valve: missing in the design", remedy)
+        yield Fault(("ends",), "reducing_valve: the design has no reducing valve", remedy)
     if scenario.load.torque and getattr(design, "linkage", None) is None:
         remedy = "add linkage to the design, or write load.force"
         yield Fault(("load", "torque"), "the design has no linkage", remedy, at_key=True)

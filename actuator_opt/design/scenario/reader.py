@@ -188,8 +188,8 @@ def recorded_notes(scenario: Scenario, records: Records) -> Iterator[str]:
             yield f"{name} begins at {first:.4g} s: before that, the signal has its first value"
         if last < scenario.duration - least:
             yield (
-                f"{name} ends at {last:.4g} s, the scenario at {scenario.duration:.4g} s: in between "
-                "the signal keeps its last value"
+                f"{name} ends at {last:.4g} s, the scenario at {scenario.duration:.4g} s: in "
+                "between the signal keeps its last value"
             )
         time, values = records[part.file or "", part.column or ""]
         missing = [
