@@ -216,8 +216,8 @@ class LoadState:
     kinematic_viscosity: Array
     density: Array
     dynamic_viscosity: Array
-    """This viscosity, `kinematic_viscosity` and `density` are those at the load case's temperature
-    and zero gauge pressure."""
+    """`dynamic_viscosity`, `kinematic_viscosity` and `density` are those at the load case's
+    temperature and zero gauge pressure."""
     dynamic_viscosity_a: Array
     dynamic_viscosity_b: Array
     """Viscosities in chambers A and B are at the pressures `moving_a` and `moving_b`."""

@@ -331,7 +331,7 @@ def _points(values: Array) -> Array:
 def _stress_field(
     layers: Sequence[Layer], climates: tuple[Climate, ...], pressure: float, g: Geometry, wall: Wall
 ) -> _StressField:
-    """Stresses under all loads at all points; autofrettage adds the same stress in all climates."""
+    """Stresses under all loads at all points; autofrettage adds the same stress in each climate."""
     tube = layered_tube(layers=_sublayers(layers), inner_radius=float(g.inner_radius))
     pulls = [pressure * single(area) for area in wall.path.per_pressure.values()]
     clamp = single(wall.path.held)
