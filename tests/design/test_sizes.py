@@ -117,7 +117,7 @@ def test_a_u_cup_has_no_o_ring_gland():
         text[text.index("  rod:\n    type:") :],
     )
     cup = tail.replace("type: o_ring", "type: u_cup", 1)
-    assert any("this is a u_cup" in fault["message"] for fault in refused(head + cup))
+    assert any("this seal is a u_cup" in fault["message"] for fault in refused(head + cup))
 
 
 def of(text, **asked):
