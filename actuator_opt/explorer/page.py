@@ -220,7 +220,7 @@ def _summary(explored: Explored) -> str:
         more = f"; and {len(reasons) - REASONS} more reasons" if len(reasons) > REASONS else ""
         words += f" {explored.failed} failed and have no results: {listing}{more}."
     if explored.damaged:
-        words += f" {explored.damaged} damaged and omitted."
+        words += f" {explored.damaged} damaged and left out."
     return f"{pretty(words)} Models of version {VERSION}."
 
 

@@ -348,7 +348,7 @@ class _Skin:
         return r.add(f"EDGE_LOOP('',{listed(sides)})")
 
     def face(self, start: Point, end: Point) -> str:
-        """Add the face that an edge of the section sweeps; material is to the left of the edge."""
+        """Add the face that an edge of the section sweeps; material lies left of the edge."""
         r = self.records
         rims = [(self.circles[c], c is end, c[1]) for c in (start, end) if c in self.circles]
         if start[0] == end[0]:  # the larger rim is the face's outer boundary

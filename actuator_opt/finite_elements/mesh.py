@@ -176,7 +176,7 @@ class SlideRing:
 
 
 def _rounded(distance: Floats, angle: float, radius: float) -> Floats:
-    """Height above a flat face that bends up by an angle at distance 0, through a tangent arc."""
+    """Height of a face that is flat up to distance 0, then rises at an angle; the bend is round."""
     reach = radius * math.tan(angle / 2)
     arc = radius - np.sqrt(np.maximum(radius**2 - np.clip(distance + reach, 0, radius) ** 2, 0))
     along = math.tan(angle) * distance

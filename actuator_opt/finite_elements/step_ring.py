@@ -264,7 +264,7 @@ def squeezed_step_ring(
         ),
         (
             not shape.chamfer_width + shape.land_width < shape.width,
-            "chamfer and land are together wider than the slide ring",
+            "chamfer and land leave no width for the relief of the slide ring",
             "shorten them",
         ),
         (

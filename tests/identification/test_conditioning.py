@@ -628,7 +628,7 @@ def test_spectrum_warns_of_motion_beyond_the_cutoff(width):
     # v^2 of 1 mm at 40 Hz over that of both sines
     lost = 0.04**2 / (0.04**2 + 0.04**2)
     assert found.kept == pytest.approx(1 - lost, abs=0.02)
-    assert "above the cut-off; raise --cutoff" in found.says(motion.cutoff)
+    assert "above the cut-off, so fast motion is lost: raise --cutoff" in found.says(motion.cutoff)
     assert "within the cut-off" in found.says(60.0) or "between them" in found.says(60.0)
 
 
