@@ -412,8 +412,8 @@ def _doubts_of_record(
     if cut:
         low, high = (1e3 * deflection for deflection in result.deflections)
         words = (
-            "the curve of force versus deflection is bent, so the slope is taken from its straight "
-            "part"
+            "the curve of force versus deflection is not straight, so the slope is taken from its "
+            "straight part"
         )
         doubts.append(f"{words}, from {low:.3g} to {high:.3g} mm")
     if abs(result.bent) > BENT:

@@ -101,10 +101,10 @@ def test_a_slow_record_leaves_no_windows():
 def test_a_wrong_bore_is_named_with_the_true_one(stated):
     """A_1 by a wrong D leaves p_1 (A - A') alike both ways: D = 23 mm is told within 0.1 mm."""
     found = identify(knee(), bench(**{"cylinder.bore": f"{stated} mm"}))
-    (doubt,) = [one for one in found.stribeck.doubts if "the bore seems to be" in one]
+    (doubt,) = [one for one in found.stribeck.doubts if "The bore seems to be" in one]
     told = float(doubt.split("seems to be ")[1].split(" mm")[0])
     assert told == pytest.approx(23.0, abs=0.1)
-    assert f"{stated:g} stated" in doubt
+    assert f"{stated:g} mm stated" in doubt
     assert "sensor" in doubt
     assert not any("cannot show which" in one for one in found.stribeck.doubts)
     for model in (found.stribeck, found.lugre):
@@ -124,7 +124,7 @@ def test_an_offset_that_pressure_does_not_change_is_no_area():
     """50 kPa more in p1 is 50 kPa A_1 = 20.8 N at every load: zeros or seals, not the areas."""
     found = identify(but(knee(), p1=knee()["p1"] + 50e3), bench())
     assert found.stribeck.values["offset"] == pytest.approx(50e3 * np.pi / 4 * 0.023**2, abs=1.0)
-    assert any("not from the areas" in one for one in found.stribeck.doubts)
+    assert any("not the areas" in one for one in found.stribeck.doubts)
     assert not any("seems to be" in one for one in found.stribeck.doubts)
 
 
@@ -161,7 +161,7 @@ def test_an_offset_as_large_as_friction_leaves_nothing_identified():
 def test_a_model_that_misses_friction_is_not_identifiable():
     """Where LuGre says that it misses friction, only what the steady points know too is left."""
     found = identify(knee(), bench(**{"cylinder.bore": "22.5 mm"}))
-    assert any("misses friction at reversals" in one for one in found.lugre.doubts)
+    assert any("deviates from the measured friction" in one for one in found.lugre.doubts)
     assert any("misses the points" in one for one in found.stribeck.doubts)
     assert not any(one.identifiable for one in found.lugre.parameters.values())
 
@@ -186,7 +186,7 @@ def test_travel_beyond_the_stroke():
     assert "unit of x" in line
     assert "cylinder.stroke" in line
     moved = identify(but(knee(), x=knee()["x"] + 0.2), bench())
-    assert any("its zero is not at the cap end" in one for one in moved.notes)
+    assert any("the zero of x is not at the cap end" in one for one in moved.notes)
 
 
 def test_a_reversed_position_is_named():

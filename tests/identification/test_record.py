@@ -136,7 +136,7 @@ def test_absolute_pressures_become_gauge_and_say_so(unit, factor):
     expected = [200 * factor - ATMOSPHERE, 300 * factor - ATMOSPHERE]
     np.testing.assert_allclose(record["p1"], expected, rtol=1e-13)
     assert record.notes == (
-        "p1 is an absolute pressure and was converted to gauge with the standard atmosphere of "
+        "p1 is an absolute pressure; it was converted to gauge with the standard atmosphere of "
         "1.01325 bar",
     )
 
