@@ -276,7 +276,7 @@ class DisplacementBounds:
 
 @dataclass(slots=True)
 class ElementState:
-    """Unknowns, contacts and wet nodes: all that is needed to continue a solution from here.
+    """Unknowns, contacts and wet nodes: a complete state, from which a solution can continue.
 
     Parameters
     ----------
@@ -464,7 +464,7 @@ def solve(problem: ElementProblem, start: ElementState, pressure: float) -> Elem
     Raises
     ------
     NotConverged
-        no equilibrium was found; the text states the reason
+        there is no equilibrium, or the iteration does not reach it; the text states the reason
     """
     section, state = problem.section, start.copy()
     size = section.displacements

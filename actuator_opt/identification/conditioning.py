@@ -406,7 +406,7 @@ def _noise(time: Array, values: Array, name: str, pieces: Sequence[RecordSection
 
 CUTOFFS = (1 / 3, 1 / 8, 1 / 20)
 """Lower cut-offs that are tried, as shares of the record's cut-off (our choice: down to 1.5 Hz,
-some ten times the frequency of a slow test, each 2 to 3 times lower than the one before)."""
+some ten times the frequency of a slow test, in factors of 2 to 3)."""
 BENT = 1.5
 """A lower cut-off may change the position. This is the largest permitted mean square of the change,
 divided by the mean square error of the sensor (our choice: it is 1 if only errors are removed)."""

@@ -100,7 +100,7 @@ def rejected_correction(parameter: Parameter, remaining: Parameter | None) -> st
         return ""
     return (
         f"correcting the pressures by {1e3 * parameter.value:.2f} ms leaves a lag of "
-        f"{1e3 * remaining.value:.2f} ms, so the lag stands for some other effect and is not "
+        f"{1e3 * remaining.value:.2f} ms, so some other effect looks like a lag; no lag is "
         f"corrected; {STATE}"
     )
 
