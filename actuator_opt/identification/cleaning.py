@@ -14,11 +14,11 @@ standard deviations, `QUANTA` sensor steps, and the share `RANGE` of the channel
 choices: one sample of normal noise in 5e8 lies as far out; rounding alone makes two steps; the
 usual noise of pressures reaches that share)."""
 JUMP, BURST, FLANK = 0.7, 0.45, 0.3
-"""A spike must rise by the share `JUMP` of its height within one sample, or else it is a true peak.
-The share `BURST` is sufficient if the signal just outside the spike does not move in the same
-direction by more than `FLANK` times the step at the spike's edge. All three are our choices. Three
-adjacent stray samples rise by half or more. The top of a triangle as wide as the median's window
-rises by a third, that of a half sine by 0.6."""
+"""A spike must rise by the share `JUMP` of its height within one sample; otherwise it is a true
+peak of the signal. The share `BURST` is sufficient if the signal just outside the spike does not
+move in the same direction by more than `FLANK` times the step at the spike's edge. All three are
+our choices. Three adjacent stray samples rise by half or more. The top of a triangle as wide as the
+median's window rises by a third, that of a half sine by 0.6."""
 WINDOW = 5e-3
 """Half the width of the neighbourhood of a sample [s] (our choice: a sixth of a 30 Hz period)."""
 SAMPLED = 100_000

@@ -104,7 +104,7 @@ class JointField(NamedTuple):
 
 
 class FactorBasis(NamedTuple):
-    """What a safety factor refers to: which `measure` of strength, and `of` which parts."""
+    """Reference of a safety factor: which `measure` of strength, and `of` which parts."""
 
     measure: str
     of: str = ""
@@ -333,7 +333,7 @@ class Joint:
     """Metrics that only this joint has, each with the text that says why other joints do not have
     it."""
     judged: tuple[FactorBasis, FactorBasis]
-    """What the working factor and the burst factor refer to."""
+    """References of the working factor and of the burst factor, for texts."""
     models: Mapping[tuple[str, str], str]
     """Name of the main model, such as `rod.section_area`, by metric and location."""
     usual: tuple[Usual, ...]
@@ -375,7 +375,10 @@ def chosen(stated: StatedValues, path: str) -> bool:
 
 
 def judged_later(stated: StatedValues, varied: Iterable[str]) -> bool:
-    """Whether all of these sizes (PATHs) have choices; the search then checks all combinations."""
+    """Whether the search checks these sizes (PATHs) later, for every combination of choices.
+
+    It does so if one of them is a variable, and one of them or the type of joint has choices.
+    """
     paths = tuple(varied)
     free = any(stated.has("variables", path) for path in paths)
     return free and any(chosen(stated, path) for path in (*paths, "retention.type"))
@@ -392,7 +395,7 @@ def models_at(joints: Iterable[Joint], metric: str) -> dict[str, str]:
 
 
 def judged_on(joints: Iterable[Joint], index: int) -> str:
-    """What the working factor (index 0) or burst factor (1) of each joint refers to, in words."""
+    """Words for the reference of the working factor (index 0) or burst factor (1) of all joints."""
     groups: dict[str, list[str]] = {}
     for joint in joints:
         judged = joint.judged[index]

@@ -204,8 +204,8 @@ def _next(trials: list[tuple[float, float]], bottom: float, top: float) -> float
 def _starved(row: _Row, first: Film, second: Film, pressure: float) -> Tandem:
     """Find the share of the space between the seals that has no oil, by regula falsi.
 
-    Sometimes a flooded and a starved film are both possible for the same supply of oil. Then the
-    starved film is found, because the search starts from an almost empty space.
+    Sometimes a flooded and a starved film are both possible for the same supply of oil. The search
+    starts from an almost empty space, so that it follows the starved film.
     """
     outward = row.speed > 0
     given, drawn = (first, second) if outward else (second, first)
