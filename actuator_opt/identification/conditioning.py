@@ -265,15 +265,15 @@ def _check_settings(record: Record, cutoff: float, order: int, lag: float) -> No
     """Reject invalid filter settings."""
     if not (math.isfinite(cutoff) and cutoff > 0):
         raise record.fault(
-            f"a cut-off of {cutoff:g} Hz", 'give a frequency above zero: --cutoff "30 Hz"'
+            f"the cut-off is {cutoff:g} Hz", 'give a frequency above zero: --cutoff "30 Hz"'
         )
     if not 1 <= order <= ORDERS or int(order) != order:
         raise record.fault(
-            f"a filter of order {order:g}", f"give a whole number from 1 to {ORDERS}"
+            f"the order of the filter is {order:g}", f"give a whole number from 1 to {ORDERS}"
         )
     if not abs(lag) <= LATEST:
         raise record.fault(
-            f"a lag of the pressures of {lag:g} s", f"give a lag from -{LATEST:g} to {LATEST:g} s"
+            f"the lag of the pressures is {lag:g} s", f"give a lag from -{LATEST:g} to {LATEST:g} s"
         )
 
 

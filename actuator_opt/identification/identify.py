@@ -340,9 +340,9 @@ def _mass(record: Record, bench: Bench, settings: Settings) -> float:
     Reject invalid forces and masses.
     """
     if settings.mass is not None and not (np.isfinite(settings.mass) and settings.mass >= 0):
-        raise record.fault(f"a moving mass of {settings.mass:g} kg", "give 0 kg or more")
+        raise record.fault(f"the moving mass is {settings.mass:g} kg", "give 0 kg or more")
     if settings.load_force is not None and not np.isfinite(settings.load_force):
-        raise record.fault(f"a load of {settings.load_force:g} N", "give a number")
+        raise record.fault(f"the load is {settings.load_force:g} N", "give a number")
     if settings.mass is not None:
         return settings.mass
     return bench.mass + (0.0 if "F_L" in record else bench.load_mass)

@@ -38,7 +38,7 @@ def _overlap(loaded: Loaded) -> Overlap | str:
     modulus = materials.get(end.cap, "youngs_modulus")
     adhesive = (materials.get(end.material, key) for key in ("bond_strength", "shear_modulus"))
     if any(value is None for value in (modulus, *adhesive)):
-        return "adhesive or caps have no bond strength or no modulus"
+        return "the adhesive has no bond strength or shear modulus, or the caps have no modulus"
     return Overlap(
         adhesive=end.material,
         diameter=2 * end.outer_radius,

@@ -67,7 +67,11 @@ CUT, CUT_HARD = 3.0, 3.8
 
 @dataclass(frozen=True, slots=True)
 class _Stated:
-    """Stated sizes [m]: outside of the barrel, thickness of its outermost layer, thread, skirt."""
+    """Sizes as stated in the design file [m].
+
+    They are the outer diameter of the barrel, the thickness of its outermost layer, diameter and
+    pitch of the thread, and the wall thickness of the skirt.
+    """
 
     outside: float
     layer: float

@@ -313,5 +313,9 @@ def faces(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vec
 
 
 def banded(before: Vector, after: Vector) -> tuple[Vector, Vector, Vector]:
-    """Lower, middle and upper band of d(flux out - flux in)/d(node) at the inner nodes."""
+    """Bands of a tridiagonal matrix: derivatives of flux out minus flux in at the inner nodes.
+
+    The bands (lower, middle, upper) are by the states of the node before, the node itself and the
+    node after.
+    """
     return -before[:-1], before[1:] - after[:-1], after[1:]

@@ -271,9 +271,9 @@ def test_a_plunger_can_be_made_up():
 @pytest.mark.parametrize(
     ("settings", "line"),
     [
-        (Settings(mass=-1.0), "a moving mass of -1 kg"),
-        (Settings(mass=float("nan")), "a moving mass of nan kg"),
-        (Settings(load_force=float("inf")), "a load of inf N"),
+        (Settings(mass=-1.0), "the moving mass is -1 kg"),
+        (Settings(mass=float("nan")), "the moving mass is nan kg"),
+        (Settings(load_force=float("inf")), "the load is inf N"),
         (Settings(pressure_lag=0.4), "from -0.1 to 0.1 s"),
     ],
 )
