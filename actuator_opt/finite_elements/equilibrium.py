@@ -53,7 +53,7 @@ def shares(section: Assembly, places: Floats) -> Floats:
 
 
 def load(section: Assembly, places: Floats, pressure: Floats) -> tuple[Floats, Floats]:
-    """Nodal forces of the fluid pressure; and for every edge, their negative derivative.
+    """Nodal forces of the fluid pressure, and their contribution to the stiffness matrix.
 
     Parameters
     ----------

@@ -26,8 +26,9 @@ FARTHER = 1.05
 """Ratio of the design's speed or pressure to that of the record above which extrapolation is
 reported (our choice)."""
 MISFIT = 0.1
-"""Error of the contact law at other pressures, as a share of F_C, above which it is reported (our
-choice: a third of the confidence interval that makes a parameter weakly identifiable)."""
+"""If measured friction deviates from the contact law at a pressure of the record by more than this
+share of F_C, a note says so (our choice: a third of the confidence interval that makes a parameter
+weakly identifiable)."""
 
 
 def of_curve(

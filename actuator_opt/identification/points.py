@@ -29,8 +29,8 @@ BLURRED = 1.0
 the cut-off (our choice: after it a step response is within 2 %)."""
 SETTLED = 5e-4
 """Distance after a reversal beyond which sliding is steady [m] (our choice: ten breakaway travels
-of 50 um). If the breakaway travel of the record is known, `SETTLING` times that travel is used, if
-it is longer."""
+of 50 um). If the breakaway travel of the record is known, the distance is `SETTLING` times that
+travel, but at least this value."""
 SLIDES = 2e-4
 """Smallest travel of a plateau [m] (our choice: four breakaway travels of 50 um; a smaller travel
 may be elastic deflection of the contact)."""

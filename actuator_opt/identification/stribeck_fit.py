@@ -357,7 +357,10 @@ def _scales(data: Steady) -> dict[str, float]:
 
 
 def _search(data: Steady, names: Sequence[str], held: float) -> dict[str, float]:
-    """Initial values: the best of a grid of Stribeck speeds and exponents; the rest is linear."""
+    """Initial values: the best of a grid of Stribeck speeds and exponents.
+
+    At each grid point, the other parameters follow from linear least squares.
+    """
     way, speed = np.sign(data.velocity), np.abs(data.velocity)
     columns = {"coulomb": way, "viscous": data.velocity}
     if "offset" in names:

@@ -34,7 +34,7 @@ class JointSizes(Protocol):
     def __getitem__(self, key: str) -> Array: ...
 
     def get(self, key: str, default: Array) -> Array:
-        """The number of a key, or `default` if the design does not state it."""
+        """The value of a key, or `default` if the design does not state it."""
         ...
 
 

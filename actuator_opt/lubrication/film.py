@@ -186,7 +186,7 @@ def _at_rest(contact: Contact, bed: Bed) -> FilmState:
 
 
 def _starved(cavitation: Vector, contact: Contact) -> Vector:
-    """The cavitated fractions, with those of the contact at both ends."""
+    """The cavitated fractions, but at both ends with the values that the contact states."""
     ends = [contact.sealed_cavitation], [contact.outer_cavitation]
     return np.concatenate([ends[0], cavitation[1:-1], ends[1]])
 
