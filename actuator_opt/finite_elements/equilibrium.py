@@ -523,7 +523,7 @@ def raise_pressure(
         try:
             next_state = solve(problem, state, trial)
             if np.sum(next_state.touching & ~np.roll(next_state.touching, 1)) > 1:
-                raise NotConverged("the contact between the rings opens between its ends")
+                raise NotConverged("a gap opens within the contact between the rings")
         except NotConverged as reason:
             step /= 2
             if step < SHORTEST_STEP:
@@ -577,7 +577,7 @@ def check_inputs(
         (not rising, "sealed pressures must be positive and increasing", "sort them"),
         (
             elements_around < 16 or elements_around % 4 != 0,
-            f"{elements_around} elements around the section",
+            f"the number of elements around the section is {elements_around}",
             "give a multiple of 4, at least 16",
         ),
         *further,

@@ -181,7 +181,7 @@ def squeezed_ring(
         elements_around,
         (
             not area <= MOST_FILL * room,
-            f"the section, {area:.3g} m^2, fills its groove, {room:.3g} m^2",
+            f"the section of {area:.3g} m^2 fills its groove of {room:.3g} m^2",
             "widen the groove",
         ),
     )

@@ -270,7 +270,7 @@ def squeezed_step_ring(
         (
             not 0 <= shape.relief_angle < 1,
             f"relief angle {shape.relief_angle:g} rad is outside 0 to 1",
-            "give the slope behind the land",
+            "give the slope of the face behind the land",
         ),
         (not plastic.youngs_modulus > 0, "the plastic has no stiffness", "give its modulus"),
         (not shape.edge_radius > 0, "the land has sharp ends", "give their edge_radius"),

@@ -65,8 +65,8 @@ def _shape(points: Sequence[FrictionPoint], stribeck: StribeckFit) -> Iterator[s
     worst = float(np.max(np.abs(assumed / fitted - 1)))
     yield (
         f"the exponent of the Stribeck curve is {exponent.value:.2f} ({exponent.lower:.2f} to "
-        f"{exponent.upper:.2f}), but {STRIBECK_EXPONENT:g} in the design, which changes the "
-        f"friction by up to {100 * worst:.0f} % at the record's speeds"
+        f"{exponent.upper:.2f}) in the record, but {STRIBECK_EXPONENT:g} in the design; this "
+        f"changes the friction by up to {100 * worst:.0f} % at the record's speeds"
     )
 
 
@@ -329,7 +329,7 @@ def _from_fits(
         parameters.append(_coefficient(factor_bounds, bench, coulomb[1]))
     static, speed, viscous = (fits[name] for name in _FIT_NAMES[1:])
     if static is None or speed is None or coulomb is None:
-        reason = "the record does not show how friction rises towards rest"
+        reason = "the record does not show how friction rises towards zero speed"
         reasons |= {"breakaway_ratio": reason, "stribeck_speed": reason}
     else:
         ratio = _ratio(static[0], coulomb[0])

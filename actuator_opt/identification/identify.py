@@ -74,7 +74,7 @@ def lag_to_correct(parameter: Parameter | None) -> tuple[float, str]:
     if not isfinite(upper - lower):
         return 0.0, CANNOT
     if not -EARLIEST <= parameter.value <= 0.99 * LAG:
-        beyond = f"beyond {-1e3 * EARLIEST:g} to {1e3 * LAG:g} ms, which no sensor has"
+        beyond = f"outside {-1e3 * EARLIEST:g} to {1e3 * LAG:g} ms, which no sensor has"
         return 0.0, f"the reversals suggest a lag {beyond}, so none is corrected; {STATE}"
     bounds = f"{lower:.2f} to {upper:.2f}"
     if upper < 0:
@@ -267,8 +267,8 @@ def _warmth(record: Record, bench: Bench) -> list[str]:
         return []
     kelvin = 273.15
     return [
-        f"T is {mean - kelvin:.0f} degC, but {bench.temperature - kelvin:.0f} degC in the "
-        "design's first load case, which contact forces and stiffness use"
+        f"T is {mean - kelvin:.0f} degC, but contact forces and stiffness are computed for "
+        f"{bench.temperature - kelvin:.0f} degC, as in the design's first load case"
     ]
 
 
@@ -293,7 +293,9 @@ def _pace(motion: ConditionedRecord) -> list[str]:
     if abs(slope - 1) <= PACE:
         return []
     slope = round(slope, 2) + 0.0  # avoids -0.00
-    return [f"v is {slope:.2f} times the slope of x: v is ignored; check its unit and sign"]
+    return [
+        f"v is {slope:.2f} times the time derivative of x, so v is ignored; check its unit and sign"
+    ]
 
 
 def _models(

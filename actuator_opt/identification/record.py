@@ -211,7 +211,7 @@ def _number(cell: str, name: str, line: int) -> float:
     message, remedy = f'"{shown(cell)}" is not a number', "write a number, or leave the cell empty"
     if re.match(r"\d+[:/-]\d+", cell):
         message = f'"{shown(cell)}" is a clock time or a date'
-        remedy = "write the time as a number from the start of the record, e.g. in s"
+        remedy = "write the time as a number, counted from the start of the record, e.g. in s"
     raise InputError(Diagnostic(message, remedy, file=name, line=line))
 
 
@@ -626,7 +626,7 @@ def _place_by_header(
             doubled.add(channel)
             first, second = sheet.header[places[channel]], sheet.header[i]
             fault(
-                f'columns "{shown(first)}" and "{shown(second)}" are both {channel}',
+                f'columns "{shown(first)}" and "{shown(second)}" both name the channel {channel}',
                 "rename or delete one"
                 if first == second
                 else f'choose a column with --column "{channel}=NAME", or rename one',

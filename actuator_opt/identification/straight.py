@@ -360,7 +360,9 @@ def _channels(record: Record) -> tuple[Array, Array]:
             raise record.fault(message, "give a record of a loaded specimen")
         if not USUAL[0] <= reach <= USUAL[1]:
             message = f"{name} spans {reach:.3g} {'m' if name == 'w' else 'N'}"
-            raise record.fault(f"{message}, which no bending test reaches", "check its unit")
+            raise record.fault(
+                f"{message}, which is implausible for a bending test", "check its unit"
+            )
     most = int(np.argmax(np.abs(force - force[0]))) + 1  # only samples before a failure
     most = most if most >= 2 * FEWEST else w.size
     follows = float(np.corrcoef(w[:most], force[:most])[0, 1]) if np.ptp(w[:most]) else 0.0

@@ -176,7 +176,9 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
             f"{len(speeds)} speeds are too few to determine F_S and v_s; give five or more"
         )
     elif "static" not in best.parameters:
-        doubts.append("friction does not rise towards rest, so F_S and v_s cannot be determined")
+        doubts.append(
+            "friction does not rise towards zero speed, so F_S and v_s cannot be determined"
+        )
     elif "exponent" not in best.parameters:
         doubts.append(
             f"the exponent is fixed at {EXPONENT:g}, but the confidence intervals allow for "

@@ -295,12 +295,13 @@ def no_windows(motion: ConditionedRecord) -> str:
         if motion.sample_time * lowest * SLOWEST > 1:
             remedy = f"sample at {SLOWEST * lowest:.3g} Hz or faster, and {remedy}"
         return (
-            f"no reversal can be used at this cut-off: {motion.cutoff:.3g} Hz blur the half second "
-            f"about a reversal, in which the deflection of bristles shows; {remedy}"
+            f"no reversal can be used, because a cut-off of {motion.cutoff:.3g} Hz blurs the half "
+            "second around a reversal, in which the deflection of the bristles shows; "
+            f"{remedy}"
         )
     return (
-        "the record has no uninterrupted half second about a reversal, where the "
-        "deflection of bristles shows"
+        "the record has no uninterrupted half second around a reversal, in which the deflection "
+        "of the bristles would show"
     )
 
 
