@@ -243,9 +243,9 @@ def lengths_below(
 
     Parameters
     ----------
-    space : model space
-    evaluated : `lengths` of the evaluation
-    skirts : start and end of the skirt to dimension, mm, if any
+    space : model space of the DXF document
+    evaluated : lengths of the evaluated design by name [m]
+    skirts : start and end of the cap's skirt over the barrel [mm]; empty if there is none
     profiles : half-sections of all parts
     paper : sizes of letters and gaps
 

@@ -617,7 +617,7 @@ def follow(
     Parameters
     ----------
     seal : seal, made dimensionless by `length` and `modulus`
-    squeeze : squeeze divided by the section of the rubber ring [-]
+    squeeze : radial compression of the rubber ring divided by its free section [-]
     groove_width : width of the groove divided by the length
     pressures : increasing pressures [Pa]
     length, modulus : reference length [m] and modulus [Pa]

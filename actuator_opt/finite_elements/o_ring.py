@@ -141,7 +141,7 @@ def squeezed_ring(
     Parameters
     ----------
     section : free section W [m]
-    squeeze : squeeze divided by the free section [-]
+    squeeze : radial compression of the ring divided by its free section [-]
     groove_width : axial width of the groove [m]
     rubber : strain energy of the rubber
     pressures : sealed pressures above the outer pressure, increasing [Pa]

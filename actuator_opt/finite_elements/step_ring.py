@@ -207,7 +207,7 @@ def squeezed_step_ring(
     Parameters
     ----------
     section : free section W of the rubber ring [m]
-    squeeze : squeeze of the rubber ring divided by its free section [-]
+    squeeze : radial compression of the rubber ring divided by its free section [-]
     groove_width : axial width of the groove [m]
     rubber : strain energy of the rubber ring
     plastic : strain energy of the slide ring

@@ -86,11 +86,11 @@ def resampled(
     linearised model remains without. A parameter whose draws reach a search limit loses its
     confidence limits.
 
-    A parameter that is not identifiable keeps the wider of both intervals: its optimum lies in a
-    flat valley, and the draws show the scatter around the optimum, not the length of the valley. So
-    do all parameters of the LuGre model if F_C has no confidence limits or no lag is fitted,
-    because the linearised intervals then contain more than scatter. The covariance of the Stribeck
-    curve stays that of the linearised model.
+    A parameter that is not identifiable gets the wider of its linearised and its resampled
+    interval: its optimum lies in a flat valley, and the draws show the scatter around the optimum,
+    not the length of the valley. So do all parameters of the LuGre model if F_C has no confidence
+    limits or no lag is fitted, because the linearised intervals then contain more than scatter. The
+    covariance of the Stribeck curve stays that of the linearised model.
 
     Parameters
     ----------

@@ -216,7 +216,7 @@ class Straight(NamedTuple):
     parts : its samples from each loading and unloading
     ends : deflections at both ends, counted from zero force [m]
     bent : change of slope along the part, divided by the slope
-    unsure : the share of `bent` that noise does not explain
+    unsure : part of `bent` that noise does not explain
     cut : whether a part of the range is left out
     """
 

@@ -233,7 +233,7 @@ def solve_film(contact: Contact, start: Film | None = None) -> Film:
 
     Returns
     -------
-    film; with `converged` False and a reason if no equilibrium exists or was reached
+    film; with `converged` False and a reason if there is no equilibrium or it was not reached
     """
     reason = fault(contact)
     if reason:

@@ -76,7 +76,7 @@ class Surface:
 
     Parameters
     ----------
-    roughness : composite root-mean-square roughness of seal and rod [m]
+    roughness : composite root-mean-square roughness sigma of seal and rod [m]
     asperity_density : summits per area [1/m^2]
     asperity_radius : radius of the summits [m]
     rod_share : (sigma_rod/sigma)^2, with the roughness sigma_rod of the rod alone [-]; 0 for a
@@ -95,8 +95,8 @@ class Elastic:
 
     Parameters
     ----------
-    youngs_modulus : [Pa]
-    poissons_ratio : [-]
+    youngs_modulus : Young's modulus [Pa]
+    poissons_ratio : Poisson's ratio [-]
     """
 
     youngs_modulus: Array

@@ -51,7 +51,7 @@ class Gap:
     profile : height of the unloaded face above the rod at uniform nodes [m]; unless the gap is
         fixed, a constant that is added to all heights has no effect
     lubricant : oil
-    speed : rod speed [m/s], positive outstroke
+    speed : rod speed [m/s], positive in the outstroke
     sealed_pressure, outer_pressure : pressures at the ends [Pa]
     line_load : load on the film, int p dx [N/m]; None for a fixed gap
     elastic : elasticity of the ring; None for a rigid ring
