@@ -564,13 +564,13 @@ def _from_windows(reversals: Windows, fixed: Mapping[str, float]) -> LuGreFit:
         if reversals.fastest < FAR * fit.values["stribeck_speed"]:
             fit = replace(fit, parameters=unbounded(fit.parameters, INSEPARABLE))
         doubt = (
-            f"F_C is the total friction at {fastest:.3g} mm/s and includes viscous friction, which "
-            "a single speed cannot separate; record plateaus or sweeps at other speeds"
+            f"F_C is the total friction level at {fastest:.3g} mm/s and includes viscous friction, "
+            "which a single speed cannot separate; record plateaus or sweeps at other speeds"
         )
     elif slides:
         doubt = (
-            f"F_C is the friction up to {fastest:.3g} mm/s, which lies between the true F_C and "
-            "F_S; record plateaus or sweeps at other speeds"
+            f"F_C is the friction level up to {fastest:.3g} mm/s, which lies between the true F_C "
+            "and F_S; record plateaus or sweeps at other speeds"
         )
     else:
         doubt = "the rod hardly slides, so the record shows bristles, but no sliding friction"

@@ -466,9 +466,8 @@ class Spectrum(NamedTuple):
             )
         if 0 < self.floor < cutoff:
             return (
-                f"99.9 % of the motion lies below {self.motion:.3g} Hz, and there is only "
-                f"noise above {self.floor:.3g} Hz; a cut-off between the two reduces noise and "
-                "loses no motion"
+                f"99.9 % of the motion lies below {self.motion:.3g} Hz, only noise lies above "
+                f"{self.floor:.3g} Hz; a cut-off between them reduces noise and loses no motion"
             )
         return f"99.9 % of the motion lies below {self.motion:.3g} Hz, within the cut-off"
 

@@ -612,9 +612,7 @@ def test_spectrum_of_a_sine_in_noise(quantum):
     assert 5.0 <= found.motion < 6.0
     assert found.motion < found.floor < 15.0
     assert found.kept == pytest.approx(1.0, abs=1e-3)
-    assert "a cut-off between the two reduces noise and loses no motion" in found.says(
-        motion.cutoff
-    )
+    assert "a cut-off between them reduces noise and loses no motion" in found.says(motion.cutoff)
     assert "within the cut-off" in found.says(found.motion + 0.1)
 
 
@@ -631,7 +629,7 @@ def test_spectrum_warns_of_motion_beyond_the_cutoff(width):
     lost = 0.04**2 / (0.04**2 + 0.04**2)
     assert found.kept == pytest.approx(1 - lost, abs=0.02)
     assert "above the cut-off, so fast motion is lost: raise --cutoff" in found.says(motion.cutoff)
-    assert "within the cut-off" in found.says(60.0) or "between the two" in found.says(60.0)
+    assert "within the cut-off" in found.says(60.0) or "between them" in found.says(60.0)
 
 
 @pytest.mark.parametrize("speed", [1e-3, 3.3e-3, 0.02])

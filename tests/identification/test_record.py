@@ -233,11 +233,11 @@ def test_columns_named_by_the_caller(header, columns):
         ("t [s],x\n0,1\n", {}, 'r.csv:1: column "x" states no unit; write e.g. "x [mm]"'),
         ("t [s],x [bar]\n0,1\n", {}, 'column "x": bar is a pressure, need a length'),
         ("t [s],p1 [baz]\n0,1\n", {}, 'column "p1": unknown unit "baz"; use one of'),
-        ("t [s],p1 [bar],p1 [bar]\n0,1,2\n", {}, "are both p1; rename or delete one"),
+        ("t [s],p1 [bar],p1 [bar]\n0,1,2\n", {}, "both name the channel p1; rename or delete one"),
         (
             "t [s],p1 [bar],PA [bar]\n0,1,2\n",
             {},
-            'both p1; choose a column with --column "p1=NAME"',
+            'both name the channel p1; choose a column with --column "p1=NAME"',
         ),
         ("t [s],x [mm]\n0,1\n\n1\n", {}, "r.csv:4: 1 cells, but the header has 2 columns"),
         ("t [s],x [mm]\n0,1\n1,2,3\n", {}, "r.csv:3: 3 cells, but the header has 2 columns"),
