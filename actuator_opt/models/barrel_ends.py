@@ -1,7 +1,8 @@
 """Axial effects in the barrel: axial force, tie rods, growth beside a pressure step.
 
 The barrel's axial force follows from how the cylinder is mounted, never from a fixed "open" or
-"closed" end; the wall's growth at the piston seal is the far-field growth times a step factor.
+"closed" end. At the piston seal, where the pressure steps, the wall grows by the far-field growth
+times `pressure_step_factor`.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Gland of an O-ring: squeeze, stretch, fill, their range in use, and the extrusion gap.
+"""Gland of an O-ring: squeeze, stretch and fill, their extremes in use, and the extrusion gap.
 
-C is the squeeze as a share of the free section W. The range covers temperature and the tolerances
-of ring and groove. The largest extrusion gap follows from a table of the seal's maker, passed as an
-argument: a row per hardness, with points of pressure and gap.
+C is the squeeze as a share of the free section W. The extremes cover temperature and the
+tolerances of ring and groove. The largest extrusion gap follows from a table of the seal's maker,
+passed as an argument: a row per hardness, with points of pressure and gap.
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ def gland_depth(*, squeeze: Array, section: Array) -> Array:
 
 @geometry
 def gland_fill(*, section: Array, groove_width: Array, gland_depth: Array) -> Array:
-    """Share of the groove the ring fills, (pi W^2/4)/(width depth).
+    """Share of the groove that the ring fills, (pi W^2/4)/(width depth).
 
     Parameters
     ----------
@@ -264,7 +264,7 @@ def volume_ratio(
     housing_expansion: Array,
     temperature_change: Array,
 ) -> Array:
-    """Ring over groove volume, relative to assembly, (1 + a_V dT)/(1 + a dT)^3.
+    """Ratio of ring to groove volume, relative to assembly, (1 + a_V dT)/(1 + a dT)^3.
 
     The groove fill at temperature is the fill at assembly times this ratio.
 
@@ -383,7 +383,7 @@ Points: TypeAlias = Sequence[tuple[Array, Array]]
 
 
 Table: TypeAlias = Sequence[tuple[Array, Points]]
-"""Rows of hardness [Shore A] and its points, hardness rising."""
+"""Rows, each a hardness [Shore A] with its points of pressure and gap, hardness rising."""
 
 
 ROUNDING = 1e-9
