@@ -24,8 +24,8 @@ from itertools import pairwise
 from ..base.numeric import Array, clip, geometry, maximum, positive, real, sqrt, where
 
 LIP_PLACES, LIP_SHARE = (0.0, 0.2, 0.6, 1.0), 0.42
-"""Knots t of the lip profile, and its pressure above p_a at the third knot as a share of its pressure
-at the second (*choice*, surrogate)."""
+"""Knots t of the lip profile; pressure above p_a at the third knot divided by the pressure at the
+second (*choice*, surrogate)."""
 O_RING_POWER = 10
 """Exponent of the part that the sealed pressure p adds, p (1 - t^10). It is within 0.18 p of this
 project's finite-element profiles at a squeeze of 0.10 to 0.20 and p up to E; the difference is

@@ -153,7 +153,10 @@ def modulus_bounds(*, hardness: Array, hardness_scatter: Array) -> tuple[Array, 
 
 
 def _stiffening(temperature: Array, stiffening_temperature: Array) -> Array:
-    """Modulus / its rubbery plateau: 10 at the stiffening temperature, near 1 far above it."""
+    """Modulus divided by its rubbery plateau.
+
+    The ratio is 10 at the stiffening temperature and tends to 1 far above it.
+    """
     glass = stiffening_temperature - GLASS_OFFSET
     above = maximum(temperature - glass, 0.0)
     decades = WLF_SLOPE * (GLASS_OFFSET / (WLF_SPAN + GLASS_OFFSET) - above / (WLF_SPAN + above))

@@ -131,7 +131,7 @@ def quarter_wave_frequency(*, length: Array, sound_speed: Array) -> Array:
     """First quarter-wave frequency of a plugged branch, f = a/(4 l).
 
     At odd multiples of f, pressure oscillates at the plugged end, and oil flows in and out of the
-    mouth without any pressure there. At even multiples, no oil flows through the mouth.
+    mouth without any pressure swing there. At even multiples, no oil flows through the mouth.
 
     Parameters
     ----------

@@ -62,8 +62,8 @@ def hung_plate_stress(
 ) -> Array:
     """Largest bending stress of a cap under pressure, hung on a skirt wider than the bore.
 
-    For a plate simply supported at radius a with pressure on r < c, the stress is 6 M/t^2 with
-    M = (p c^2/4) [(1 + nu) ln(a/c) + 1 - (1 - nu) c^2/(4 a^2)] at the centre.
+    For a plate simply supported at radius a with pressure on r < c, the stress at the centre
+    is 6 M/t^2 with M = (p c^2/4) [(1 + nu) ln(a/c) + 1 - (1 - nu) c^2/(4 a^2)].
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ def tube_mass(
 
 @geometry
 def layer_area(*, inner_radius: Array, thickness: Array) -> Array:
-    """Section of a layer around a tube, pi t (2 r + t), without a difference of near numbers.
+    """Cross-section of a layer of a tube, pi t (2 r + t), exact to rounding for thin layers too.
 
     Parameters
     ----------

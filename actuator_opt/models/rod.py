@@ -219,7 +219,7 @@ def free_modulus(*, wall: Sequence[Array]) -> Array:
 
     Parameters
     ----------
-    wall : zz, zt, zr, tt, tr, rr, ... in tube axes, from `solid_ply.solid_rotated` [Pa]
+    wall : stiffnesses zz, zt, zr, tt, tr, rr, ... in tube axes, from `solid_ply.solid_rotated` [Pa]
 
     Returns
     -------
@@ -255,7 +255,7 @@ def layered_section(
 
     Parameters
     ----------
-    walls : of each layer from the bore outwards: zz, zt, zr, tt, tr, rr, ..., ss in tube axes,
+    walls : stiffnesses zz, zt, zr, tt, tr, rr, ..., ss of each layer from the bore, in tube axes,
         from `solid_ply.solid_rotated` [Pa]
     thicknesses : thickness of each layer [m]
     inner_diameter : bore of the tube [m]
@@ -266,7 +266,8 @@ def layered_section(
 
     Notes
     -----
-    Valid: layers of balanced pairs; about 1 % low, as sum E_z A is beside the exact tube's EA.
+    Valid: layers of balanced pairs; about 1 % low, like sum E_z A compared with EA of the exact
+    tube.
 
     References
     ----------

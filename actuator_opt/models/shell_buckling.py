@@ -109,7 +109,7 @@ def local_shell_force(
 
 @geometry
 def bending_shell_knockdown(*, radius: Array, thickness: Array) -> Array:
-    """Knock-down of a bent thin shell's buckling stress: less than in compression.
+    """Knock-down factor of a bent thin shell's buckling stress, closer to 1 than in compression.
 
     gamma = 1 - 0.731 (1 - exp(-sqrt(R/t)/16)): only part of the wall sees the largest stress.
 
