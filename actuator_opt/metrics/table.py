@@ -1,4 +1,4 @@
-"""Table of all metrics: quantity, worst value, model, inherited warnings, check, labels.
+"""Table of all metrics: quantity, worst value, model, sources of warnings, check line, labels.
 
 Evaluation, check list, limits of the optimiser, warnings, tables, reports, JSON Schema and help all
 use this table. To add a metric, write a row here and a line that computes it (`MetricArrays.put`).
@@ -443,7 +443,7 @@ ROWS = table((
                           "our choice: the depth that tolerance 6g leaves at a pitch of 1 mm")),
 ))
 # fmt: on
-"""Every metric by name."""
+"""Declaration of every metric, by name."""
 
 METRICS: Mapping[str, Quantity] = MappingProxyType(
     {name: row.quantity for name, row in ROWS.items()}

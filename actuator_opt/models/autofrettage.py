@@ -166,7 +166,7 @@ def _contact(liner: _Liner, wrap: LayeredTube | None, change: Array) -> _Contact
 
 
 def _spread(xp: Any, kappa: Array, depth: Array) -> Array:
-    """Root x of y - m (e^y - 1) + s = 0, y = ln x <= 0, for s = `depth` > 0."""
+    """Root x of y - m (e^y - 1) + s = 0, y = ln x <= 0, m = 1 - 2 `kappa`, s = `depth` > 0."""
     near, rest = 2 * real(kappa), real(depth)
     bend = 1 - near
     y = -2 * rest / (near + xp.sqrt(near * near + 2 * maximum(bend, 0 * bend) * rest))

@@ -35,7 +35,7 @@ MODES = (
     "shear",
     "yield",
 )
-"""Names of the failure modes by their code in a ladder."""
+"""Names of the failure modes, in the order of their codes."""
 
 _YIELD = 6
 _NONE = 1e-300

@@ -113,7 +113,7 @@ def mixture_bulk_modulus(
 def pressure_rate(
     *, flow: Array, volume: Array, volume_rate: Array, bulk_modulus: Array, compliance: Array = 0.0
 ) -> Array:
-    """Pressure rise of a chamber, dp/dt = (q - dV/dt)/(V/K_eff + C_wall).
+    """Rate of the pressure in a chamber, dp/dt = (q - dV/dt)/(V/K_eff + C_wall).
 
     Parameters
     ----------
@@ -149,7 +149,8 @@ def _shares(
 ) -> tuple[Array, Array, Array]:
     """Change of the oil volume f - 1, gas volume alpha r, and -d(f + alpha r)/dp.
 
-    `total` is the absolute pressure; the gauge `pressure` keeps the digits that `total` loses.
+    `total` is the absolute pressure. If the gauge `pressure` is known too, pass it: its small
+    values have more digits.
     """
     modulus, slope, air, index, atmosphere = law
     strain = (total - atmosphere if pressure is None else pressure) / modulus

@@ -86,7 +86,7 @@ def modulus_ruess(*, hardness: Array) -> Array:
 
 
 class ModulusFunction(Protocol):
-    """Young's modulus (Pa) from Shore A hardness."""
+    """Function that gives Young's modulus (Pa) from Shore A hardness."""
 
     def __call__(self, *, hardness: Array) -> Array:
         """Evaluate at a hardness (Shore A)."""
@@ -125,7 +125,7 @@ def modulus_bounds(*, hardness: Array, hardness_scatter: Array) -> tuple[Array, 
     Parameters
     ----------
     hardness : S [Shore A]
-    hardness_scatter : s, both ways (a batch: 5) [Shore A]
+    hardness_scatter : s, half the width of the scatter (within a batch: 5) [Shore A]
 
     Returns
     -------
@@ -181,7 +181,7 @@ def temperature_factor(
     Parameters
     ----------
     temperature : [K]
-    reference_temperature : where hardness or modulus was measured [K]
+    reference_temperature : at which hardness or modulus was measured [K]
     softening : b, relative fall per kelvin [1/K]; an unfilled ideal rubber stiffens, b = -1/T_ref
     stiffening_temperature : T_10, where the modulus is ten times its plateau (torsion test); TR10
         of a data sheet lies within a few kelvin [K]

@@ -186,7 +186,7 @@ def cushion_pressure(
 
     Notes
     -----
-    Valid: stiff oil: the flow follows the speed; sharp edges.
+    Valid: stiff oil (the flow follows the speed at once); sharp edges.
 
     References
     ----------

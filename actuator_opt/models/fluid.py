@@ -17,7 +17,7 @@ ATMOSPHERIC_PRESSURE = 101325.0
 LEAST_VISCOSITY = 2e-6
 """Kinematic viscosity down to which ASTM D341 holds in the form used here, m^2/s."""
 BARUS_PRESSURE, ROELANDS_PRESSURE, LINEAR_PRESSURE = 1e8, 1e9, 500e5
-"""Gauge pressures up to which the laws of viscosity and of a linear bulk modulus hold, Pa."""
+"""Gauge pressures up to which Barus's law, Roelands's law and the linear bulk modulus hold, Pa."""
 
 
 def viscosity_astm_d341(

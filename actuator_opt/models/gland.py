@@ -84,7 +84,7 @@ def stretched_section(*, section: Array, stretch: Array) -> Array:
 
 @geometry
 def gland_depth(*, squeeze: Array, section: Array) -> Array:
-    """Radial room of the ring, gland depth = W (1 - C).
+    """Radial space for the ring, gland depth = W (1 - C).
 
     Parameters
     ----------
@@ -348,7 +348,7 @@ def squeeze_extremes(
     ----------
     squeeze : nominal C [-]
     section : free section W [m]
-    section_tolerance : half width t_W [m]
+    section_tolerance : half the tolerance width of the section, t_W [m]
     depth_tolerance : half the tolerance width of the radial space, t_d [m]
     eccentricity : of rod or piston e, at most its radial clearance [m]
 
@@ -387,7 +387,7 @@ Table: TypeAlias = Sequence[tuple[Array, Points]]
 
 
 ROUNDING = 1e-9
-"""Relative excess over a table's last pressure that counts as rounding."""
+"""Share by which a pressure may exceed a table's last pressure and still count as equal to it."""
 
 
 def gap_limit(*, pressure: Array, points: Points) -> Array:
@@ -404,7 +404,7 @@ def gap_limit(*, pressure: Array, points: Points) -> Array:
 
     Notes
     -----
-    Valid: up to the last point; below the first the held value is on the safe side.
+    Valid: up to the last point; below the first point, the constant value is on the safe side.
 
     `backed_gap_limit` chooses between the limits of a seal and of its back-up ring.
 
@@ -422,7 +422,7 @@ def gap_limit(*, pressure: Array, points: Points) -> Array:
 
 
 def extrusion_gap_limit(*, hardness: Array, pressure: Array, table: Table) -> Array:
-    """Largest gap at a hardness and a pressure, ln g linear in both, held beyond the table.
+    """Largest gap at a hardness and a pressure, ln g linear in both, constant beyond the table.
 
     Parameters
     ----------

@@ -115,7 +115,7 @@ def valve_slopes(
     Parameters
     ----------
     rated_coefficient, leakage_coefficient : K10 and K0 [m^3/s/sqrt(Pa)]
-    signal : U_max [V]
+    signal : U_max, at which the edge has the rated coefficient [V]
     supply_pressure, return_pressure, pressure_a, pressure_b : gauge [Pa]
     extending : True for U > 0 (P to A, B to T) [-]
     leakage_tank : K0 of A-T and B-T, if different [m^3/s/sqrt(Pa)]

@@ -151,7 +151,7 @@ def linear_actuator(
 
 
 def dynamic_stiffness(*, model: LinearActuator, frequency: Array) -> Parts:
-    """Dynamic stiffness F/x = N(i omega)/M(i omega) in its real and imaginary part.
+    """Dynamic stiffness F/x = N(i omega)/M(i omega) as real and imaginary part.
 
     Parameters
     ----------

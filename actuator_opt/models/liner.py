@@ -127,11 +127,11 @@ def layer_thickness_for_strain(
     Raises
     ------
     ValueError
-        Where no thickness up to the largest reaches the strain.
+        Where even the largest thickness leaves the strain above the limit.
 
     Notes
     -----
-    Valid: as `tube_state`; where the strain does not fall steadily, one of several answers.
+    Valid: as `tube_state`; where the strain does not fall steadily, one of several solutions.
 
     References
     ----------

@@ -318,7 +318,7 @@ def series_impedance(
 
 
 def _profile(xp: Any, square: Array) -> Array:
-    """w^2/(1 - 2 I1(w)/(w I0(w))) of w^2: 8 + 4 w^2/3 for small, w^2 + 2 w + ... for large w.
+    """w^2/(1 - 2 I1(w)/(w I0(w))) from w^2: 8 + 4 w^2/3 for small, w^2 + 2 w + ... for large w.
 
     With x_n = I_n/(w I_(n-1)) = 1/(2 n + w^2 x_(n+1)) the value is 1/(x_1 x_2).
     """

@@ -213,5 +213,5 @@ def reflected_inertia(*, inertia: Array, lever_arm: Array, lever_slope: Array) -
 
 
 def _infinite(value: Array) -> Array:
-    """Infinity with the sign of a real value, 0 of zero."""
+    """Infinity with the sign of a real value; 0 if the value is zero."""
     return where(value > 0, math.inf, where(value < 0, -math.inf, 0.0 * value))

@@ -25,7 +25,7 @@ is exact to rounding."""
 
 @geometry
 def lip_interference(*, section: Array, gland_depth: Array) -> Array:
-    """Interference of the sliding lip, delta = (W - depth)/2: both lips give way alike.
+    """Interference of the sliding lip, delta = (W - depth)/2: both lips deflect equally.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def lip_interference(*, section: Array, gland_depth: Array) -> Array:
 
     Notes
     -----
-    Valid: two like lips, body free to settle radially; a clamped body: twice as much.
+    Valid: two like lips, body free to settle radially; with a clamped body, twice as much.
 
     References
     ----------
@@ -122,7 +122,7 @@ def lip_free_span(
     lip_thickness: Array,
     lip_length: Array,
 ) -> Array:
-    """Length of the lip that does not lie on the surface, root of p s^4/(72 D) + theta s/3 = g.
+    """Length s of the lip that does not lie on the surface: root of p s^4/(72 D) + theta s/3 = g.
 
     theta = (g + delta)/l is the slope of the free lip, g the clearance at its root; s = l while
     only the rim touches, so the lip lies down above p = 24 D (2 g - delta)/l^4.

@@ -40,7 +40,7 @@ class Mode(NamedTuple):
 
 
 def _without_integrators(polynomial: Polynomial) -> Polynomial:
-    """Roots at zero (coefficients that are the number 0) divided out."""
+    """Divide out roots at zero: the lowest coefficients, if they are the plain number 0."""
     start = 0
     for coefficient in polynomial:
         if not (isinstance(coefficient, (int, float)) and coefficient == 0):
@@ -204,7 +204,7 @@ def _crossings(polynomial: Polynomial) -> np.ndarray:
 
 
 def _value(polynomial: Polynomial, point: Array) -> Array:
-    """Value at a real point."""
+    """Value of a polynomial at a real point."""
     value: Array = 0.0
     for coefficient in reversed(polynomial):
         value = value * point + coefficient
@@ -390,11 +390,11 @@ that the linear loop leaves out)."""
 
 
 _ZIEGLER_NICHOLS = {"p": (0.5, None, 0.0), "pi": (0.45, 1 / 1.2, 0.0), "pid": (0.6, 1 / 2, 1 / 8)}
-"""K/K_u, T_i/T_u and T_d/T_u."""
+"""K/K_u, T_i/T_u and T_d/T_u of each controller."""
 
 
 class ControllerGains(NamedTuple):
-    """Gain and times of a controller."""
+    """Gain, integral time and derivative time of a controller."""
 
     proportional_gain: Array
     """K, in the unit of the ultimate gain."""

@@ -239,7 +239,7 @@ def lugre_rate(*, deflection: Array, speed: Array, level: Array, bristle_stiffne
 
     Notes
     -----
-    Valid: |z| <= F_S/sigma0, which it keeps.
+    Valid: |z| <= F_S/sigma0; this rate keeps z in the range.
 
     References
     ----------

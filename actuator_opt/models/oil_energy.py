@@ -18,7 +18,7 @@ def oil_energy_density(
     polytropic_index: Array = 1.4,
     atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
 ) -> Array:
-    """Elastic energy of oil and air per volume of both together, e = (u_oil + alpha u_air)/(f + alpha r).
+    """Elastic energy of oil and air per total volume, e = (u_oil + alpha u_air)/(f + alpha r).
 
     u = -integral of p dw from 0 to p, with the volume w per volume of oil at zero gauge pressure:
     u_oil = K (f^(1-m) - 1)/(m - 1) - p f, f = (1 + m p/K)^(-1/m), or K (1 - f) - p f with

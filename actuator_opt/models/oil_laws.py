@@ -139,7 +139,7 @@ def thermal_pressure_slope(
 
 
 TAIT_PRESSURE, TAIT_TEMPERATURES = 350e5, (273.15, 423.15)
-"""Largest gauge pressure (Pa) and temperature range (K) of the generic oil's constants."""
+"""Largest gauge pressure (Pa) and temperature range (K) for the generic oil's Tait constants."""
 
 
 def _zero_pressure_modulus(zero_modulus: Array, coefficient: Array, temperature: Array) -> Array:

@@ -57,7 +57,7 @@ def one_way_flow(
 
     Notes
     -----
-    Valid: slower than the poppet, which answers within about 1 ms.
+    Valid: changes slower than the poppet, which responds within about 1 ms.
 
     References
     ----------
@@ -168,7 +168,7 @@ def one_way_pressure_drop(
 
     Notes
     -----
-    Valid: slower than the poppet, which answers within about 1 ms.
+    Valid: changes slower than the poppet, which responds within about 1 ms.
 
     References
     ----------

@@ -14,9 +14,9 @@ import math
 from ..base.numeric import Array, absolute, geometry, namespace, real, sqrt, where
 
 TURBULENT_COEFFICIENT = 0.611
-"""C of a sharp edge, pi/(pi + 2) [AaltoThesis]."""
+"""Discharge coefficient C of a sharp edge, pi/(pi + 2) [AaltoThesis]."""
 LAMINAR_COEFFICIENT = 0.2
-"""delta of a round sharp-edged hole; a long slot has 0.157 [Merritt1967]."""
+"""Laminar coefficient delta of a round sharp-edged hole; a long slot has 0.157 [Merritt1967]."""
 
 
 def discharge_coefficient(

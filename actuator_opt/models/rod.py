@@ -116,8 +116,8 @@ def axial_stiffness_as_published(
 ) -> Array:
     """Rod stiffness with the source's inputs: a solid section and a bending modulus.
 
-    k = E pi d^2/(4 L). The published 13 430 N/mm means E/L = 118.75 N/mm^3 for 12 mm: 13.1 GPa
-    with the table's stroke of 110 mm, 17.8 GPa with the 150 mm of the text.
+    k = E pi d^2/(4 L). The published 13 430 N/mm means E/L = 118.75 N/mm^3 for a 12 mm rod: 13.1
+    GPa with the table's stroke of 110 mm, 17.8 GPa with the 150 mm of the text.
 
     Parameters
     ----------

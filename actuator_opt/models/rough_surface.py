@@ -29,7 +29,7 @@ _WEIGHTS = {
     )
     for order, power in _ORDERS.items()
 }
-"""Weights of the trapezium sum at each height, by order."""
+"""Weights of the trapezium sum at each height, by the order of the asperity integral."""
 _PLACES, _SHARES = (tuple(part.tolist()) for part in np.polynomial.legendre.leggauss(32))
 """Nodes and weights of Gauss and Legendre on -1 to 1."""
 _FLATTEST = 15.0
@@ -125,7 +125,7 @@ def asperity_stiffness(
     asperity_radius: Array,
     roughness: Array,
 ) -> Array:
-    """Factor of the asperity contact pressure, (4/3) E/(1 - nu^2) eta_a sqrt(R) sigma^1.5.
+    """Factor between F_3/2 and asperity pressure, (4/3) E/(1 - nu^2) eta_a sqrt(R) sigma^1.5.
 
     Parameters
     ----------

@@ -101,7 +101,7 @@ class SealLaw:
     reference: str
 
     def in_range(self, *, squeeze: Array, youngs_modulus: Array, pressure: Array) -> Array:
-        """Whether squeeze and pressure are in the range compared with data (booleans)."""
+        """Whether the law was compared with data at this squeeze and pressure (booleans)."""
         c, p = real(squeeze), real(pressure) / real(youngs_modulus)
         low, high = self.squeeze_range
         return (
@@ -150,7 +150,7 @@ class EnergisedRing:
     def contact_width(
         self, *, squeeze: Array, section: Array, youngs_modulus: Array, pressure: Array
     ) -> Array:
-        """Width b [m]."""
+        """Contact width b [m]."""
         touching = real(squeeze) > 0
         c = where(touching, squeeze, 1.0)
         mounted, _ = self._mounted(c)
@@ -162,7 +162,7 @@ class EnergisedRing:
     def line_load(
         self, *, squeeze: Array, section: Array, youngs_modulus: Array, pressure: Array
     ) -> Array:
-        """Normal force per length f [N/m]."""
+        """Normal force per length of circumference, f [N/m]."""
         width = self.contact_width(
             squeeze=squeeze, section=section, youngs_modulus=youngs_modulus, pressure=pressure
         )

@@ -84,7 +84,7 @@ def local_shell_force(
     -----
     Valid: thin shells longer than about their radius.
 
-    With bending P/P_cr + M/M_cr <= 1, M_cr by `local_shell_moment`.
+    Combined with bending, P/P_cr + M/M_cr <= 1 must hold, with M_cr from `local_shell_moment`.
 
     References
     ----------
@@ -150,7 +150,7 @@ def local_shell_moment(
 ) -> Array:
     """Bending moment at which the wall of a tube buckles locally, or a long tube flattens.
 
-    The lower of pi R^2 t sigma = pi gamma E R t^2/sqrt(3 (1 - nu^2)) and Brazier's
+    The result is the lower of pi R^2 t sigma = pi gamma E R t^2/sqrt(3 (1 - nu^2)) and Brazier's
     (2 sqrt(2) pi/9) E R t^2/sqrt(1 - nu^2); the second governs up to R/t of about 240.
 
     Parameters

@@ -285,9 +285,9 @@ def mode_shear_stiffness(
 ) -> Array:
     """Shear stiffness of a stepped column in its buckling mode, for `column.engesser_load`.
 
-    1/S = (a_1/S_1 + a_2/S_2)/e: a_i = int (M'/P)^2 over segment i, e = int w'^2 over both, for the
-    buckling mode in bending. M'' = -k_i^2 M, so the a_i have closed forms. For a statically
-    determinate column S_1 = S_2 gives S = S_1.
+    1/S = (a_1/S_1 + a_2/S_2)/e: a_i = int (M'/P)^2 over segment i, e = int w'^2 over both, with the
+    moment M and the deflection w of the buckling mode in bending. M'' = -k_i^2 M, so the a_i have
+    closed forms. For a statically determinate column S_1 = S_2 gives S = S_1.
 
     Parameters
     ----------
