@@ -162,7 +162,7 @@ def local_shell_stress(
     thickness : wall thickness [m]
     radius : mid-radius [m]
     poissons_ratio : Poisson's ratio; sqrt(nu_ztheta nu_thetaz) of a laminate [-]
-    knockdown : gamma [-]; None takes `local_shell_knockdown`, 1 the classical stress
+    knockdown : gamma [-]; None takes `local_shell_knockdown`, 1 gives the classical stress
 
     Returns
     -------

@@ -47,7 +47,7 @@ def contact_width(*, squeeze: Array, face_width: Array, groove_width: Array) -> 
 
     Parameters
     ----------
-    squeeze : C of the free radial height [-]
+    squeeze : C, as a share of the free radial height [-]
     face_width : free width w of the sliding face [m]
     groove_width : space between the guide parts [m]
 
@@ -89,7 +89,7 @@ def line_load(
 
     Parameters
     ----------
-    squeeze : C of the free radial height [-]
+    squeeze : C, as a share of the free radial height [-]
     face_width : free width w of the sliding face [m]
     youngs_modulus, poissons_ratio : of the elastomer [Pa], [-]
     pressure : difference across the seal [Pa]

@@ -27,7 +27,7 @@ def stop_stiffness(*, area: Array, pressure: Array, travel: Array = STOP_TRAVEL)
     ----------
     area : piston area A_A [m^2]
     pressure : supply pressure p_P, gauge [Pa]
-    travel : travel over which the stop takes A_A p_P [m]
+    travel : compression at which the force of the stop is A_A p_P [m]
 
     Returns
     -------

@@ -298,7 +298,7 @@ def effective_bulk_modulus(
     Parameters
     ----------
     bulk_modulus : tangent value of the pure oil at this pressure [Pa]
-    pressure : gauge pressure [Pa]; below -0.9 p_a the value at -0.9 p_a (cavitation)
+    pressure : gauge pressure [Pa]; below -0.9 p_a, the value at -0.9 p_a is used
     air_content : alpha, volume of free air / volume of oil at atmospheric pressure [-]
     polytropic_index : n [-]: 1.4 fast (adiabatic), 1.0 slow (isothermal)
     atmospheric_pressure : absolute [Pa]

@@ -126,7 +126,7 @@ def stribeck_level(
     Parameters
     ----------
     speed : [m/s]
-    coulomb, static : F_C, F_S [N]
+    coulomb, static : Coulomb and breakaway friction F_C, F_S [N]
     stribeck_speed : v_s [m/s]
     exponent : delta [-]
 
@@ -168,7 +168,7 @@ def stribeck(
     Parameters
     ----------
     speed : [m/s], signed
-    coulomb, static : [N]
+    coulomb, static : Coulomb and breakaway friction F_C, F_S [N]
     stribeck_speed : [m/s] (papers print mm/s)
     exponent : delta [-]
     viscous : sigma2 [N s/m]
@@ -227,7 +227,7 @@ def stribeck_slope(
     Parameters
     ----------
     speed : [m/s]
-    coulomb, static : [N]
+    coulomb, static : Coulomb and breakaway friction F_C, F_S [N]
     stribeck_speed : [m/s]
     exponent : delta [-]
     viscous : sigma2 [N s/m]

@@ -26,7 +26,7 @@ def squeeze_after(*, squeeze: Array, section: Array, growth: Array, tolerance: A
 
     Parameters
     ----------
-    squeeze : at assembly, of the free section [-]
+    squeeze : at assembly, as a share of the free section [-]
     section : free section W [m]
     growth : radial bore growth at the seal [m]
     tolerance : radial gland tolerance to the loose side [m]
@@ -88,7 +88,7 @@ def gland_depth(*, squeeze: Array, section: Array) -> Array:
 
     Parameters
     ----------
-    squeeze : of the free section [-]
+    squeeze : as a share of the free section [-]
     section : free section W [m]
 
     Returns
@@ -233,9 +233,9 @@ def back_up_groove_width(*, groove_width: Array, thickness: Array, count: Array)
 
     Parameters
     ----------
-    groove_width : of the ring alone g [m]
-    thickness : axial, of one back-up ring with its play t [m]
-    count : number of back-up rings n [-]
+    groove_width : for the ring alone, g [m]
+    thickness : axial, of one back-up ring with its play, t [m]
+    count : number of back-up rings, n [-]
 
     Returns
     -------
@@ -270,9 +270,9 @@ def volume_ratio(
 
     Parameters
     ----------
-    volume_expansion : of the rubber a_V [1/K]
-    housing_expansion : linear, of the metal around the ring a [1/K]
-    temperature_change : since assembly dT [K]
+    volume_expansion : of the rubber, a_V [1/K]
+    housing_expansion : linear, of the metal around the ring, a [1/K]
+    temperature_change : since assembly, dT [K]
 
     Returns
     -------
@@ -305,7 +305,7 @@ def squeeze_at_volume(*, squeeze: Array, volume_ratio: Array) -> Array:
 
     Parameters
     ----------
-    squeeze : at assembly C [-]
+    squeeze : at assembly, C [-]
     volume_ratio : r, ring volume / groove volume, relative to assembly (`volume_ratio`) [-], > 0
 
     Returns
@@ -346,11 +346,11 @@ def squeeze_extremes(
 
     Parameters
     ----------
-    squeeze : nominal C [-]
+    squeeze : nominal, C [-]
     section : free section W [m]
     section_tolerance : half the tolerance width of the section, t_W [m]
     depth_tolerance : half the tolerance width of the radial space, t_d [m]
-    eccentricity : of rod or piston e, at most its radial clearance [m]
+    eccentricity : of rod or piston, e; at most its radial clearance [m]
 
     Returns
     -------

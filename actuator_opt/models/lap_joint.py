@@ -86,7 +86,7 @@ def bond_edge_shear(
     diameter : diameter of the bond surface [m]
     length : overlap [m]
     shear_modulus, bond_thickness : G and thickness of the adhesive [Pa], [m]
-    membrane_stiffness_loaded, membrane_stiffness_free : axial E t of the two walls [N/m]
+    membrane_stiffness_loaded, membrane_stiffness_free : K_l and K_f, axial E t of the walls [N/m]
 
     Returns
     -------

@@ -276,7 +276,7 @@ def series_impedance(
     inner_diameter : [m]
     density : [kg/m^3]
     dynamic_viscosity : [Pa s]; > 0 for `distributed`
-    friction : name of the friction model: `lossless`, `steady` or `distributed`
+    friction : name of the friction model, `lossless`, `steady` or `distributed` [-]
 
     Returns
     -------

@@ -29,7 +29,7 @@ def lip_interference(*, section: Array, gland_depth: Array) -> Array:
 
     Parameters
     ----------
-    section : free radial height over both lips W [m]
+    section : free radial height over both lips, W [m]
     gland_depth : radial space [m]
 
     Returns

@@ -324,8 +324,8 @@ def ring_mass(*, density: Array, area: Array, centre_diameter: Array) -> Array:
     Parameters
     ----------
     density : [kg/m^3]
-    area : of the section A [m^2]
-    centre_diameter : diameter through the centroid of the section D_m [m]
+    area : of the section, A [m^2]
+    centre_diameter : diameter through the centroid of the section, D_m [m]
 
     Returns
     -------

@@ -110,8 +110,8 @@ def thermal_pressure_slope(
 
     Parameters
     ----------
-    volume_expansion : of the oil [1/K]
-    wall_expansion_axial, wall_expansion_hoop : linear expansions of the wall [1/K]
+    volume_expansion : alpha_V of the oil [1/K]
+    wall_expansion_axial, wall_expansion_hoop : alpha_z, alpha_theta of the wall [1/K]
     bulk_modulus : tangent value with air [Pa]
     wall_compliance_per_volume : (dV/dp)/V of the wall [1/Pa]
 
@@ -169,7 +169,7 @@ def density_tait(
     pressure : gauge [Pa]
     reference_density : at T0 and zero gauge pressure [kg/m^3]
     volume_expansion : [1/K]
-    zero_modulus, temperature_coefficient : of K0, c [Pa], [1/K]
+    zero_modulus, temperature_coefficient : for K0 = zero_modulus exp(-c T) [Pa], [1/K]
     pressure_coefficient : B [-]
 
     Returns
@@ -212,7 +212,7 @@ def bulk_modulus_tait(
     ----------
     temperature : [K]
     pressure : gauge [Pa]
-    zero_modulus, temperature_coefficient : of K0, c [Pa], [1/K]
+    zero_modulus, temperature_coefficient : for K0 = zero_modulus exp(-c T) [Pa], [1/K]
     pressure_coefficient : B [-]
 
     Returns

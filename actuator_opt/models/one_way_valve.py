@@ -44,11 +44,11 @@ def one_way_flow(
 
     Parameters
     ----------
-    pressure_difference : chamber less line [Pa], either sign
+    pressure_difference : chamber minus line [Pa], either sign
     density : [kg/m^3]
     dynamic_viscosity : [Pa s]
-    opening : share of the needle's area, 0 to 1 [-]
-    needle_area, check_area : fully open [m^2]
+    opening : open share of the needle's area, 0 to 1 [-]
+    needle_area, check_area : when fully open [m^2]
     cracking_pressure, opening_span : [Pa]
 
     Returns
@@ -97,11 +97,11 @@ def one_way_conductance(
 
     Parameters
     ----------
-    pressure_difference : mean value, chamber less line [Pa], either sign
+    pressure_difference : mean value, chamber minus line [Pa], either sign
     density : [kg/m^3]
     dynamic_viscosity : [Pa s]
-    opening : share of the needle's area, 0 to 1 [-]
-    needle_area, check_area : fully open [m^2]
+    opening : open share of the needle's area, 0 to 1 [-]
+    needle_area, check_area : when fully open [m^2]
     cracking_pressure, opening_span : [Pa]
 
     Returns
@@ -158,13 +158,13 @@ def one_way_pressure_drop(
     flow : [m^3/s], positive out of the chamber (throttled)
     density : [kg/m^3]
     dynamic_viscosity : [Pa s]
-    opening : share of the needle's area, 0 to 1 [-]
-    needle_area, check_area : fully open [m^2]; check_area > 0
+    opening : open share of the needle's area, 0 to 1 [-]
+    needle_area, check_area : when fully open [m^2]; check_area > 0
     cracking_pressure, opening_span : [Pa]
 
     Returns
     -------
-    pressure difference, chamber less line [Pa]; infinite for flow out through a closed needle
+    pressure difference, chamber minus line [Pa]; infinite for flow out through a closed needle
 
     Notes
     -----

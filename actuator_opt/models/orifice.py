@@ -107,7 +107,7 @@ def orifice_flow(
 
     Parameters
     ----------
-    area : [m^2]; 0 closed
+    area : [m^2]; 0 if closed
     pressure_difference : [Pa], either sign
     density : [kg/m^3]
     dynamic_viscosity : [Pa s]; 0 gives the plain square root
@@ -161,7 +161,7 @@ def orifice_conductance(
 
     Parameters
     ----------
-    area : [m^2]; 0 closed
+    area : [m^2]; 0 if closed
     pressure_difference : mean value [Pa], either sign
     density : [kg/m^3]
     dynamic_viscosity : [Pa s]

@@ -81,12 +81,12 @@ class SealLaw:
     name : registry key, named in every result
     help : meaning of the name in a design file
     line_load : normal force per length of circumference, N/m
-    contact_width : m (limit it by `gland.limited_width`)
+    contact_width : width of the contact, m (limit it by `gland.limited_width`)
     peak_pressure : highest contact pressure, Pa gauge
-    squeeze_limits : squeezes a design may have with this law, -; outside, its width exceeds the
+    squeeze_limits : squeezes a design may have with this law, -; outside, the width exceeds the
         free section or its load is meaningless (compared with finite elements at 0.08 to 0.30)
     squeeze_range : squeezes at which the law was compared with data, -
-    pressure_range : pressures over Young's modulus at which it was compared with data, -
+    pressure_range : pressure / Young's modulus at which the law was compared with data, -
     reference : source
     """
 
@@ -129,7 +129,7 @@ class EnergisedRing:
 
     Parameters
     ----------
-    dry_force : a, b [-]
+    dry_force : a and b of the force without oil pressure [-]
     narrowing : c, which reduces Hertz's width where the squeeze is not small [-]
     growth : d and e; (b/W)^2 grows by d + e C at infinite pressure [-]
     half_pressure : h, the p/E at which half of that growth is reached [-]

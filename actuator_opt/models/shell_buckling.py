@@ -74,7 +74,7 @@ def local_shell_force(
     thickness : wall thickness [m]
     radius : mid-radius [m]
     poissons_ratio : Poisson's ratio; sqrt(nu_ztheta nu_thetaz) of a laminate [-]
-    knockdown : gamma [-]; None takes `column.local_shell_knockdown`, 1 the classical force
+    knockdown : gamma [-]; None takes `column.local_shell_knockdown`, 1 gives the classical force
 
     Returns
     -------
@@ -159,7 +159,7 @@ def local_shell_moment(
     thickness : wall thickness [m]
     radius : mid-radius [m]
     poissons_ratio : Poisson's ratio; sqrt(nu_ztheta nu_thetaz) of a laminate [-]
-    knockdown : gamma [-]; None takes `bending_shell_knockdown`, 1 the classical stress
+    knockdown : gamma [-]; None takes `bending_shell_knockdown`, 1 gives the classical stress
 
     Returns
     -------
