@@ -266,8 +266,7 @@ def layered_section(
 
     Notes
     -----
-    Valid: layers of balanced pairs; about 1 % low, like sum E_z A compared with EA of the exact
-    tube.
+    Valid: layers of balanced pairs; about 1 % low, like sum E_z A against EA of the exact tube.
 
     References
     ----------
