@@ -413,7 +413,7 @@ def checks() -> tuple[Check, ...]:
             0.22,
             "stance",
             "liner",
-            "our choice: 1.5 on the yield strength of every metal part",
+            "our choice: factor 1.5 against yield of every metal part",
         ),
         Check(
             "proof pressure (yield or first ply)",
