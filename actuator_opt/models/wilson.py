@@ -4,7 +4,7 @@ Motor and pump are one machine with two sign conventions. A motor counts flow an
 difference from inlet to outlet and delivers torque. A pump counts the pressure difference from
 outlet to inlet and takes torque; its flow and torque are those of the motor at -dp, with the torque
 reversed. Friction acts against the speed in every quadrant, so neither delivers more power than it
-takes. Losses do not shrink with the setting. The source writes mu as nu rho
+takes. Losses do not decrease with the setting of the displacement. The source writes mu as nu rho
 (`fluid.dynamic_viscosity`).
 """
 
@@ -15,7 +15,8 @@ import math
 from ..base.numeric import Array, absolute, namespace, positive
 
 SIGN_SPEED = 0.5
-"""w_0 of tanh(w/w_0) for sgn w, rad/s (a choice: 5 rpm, where Coulomb friction is ill known)."""
+"""Speed w_0 in tanh(w/w_0), which replaces sgn w [rad/s] (our choice: 5 rpm, as Coulomb friction at
+such low speeds is hardly known)."""
 
 
 def motor_flow(

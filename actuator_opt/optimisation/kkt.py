@@ -2,13 +2,13 @@
 
 The residual is the norm of grad f - sum(multiplier * grad g), divided by the norm of grad f, in
 solver coordinates; f is the objective and g are constraint margins and distances to bounds. The sum
-includes those within 1e-6 of zero. The multipliers follow from non-negative least squares
+is over all g within 1e-6 of zero. The multipliers follow from non-negative least squares
 [LawsonHanson1974].
 
 The Newton steps are sequential quadratic programming with the Lagrangian's Hessian from exact
 gradients [NocedalWright2006] ch. 18. Each quadratic programme is a least-distance problem, solved
-by non-negative least squares [LawsonHanson1974] ch. 23. This finds the active set, and works with
-dependent rows and at vertices with more active rows than variables. The steps converge
+by non-negative least squares [LawsonHanson1974] ch. 23. This finds the active constraints, and also
+works if constraints depend on each other or outnumber the variables at a vertex. The steps converge
 quadratically near the optimum, also if they start from the optimum of a slightly changed problem.
 """
 
