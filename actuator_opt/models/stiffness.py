@@ -300,8 +300,8 @@ def trapped_air_load_step(
     Solves dV_A(p_A) = A_A dx, dV_B(p_B) = -A_B dx and (p_A - p_A0) A_A - (p_B - p_B0) A_B = F,
     where dV is the volume change of liquid of constant bulk modulus K plus that of a polytropic gas
     of constant mass. Substitution leaves one equation in p_A, decreasing and convex. Newton's
-    method starts at the lowest p_A, where one chamber is at -0.9 times the atmospheric pressure
-    p_a, and rises to the root without overshoot in 40 steps, always as many.
+    method starts at the lowest p_A, where the gauge pressure in one chamber is -0.9 times the
+    atmospheric pressure p_a. It rises to the root without overshoot, in a fixed number of 40 steps.
 
     Parameters
     ----------

@@ -16,11 +16,11 @@ Branches are chosen by real parts, so a complex step stays on the branch of the 
 
 The criteria use the same few strengths, yet their results for one tube differ by 20-25 %: a
 first-ply pressure means little without the name of its criterion. No uniaxial test gives Tsai-Wu's
-F_12* = F_12/sqrt(F_11 F_22); its default of -0.5 turns Tsai-Wu into von Mises where all strengths
-are equal. Hashin and Puck assume plane stress and ignore sigma_3. Maximum strain includes sigma_3
-through Poisson's ratios but sets no limit on the radial strain; only maximum stress and Tsai-Wu
-limit sigma_3. A constant of one criterion (F_12*, Hashin's shear share, Puck's inclinations) is a
-keyword of its function: bind it with `functools.partial` for another value.
+F_12* = F_12/sqrt(F_11 F_22); its default of -0.5 gives Tsai-Wu the form of von Mises where the
+strengths are equal. Hashin and Puck assume plane stress and ignore sigma_3. Maximum strain includes
+sigma_3 through Poisson's ratios but sets no limit on the radial strain; only maximum stress and
+Tsai-Wu limit sigma_3. A constant of one criterion (F_12*, Hashin's shear share, Puck's
+inclinations) is a keyword of its function: bind it with `functools.partial` for another value.
 
 Metal yields by von Mises; its strength ratio along the load path is exact.
 """
@@ -94,8 +94,8 @@ def tsai_wu_modes(
     -----
     Valid: |F_12*| < 1, with a radial stress |F_12*| <= 1/2.
 
-    With F_12* = -1/2 and the default F_23, scaled stresses in the ratio X : Y : Y never fail the
-    ply, as a hydrostatic stress never makes von Mises yield.
+    With F_12* = -1/2 and the default F_23, the failure surface is open in the direction of stresses
+    in the ratio X : Y : Y (mean strengths), as that of von Mises is open along hydrostatic stress.
 
     References
     ----------

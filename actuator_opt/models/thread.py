@@ -168,7 +168,7 @@ def female_strip_area(
     pitch : P [m]
     engagement : engaged length L_e [m]
     crest_diameter : d_c over the crests of the male thread; below d if the thread is cut on a tube
-        thinner than d [m]
+        whose outer diameter is below d [m]
 
     Returns
     -------

@@ -7,8 +7,8 @@ q1 = C p2 + D q2, flow positive from near to far [Merritt1967]. The friction mod
 the names that `lines` gives them.
 
 A plugged side branch (T-pipe) whose length is an odd number of quarter waves takes in flow without
-any pressure at the junction: the pressure oscillates at the plugged end only. With an even number
-of quarter waves it takes no flow.
+any pressure oscillation at the junction; the pressure oscillates most at the plugged end. With an
+even number of quarter waves it takes no flow.
 """
 
 from __future__ import annotations

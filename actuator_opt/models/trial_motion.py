@@ -1,9 +1,9 @@
 """Bounds from trial shapes: stiffness of two chambers in one wall, critical load of a column.
 
-Stiffness: in the trial motion the piston moves by 1, and the wall of one chamber grows by the
-volume by which that of the other shrinks. The end on which one chamber's pressure pulls moves too.
-The energy of oil and wall in this motion bounds the stiffness from above [Gurtin1972]. Critical
-load: any trial shape of a stepped column gives an upper bound.
+Stiffness: in the trial motion the piston moves by 1, and one chamber's wall grows by the volume by
+which the other chamber's wall shrinks. The end on which one chamber's pressure pulls moves too. The
+energy of oil and wall in this motion bounds the stiffness from above [Gurtin1972]. Critical load:
+any trial shape of a stepped column gives an upper bound.
 """
 
 from __future__ import annotations
@@ -183,7 +183,7 @@ def buckled_mode(
 
     Notes
     -----
-    Valid: first mode, with a deflection at the step.
+    Valid: first mode, with a non-zero deflection at the step.
 
     References
     ----------

@@ -74,7 +74,7 @@ class Goal:
         return next(iter(self.weights)) if len(self.weights) == 1 else None
 
     def value(self, computed: MetricArrays, cases: tuple[str, ...]) -> Array:
-        """The objective of every design, with its sign changed if it is to be maximised."""
+        """The objective of every design; a maximised objective has its sign changed."""
         total: Array = 0.0
         for metric, weight in self.weights.items():
             value = worst_value(computed, metric, cases, self.aim)

@@ -68,7 +68,7 @@ class Listed:
         return np.unique(self.rows[list(rows), column])
 
     def parts(self, rows: Rows, row: int) -> list[Rows]:
-        """Split all rows but `row` into parts that each lie on one side of `row` in one variable."""
+        """Split all rows but `row` into parts that lie on one side of `row` in some variable."""
         parts: list[Rows] = []
         for column, value in enumerate(self.rows[row]):
             of = self.rows[:, column]
@@ -87,7 +87,7 @@ class Listed:
         return rows[int(positions[0])] if len(positions) else None
 
     def around(self, x: Vector) -> list[int]:
-        """The nearest row on each side of a point (k,); only the point's own row if it has one."""
+        """For each rounding up or down of a point (k,), the nearest row; on a row, only that row."""
         all_rows = tuple(range(len(self.rows)))
         own_row = self.at(x, all_rows)
         if own_row is not None:

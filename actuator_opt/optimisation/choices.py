@@ -66,7 +66,7 @@ class ChoiceSettings:
     until: float | None
 
     def left(self, share: float = 1.0, began: float = 0.0) -> float | None:
-        """Seconds that remain of a share of the time from `began` to the limit; None if no limit."""
+        """Seconds that remain of a share of the time from `began` to the limit, or None."""
         if self.until is None:
             return None
         return began + share * (self.until - began) - time.perf_counter()

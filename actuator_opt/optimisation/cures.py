@@ -53,8 +53,8 @@ ENOUGH = 3
 """The search for a kind of remedy stops after this number of remedies: our choice."""
 
 WORTH = 0.1
-"""A number is only tried if doubling or halving it would, by its slope, close at least this share of
-the missed margins. Our choice."""
+"""A number is only tried if doubling or halving it would, by its slope, close at least this share
+of the missed margins. Our choice."""
 
 DIGITS = 4
 """Significant digits of a dimension; a design with the rounded dimension confirms the remedy."""
@@ -74,7 +74,7 @@ BACK_UP = "back_up_ptfe"
 
 @dataclass(frozen=True, slots=True)
 class Cure:
-    """A single change that makes the design feasible: a dimension's new value (SI), or a new choice.
+    """A single change that makes the design feasible: a dimension's value (SI), or a choice.
 
     `beside` gives, by PATH, other entries that must change together with a choice.
     """
@@ -369,7 +369,7 @@ def _candidate_choices(
 
 
 def _rings(seal: Seal, section: str, count: int) -> dict[str, str] | None:
-    """Entries to change so that a seal has `count` back-up rings; None if no standard gland fits."""
+    """Entries to change for `count` back-up rings on a seal; None if no standard gland fits."""
     if seal.back_up_material is not None and seal.back_up_thickness is not None:
         return {}
     try:

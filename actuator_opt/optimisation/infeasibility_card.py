@@ -231,11 +231,11 @@ def _sentence(
     """The advice in one line: the first cure, or the smallest change of limits."""
     if laws:
         return (
-            "infeasible with any requirements, because within the bounds the geometry "
-            f"conflicts ({', '.join(laws)})"
+            "infeasible whatever the requirements, because no design within the bounds meets "
+            f"all geometric conditions (in conflict: {', '.join(laws)})"
         )
     if not joint:
-        return "infeasible, and the search found no relaxation that is sufficient"
+        return "infeasible, and the search found no relaxation of the requirements that is enough"
     cure = sufficient[0] if sufficient else None
     if cure is not None and cure["kind"] in _ACTS:
         enough_text = "together are enough" if "together" in cure else "alone is enough"
@@ -249,7 +249,7 @@ def _sentence(
     if unsafe:
         sentence += " (this weakens a safety factor: not advised)"
     if cure is not None and (unsafe or len(joint) > 1) and cure["advised"]:
-        sentence += f". One change alone is also enough: {change_text(cure)}"
+        sentence += f". This change alone is also enough: {change_text(cure)}"
     return sentence
 
 

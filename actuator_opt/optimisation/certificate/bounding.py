@@ -499,7 +499,7 @@ _LOGIC = ("lt", "le", "and", "or", "not")
 
 
 class Leads:
-    """Finds the lead of a value: the single other value that alone determines it in all designs."""
+    """Finds the lead of a value: a single other value that alone determines it in every design."""
 
     def __init__(self) -> None:
         self._known: dict[int, Symbol] = {}

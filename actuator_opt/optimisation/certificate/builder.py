@@ -212,7 +212,7 @@ class Builder:
         if single is not None:
             return single
         if not parts.terms:
-            raise Unknown("it is zero")
+            raise Unknown("the value is always zero")
         plus, minus = parts.sides()
         low, high = (
             max(low, self._lower_bound(plus, minus)),

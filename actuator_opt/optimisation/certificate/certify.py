@@ -257,7 +257,7 @@ class BoxSearch:
     Parameters
     ----------
     layout, bounding : the relaxation
-    best : logarithm of the best known objective; worse designs are excluded
+    best : logarithm of an objective; only designs that are at least as good are of interest
     variables : atoms (elementary quantities) whose ranges are always cut in the first box
     deadline : time of `time.perf_counter` at which the search stops
     max_boxes : maximum number of boxes to solve

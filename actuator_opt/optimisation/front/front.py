@@ -74,7 +74,7 @@ class Anchors:
 
 
 class NoAnchor(NamedTuple):
-    """Index of an objective for which no best design was found, and the failed search."""
+    """Index of an objective whose best design the search did not find, and the failed search."""
 
     objective: int
     solution: Solution
@@ -210,9 +210,9 @@ def _sharpened(tracer: Tracer, x: Vector, units: Vector) -> Vector:
 OVERLOOKED = 1e-6
 """Normalised improvement that a search must find for its design to replace the known design."""
 TOLERANCE = 1e-7
-"""A run ends once the objectives' level and the variables change by less than this relative amount."""
+"""A run ends if the level (t) and the variables change by less than this relative amount."""
 ROUNDS = 24
-"""Maximum number of points of a run; if none of them is feasible, a full search follows."""
+"""Maximum number of points of a run; a run that ends infeasible is continued by other steps."""
 
 
 def overlooked(tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort) -> list[Vector]:
@@ -322,7 +322,7 @@ class Front:
         bulges there; or None
     passed : values (objectives, p) of dominated designs that the search found
     checked, improved : number of checking searches, and how many of them improved a design
-    failed : number of levels at or near which no design was found
+    failed : number of levels at or near which the search found no design
     wide : with two objectives, gaps wider than `plane.WIDEST` and the reason for them
     """
 
@@ -349,7 +349,7 @@ class Front:
 
 
 def front(objectives: Objectives, settings: FrontSettings) -> Front | NoAnchor:
-    """Compute the front; return the failed search if no best design of an objective is found."""
+    """Compute the front; return the failed search if an objective's best design is missing."""
     effort = FrontEffort(settings.starts, settings.samples, settings.seed)
     tell("searching for the ends of the front")
     checked, warnings = objectives.checked()

@@ -2,9 +2,9 @@
 
 A front design solves: minimise t subject to f_i <= a_i + r_i t for every normalised objective f_i,
 and to all requirements [PascolettiSerafini1984]. The level a_i and the direction r_i are given.
-If r_i = 1 for all objectives, the point a + t moves along a line on which all objectives improve
-equally; the design is where this line first becomes reachable from the ideal [DasDennis1998]. An
-objective with r_i = 0 only has to stay below a_i.
+If r_i = 1 for all objectives, the limits a_i + t form a line along which all objectives improve
+equally; the design is as near to the ideal as this line permits [DasDennis1998]. An objective with
+r_i = 0 only has to stay below a_i.
 """
 
 from __future__ import annotations

@@ -2,10 +2,10 @@
 
 A level is a set of upper limits for the normalised objectives. Levels lie on the plane through the
 anchors (the best design of each objective). With two objectives they lie on the line
-u -> (u, 1 - u). A front never rises, so its length between two positions is at most twice their
-difference in u. With three or more objectives, levels are lattice points on the plane sum = 1. Only
-those lattice points are used whose lines of equal improvement meet the box between ideal and nadir
-(best and worst values of the anchors).
+u -> (u, 1 - u). Along a front one objective falls as the other rises, so the front's length between
+two positions is at most twice their difference in u. With three or more objectives, levels are
+lattice points on the plane sum = 1. Only those lattice points are used whose lines of equal
+improvement meet the box between ideal and nadir (best and worst values of the anchors).
 
 A front may extend beyond its anchors. So the search tries the neighbours of every level that has a
 design, until it reaches the edge of the front. There it improves the objectives that can still
@@ -147,7 +147,7 @@ CROSSINGS = 4
 """Maximum number of rounds that retry designs from another valley (another local optimum)."""
 
 NEIGHBOURS = 14
-"""Number of neighbours of each design between which and the design a hole is looked for."""
+"""The search for holes looks between each design and this many of its neighbours."""
 
 
 def fill_plane(search: FrontSearch, count: int) -> None:
@@ -518,7 +518,7 @@ def middle_designs(search: FrontSearch, count: int) -> list[int]:
 
 
 def lost_levels(search: FrontSearch, indices: Indices) -> int:
-    """Number of levels without a design nearby; for two objectives, of wide gaps that are no jumps."""
+    """Number of levels without a design nearby; with two objectives, those inside gaps."""
     units = search.units[:, indices]
     if len(units) > 2:
         widest = nearest(units).max(initial=0.0)

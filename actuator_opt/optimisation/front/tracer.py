@@ -27,7 +27,7 @@ Indices = npt.NDArray[np.intp]
 
 
 CLEARLY = 100.0
-"""A gain of this multiple of `equal` counts as clearly better, which prevents cycles of dominance."""
+"""A gain of this multiple of `equal` is clearly better; this prevents cycles of dominance."""
 
 
 SAME = 1e-6
@@ -130,7 +130,7 @@ HELD = 1e-6
 """An objective counts as equal to its level if it is below by no more than this (normalised)."""
 
 ROUNDS = 4
-"""Maximum number of rounds in which designs exchange results; a round without improvement is the last."""
+"""Maximum number of rounds in which designs exchange results; they end without improvement."""
 
 CURVED = 2
 """Maximum number of times that the Hessian is recomputed if full steps do not converge."""
@@ -222,7 +222,7 @@ class Tracer:
         return self.parametric.at(np.concatenate([level, direction]))
 
     def initial_designs(self, x: Vector) -> list[FrontDesign]:
-        """Designs at the variables (n, k), with their own objectives as levels and no Hessian yet."""
+        """Designs at the variables (n, k), with their objectives as levels and no Hessian."""
         units = self.unit(x)
         size = self.evaluator.space.size
         return self._at_own(
@@ -463,8 +463,8 @@ class Tracer:
 EQUAL = 1e-8
 """Normalised difference up to which objectives count as equal: their numerical accuracy."""
 JUMP = 5.0
-"""If the variables of neighbours differ by this multiple of the median difference, the neighbours are
-suspected to belong to different local optima."""
+"""If the variables of neighbours differ by this multiple of the median difference, the neighbours
+may belong to different local optima."""
 
 
 @dataclass
