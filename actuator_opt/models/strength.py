@@ -117,7 +117,7 @@ def tsai_wu_modes(
     plane = -0.5 if s.shear_23 is None else 1 - area_2 / (2 * s.shear_23 * s.shear_23)
 
     def scaled(values: Stress) -> Stress:
-        """Stresses over the geometric means of their strengths; F_11 = F_22 = F_33 = F_66 = 1."""
+        """Stresses divided by mean (geometric) strengths, so F_11 = F_22 = F_33 = F_66 = 1."""
         return values[0] / mean_1, values[1] / mean_2, values[2] / mean_2, values[3] / s.shear_12
 
     along, across, radial, slip = load = scaled(stress)
@@ -145,7 +145,7 @@ _LEAST = 1e-9
 
 
 def mises_product(*, first: Stress, second: Stress) -> Array:
-    """Bilinear form of von Mises' equivalent stress, which it gives squared for first = second.
+    """Bilinear form whose value for first = second is von Mises' equivalent stress squared.
 
     ((a1 - a2)(b1 - b2) + (a2 - a3)(b2 - b3) + (a3 - a1)(b3 - b1))/2 + 3 a12 b12.
 

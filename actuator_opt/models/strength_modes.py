@@ -384,7 +384,7 @@ def hashin_modes(
     -----
     Valid: unidirectional plies in plane stress.
 
-    The shear term of fibre tension and the default S_23 are choices.
+    The shear term of fibre tension and the default S_23 are our choices.
 
     References
     ----------
@@ -467,7 +467,8 @@ def puck_modes(
     sqrt(t^2 + (1 - p Y_t/S)^2 (sigma_2/Y_t)^2) + p sigma_2/S = 1; mode B
     sqrt(t^2 + (q sigma_2/S)^2) + q sigma_2/S = 1 up to |sigma_2/tau| = R_A/tau_c; beyond it, mode C
     (t/(2 (1 + q_t)))^2 + (sigma_2/Y_c)^2 = -sigma_2/Y_c; fibre sigma_1 = X_t, -sigma_1 = X_c.
-    Squared they are t^2 + (1/Y_t^2 - 2 p/(S Y_t)) sigma_2^2 + 2 p sigma_2/S = 1 and
+    Here R_A = Y_c/(2 (1 + q_t)), q_t = q R_A/S and tau_c = S sqrt(1 + 2 q_t). Without the roots,
+    mode A is t^2 + (1/Y_t^2 - 2 p/(S Y_t)) sigma_2^2 + 2 p sigma_2/S = 1 and mode B is
     t^2 + 2 q sigma_2/S = 1.
 
     Parameters

@@ -1,9 +1,9 @@
 """Bounds from trial shapes: stiffness of two chambers in one wall, critical load of a column.
 
 Stiffness: in the trial motion the piston moves by 1, and one chamber's wall grows by the volume by
-which the other chamber's wall shrinks. The end on which one chamber's pressure pulls moves too. The
-energy of oil and wall in this motion bounds the stiffness from above [Gurtin1972]. Critical load:
-any trial shape of a stepped column gives an upper bound.
+which the other chamber's wall shrinks. One end moves too: that on which a chamber's pressure pulls.
+The energy of oil and wall in this motion bounds the stiffness from above [Gurtin1972]. Critical
+load: any trial shape of a stepped column gives an upper bound.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Chamber: TypeAlias = Literal["a", "b"]
 
 @dataclass(frozen=True, slots=True)
 class TrialMotion:
-    """Trial motions of the wall per unit motion of the piston; the rest of it compresses the oil.
+    """Trial motions of wall and end per unit piston motion; the rest compresses the oil.
 
     `exchange` is the volume by which the wall of one chamber grows and that of the other shrinks,
     divided by area B. `pull` is the motion of the end on which a chamber's pressure pulls.

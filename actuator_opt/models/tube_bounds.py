@@ -80,7 +80,7 @@ def least_growth(
 def axial_stiffness(
     *, moduli: Sequence[Array], thicknesses: Sequence[Array], inner_radius: Array
 ) -> Array:
-    """Axial stiffness of layers side by side, sum q_k A_k.
+    """Axial stiffness of layers in parallel, sum q_k A_k.
 
     For a bonded tube the sum is a lower bound if q_k are the moduli of layers that are free to
     contract, and an upper bound if they are the moduli of layers that all contract alike. With
@@ -164,9 +164,9 @@ def greatest_pressure(
 ) -> Array:
     """Upper bound on the pressure that a layered tube bears before its first damage.
 
-    From the outer face (p_n = 0) inwards, the pressure p_(k-1) inside a ply is
-    p_k r_k/r_(k-1) + S_k t_k/r_(k-1), and inside a metal layer
-    p_k + (2/sqrt(3)) sigma_y ln(r_k/r_(k-1)).
+    From the outer face (p_n = 0) inwards, the pressure p_(k-1) on the inner face of a layer is
+    p_k r_k/r_(k-1) + S_k t_k/r_(k-1) for a ply and p_k + (2/sqrt(3)) sigma_y ln(r_k/r_(k-1)) for
+    a metal layer.
 
     Parameters
     ----------

@@ -128,7 +128,7 @@ def edge_opening(
 
     References
     ----------
-    [MECE5005] model for a control edge; [derived] leakage and opening add (a choice)
+    [MECE5005] model for a control edge; [derived] leakage and opening add (our choice)
 
     Examples
     --------

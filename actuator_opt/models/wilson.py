@@ -4,8 +4,8 @@ Motor and pump are one machine with two sign conventions. A motor counts flow an
 difference from inlet to outlet and delivers torque. A pump counts the pressure difference from
 outlet to inlet and takes torque; its flow and torque are those of the motor at -dp, with the torque
 reversed. Friction acts against the speed in every quadrant, so neither delivers more power than it
-takes. Losses do not decrease with the setting of the displacement. The source writes mu as nu rho
-(`fluid.dynamic_viscosity`).
+takes. The losses stay the same if the displacement setting is reduced. The source writes mu as nu
+rho (`fluid.dynamic_viscosity`).
 """
 
 from __future__ import annotations

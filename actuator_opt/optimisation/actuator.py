@@ -57,7 +57,7 @@ def variant(subject: PreparedDesign, values: Mapping[str, Any], library: Library
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """The objective: a weighted sum of metrics, each over its scale; `sign` −1 maximises it."""
+    """The objective: a weighted sum of metrics, each divided by its scale; sign −1 maximises."""
 
     weights: Mapping[str, float]
     scales: Mapping[str, float]
@@ -379,7 +379,7 @@ def _check_read(numbers: Numbers, paths: tuple[str, ...], fault: Fault | None) -
 
 
 RELATIVE_STEP = 1e-5
-"""Step of central differences as a share of the parameter; as a value if the parameter is 0."""
+"""Step of central differences: a share of the parameter, or absolute for a parameter of 0."""
 
 
 @dataclass(frozen=True)
@@ -484,7 +484,7 @@ def _rows(parametric: ParametricProblem, points: Vector, parameters: Vector) -> 
 def _row_slopes(
     parametric: ParametricProblem, point: Point, steps: Vector
 ) -> tuple[Vector, tuple[str, ...]]:
-    """Derivatives (rows, q) of all rows; labels of the parameters with finite differences."""
+    """Derivatives (rows, q) of objective and margins; labels of finite-difference parameters."""
     count = len(steps)
     if count == 0:
         return np.zeros((len(point.rows), 0)), ()

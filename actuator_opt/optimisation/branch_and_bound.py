@@ -87,7 +87,7 @@ class Listed:
         return rows[int(positions[0])] if len(positions) else None
 
     def around(self, x: Vector) -> list[int]:
-        """For each rounding up or down of a point (k,), the nearest row; on a row, only that row."""
+        """For each rounding up or down of a point (k,), its nearest row; on a row, only that."""
         all_rows = tuple(range(len(self.rows)))
         own_row = self.at(x, all_rows)
         if own_row is not None:

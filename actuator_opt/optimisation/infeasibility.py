@@ -25,7 +25,7 @@ STARTS = 2
 """Maximum number of starts in the search for the joint relaxation."""
 
 ROOM = 1.001
-"""Factor by which a limit is relaxed more than the least sufficient relaxation."""
+"""A limit is relaxed by this multiple of the least sufficient relaxation."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -457,7 +457,7 @@ def quadratic_step(
 
 
 def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
-    """Scaled Hessian of the Lagrangian, made positive definite without a change of the Newton step.
+    """Scaled Hessian of the Lagrangian, made positive definite with little effect on the step.
 
     Multiples of the active gradients' outer products are added, which keeps the solution on the
     active limits. If they are not enough, a negative curvature is replaced by its magnitude.

@@ -505,7 +505,7 @@ class Leads:
         self._known: dict[int, Symbol] = {}
 
     def of(self, node: Symbol) -> Symbol:
-        """The value that alone determines this value (its lead, see `Leads`)."""
+        """The lead of a value: the value that alone determines it (see `Leads`)."""
         if node.index not in self._known:
             operand_leads = {self.of(operand) for operand in node.operands}
             self._known[node.index] = operand_leads.pop() if len(operand_leads) == 1 else node
@@ -572,7 +572,7 @@ class _PlainAtoms:
         return high - low
 
     def atom(self, powers: Powers) -> int:
-        """Number of the atom for a monomial itself, divided by its largest value."""
+        """Number of the atom that is a monomial (not its logarithm), scaled to at most 1."""
         if powers not in self.known:
             relaxation, form = self.relaxation, Form(0.0, powers)
             low, high = relaxation.reach(form)
@@ -616,7 +616,7 @@ class _PlainAtoms:
 
 
 def add_plain_sums(relaxation: Relaxation) -> None:
-    """Also state those sums of a relaxation whose terms vary widely without logarithms."""
+    """Also state, without logarithms, the sums of a relaxation whose terms vary widely."""
     plain = _PlainAtoms(relaxation)
     for whole, part, remainder in list(relaxation.splits):
         if plain.width(part - remainder) < WIDE:

@@ -397,7 +397,8 @@ LEAST_DECAY = 1e-3
 
 
 PARTS = 4
-"""Number of parts per layer in the bound on a wall's growth; the bound is valid for any number."""
+"""Number of parts per layer of known stiffness in the bound on a wall's growth, which is valid for any
+number."""
 
 
 CONTRACTION = 0.2

@@ -418,7 +418,7 @@ Maker: TypeAlias = Callable[[Sequence[float]], float]
 
 
 class ConstraintRow(NamedTuple):
-    """A constraint low <= high between two forms."""
+    """A constraint low <= high between the logarithms of two monomials."""
 
     low: Form
     high: Form

@@ -27,7 +27,7 @@ Indices = npt.NDArray[np.intp]
 
 
 CLEARLY = 100.0
-"""A gain of this multiple of `equal` is clearly better; this prevents cycles of dominance."""
+"""A gain above this multiple of `equal` is clearly better; this prevents cycles of dominance."""
 
 
 SAME = 1e-6
@@ -130,7 +130,8 @@ HELD = 1e-6
 """An objective counts as equal to its level if it is below by no more than this (normalised)."""
 
 ROUNDS = 4
-"""Maximum number of rounds in which designs exchange results; they end without improvement."""
+"""Maximum number of rounds in which designs exchange results. The rounds end as soon as nothing
+improves."""
 
 CURVED = 2
 """Maximum number of times that the Hessian is recomputed if full steps do not converge."""
