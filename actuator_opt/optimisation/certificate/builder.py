@@ -286,7 +286,7 @@ class Builder:
         """
         plus, minus = self.signomial(value).plus(self.signomial(bound), -1.0).sides()
         if minus and not plus:
-            raise Unknown("the value is always below its limit")
+            raise Unknown("no design within the bounds meets this limit")
         if minus:
             plus_total, minus_total = (
                 self.relaxation.total(side, 0.0, math.inf) for side in (plus, minus)
@@ -397,8 +397,8 @@ LEAST_DECAY = 1e-3
 
 
 PARTS = 4
-"""Number of parts per layer of known stiffness in the bound on a wall's growth, which is valid for any
-number."""
+"""Number of parts per layer of known stiffness in the bound on a wall's growth, which is valid with
+any number."""
 
 
 CONTRACTION = 0.2
