@@ -231,7 +231,7 @@ class Modes(Protocol):
         residual: Stress | None = None,
         elastic: PlyRatios | None = None,
     ) -> dict[str, Array]:
-        """Utilisation 1/SR of every mode; `elastic` is required if `Criterion.by_strain`."""
+        """Utilisation 1/SR of every mode; `Criterion.by_strain` states if `elastic` is required."""
         ...
 
 

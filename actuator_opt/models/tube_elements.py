@@ -125,7 +125,7 @@ class _Basis(NamedTuple):
 
 
 def _basis(xp: Any, wall: TubeStiffness, inner: Array, outer: Array) -> _Basis:
-    """cosh, sinh/l, phi_1, dphi_1/dtau; integrals of the first three."""
+    """The functions cosh, sinh/l, phi_1 and dphi_1/dtau; integrals of the first three."""
     ratio = outer / inner
     way = xp.log(ratio)
     order = xp.sqrt(wall[3] / wall[5])

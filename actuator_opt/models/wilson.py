@@ -28,7 +28,7 @@ def motor_flow(
     slip_coefficient: Array,
     setting: Array = 1.0,
 ) -> Array:
-    """Flow into a motor, q = eps V_r w + C_s V_r dp/mu, V_r = V/2 pi.
+    """Flow into a motor, q = eps V_r w + C_s V_r dp/mu, V_r = V/(2 pi).
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def pump_flow(
     slip_coefficient: Array,
     setting: Array = 1.0,
 ) -> Array:
-    """Flow out of a pump, q = eps V_r w - C_s V_r dp/mu, V_r = V/2 pi.
+    """Flow out of a pump, q = eps V_r w - C_s V_r dp/mu, V_r = V/(2 pi).
 
     Parameters
     ----------

@@ -125,7 +125,7 @@ def goal_of(subject: PreparedDesign) -> Goal:
 
 @dataclass
 class Refusals:
-    """Counts the designs that have a mass but no value of a custom metric."""
+    """Counts designs for which a custom metric has no value although their mass has one."""
 
     names: frozenset[str] = frozenset()
     points: int = 0
@@ -653,7 +653,7 @@ class LocalOptimum:
 
 @dataclass(frozen=True, slots=True)
 class StartRecord:
-    """One start and its result."""
+    """One start of the search, and its result."""
 
     x: Vector
     objective: float

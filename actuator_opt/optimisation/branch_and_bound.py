@@ -105,7 +105,7 @@ class Listed:
 
 
 def with_rows(box: Box, k: int, rows: Rows) -> Box:
-    """A box in which the rows of group k are replaced."""
+    """The box (see `Box`) with other rows for group k."""
     return (*box[:k], rows, *box[k + 1 :])
 
 

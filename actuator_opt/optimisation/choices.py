@@ -115,7 +115,7 @@ class ChoiceSearch:
 
 
 def possible(subject: PreparedDesign) -> list[Look]:
-    """All combinations of the choices, each with its design or why it is impossible.
+    """All combinations of the choices, each with its design or the reason why it is impossible.
 
     Raises
     ------

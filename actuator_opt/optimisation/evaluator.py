@@ -154,7 +154,7 @@ class Evaluator:
         return point
 
     def enter(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
-        """The point at z (nf,), given the rows of its `columns`."""
+        """The point at z (nf,), given the rows computed at its `columns`."""
         return self._store(z, *self.values_and_slopes(rows))
 
     def enter_precomputed(self) -> None:

@@ -118,7 +118,7 @@ INSIDE = {"AUGLAG": "LD_LBFGS", "AUGLAG_EQ": "LD_MMA", "G_MLSL_LDS": "LD_LBFGS"}
 def find(text: str) -> tuple[Algorithm, Algorithm | None]:
     """The algorithm with a given name, and its inner algorithm, as in "AUGLAG+LD_LBFGS".
 
-    Upper and lower case are equal. A prefix may be omitted if the name remains unique ("slsqp").
+    Case is ignored. A prefix may be omitted if the name remains unique ("slsqp").
 
     Raises
     ------

@@ -664,8 +664,8 @@ MOST_PARAMETERS = 10
 """Maximum number of parameters (besides limits) in the sensitivity table, the most important first.
 """
 LEAST_EFFECT = 1e-3
-"""A parameter enters the table if 1 % of it changes the objective by at least this many per cent.
-"""
+"""A parameter enters the table if its change by 1 % changes the objective by at least this many
+per cent."""
 FREE = 1e-9
 """A limit whose value is 0 is left out if its price, relative to the objective, is at most this."""
 _NO_PERCENT = ("temperature", "temperature_difference", "angle", "count")

@@ -1,8 +1,9 @@
 """Stores an optimisation or a Pareto front as plain data of a run record, and restores it.
 
 A design is stored as a tree of SI numbers, from which exactly the same design can be rebuilt. An
-evaluation is stored as its design and its estimated yield; the design is evaluated again on
-reading. All other data are dataclasses, which are restored by their type annotations.
+evaluation is stored as its design and its yield estimate (share of parts that meet all limits); the
+design is evaluated again on reading. All other data are dataclasses, which are restored by their
+type annotations.
 """
 
 from __future__ import annotations

@@ -39,7 +39,7 @@ class Shift:
 
     @property
     def verdict(self) -> str:
-        """Verdict in one word."""
+        """Verdict on the requirement with the new values, in one word."""
         if self.before.met == self.after.met:
             return "still met" if self.after.met else "still missed"
         return "now met" if self.after.met else "now missed"
@@ -297,7 +297,7 @@ def _repairs(optimisation: Optimisation) -> list[str]:
 
 
 def _active_words(old: Sequence[str], new: Sequence[str]) -> list[str]:
-    """Limits that became active at the optimum, and limits that are now inactive."""
+    """Sentences on the limits that became active or inactive at the optimum."""
     pairs = (
         ([limit for limit in new if limit not in old], "newly at its limit"),
         ([limit for limit in old if limit not in new], "no longer at its limit"),

@@ -554,7 +554,7 @@ WIDE = 0.3
 
 
 class _PlainAtoms:
-    """Adds atoms without logarithms, for monomials of a relaxation with known ranges."""
+    """Adds atoms for monomials that enter the relaxation as values, not as logarithms."""
 
     def __init__(self, relaxation: Relaxation) -> None:
         self.relaxation = relaxation
