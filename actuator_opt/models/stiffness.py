@@ -162,8 +162,7 @@ def weakest_position(
 
     Notes
     -----
-    Valid: positive areas and compliances; k_h is convex in x, so the stationary point is the
-    minimum.
+    Valid: positive areas and compliances; k_h is convex in x, so its stationary point is a minimum.
 
     References
     ----------
@@ -251,8 +250,7 @@ def holding_pressures(
 
     Notes
     -----
-    Valid: matched symmetrical valve edges; beyond the stall force, the pressures stay at their
-    limits.
+    Valid: matched symmetrical valve edges; beyond the stall force, pressures stay at their limits.
 
     References
     ----------
