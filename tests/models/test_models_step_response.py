@@ -271,7 +271,7 @@ def test_windows_of_a_stroke_show_its_stiffness():
     [
         (1.0, 5, "2 s are shorter than 5 cycles of 1 Hz; take fewer cycles"),
         (1.0, 0, "windows of 0 cycles at 1 Hz; give a positive frequency and 1 cycle or more"),
-        (40.0, 1, "a window of 0.025 s holds fewer than 5 samples; take more cycles"),
+        (40.0, 1, "a window of 0.025 s contains fewer than 5 samples; take more cycles"),
     ],
 )
 def test_windows_that_do_not_fit_are_one_clear_line(frequency, cycles, line):
