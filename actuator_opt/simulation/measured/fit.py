@@ -328,7 +328,7 @@ class RecordFitProblem:
         return overlap
 
     def _aligned(self, measured: AlignedRecord, signals: Mapping[str, Array]) -> float:
-        """Most likely lag at the initial values, from the samples within the simulated time."""
+        """Most likely lag for the initial parameters, from samples within the simulated time."""
         assert self.lag_index is not None
         time, _ = self._simulated(self.start)
         lags = np.linspace(self.low[self.lag_index], self.high[self.lag_index], LAGS)

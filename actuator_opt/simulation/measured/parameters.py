@@ -199,7 +199,7 @@ def _level(plane: Plane, scenario: Scenario, plant: Plant) -> float:
 
 
 def _scaled(plane: Plane, scenario: Scenario, plant: Plant, value: float) -> Plane:
-    """A friction plane scaled to another friction at the initial pressures.
+    """A friction plane, multiplied by the factor that gives a value at the initial pressures.
 
     Its shape stays the same.
     """
