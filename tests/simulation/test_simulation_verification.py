@@ -233,7 +233,7 @@ def test_what_only_friction_holds_is_told():
     limit = {"dynamic_stiffness": Limit(min=11.5e6)}
     (found,) = verify(scenario("lugre", requirements={}), knee(requirements=limit)).rows
     assert found.met
-    assert "met only because of friction; without friction the value is 10" in found.why
+    assert "met only because of seal friction; without it, the value is 10" in found.why
 
 
 def test_every_dynamic_requirement_and_the_scenario_have_a_row():
