@@ -132,7 +132,12 @@ def test_what_is_no_axis_is_said_in_one_line(text, words):
     [
         ([], "grid", None, "nothing to vary"),
         ([numbers("p", 0, 1)], "grid", None, "has no steps"),
-        ([numbers("p", 0, 1, 3)], "grid", 5, "the steps of a grid determine its number of points"),
+        (
+            [numbers("p", 0, 1, 3)],
+            "grid",
+            5,
+            "the steps of a grid already determine its number of points",
+        ),
         ([numbers("p", 0, 1)], "lhs", None, "number of points missing"),
         ([numbers("p", 0, 1)], "sobol", 0, "-n 0"),
         ([numbers("p", 0, 1)], "sobol", 2**31, "1 to 1073741824"),
