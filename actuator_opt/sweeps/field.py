@@ -123,7 +123,8 @@ class Field:
         """Return ends and margins of the grid edge under a point.
 
         None if the point is a node or inside a cell, or if the margin has the same sign at both
-        ends."""
+        ends.
+        """
         nodes = (self.xs, self.ys)
         places = []
         for axis, value in zip(nodes, point, strict=True):

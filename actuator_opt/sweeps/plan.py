@@ -283,7 +283,7 @@ class Plan:
         return SweepPoints(variant, numbers)
 
     def _grid(self, index: Array) -> list[Array]:
-        """Return the value or its number on every axis; the last axis runs fastest."""
+        """Return values, or indices of listed values, for every axis; the last changes fastest."""
         sizes = tuple(axis.size for axis in self.axes)
         places = np.unravel_index(index, sizes)
         return [
