@@ -56,7 +56,7 @@ SUMMED = 2000
 
 
 def _least(hits: int, count: int) -> float:
-    """Return the hit probability at which `hits` or more of `count` draws have a 2.5 % chance."""
+    """Return the hit probability for which `hits` or more of `count` draws are 2.5 % likely."""
     tail = (1 - LEVEL) / 2
     if count > SUMMED:
         from scipy.special import betaincinv

@@ -145,7 +145,7 @@ class _FailureLevel:
         )
 
     def follow(self, failure_rate: float) -> None:
-        """Set the level expected to give the target failure rate: a secant step in logarithms."""
+        """Set the level that should give the failure rate `aim`, by a secant step in logarithms."""
         failure_rate = max(failure_rate, 1e-3 * self.aim)
         slope = 1.0
         if self.last is not None and self.last[0] != self.value:
