@@ -150,7 +150,7 @@ PAINTS: dict[str, str] = {
     "not_checked": "dim",
     "infeasible": "red bold",
 }
-"""Colours of states."""
+"""Colour and font weight of every verdict state."""
 MARKS: dict[str, tuple[str, str]] = {
     "": ("", ""),
     "met": ("✔", "ok"),
@@ -160,7 +160,7 @@ MARKS: dict[str, tuple[str, str]] = {
     "not_checked": ("○", "-"),
     "infeasible": ("✘", "INFEASIBLE"),
 }
-"""Marks of states, in Unicode and in ASCII."""
+"""Mark of every verdict state, in Unicode and in ASCII."""
 WIDE = 110
 """Smallest terminal width (columns) at which the bars of margins have their full length."""
 
@@ -171,7 +171,7 @@ def text(page: Page, **style: Unpack[Style]) -> str:
     Parameters
     ----------
     page : to show
-    style : colour codes, Unicode signs, columns
+    style : whether to use colour codes and Unicode signs, and the width in columns
     """
     console = Console(**style)
     head = "\n".join(heading(page.name, page.verdict, page.sentence, console))

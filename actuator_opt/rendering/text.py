@@ -99,7 +99,7 @@ def number(value: float | None, digits: int = 4, *, signed: bool = False) -> str
 
 
 def fixed(value: float, places: int) -> str:
-    """A number with a fixed number of decimals, for columns that add up.
+    """A number with a fixed number of decimals, for columns with a total.
 
     >>> fixed(-1234.5678, 2), fixed(43210.0, 1)
     ('−1234.57', '43\u202f210.0')
@@ -262,7 +262,7 @@ def plain(text: str) -> str:
 
 
 def sentence(words: str) -> str:
-    """Words with a capital letter and a full stop; a name such as pressure_a is unchanged.
+    """Words as a sentence, with capital letter and full stop; a name (pressure_a) stays unchanged.
 
     >>> sentence("optimum found"), sentence("pressure_a: left out")
     ('Optimum found.', 'pressure_a: left out.')

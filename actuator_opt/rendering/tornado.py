@@ -14,7 +14,8 @@ MOST = 16
 ROW = 5.0
 """Height of a row (mm): two bars of 1.8 mm."""
 LABELS, FIGURES = 64.0, 34.0
-"""Width of the names at the left and of the changes in per cent at the right (mm)."""
+"""Widths of the columns with the names, at the left, and with the changes in figures, at the right
+(mm)."""
 LIGHT = "#9ec3da"
 """Fill of the bars for lower ends of inputs. Bars for upper ends are dark, so a grey print also
 shows the difference."""
@@ -57,7 +58,7 @@ def bars(
     axis, centre : words under the axis and above the centre
     ends : names of the upper and the lower end
     columns : heads of the words at the right; default: the names of the ends
-    predicted : whether the key explains the short lines of predicted changes
+    predicted : whether the legend explains the short lines of predicted changes
     """
     solved = [change for row in rows for change in row.changes if change is not None]
     predictions = [change for row in rows for change in row.predicted if change is not None]
@@ -96,7 +97,7 @@ def _heads(
     columns: tuple[str, str],
     predicted: bool,
 ) -> None:
-    """The key of the bars above the names, and the heads of the columns at the right."""
+    """The legend of the bars, above the names, and the heads of the columns at the right."""
     y = axes.top - 6.5
     for x, fill, words in ((0.0, BLUE, ends[0]), (17.0, LIGHT, ends[1])):
         ink.box(x, y - 0.9, 4.0, 1.8, fill=fill, pen=0.1)

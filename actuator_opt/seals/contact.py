@@ -1,4 +1,4 @@
-"""A mounted seal: sizes by key of the design file, contact with the counterface, and outline.
+"""Sizes of a seal in the design file, its contact with the counterface, and its outline.
 
 The contact comprises line load, width, peak pressure and profile. Outlines are polygons [m] of the
 seal without pressure: x runs from the sealed side of the groove, r from the counterface into the
@@ -17,7 +17,7 @@ from ..models import contact_profile
 
 
 class Size(NamedTuple):
-    """A size of a seal, as a key of the design file.
+    """A dimension of a seal that a design file may state.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class Size(NamedTuple):
 
 
 class SizeField(NamedTuple):
-    """A size that a seal type has.
+    """A size of a seal type, with its default.
 
     Parameters
     ----------

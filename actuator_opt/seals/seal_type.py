@@ -124,10 +124,10 @@ class SealType:
     modulus_by : source of the modulus of the squeezed part. "hardness": always its hardness, as the
         modulus that the compound states is that of a plastic ring; "stated": the stated modulus or,
         if there is none, the hardness
-    face : whether its contact depends on the elastic constants of the sliding face
+    face : whether the contact depends on the elastic constants of the sliding face
     o_ring_gland : whether the seal is an O-ring alone in a standard gland; gland fill, stretch and
         section are then checked, and the standard sizes and compounds of O-rings apply
-    model : function that computes its line load, for reports to cite; None if a law of `LAWS` does
+    model : function that computes the line load, for reports to cite; None if a law of `LAWS` does
     contact_model : description of this model for reports; {law} is replaced by the name of the law
     warnings : function that yields reasons to doubt the contact of a seal
     elements : finite-element solution; None if the type has none

@@ -116,7 +116,7 @@ def lsoda(compiled: Compiled, relative: float, evaluations: list[int]) -> Advanc
                 raise Stuck(latest[0], latest[1], _reason(error), REMEDY) from None
         if report["message"] != "Integration successful.":
             if max_steps < MOST:
-                raise Stuck(latest[0], latest[1], "no step is small enough", REMEDY)
+                raise Stuck(latest[0], latest[1], "no time step is small enough", REMEDY)
             # near rest LSODA may miss that the equations are stiff
             return stiff(times, y, m, max_steps)
         evaluations[0] += int(report["nfe"][-1])
@@ -148,7 +148,7 @@ def radau(compiled: Compiled, relative: float, evaluations: list[int]) -> Advanc
             raise Stuck(latest[0], latest[1], _reason(error), REMEDY) from None
         evaluations[0] += int(solution.nfev)
         if not solution.success:
-            raise Stuck(latest[0], latest[1], "no step is small enough", REMEDY)
+            raise Stuck(latest[0], latest[1], "no time step is small enough", REMEDY)
         return _checked(times, solution.y.T)
 
     return advance
@@ -241,7 +241,7 @@ def cvodes(compiled: Compiled, relative: float, evaluations: list[int]) -> Advan
     Raises
     ------
     InputError
-        CasADi is missing or a record is looked up
+        CasADi is missing, or the equations contain a record
     """
     fallback = lsoda(compiled, RELATIVE["lsoda"], evaluations)
     casadi = library()

@@ -102,7 +102,7 @@ class OpenLoop:
 
     @property
     def steady_rate(self) -> float:
-        """Rate of the measured value in steady state, per signal: the limit of s L(s) at s = 0."""
+        """Steady rate of the measured value per volt of signal: the limit of s L(s) at s = 0."""
         size = np.abs(self.poles)
         omega = float(np.min(size[size > STILL])) * SLOWER
         return float((1j * omega * self.at(np.array(omega))).real)
@@ -200,7 +200,9 @@ class Linear:
         guess : signal near the solution [V]
         states : given states by name, SI; unless given, the position is that of the start
 
-        Returns ------- states and signal [V]; None if no steady motion exists
+        Returns
+        -------
+        states and signal [V]; None if no steady motion exists
         """
         from scipy.optimize import root
 
@@ -427,8 +429,9 @@ def tune(
 
     Raises
     ------
-    InputError a control law without a tuning rule; a loop that no gain makes oscillate; a loop that
-    oscillates even without control; a load that the valve cannot hold
+    InputError
+        a control law without a tuning rule; a loop that no gain makes oscillate; a loop that
+        oscillates even without control; a load that the valve cannot hold
     """
     control, loop = scenario.control, loop_of(scenario.control)
     if control is None or loop is None:
@@ -518,7 +521,7 @@ def _gains_by_rule(
 ) -> tuple[ControllerGains, str, tuple[str, ...]]:
     """Gains that a tuning rule gives for the ultimate gain and period, name of the rule, notes."""
     if worst.unstable:
-        message = "the open circuit oscillates by itself"
+        message = "the circuit oscillates even without the control loop"
         remedy = "lower speed_feedback and pressure_feedback, or add leakage across the piston"
         raise InputError(Diagnostic(message, remedy, path="control"))
     if not isfinite(limit.gain) or limit.gain <= 0:

@@ -38,7 +38,7 @@ class EnergyFlow:
 
 @dataclass(frozen=True, slots=True)
 class Balance:
-    """Errors of the mass and energy balance of a simulation, as shares of mass and energy."""
+    """Relative errors of the mass and energy balance of a simulation."""
 
     mass: float
     """Largest error in any volume: |change of content - net inflow|, divided by the largest
@@ -99,7 +99,7 @@ class Servo:
 
 @dataclass(frozen=True, slots=True)
 class RequirementResult:
-    """A requirement on the simulation, with its result."""
+    """A requirement of the scenario, compared with the simulated value."""
 
     metric: str
     sense: str
@@ -286,7 +286,7 @@ RISE = 4
 (our choice)."""
 NOT_HERE = "does not apply to this scenario"
 NO_STEP = "the reference has no step"
-NO_MOTION = "the reference does not move on"
+NO_MOTION = "the reference does not keep moving"
 NO_SINE = "no sinusoidal load acts on the rod"
 NO_STOP = "the piston does not reach a stop"
 EXPECTED = (NOT_HERE, NO_STEP, NO_MOTION, NO_SINE, NO_STOP)

@@ -179,9 +179,9 @@ class SealStudy(Displayed):
     stroke : stroke of the actuator [m]
     clearance : radial clearance behind the seal [m]
     growth : radial growth of the bore at the piston seal under this pressure [m]; 0 at the rod
-    squeezes : squeeze by tolerance, temperature and pressure
-    curves : friction over speed at three pressures, if requested map : friction over speed and
-        pressure, if requested
+    squeezes : range of the squeeze due to tolerances, at several temperatures and pressures
+    curves : friction over speed at three pressures, if requested
+    map : friction over speed and pressure, if requested
     elements : finite-element contacts of the first ring: as mounted, then under pressure; empty if
         not requested
     """
@@ -373,12 +373,12 @@ def study(
 
     Parameters
     ----------
-    subject : a design whose rings on piston or rod all use a film
+    subject : a design in which all rings of this piston or rod seal use the oil film
     speed, pressure : speed of the counterface [m/s], sealed pressure above the outer pressure [Pa].
         The defaults are those of the load case with the highest pressure among those with motion,
         which also sets outer pressure and oil
-    curves : compute friction over speed at three pressures
-    mapped : compute a map over speed and pressure
+    curves : whether to compute friction against speed at three pressures
+    mapped : whether to compute a map over speed and pressure
     elements : contacts from `with_elements`, stored in the result
 
     Raises

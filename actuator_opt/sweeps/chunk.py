@@ -59,7 +59,7 @@ class Chunk:
 
     @property
     def ranked(self) -> Array:
-        """Whether each row may be among the best, as it is feasible and has an objective."""
+        """Whether each row may be among the best: it is feasible and has an objective."""
         ranked: Array = self.feasible & ~np.isnan(self.objective)
         return ranked
 
@@ -101,7 +101,7 @@ class Study:
         )
         paths = [axis.path for axis in self.plan.numeric]
         self.order = sorted(range(len(paths)), key=paths.__getitem__)
-        """Numbers of the numeric axes in the order of the columns, which are sorted by PATH."""
+        """Indices of the numeric axes in the order of the columns, which are sorted by PATH."""
         self.columns = (
             *(
                 NumberColumn(paths[k], quantity_of(paths[k], self.design).si_unit)
@@ -117,15 +117,15 @@ class Study:
         return self.__dict__ | {"_screens": {}}
 
     def chunk(self, first: int, count: int, places: Array | None = None) -> Chunk:
-        """Return the rows of consecutive points; if `places` is given, only of these among them."""
+        """Return the rows of consecutive points, or only of those with the indices `places`."""
         points = self.plan.points(first, count)
         return self.evaluated(first, points if places is None else points.some(places))
 
     def evaluated(self, first: int, points: SweepPoints, keep_best: int | None = None) -> Chunk:
         """Return the rows of points.
 
-        Feasible designs that the reader of design files would reject fail. With `keep_best`, only
-        as many of the best are checked as it takes to find that many valid designs.
+        A feasible design also counts as failed if the reader of design files would reject it. With
+        `keep_best`, feasible designs are checked from the best on, until that many are valid.
         """
         n = len(points.variant)
         rows = np.full((n, len(self.columns)), np.nan)
@@ -198,7 +198,7 @@ class Study:
     def _screen(self, variant: int, fixed: Mapping[str, float]) -> Scores | None:
         """Return a screen for designs that differ only in numbers, if there are enough of them.
 
-        None with the user's own metrics, as these are not closed expressions.
+        None if the user has added metrics, as these are not closed expressions.
         """
         axes = [axis for axis in self.plan.numeric if axis.path not in self.designs.apart]
         group_size = self.plan.count / self.plan.variants / self.designs.apart_count

@@ -24,8 +24,7 @@ CACHED = 64
 """Number of prepared designs that a process keeps in memory."""
 
 VARIANTS = 8
-"""Maximum number of combinations of texts in which is checked whether a number can vary as an
-array."""
+"""Whether a number can vary as an array is checked in at most this number of text combinations."""
 
 AT_ONCE = 4096
 """Maximum number of designs in one model call; more would take memory without saving time."""

@@ -141,7 +141,7 @@ class Field:
         return [self.xs[i], self.ys[j]], [self.xs[k], self.ys[m]], ends
 
     def _zeros(self, number: int, low: Array, high: Array, ends: Array) -> Array:
-        """Return points of zero margin between ends of opposite sign, by the Illinois method."""
+        """Return the points of zero margin on grid edges, by the Illinois method."""
         a, b = np.zeros(len(low)), np.ones(len(low))
         f, g = ends[:, 0].copy(), ends[:, 1].copy()
         t, active = np.where(f == 0, 0.0, 1.0), (f != 0) & (g != 0)

@@ -35,10 +35,10 @@ DESCRIPTIVE = frozenset({"name", "notes", "reproduces", "waivers", "objective"})
 
 @dataclass(frozen=True)
 class SweepAxis:
-    """A varied PATH and its values: numbers (SI), or texts, each of which needs its own design.
+    """A varied PATH with its values: numbers (SI), or texts such as names of materials.
 
-    A range has its two ends as `values` and has `count` points; `count` is None if the sweep method
-    chooses the points.
+    Each text needs its own design. A range has its two ends as `values`, and `count` points;
+    `count` is None if the sweep method chooses the points.
     """
 
     path: str
@@ -317,8 +317,9 @@ def plan(axes: Sequence[SweepAxis], *, method: Method, count: int | None, seed: 
 
     Raises
     ------
-    UsageError if the method is unknown, there is no axis, a PATH occurs twice, or the number of
-    steps or of points is missing
+    UsageError
+        if the method is unknown, there is no axis, a PATH occurs twice, or the number of steps or
+        of points is missing
     """
     if method not in METHODS:
         raise UsageError(Diagnostic(f"--method {method}: unknown", f"use {', '.join(METHODS)}"))

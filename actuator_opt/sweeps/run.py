@@ -253,7 +253,7 @@ def swept_again(
     Raises
     ------
     InputError
-        if the file is missing, has other models, or the sweep is missing or incomplete
+        if the file is missing or was made with other models, or if it lacks rows of the sweep
     """
     began = time.perf_counter()
     swept = Swept(study, study.plan.count, sample=Sample(tuple(watch)))

@@ -83,7 +83,7 @@ def inputs(subject: PreparedDesign) -> tuple[Input, ...]:
     Raises
     ------
     InputError
-        if no model reads an entry of ``uncertainty``, or its samples leave the valid range
+        if no model reads an entry of ``uncertainty``, or its draws would leave the valid range
     """
     paths_read = read_by_models(subject)
     candidates = (

@@ -372,7 +372,7 @@ def _no_design_meets(optimisation: Optimisation) -> str:
 
 
 def _solved(optimisation: Optimisation) -> bool:
-    """Whether an optimum has the requested sizes and meets all limits with their reserves."""
+    """Whether an optimisation succeeded: all limits met with their reserves, in requested sizes."""
     infeasible = optimisation.status == "infeasible" or optimisation.status.startswith("limit_inf")
     usable = optimisation.status != "undefined" and not optimisation.status.startswith(
         "interrupted"

@@ -150,13 +150,13 @@ def cylinder(
 ) -> Expression:
     """Add both chambers of a cylinder, coupled by walls and rod; return their force [N].
 
-    Volume of chamber A: V_A = A_A x + V_0A + W_AA p_A + W_AB p_B. Volume of chamber B: V_B = A_B (s
-    - x) + V_0B + W_BB p_B + W_AB p_A. A are the areas, x is the position, s the stroke, V_0 the
-    dead volumes, p the pressures. W(x) is the compliance of the walls plus f a a^T for rod and
-    mount, with the flexibility f and a = (A_A, -A_B). The force on the piston is a^T p + p^T W'
-    p/2, which follows from the work of the walls. A pressure given as a number is prescribed: its
-    port then supplies the flow for volume, walls and leakage. Deep in an end stop, x is replaced by
-    the length of `_left`.
+    The chamber volumes are V_A = A_A x + V_0A + W_AA p_A + W_AB p_B and V_B = A_B (s - x) + V_0B +
+    W_BB p_B + W_AB p_A, with the position x, the stroke s, and for each chamber the piston area A,
+    the dead volume V_0 and the pressure p. The matrix W(x) is the compliance of the walls, plus f a
+    a^T for rod and mount with the flexibility f and the vector a = (A_A, -A_B). The force on the
+    piston is a^T p + p^T W' p/2, with W' = dW/dx; its second term follows from the work of the
+    walls. A pressure given as a number is prescribed, so that its port supplies the flow for
+    volume, walls and leakage. Deep in an end stop, the length from `_left` replaces x.
     """
     oil, beyond = circuit.plant.oil, stroke - position
     w_a = walls.a0 + walls.a1 * position + flexibility * area_a * area_a
@@ -202,7 +202,7 @@ def _set_pressures(
 ) -> None:
     """Set the rates of two coupled pressures.
 
-    A port at prescribed pressure supplies the flow instead.
+    If a pressure is prescribed, its port supplies the flow that keeps it constant.
     """
     (c_a, c_b), (net_a, net_b) = capacities, net
     is_state_a, is_state_b = (isinstance(pressure, Symbol) for pressure in pressures)

@@ -25,7 +25,7 @@ from ..system import System
 
 @dataclass(frozen=True, slots=True)
 class _Clock:
-    """Time of a system, as the `Clock` that signal shapes expect (`design.scenario.kinds`)."""
+    """Time of a system, with the interface `Clock` that the signal shapes in `design` expect."""
 
     system: System
 

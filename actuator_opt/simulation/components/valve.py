@@ -23,7 +23,7 @@ SPOOL = 1e-7
 
 
 class Port(NamedTuple):
-    """Flows of the valve."""
+    """Flows at the ports of the valve."""
 
     into_a: Expression
     into_b: Expression
@@ -71,7 +71,7 @@ def edges(
 ) -> Port:
     """Flows through the four edges of the spool.
 
-    Add the energy that they dissipate to the balance.
+    The energy that the edges dissipate is added to the balance.
     """
     flows = valve.valve_flows(
         signal=opening - data.offset,

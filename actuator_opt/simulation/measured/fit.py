@@ -167,7 +167,7 @@ class RecordFitProblem:
         self.failed = FAR * float(np.max(np.abs(self.residuals(self.start))))
 
     def put(self, x: Array) -> Case:
-        """Scenario and plant with fitted values, applied in the order of `PARAMETERS`."""
+        """Scenario and plant with the searched values, applied in the order of `PARAMETERS`."""
         scenario, plant = self.scenario, self.plant
         for name in PARAMETERS:
             if name in self.names:

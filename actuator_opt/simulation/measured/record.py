@@ -250,10 +250,10 @@ def overlay(simulation: Simulation, measured: AlignedRecord, *, lag: float = 0.0
     notes = [*measured.notes]
     unsimulated = [name for name in measured.channels if name not in signals]
     if unsimulated:
-        notes.append(f"not simulated here: {', '.join(unsimulated)}")
+        notes.append(f"measured, but not simulated: {', '.join(unsimulated)}")
     outside = [name for name in measured.channels if name in signals and name not in samples]
     if outside:
-        notes.append(f"no overlap in time: {', '.join(outside)}")
+        notes.append(f"measured only outside the simulated time: {', '.join(outside)}")
     notes += _partial_overlaps(samples, measured, duration, lag)
     notes += _coarse_sampling(simulation, samples)
     notes += _initial_values(simulation, samples, residuals, lag)
@@ -275,7 +275,7 @@ def inside(
     if not common:
         have = ", ".join(measured.channels) or "none"
         known = ", ".join(name for name in SIGNALS.values() if name in signals)
-        message = f"none of its channels is simulated ({have})"
+        message = f"none of the record's channels is simulated ({have})"
         raise measured.fault(message, shown(f"give some of {known}", 200))
     samples = {}
     for name, (t, y) in common.items():
@@ -457,5 +457,5 @@ def _implausible(
             text = simulation.told[name].quantity.text
             yield (
                 f"{name} ranges from {text(least)} to {text(most)} in the record, but "
-                f"{limit_name} is {text(high)}: check its unit and zero"
+                f"{limit_name} is {text(high)}: check its unit and zero point"
             )

@@ -39,7 +39,8 @@ from ..harmonic import dynamic_stiffness_of_record, harmonic_fit
 from ..integrate import integrate
 
 RELATIVE = 1e-7
-"""Relative tolerance of an integration step at full amplitude; it falls with the amplitude."""
+"""Relative tolerance of an integration step at full amplitude; smaller amplitudes have a smaller
+tolerance."""
 FINEST = 1e-9
 """Smallest relative tolerance of an integration step: 0.1 nm for a position of 100 mm."""
 SETTLED = 3.0
