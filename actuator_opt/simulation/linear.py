@@ -521,7 +521,7 @@ def _gains_by_rule(
 ) -> tuple[ControllerGains, str, tuple[str, ...]]:
     """Gains that a tuning rule gives for the ultimate gain and period, name of the rule, notes."""
     if worst.unstable:
-        message = "the circuit oscillates even without the control loop"
+        message = "the circuit oscillates even without the outer control loop"
         remedy = "lower speed_feedback and pressure_feedback, or add leakage across the piston"
         raise InputError(Diagnostic(message, remedy, path="control"))
     if not isfinite(limit.gain) or limit.gain <= 0:

@@ -270,7 +270,7 @@ def test_overlay_refuses_what_has_nothing_in_common():
     with pytest.raises(InputError, match=r"covers 9 to 9\.5 s, the scenario 0 to 0\.5 s"):
         overlay(made, late)
     time, signals = measured_signals()
-    with pytest.raises(InputError, match="none of the record.s channels is simulated"):
+    with pytest.raises(InputError, match="none of the record's channels is simulated"):
         overlay(made, AlignedRecord({"shaft_speed": (time, signals["speed"])}))
 
 
