@@ -80,8 +80,8 @@ def law_warnings(seal: SealSizes) -> Iterable[str]:
     hardness = float(np.max(seal["hardness"]))
     if not modulus_law.hardness_range[0] <= hardness <= modulus_law.hardness_range[1]:
         yield (
-            f"{hardness:g} Shore A, but the {modulus_law.name} law is valid from "
-            f"{modulus_law.hardness_range[0]:g} to {modulus_law.hardness_range[1]:g}"
+            f"{hardness:g} Shore A, but the {modulus_law.name} law for the modulus is valid from "
+            f"{modulus_law.hardness_range[0]:g} to {modulus_law.hardness_range[1]:g} Shore A"
         )
     ratio = float(np.max(np.abs(seal["pressure"] / seal["youngs_modulus"])))
     low, high = law.squeeze_range
@@ -91,13 +91,13 @@ def law_warnings(seal: SealSizes) -> Iterable[str]:
     if not (low - ON_LIMIT <= remaining and nominal <= high + ON_LIMIT):
         squeeze = nominal if nominal > high else remaining
         yield (
-            f"squeeze {100 * squeeze:.3g} %, but the {law.name} law was compared with data from "
-            f"{100 * low:.0f} to {100 * high:.0f} %"
+            f"squeeze {100 * squeeze:.3g} %, but the {law.name} contact law was only compared with "
+            f"data from {100 * low:.0f} to {100 * high:.0f} % squeeze"
         )
     if ratio > law.pressure_range[1]:
         yield (
-            f"pressure is {ratio:.1f} times Young's modulus, but the {law.name} law was compared "
-            f"with data up to {law.pressure_range[1]:g}"
+            f"pressure is {ratio:.1f} times Young's modulus, but the {law.name} contact law was "
+            f"only compared with data up to {law.pressure_range[1]:g} times"
         )
 
 

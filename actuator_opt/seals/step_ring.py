@@ -131,7 +131,7 @@ def faults(sizes: Mapping[str, float]) -> Iterable[SizeFault]:
     if land <= width < (land + relief) * (1 - 1e-9):
         yield SizeFault(
             "relief",
-            f"{_text(relief)}: relief and land are wider than the ring ({_text(width)})",
+            f"{_text(relief)}: relief and land together are wider than the ring ({_text(width)})",
             f"write at most {_text(width - land)}",
         )
 

@@ -169,13 +169,15 @@ def windows(*, time: Array, frequency: float, cycles: int) -> tuple[slice, ...]:
     """
     (t,) = sampled(time=time)
     if not frequency > 0 or cycles < 1:
-        message = f"windows of {cycles} cycles at {frequency:g} Hz"
+        message = f"no windows of {cycles} cycles at {frequency:g} Hz exist"
         raise InputError(Diagnostic(message, "give a positive frequency and 1 cycle or more"))
     step = (t[-1] - t[0]) / (len(t) - 1)
     length = cycles / frequency
     count = floor((t[-1] - t[0] + step) / length + 1e-6)
     if count < 1:
-        message = f"{t[-1] - t[0]:.3g} s are shorter than {cycles} cycles of {frequency:g} Hz"
+        message = (
+            f"a record of {t[-1] - t[0]:.3g} s is shorter than {cycles} cycles of {frequency:g} Hz"
+        )
         raise InputError(Diagnostic(message, "take fewer cycles"))
     edges = t[0] + length * np.arange(count + 1) - 1e-3 * step  # each edge is the start of a window
     places = np.searchsorted(t, edges)
@@ -198,7 +200,7 @@ def _design(t: np.ndarray, frequency: float) -> _Design:
     span = t[-1] - t[0]
     step = span / (len(t) - 1)
     if not frequency > 0 or (span + step) * frequency < 1 - 1e-6:
-        message = f"{span:.3g} s are shorter than one cycle of {frequency:g} Hz"
+        message = f"a record of {span:.3g} s is shorter than one cycle of {frequency:g} Hz"
         raise InputError(Diagnostic(message, "give a longer record or a higher frequency"))
     if 2 * step * frequency >= 1:
         message = f"samples every {step:.3g} s do not resolve {frequency:g} Hz"

@@ -650,7 +650,9 @@ def step_metrics(
         message = f"a step from {start:g} to {target:g}"
         raise InputError(Diagnostic(message, "give different values for start and target"))
     if not 0 < band < 1:
-        raise InputError(Diagnostic(f"band {band:g} of the step", "give one between 0 and 1"))
+        raise InputError(
+            Diagnostic(f"settling band {band:g} of the step", "give one between 0 and 1")
+        )
     t = t - t[0]
     normalised = (x - start) / (target - start)
     early, late = _time_at(t, normalised, 0.1), _time_at(t, normalised, 0.9)

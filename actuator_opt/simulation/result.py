@@ -594,5 +594,8 @@ def _outside(signals: Mapping[str, Array], plant: Plant) -> str:
     if plant.design.linkage is not None and beyond > 0:
         return "beyond the end stop, the joint reaches its dead centre: lower its load"
     if beyond > OUT * plant.stroke:
-        return "the piston is beyond its stops: lower the load, or stiffen them (stop_travel)"
+        return (
+            "the piston is beyond its stops: lower the load, or stiffen the stops (smaller "
+            "stop_travel)"
+        )
     return ""

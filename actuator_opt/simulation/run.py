@@ -217,7 +217,7 @@ def _simplifications(scenario: Scenario, actuator: Plant) -> Iterator[str]:
         error = max(seals.coulomb.error, seals.static.error)
         if error > WARN_PLANE:
             yield (
-                "friction is interpolated over the pressures with an error of up to "
+                "friction is interpolated between chamber pressures with an error of up to "
                 f"{100 * error:.1f} %"
             )
         films = [place for place in ("piston", "rod") if actuator.films[place]]

@@ -160,7 +160,7 @@ def sensitivities(
     """
     begin = perf_counter()
     if not 0 < step < 0.5:
-        message = f"step {step:g} of a parameter"
+        message = f"relative step {step:g} of a parameter"
         raise InputError(Diagnostic(message, "give a share between 0 and 0.5, such as 0.02"))
     bench = _Bench.of(scenario, subject, {} if records is None else records)
     base = bench.base()
@@ -169,7 +169,7 @@ def sensitivities(
     skipped: dict[str, str] = {}
     for target in steps("varying each parameter", [*bench.targets(names)]):
         if target.value == 0:
-            skipped[target.path] = "it is 0, so a relative step has no effect"
+            skipped[target.path] = "its value is 0, so a relative step does not change it"
             continue
         try:
             ranked.append(bench.parameter(target, reference, step))

@@ -112,7 +112,9 @@ def read_axis(text: str, design: Design, metrics: Metrics = None) -> SweepAxis:
     steps = _steps(text, count)
     ends = [_number(path, end, design, metrics) for end in _with_unit([first, last])]
     if ends[0] == ends[1]:
-        raise UsageError(Diagnostic(f"--vary {shown(text)}: both ends are equal", FORM))
+        raise UsageError(
+            Diagnostic(f"--vary {shown(text)}: both ends of the range are equal", FORM)
+        )
     return SweepAxis(path, np.array(ends), range=True, count=steps)
 
 
@@ -183,9 +185,13 @@ def _bare(text: str) -> float | None:
 
 def _listed(path: str, parts: list[str], design: Design, metrics: Metrics) -> SweepAxis:
     if not all(parts):
-        raise UsageError(Diagnostic(f"--vary {path}: an empty value", FORM))
+        raise UsageError(Diagnostic(f"--vary {path}: one of the values is empty", FORM))
     if len(parts) > MOST_LISTED:
-        raise UsageError(Diagnostic(f"--vary {path}: {len(parts)} values", "write a range"))
+        raise UsageError(
+            Diagnostic(
+                f"--vary {path}: {len(parts)} values are too many for a list", "write a range"
+            )
+        )
     parts = _with_unit(parts)
     values = [_value(path, part, design, metrics) for part in dict.fromkeys(parts)]
     if len(set(values)) < len(parts):  # finds duplicates such as 20 mm and 2 cm

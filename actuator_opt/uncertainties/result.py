@@ -211,8 +211,8 @@ class Uncertainty(Displayed):
             rows.append([limit.name, margin, *(f"{100 * x:.2f} %" for x in bounds)])
         rate = self.rate
         headline = (
-            f"yield {100 * rate.value:.2f} % ({100 * rate.lower:.2f} to {100 * rate.upper:.2f} "
-            f"%) of {self.count} draws"
+            f"yield {100 * rate.value:.2f} % (95 % bounds: {100 * rate.lower:.2f} to "
+            f"{100 * rate.upper:.2f} %) from {self.count} draws"
         )
         return "\n".join([headline, "", aligned(rows, right=(1, 2, 3, 4))])
 

@@ -302,7 +302,7 @@ class _RobustSearch:
         """Return the certificate with the remark that its bound does not include the reserves."""
         if certificate.lower_bound is None:
             return certificate
-        words = "the bound is for the limits themselves, without margins added for scatter"
+        words = "the bound applies to the limits themselves, without margins added for scatter"
         if self.ordinary.choices is not None:
             words += ", and for the chosen options only"
         return replace(certificate, sentence=f"{certificate.sentence}; {words}")

@@ -288,9 +288,9 @@ def quick_yield(subject: PreparedDesign, evaluation: Evaluation, *, seed: int = 
     if not evaluation.met:
         return YieldEstimate(why="the design itself misses a requirement")
     if not {row.metric for row in evaluation.requirements} <= set(subject.quantities):
-        return YieldEstimate(why="the Python functions of its custom metrics are missing")
+        return YieldEstimate(why="the Python functions of the design's custom metrics are missing")
     if films_asked(subject.design):
-        return YieldEstimate(why="solving the oil films of its seals takes too long")
+        return YieldEstimate(why="solving the oil films of the seals takes too long")
     try:
         model = UncertainModel(subject, inputs(subject))
         counts = draw(model, DRAWS, seed)

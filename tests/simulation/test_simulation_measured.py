@@ -257,7 +257,7 @@ def test_overlay_says_where_record_and_scenario_do_not_meet():
     })  # fmt: skip
     notes = overlay(run(scene, own, {}, None), record).notes
     assert any("position starts at 90 mm in the record, but at 80 mm" in one for one in notes)
-    assert any("state sample_time" in one for one in notes)
+    assert any("state a shorter sample_time" in one for one in notes)
     assert "measured, but not simulated: shaft_speed" in notes
     assert "measured only outside the simulated time: pressure_b" in notes
 
@@ -492,7 +492,9 @@ def test_a_model_that_lacks_something_says_so():
     own = replace(own, valve=replace(own.valve, natural_frequency=55.0))
     found = fit(scene, own, {}, bench(4), ("air_content",))
     assert "position" in found.missed
-    assert any("differs from the record by more than its noise" in one for one in found.doubts)
+    assert any(
+        "differs from the record by more than the sensor noise" in one for one in found.doubts
+    )
 
 
 def test_pairs_that_hide_in_each_other_are_named():

@@ -101,8 +101,8 @@ def test_axes_as_written():
         ("cylinder.bore=18..40 mm:x", "x steps"),
         ("cylinder.bore=18..40 mm:1", "1 steps"),
         ("cylinder.bore=18..40 mm:", "nothing steps"),
-        ("cylinder.bore=20 mm..20 mm:3", "both ends are equal"),
-        ("cylinder.bore=20 mm,,30 mm", "an empty value"),
+        ("cylinder.bore=20 mm..20 mm:3", "both ends of the range are equal"),
+        ("cylinder.bore=20 mm,,30 mm", "one of the values is empty"),
         ("cylinder.bore=20 mm,20 mm", "a value is given twice"),
         ("cylinder.bore=20 mm,2 cm", "a value is given twice"),
         (

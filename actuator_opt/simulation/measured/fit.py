@@ -393,8 +393,8 @@ def _thinning_notes(
     for step, names in sorted(steps.items()):
         if step > 1:
             yield (
-                f"{named(names, used)}: the fit uses one in every {step} samples, to keep to "
-                f"at most {MOST}"
+                f"{named(names, used)}: the fit uses only one in {step} samples, at most {MOST} "
+                "in total"
             )
 
 
@@ -790,13 +790,14 @@ def _misfits(after: Overlay, before: Overlay) -> Iterator[str]:
             continue
         quantity = after.simulation.told[name].quantity
         misfits.append(
-            f"{name} {quantity.text(channel.rms, 2)}, {_times(channel.rms / channel.noise)} times"
+            f"{name} {quantity.text(channel.rms, 2)}, {_times(channel.rms / channel.noise)} times "
+            "its noise"
         )
         if channel.rms > WORSE * before.residuals[name].rms:
             yield f"{name} fits worse than before the fit, so the channels contradict each other"
     if misfits:
         yield shown(
-            "the simulation differs from the record by more than its noise "
+            "the simulation differs from the record by more than the sensor noise "
             f"({'; '.join(misfits)}): the model lacks an effect, or the record was smoothed. This "
             "biases the parameters, and their confidence intervals do not include this bias",
             400,

@@ -83,7 +83,7 @@ class AlignedRecord:
             )
         if not channels:
             message = "no channel matches a simulated signal"
-            raise record.fault(message, f"name columns {', '.join(SIGNALS)} with units")
+            raise record.fault(message, f"name the columns {', '.join(SIGNALS)}, with their units")
         notes += [
             f"{named(names, channels)}: {words}, left out" for words, names in missing.items()
         ]
@@ -411,7 +411,7 @@ def _coarse_sampling(
     if simulated_step > WIDE * record_step:
         yield (
             f"the simulation is sampled every {1e3 * simulated_step:.3g} ms, but the record "
-            f"every {1e3 * record_step:.3g} ms, so peaks may be missed: state sample_time"
+            f"every {1e3 * record_step:.3g} ms, so peaks may be missed: state a shorter sample_time"
         )
 
 
@@ -435,7 +435,8 @@ def _initial_values(
             quantity = simulation.told[name].quantity
             yield (
                 f"{name} starts at {quantity.text(float(y[0]))} in the record, but at "
-                f"{quantity.text(initial)} in the scenario: state initial.{name}"
+                f"{quantity.text(initial)} in the scenario: "
+                f"state the starting value as initial.{name}"
             )
 
 

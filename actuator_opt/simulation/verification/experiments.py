@@ -575,7 +575,7 @@ def ultimate_gain(stand: Stand, expected: float, frequency: float) -> Experiment
         result = {"ultimate_gain": inf if direction > 0 else 0.0}
         why = f"no sustained oscillation up to {MOST:g} times the linear ultimate gain"
         if direction < 0:
-            why = f"it oscillates even at 1/{MOST:g} of the linear ultimate gain"
+            why = f"the loop oscillates even at 1/{MOST:g} of the linear ultimate gain"
         return ExperimentResult(result, how, facts, why)
     share = float(brentq(growth, low, high, xtol=2 * EXACT))
     nearest = min(records, key=lambda candidate: abs(candidate - share))

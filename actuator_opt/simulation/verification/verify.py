@@ -189,13 +189,14 @@ def _notes(scenario: Scenario, any_requirement: bool) -> tuple[str, ...]:
     )
     if own_controller:
         notes.append(
-            "the scenario has its own controller, but requirements of the design refer to its "
-            "proportional position loop"
+            "the scenario has its own controller, but requirements of the design refer to the "
+            "proportional position loop of the design"
         )
     omitted = _left_out(scenario.load)
     if omitted:
         notes.append(
-            f"the experiments load the rod with a constant force; they leave out {omitted}"
+            f"the experiments load the rod with a constant force; they leave out these "
+            f"parts of the load: {omitted}"
         )
     return tuple(notes)
 
@@ -403,7 +404,7 @@ class _Bench:
     def _compared(self, metric: str, spot: Spot) -> str:
         """Text that states the point of comparison, if it is not the worst linear point."""
         stand = self._placed(metric, spot)
-        words = f"compared at {1e3 * stand.position:.3g} mm"
+        words = f"compared at the position {1e3 * stand.position:.3g} mm"
         if metric in HELD:
             return f"{words}, away from the end stop"
         direction = "extending" if self._way(spot, stand) else "retracting"
