@@ -212,7 +212,7 @@ def test_the_bristles_of_sticking_seals_are_a_spring_beside_the_oil():
 
 
 def test_shares_make_up_the_difference():
-    """Friction, size of the swing and operating point together lead from one tier to the other."""
+    """Friction, amplitude and operating point together lead from one tier to the other."""
     told = [one for one in sticking().rows if one.shares]
     assert {"bandwidth", "gain_margin", "dynamic_stiffness"} <= {one.metric for one in told}
     for one in told:
