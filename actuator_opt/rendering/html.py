@@ -181,7 +181,7 @@ def _footer(page: Page, origin: Origin | None) -> Iterator[str]:
 
 
 def pieces(blocks: Iterable[Block]) -> str:
-    """Some blocks as a piece of HTML, without the verdict, figure and footer of a page."""
+    """Blocks (tables, charts, notes) as a piece of HTML, without verdict, figure and footer."""
     return "\n".join([f"<style>{_STYLE}</style>", '<div class="ao">', *_blocks(blocks), "</div>"])
 
 

@@ -116,7 +116,7 @@ def text_width(text: str, size: float, *, bold: bool = False) -> float:
 
 
 def spread(targets: Sequence[float], gaps: Sequence[float]) -> list[float]:
-    """Positions as close as possible to ascending targets, with least gaps between neighbours.
+    """Positions as close as possible to ascending targets, but with minimum gaps between them.
 
     `gaps[i]` is the least distance between positions i and i+1. The pool-adjacent-violators
     algorithm minimises the sum of the squared distances from the targets.
@@ -197,7 +197,7 @@ def hatch(
 
 
 class Ink:
-    """A drawing of a width and height (mm) that collects marks in drawing order."""
+    """A drawing of given width and height (mm), to which marks are added in drawing order."""
 
     def __init__(self, width: float, height: float) -> None:
         self.width = width

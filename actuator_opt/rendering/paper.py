@@ -73,7 +73,7 @@ def write(
     page : to write
     origin : design file and command of the page, attached to the PDF
     folder, stem : target; the folder is made if missing
-    all_pages : also write ``STEM-page-N.png`` of the later sheets
+    all_pages : whether to write the later sheets, too, as ``STEM-page-N.png``
     format : "pdf" (with PNG), "html", or "both"
     run : further facts about the run, attached to the PDF
 
@@ -114,7 +114,7 @@ def write(
 
 
 def plain(page: Page, origin: Origin) -> dict[str, object]:
-    """A page as plain data for the template."""
+    """A page as plain data for the Typst template."""
     hero = page.hero(max(room(page), page.least))
     return {
         "name": soft(page.name),
@@ -154,7 +154,7 @@ def plain(page: Page, origin: Origin) -> dict[str, object]:
 
 
 def plain_blocks(blocks: Sequence[Block], width: float = FULL) -> list[dict[str, object]]:
-    """Blocks for a width on paper [mm], as plain data for the template."""
+    """Blocks, laid out for a width on paper [mm], as plain data for the Typst template."""
     parts = [
         part
         for block in blocks
@@ -327,7 +327,7 @@ def font_folders() -> list[str]:
 
 
 def _remove_later_pages(folder: Path, stem: str, count: int) -> None:
-    """Remove images of later sheets of an earlier report with the same name."""
+    """Remove images of later sheets that an earlier report of the same name has left."""
     index = max(count + 1, 2)
     while (path := folder / f"{stem}-page-{index}.png").is_file():
         path.unlink()

@@ -56,8 +56,8 @@ def grid_table(
 
     Parameters
     ----------
-    title, note : above and below the table
-    grid : heads, then rows
+    title, note : texts above and below the table
+    grid : row of heads, then the other rows
     words : numbers of the columns that contain words, which are aligned to the left; negative
         numbers count from the last column
     widths : width of every column, or widths by column number; columns not listed are "auto"
@@ -87,8 +87,8 @@ def study_report(
 
     Parameters
     ----------
-    script : the study's file
-    study : its numbers, attached as JSON
+    script : file of the study
+    study : numbers of the study, attached to the PDF as JSON
     title, heading : title of the PDF, and printed heading
     lead : paragraphs below the heading
     blocks : from top to bottom; plain data is also allowed
@@ -152,8 +152,8 @@ def run_script(
 
     Parameters
     ----------
-    script : its file
-    description : of the command
+    script : file of the study
+    description : description of the command, for its help
     compute : function that computes the study; it takes `quick=` if the script has this option
     printed : function that returns the text for the terminal
     page : function that returns the report

@@ -160,9 +160,9 @@ class ParquetFile(AbstractContextManager["ParquetFile"]):
 
     Parameters
     ----------
-    fields : its columns
+    fields : columns of the file
     about : metadata of the file
-    path : of the file
+    path : path of the file
 
     Raises
     ------

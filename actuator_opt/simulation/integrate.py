@@ -435,7 +435,8 @@ def integrate(
     ----------
     compiled : the equations
     duration : simulated time [s]
-    sample_time : of the result [s]; the method chooses its own internal steps
+    sample_time : interval between the samples of the result [s]; the method chooses its own
+        internal steps
     method : "lsoda", "radau" or "cvodes" (extra ``fast``)
     relative : relative tolerance of a step; None for that of the method
 

@@ -146,7 +146,8 @@ def sensitivities(
     Parameters
     ----------
     scenario, subject : inputs over time, and the design
-    names : PATHs in design or scenario; default: `DESIGN` and all numbers that the scenario states
+    names : PATHs of the parameters, in design or scenario; default: those of `DESIGN`, and all
+        numbers that the scenario states
     step : relative step of a parameter
     results : names of `quantities.RESULTS`; default: all results of the scenario
     records : columns of the files that the scenario's signals name

@@ -369,7 +369,7 @@ def study(
     mapped: bool = False,
     elements: tuple[MountedContact, ...] = (),
 ) -> SealStudy:
-    """Study the seals of piston or rod at one point, and around it.
+    """Study the seals of piston or rod at one operating point; if requested, over a range.
 
     Parameters
     ----------

@@ -60,7 +60,7 @@ class Explored:
     most: int
     """Number of rows above which only every n-th row is read."""
     origin: str = "Study"
-    """Name of the source of the rows."""
+    """Name for the source of the rows, as shown to the user."""
     shown: tuple[str, ...] = ()
     """Metrics shown first on the x and y axis; empty for the default."""
     damaged: int = 0
@@ -94,7 +94,7 @@ def explored(
     Parameters
     ----------
     path : database of sweeps
-    study : its number, or its hash; default: the newest
+    study : number or hash of the study in the database; default: the newest
     most : maximum number of rows; of larger studies, only every n-th row in the order of keys is
         read, and the best feasible rows in addition
     plugins : the user's metrics and constraints, as in the sweep

@@ -390,7 +390,8 @@ FLOW = 1e-12
 
 
 LEAST_NODE = 1e-6
-"""Volume of oil behind a throttle if the design states none (our choice: 1 ml of fittings)."""
+"""Smallest oil volume at the far end of a line or behind a throttle, also if the design states none
+(our choice: 1 ml of fittings)."""
 
 
 REDUCING_FLOW = 20 / 60000

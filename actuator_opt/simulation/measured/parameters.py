@@ -25,7 +25,7 @@ BLEED = 1e-6 / 60 / 1e5
 """Leakage from which the fit starts if the design states none (our choice): 1 ml/min/bar
 [m^3/s/Pa]."""
 RISE = 1.5
-"""Ratio of static to Coulomb friction from which the fit starts if both are stated as equal (our
+"""Ratio of static to Coulomb friction from which the fit starts if the two are equal otherwise (our
 choice)."""
 LATEST = 0.2
 """Largest lag of a record, as a share of the simulated time (our choice: enough for a logger that
