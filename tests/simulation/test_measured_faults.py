@@ -340,9 +340,7 @@ def test_a_record_of_a_million_samples_is_thinned_for_a_fit():
     assert overlay(made, wide).residuals["pressure_a"].count == 1_000_000
     own = plant(trial().actuator.subject())
     found = fit(trial().scenario, own, {}, wide, ("air_content",))
-    assert (
-        "pressure_a: the fit uses one in every 250 samples, to keep to at most 4000" in found.doubts
-    )
+    assert "pressure_a: the fit uses only one in 250 samples, at most 4000 in total" in found.doubts
     assert found.values["air_content"] == pytest.approx(0.005, rel=0.1)
 
 
