@@ -32,7 +32,7 @@ class VariableResult:
     at_bound: str | None
 
     def moved(self, value: float) -> VariableResult:
-        """This dimension with another value; `at_bound` is updated."""
+        """The same dimension with another value; `at_bound` is updated."""
         room = 1e-6 * max(abs(self.lower), abs(self.upper), self.upper - self.lower)
         bounds = {"lower": value - self.lower, "upper": self.upper - value}
         active_bound = next((name for name, distance in bounds.items() if distance <= room), None)
@@ -98,7 +98,7 @@ class Infeasibility:
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """How far a design is at most from the best possible design, with the proof and the evidence.
+    """Largest distance of a design from the best possible design, with proof and evidence.
 
     The proof covers the limits in `covers`: no design that meets them has an objective below
     `lower_bound` (SI). `gap` is the distance of this design's objective from that bound, as a share
@@ -233,21 +233,21 @@ class Rounding:
 
 
 How: TypeAlias = Literal["multistart", "quick", "evaluated", "not possible", "not tried"]
-"""How the best design of a combination of choices was found (see `Combination`)."""
+"""Method that gave the best design of a combination of choices (see `Combination`)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Combination:
     """A combination of the choices, and its best design.
 
-    `how` states how the design was found. "multistart" means a search from many starts, and "quick"
-    a search only from the nearest known design, which may miss the optimum. "evaluated" means that
-    there are no variables, "not possible" that the values contradict each other, and "not tried"
-    that the time limit was reached before. `feasible` is True if all requirements are met. `cost`
-    is the difference of the objective from the best combination (in its SI unit), and `percent` the
-    relative difference; both are None without a comparison. `rounded` is the objective with listed
-    sizes if these were requested and if it beats all combinations solved before. `cost` then refers
-    to the best rounded objective.
+    `how` is the method that gave the design. "multistart" means a search from many starts, and
+    "quick" a search only from the nearest known design, which may miss the optimum. "evaluated"
+    means that there are no variables, "not possible" that the values contradict each other, and
+    "not tried" that the time limit was reached before. `feasible` is True if all requirements are
+    met. `cost` is the difference of the objective from the best combination (in its SI unit), and
+    `percent` the relative difference; both are None without a comparison. `rounded` is the
+    objective with listed sizes if these were requested and if it beats all combinations solved
+    before. `cost` then refers to the best rounded objective.
     """
 
     values: Mapping[str, choice_list.Value]
@@ -349,8 +349,7 @@ class Optimisation(Displayed):
 
     @property
     def best(self) -> Design:
-        """The design to build: the design with listed sizes if found, else the continuous optimum.
-        """
+        """The design to build: with listed sizes if possible, else the continuous optimum."""
         return self.design if self.made is None or self.made.design is None else self.made.design
 
     @property
@@ -361,8 +360,7 @@ class Optimisation(Displayed):
 
     @property
     def tight(self) -> tuple[str, ...]:
-        """Limits met without margin by the design to build; empty if a requested yield is reached.
-        """
+        """Limits that the design to build only just meets; empty if a requested yield is met."""
         return () if self.robust and self.robust.reached else self.best_evaluation.tight
 
     @property
@@ -384,15 +382,12 @@ class Optimisation(Displayed):
 
     @property
     def optimum(self) -> bool:
-        """Whether the design to build is optimal; if sizes are listed, among designs with these
-        sizes.
-        """
+        """Whether the design to build is optimal, if necessary among designs with listed sizes."""
         return self.status == "optimal" and self.best_evaluation.met
 
     @property
     def shown(self) -> str:
-        """Sentence on which design tables, drawing and JSON show; empty if no sizes were requested.
-        """
+        """Sentence on which design the outputs show; empty if no sizes were requested."""
         if self.rounding is None:
             return ""
         quantity, name = of_metric(self.objective_metric), self.rounding.name
@@ -415,9 +410,7 @@ class Optimisation(Displayed):
 
     @property
     def offers(self) -> Offers:
-        """The most valuable changes of requirements, parameters and materials, after
-        re-optimisation.
-        """
+        """The most valuable changes of requirement, parameter and material, re-optimised."""
         maximised = self.design.objective.maximise is not None
         return offers(self.sensitivities, self.objective_value, maximised=maximised)
 

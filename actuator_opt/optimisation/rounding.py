@@ -71,7 +71,7 @@ def size_remedies(
     size_search: SizeSearch,
     deadline: float | None = None,
 ) -> tuple[tuple[SizeRemedy, ...], str]:
-    """Single changes that make better sizes possible, best first; a note if none is found.
+    """Single changes that make better sizes possible, best first; a note if there are none.
 
     Parameters
     ----------
@@ -93,10 +93,7 @@ def size_remedies(
             *fixed.with_other_pressure(),
         ]
     sign = actuator.goal.sign
-    note = (
-        "no single change of a limit, a load or the supply pressure by up to "
-        f"{100 * SMALL:g} % "
-    )
+    note = f"no single change of a limit, a load or the supply pressure by up to {100 * SMALL:g} % "
     note = f"{note}allows better sizes" if assignments and not remedies else ""
     return tuple(sorted(remedies, key=lambda remedy: sign * remedy.objective)), note
 
@@ -120,9 +117,7 @@ def _other_sizes(listed: Sequence[Listed], x: Vector, size_search: SizeSearch) -
 
 
 def _limits(actuator: ActuatorProblem, solution: Solution, size_search: SizeSearch) -> list[int]:
-    """Indices of the requirements and loads with the least margins at the optimum or after
-    rounding.
-    """
+    """Indices of the requirements and loads with the least margins, before or after rounding."""
     margins = solution.constraints
     if size_search.missed is not None:
         margins = np.minimum(margins, size_search.missed.rows[1 : 1 + len(margins)])
@@ -217,9 +212,7 @@ class _FixedSizes:
     def remedy(
         self, eased: BoxProblem, x: Vector, entry: Mapping[str, Any]
     ) -> Iterator[SizeRemedy]:
-        """The remedy with the best design of these sizes after the change, if that design is
-        better.
-        """
+        """The remedy, with the best design of these sizes after the change, if it is better."""
         point = repairs.near(eased, x)
         if point is None:
             return
@@ -255,9 +248,7 @@ class Wanted:
 
 @dataclass(frozen=True)
 class ListedSizes:
-    """The variables with listed values: their groups for the search, and the series of each
-    variable.
-    """
+    """The variables with listed values, in groups for the search, and the source of their sizes."""
 
     listed: tuple[Listed, ...]
     labels: dict[str, str]
@@ -379,10 +370,13 @@ def sizes_of(
 
 
 def _require_plies(design: Design, requested: Wanted, materials: Mapping[str, Material]) -> None:
-    """Check that every fibre layer states a ply thickness, and if fixed, consists of whole plies.
-    """
+    """Check that all fibre layers state a ply thickness, and that fixed layers fit it."""
     plies_by_path = dict(layers(design))
-    hint = "" if requested.whole_plies else '; to round only bore and rod, set "sizes: iso_3320" for these variables'
+    hint = (
+        ""
+        if requested.whole_plies
+        else '; to round only bore and rod, set "sizes: iso_3320" for these variables'
+    )
     faults = [
         Diagnostic(
             "the layer states no ply_thickness, so its plies cannot be counted",
@@ -398,7 +392,7 @@ def _require_plies(design: Design, requested: Wanted, materials: Mapping[str, Ma
             pairs = "" if not ply.balanced or along(ply.angle) else "pairs of "
             faults.append(
                 Diagnostic(
-                    f"not a whole number of {pairs}plies of {thickness}, and fixed (not a variable)",
+                    f"fixed, and not a whole number of {pairs}plies of {thickness}",
                     "change it, or make it a variable",
                     path=path,
                 )
@@ -413,8 +407,8 @@ def _nothing_to_round(requested: Wanted) -> Diagnostic:
         remedy = "make cylinder.bore or rod.outer_diameter a variable, or give a variable sizes"
     else:
         message = (
-            "nothing to round: no variable is the thickness of a layer with ply_thickness, or an angle of a "
-            "barrel with allowed_angles"
+            "nothing to round: no variable is the thickness of a layer with ply_thickness, or "
+            "an angle of a barrel with allowed_angles"
         )
         remedy = "add ply_thickness to a layer whose thickness is a variable"
     return Diagnostic(message, remedy, path="variables")
@@ -484,7 +478,8 @@ def _rounding(
     feasible = sum(math.isfinite(objective) for objective in size_search.tried.values())
     failure = Rounding(
         met=False,
-        sentence=f"none of the {len(size_search.tried)} tried designs with {sizes.name} meets all requirements"
+        sentence=f"none of the {len(size_search.tried)} tried designs with {sizes.name} "
+        "meets all requirements"
         + ("" if size_search.complete else ", and the search stopped at its time limit")
         + _nearest(actuator, sizes, size_search),
         remedy=f"{_FINER[sizes.name]}, widen the bounds of these variables, or relax a requirement",

@@ -135,9 +135,9 @@ def _evidence(solution: Solution) -> str:
     missed = 1 - (1 - CHANCE) ** (1 / count)
     return (
         f"{count_same} of {count} starts reached this optimum, and none reached a better "
-        f"one. If a better optimum were reached from more than {100 * missed:.0f} % of all possible "
-        f"starts, this search would have found it with {100 * CHANCE:.0f} % probability (evidence, "
-        "not proof)"
+        f"one. If a better optimum were reached from more than {100 * missed:.0f} % of all "
+        f"possible starts, this search would have found it with {100 * CHANCE:.0f} % "
+        "probability (evidence, not proof)"
     )
 
 
@@ -327,7 +327,10 @@ def _idle(actuator: ActuatorProblem) -> tuple[str, ...]:
     """Warnings about objective terms that no variable affects."""
     if actuator.goal.single is not None:
         return ()
-    return tuple(f"no variable affects {name}, which is part of the objective" for name in idle_metrics(actuator))
+    return tuple(
+        f"no variable affects {name}, which is part of the objective"
+        for name in idle_metrics(actuator)
+    )
 
 
 def _enumerated(

@@ -314,7 +314,9 @@ def _conclude(search: Descents, swept: Sweep) -> Solution:
         )
         lost = labels[~np.isfinite(point.rows)]
         others = f" and {len(lost) - 3} more" if len(lost) > 3 else ""
-        search.warnings.append(f"not computable at the end of the search: {', '.join(lost[:3])}{others}")
+        search.warnings.append(
+            f"not computable at the end of the search: {', '.join(lost[:3])}{others}"
+        )
     if evaluator.bad_slopes:
         search.warnings.append(
             f"{evaluator.bad_slopes} gradients had undefined entries (a derivative was not finite)"
@@ -346,8 +348,7 @@ def _conclude(search: Descents, swept: Sweep) -> Solution:
 
 
 def _best_seen(search: Descents, swept: Sweep) -> SearchResult:
-    """The best of all points: from the runs, the sweep, and the start or the middle of the bounds.
-    """
+    """The best point of the runs, the sweep, and the start (or the middle of the bounds)."""
     evaluator = search.evaluator
     if search.interrupted or evaluator.exhausted:
         evaluator.enter_precomputed()
@@ -360,8 +361,7 @@ def _best_seen(search: Descents, swept: Sweep) -> SearchResult:
 
 
 def _settle(search: Descents, best: SearchResult) -> tuple[Point, tuple[str, ...]]:
-    """Reset variables without effect to their start value, or else to the middle of their bounds.
-    """
+    """Reset variables without effect to their start, or else to the middle of their bounds."""
     evaluator = search.evaluator
     space, problem = evaluator.space, evaluator.problem
     if not best.point.valid or space.size == 0:

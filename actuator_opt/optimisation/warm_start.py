@@ -228,9 +228,7 @@ class WarmStart:
                 )  # fmt: skip
 
     def _take_gradients(self, evaluator: Evaluator) -> None:
-        """Reuse the gradient check if the changed problem has the same constraints; else check
-        again.
-        """
+        """Reuse the gradient check if the constraints have the same names; else check again."""
         solved, problem = self.evaluator, evaluator.problem
         if tuple(problem.constraint_names) == tuple(solved.problem.constraint_names):
             evaluator.adopt_check(solved)
@@ -264,9 +262,7 @@ class WarmStart:
     def _stepped(
         self, evaluator: Evaluator, valleys: Sequence[Valley]
     ) -> tuple[Point | None, Vector | None]:
-        """Optimum reached by steps from the local optima, and a feasible point (nf,); None if not
-        found.
-        """
+        """Optimum by steps from the known optima, and a feasible point (nf,); None if not found."""
         problem = evaluator.problem
         parametric = ParametricProblem(problem, (), np.zeros(0), lambda x, _: problem.evaluate(x))
         if not valleys or not applicable(parametric, evaluator):
@@ -288,8 +284,7 @@ class WarmStart:
         values: Sequence[float],
         rebuilt: Callable[[float], ActuatorProblem],
     ) -> bool:
-        """Whether the number acts as a parameter of the model; checked at the lowest and highest
-        value.
+        """Whether the number acts only as a parameter; checked at its lowest and highest value.
 
         Some numbers act not only as inputs of the models: temperatures, for example, also change
         the factors on material properties.

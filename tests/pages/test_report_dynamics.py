@@ -498,7 +498,8 @@ def test_a_swinging_loop_is_no_response():
     assert "The closed loop is unstable." in texts(ink_of(found["Position loop, open"]))
     closed = texts(ink_of(found["Position loop, closed"]))
     assert any(
-        t.startswith("The closed loop is unstable, so this is not its response.") for t in closed
+        t.startswith("The closed loop is unstable, so these curves are not its response.")
+        for t in closed
     )
 
 

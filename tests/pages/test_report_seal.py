@@ -540,7 +540,7 @@ def test_notes_tell_model_from_input():
     """The sheet says what its film model cannot know and what was never measured."""
     said = " ".join(seal.notes(studied("tandem", "rod")))
     for words in (
-        "literature orders of magnitude",
+        "orders of magnitude from the literature",
         "at rest too",
         "proportional",
         "not the damping",

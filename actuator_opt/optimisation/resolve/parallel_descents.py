@@ -84,8 +84,7 @@ class Descents:
         return any(optimum.point.violation <= MET for optimum in self.optima)
 
     def residual(self, point: Point) -> float:
-        """Residual of the optimality conditions at a point; infinite where the model is undefined.
-        """
+        """Residual of the optimality conditions; infinite where the model is undefined."""
         if not point.valid:
             return np.inf
         return kkt.check(self.evaluator, point, objective_scale=self.objective_scale).residual

@@ -207,8 +207,7 @@ class Descent:
         return trial.objective / self.scale, float(missed)
 
     def _learn(self, step: Vector, change: Vector) -> None:
-        """Update the Hessian, damped to stay positive definite [NocedalWright2006] procedure 18.2.
-        """
+        """Update the Hessian, damped to stay convex [NocedalWright2006] procedure 18.2."""
         product = self.hessian @ step
         curvature, measured = float(step @ product), float(step @ change)
         if curvature <= 1e-20:
@@ -397,8 +396,7 @@ class ScaledHessian:
     scale: float
 
     def in_coordinates(self, evaluator: Evaluator, x: Vector) -> Vector:
-        """The Hessian in the solver coordinates of the variables that are free, at a point x (n,).
-        """
+        """The Hessian in the solver coordinates of the free variables, at a point x (n,)."""
         space = evaluator.space
         slope = space.slope(x[:, None])[:, 0]
         return np.asarray(self.hessian[np.ix_(space.free, space.free)] * np.outer(slope, slope))
@@ -462,8 +460,7 @@ def _free(evaluator: Evaluator, descent: Descent) -> Vector:
 
 
 def _convex(z: Vector, products: Vector, largest: float) -> Vector:
-    """A convex matrix (nf, nf) whose products with orthonormal vectors z (nf, d) are given (nf, d).
-    """
+    """A convex matrix (nf, nf) with given products (nf, d) with orthonormal vectors z (nf, d)."""
     size = len(z)
     if z.shape[1] == 0:
         return np.eye(size)
