@@ -163,7 +163,8 @@ def remarks(overlay: Overlay, fit: Fit | None) -> list[str]:
     if overlay.lag:
         way = "late" if overlay.lag > 0 else "early"
         words.append(
-            f"the record is {number(1e3 * abs(overlay.lag), 3)} ms {way} against the simulation; this is corrected"
+            f"the record is {number(1e3 * abs(overlay.lag), 3)} ms {way} against the simulation; "
+            "this is corrected"
         )
     return [sentence(pretty(remark)) for remark in words]
 

@@ -512,7 +512,7 @@ def _map(study: SealStudy, film_map: FilmMap) -> Chart:
 
 
 def missing(film_map: FilmMap) -> str:
-    """Sentence on the points of a map without an oil film, with reasons; empty if there are none."""
+    """Sentence on points of a map without an oil film, with reasons; empty if there are none."""
     if not film_map.why:
         return ""
     reasons: dict[str, int] = {}
