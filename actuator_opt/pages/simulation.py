@@ -68,8 +68,8 @@ integration."""
 CLOSED = 1e-3
 """Least error of a balance that raises a warning (our choice: one digit of the printed value)."""
 AGREE = 1e-2
-"""Least difference of two integrators that raises a warning, as a share of a signal's range\n(our
-choice)."""
+"""Least difference of two integrators that raises a warning, as a share of a signal's range
+(our choice)."""
 MOST_EVENTS = 4
 """Largest number of events listed."""
 MOST_PARTS = 3
@@ -137,7 +137,7 @@ def series(simulation: Simulation) -> list[Series]:
 
 
 def _grid(simulation: Simulation) -> tuple[Array, Array]:
-    """Evenly spaced times [s], and indices of their samples; of two samples at a time, the later."""
+    """Evenly spaced times [s], and indices of their samples (the later of two at a time)."""
     time, duration = simulation.time, simulation.scenario.duration
     step = simulation.scenario.sample_time or duration / SAMPLES
     count = max(round(duration / step), 1)
@@ -480,7 +480,10 @@ def _open(simulation: Simulation) -> Iterator[str]:
     for name in ("mass", "energy"):
         error = getattr(simulation.balance, name)
         if error >= CLOSED:
-            yield f"in doubt: the balance of {name} does not close, by {share_words(error)}"
+            yield (
+                f"in doubt: the balance of {name} does not close; its relative error is "
+                f"{share_words(error)}"
+            )
     second = simulation.second
     if second is not None and second.max_difference >= AGREE:
         apart = share_words(second.max_difference)

@@ -487,7 +487,7 @@ def run_table(comparison: RunComparison) -> Table:
 
 
 def _sentence(comparison: RunComparison, designs: Sequence[str]) -> str:
-    """Sentence on the number of runs and their designs, and on their scenario if all have the same."""
+    """Sentence on the number of runs, their designs, and their scenario if all have the same."""
     named = " and ".join(designs) if len(designs) < 3 else f"{len(designs)} designs"
     count = "1 run" if len(comparison.runs) == 1 else f"{len(comparison.runs)} runs"
     first = f"{count} of {named}."
@@ -531,7 +531,7 @@ def _trust(comparison: RunComparison) -> list[str]:
         share_words(max(getattr(run.balance, name) for run in simulations))
         for name in ("mass", "energy")
     )
-    first = f"Balances of all runs: mass within {mass}, energy within {energy}."
+    first = f"Largest errors of the balances of all runs: mass {mass}, energy {energy}."
     checked = [run.second for run in simulations if run.second is not None]
     if checked:
         most = share_words(max(second.max_difference for second in checked))

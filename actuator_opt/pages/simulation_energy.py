@@ -36,8 +36,8 @@ MOST_ROWS = 9
 MOST_CURVES = 5
 """Largest number of energies shown over time."""
 AGREES = 0.01
-"""Greatest difference between an energy and the integral of its sampled power, as a share of
-all\nenergy (our choice)."""
+"""Greatest allowed difference between an energy and the integral of its sampled power, as a share
+of all energy (our choice)."""
 ROW, TOP = 3.7, 9.0
 """Height of a row, and of the title above the rows [mm]."""
 GIVEN, TAKEN, KEPT = BLUE, OCHRE, "#7d868e"
@@ -52,7 +52,7 @@ class EnergyShare(NamedTuple):
 
 
 def shares(simulation: Simulation) -> list[EnergyShare]:
-    """Sources of energy, the supply first, then sinks, the largest first; small shares are summed."""
+    """Sources of energy (the supply first), then sinks by size; small shares are summed."""
     flows = [EnergyShare(flow.name, flow.energy) for flow in simulation.balance.flows]
     flows.append(EnergyShare("store", -sum(store.energy for store in simulation.balance.stored)))
     total = sum(share.energy for share in flows if share.energy > 0)
@@ -176,7 +176,10 @@ def _load(simulation: Simulation) -> Array | None:
 
 
 def _at_unit(simulation: Simulation) -> str:
-    """Name of the signal for the pressure at pump or accumulator, at their end of the supply pipe."""
+    """Name of the signal for the pressure at the pump or accumulator.
+
+    A pipe may separate them from the valve.
+    """
     return "pressure_unit" if "pressure_unit" in simulation.signals else "pressure_supply"
 
 

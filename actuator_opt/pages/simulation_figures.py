@@ -144,7 +144,7 @@ def simulation_figure(
     measured: Measured | None = None,
     static: Static | None = None,
 ) -> Ink:
-    """One drawing with signals over time on the left, and panels for the kind of run on the right."""
+    """One drawing: signals over time on the left, panels for the kind of run on the right."""
     height = min(max(height, LEAST), MOST)
     known = measured or {}
     left = strips_with_room(strips(simulation, known), height)
@@ -289,7 +289,7 @@ def followed(simulation: Simulation) -> Loop | None:
 
 
 def response(simulation: Simulation, measured: Measured) -> Panel | None:
-    """Panel of the moving quantity, with its reference and measured values; None if nothing moves."""
+    """Panel of the moving quantity with reference and measured values; None if nothing moves."""
     name = followed(simulation)
     if not name:
         return None
@@ -363,9 +363,7 @@ def _moves(values: Array) -> bool:
 
 
 def _levels(simulation: Simulation, name: str) -> list[Level]:
-    """Lines at constant values: pressures of supply, return and vapour, or the largest valve
-    signal.
-    """
+    """Lines at constant values: pressures of supply, return and vapour, largest valve signal."""
     if name == "pressure_a":
         plant = simulation.plant
         vapour = PRESSURE.to_display(plant.oil.vapour_pressure - ATMOSPHERIC_PRESSURE)
@@ -481,7 +479,7 @@ def _rise(
 
 @dataclass(frozen=True, slots=True)
 class StrokeProfile:
-    """Dynamic stiffness of a run as drawn: for each window, position, magnitude, phase and errors."""
+    """Dynamic stiffness of a run as drawn: position, magnitude, phase and errors per window."""
 
     place: list[float]
     size: list[float]
@@ -596,7 +594,7 @@ def _profile_panel(
 
 
 def _ends(values: Sequence[tuple[list[float], list[float]]]) -> list[float]:
-    """Values for the axis range; long error bars are cut, so that the values can be distinguished."""
+    """Values for the axis range; long error bars are cut to keep the values distinguishable."""
     ys = [y for column, _ in values for y in column]
     errors = [error for _, column in values for error in column]
     low, high = min(ys), max(ys)
