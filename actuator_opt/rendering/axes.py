@@ -247,7 +247,7 @@ def band(
     high: Sequence[float],
     fill: str = "#d5e6f0",
 ) -> None:
-    """Draw the area between two curves, cut at the frame; interrupted where a bound has no value."""
+    """Draw the area between two curves, cut at the frame; it has gaps where a bound is missing."""
     bottom, top = axes.y_range
     runs: list[list[tuple[float, float, float]]] = [[]]
     for x, below, above in zip(xs, low, high, strict=True):

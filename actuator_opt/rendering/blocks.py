@@ -136,8 +136,9 @@ class Status:
 
 @dataclass(frozen=True, slots=True)
 class Bar:
-    """A margin as a bar, full at 100 %: reserve to the right of the zero mark, violation to the
-    left.
+    """A margin as a bar, full at 100 %; a reserve is to the right of the zero mark.
+
+    A violation is to the left.
     """
 
     margin: float | None
@@ -153,7 +154,7 @@ class Share:
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """Position of a value between its bounds, from 0 to 1; `at` names a bound it has reached."""
+    """Position of a value between its bounds, from 0 to 1; `at` is the bound that it reached."""
 
     place: float
     at: str = ""
@@ -165,9 +166,10 @@ FARTHEST = 0.3
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """Permitted relative change of a value, as a bar; None: permitted over the whole tested range.
+    """Bar for the relative change of a value up to which a result (such as a price) holds.
 
-    `met`: whether the result is valid over the whole change.
+    If `change` is None, the result holds over the whole tested range. `met` is False if the result
+    is inaccurate within this range.
     """
 
     change: float | None
@@ -251,9 +253,7 @@ class Table:
     on: Medium = "both"
 
     def parts(self, widths: Sequence[float], room: float) -> list[Table]:
-        """The table, split into parts no wider than `room`; `widths` of the columns include their
-        gaps.
-        """
+        """The table in parts no wider than `room`; the `widths` of columns include their gaps."""
         if not self.repeat or sum(widths) <= room:
             return [self]
         first, remaining = list(range(self.repeat)), list(range(self.repeat, len(self.columns)))
@@ -278,7 +278,7 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """A figure drawn in ink, with a title and a note; the terminal shows `instead`."""
+    """A picture (`Ink`) with a title and a note; the terminal shows `instead` in its place."""
 
     title: str
     ink: Ink
@@ -288,7 +288,7 @@ class Drawing:
 
 @dataclass(frozen=True, slots=True)
 class TerminalFigure:
-    """A curve in a few lines of text: points (x, y), a limit line, and words below both ends."""
+    """A curve drawn with characters on the terminal, with a limit line and words at both ends."""
 
     title: str
     points: Sequence[tuple[float, float]]
