@@ -541,7 +541,7 @@ def test_notes_tell_model_from_input():
     said = " ".join(seal.notes(studied("tandem", "rod")))
     for words in (
         "orders of magnitude from the literature",
-        "at rest too",
+        "even at rest",
         "proportional",
         "not the damping",
     ):

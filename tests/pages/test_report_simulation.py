@@ -658,7 +658,7 @@ def test_the_terminal_shows_the_numbers_of_the_page():
         mark = {"met": "✔", "missed": "✘", "": ""}[one.state]
         wanted = (one.label, value, one.limit, one.margin, mark)
         assert any(all(cell in line for cell in wanted) for line in lines), one.name
-    for words in ("P on the position", "Balances: mass within", "% of the step"):
+    for words in ("P on the position", "Errors of the balances: oil mass", "% of the step"):
         assert words in text
     assert any("⡠" in line or "⠊" in line for line in lines)
     plain = shown(subject.page(found), 160, unicode=False)
