@@ -265,7 +265,7 @@ def test_ports_case_and_a_published_topology_are_named():
     """The figure says ports closed and its case; another topology than ours is named as such."""
     evaluation = fixture.build_evaluation()
     note = stiffness_blocks(evaluation)[0]["note"]
-    assert note.startswith("Case stance, ports closed. Per chamber")
+    assert note.startswith("Load case stance, ports closed. Computed per chamber")
     stiffness = evaluation.design.stiffness
     for topology, words in (
         ("aalto_as_published", "As published in [AaltoThesis], not per chamber"),

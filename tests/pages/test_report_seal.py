@@ -514,7 +514,7 @@ def test_a_film_that_fails_is_a_sentence_and_no_figure():
     found = blocks(one)
     assert not any(b["title"].endswith("oil film") for b in found)
     table = next(b for b in found if ": at " in b["title"])
-    assert f"No film on the outstroke: {one.out.why}" in table["note"]
+    assert f"No oil film on the outstroke: {one.out.why}" in table["note"]
     friction = next(row for row in table["rows"] if row[0] == "friction, film")
     assert friction[1] == "–"
     assert float(one.out.rings[0].contact.line_load) == 0
