@@ -247,7 +247,7 @@ def test_both_rings_of_a_pair_stand_in_their_order():
     order = ["sealed side", "guide", "seal: step ring", "secondary seal: u cup", "wiper"]
     places = [at[words] for words in [*order, "outer side"]]
     assert places == sorted(places)
-    assert any(words.startswith("between: ") for words in at)
+    assert any(words.startswith("between the rings: ") for words in at)
 
 
 # ---- figures ----
