@@ -455,7 +455,13 @@ def test_terminal(tmp_path):
     words = ("--starts", "1", "--out", tmp_path)
     shown = run("optimise", "-", *words, "--whole-plies", stdin=two_layers().encode())
     assert shown.code == 0
-    for word in ("Whole plies: mass", "rounding costs", "plies", "not proven", "designs were tried"):
+    for word in (
+        "Whole plies: mass",
+        "rounding costs",
+        "plies",
+        "not proven",
+        "designs were tried",
+    ):
         assert word in " ".join(shown.out.split()), word
     assert "--whole-plies" not in shown.err
     plain = run("optimise", "-", *words, stdin=two_layers().encode())
