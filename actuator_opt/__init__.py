@@ -4,11 +4,12 @@
 >>> ao.__version__
 '0.6.0'
 
-The verbs (`read`, `check`, `evaluate`, `optimise`, `sensitivity`, `session`, `pareto`, `sweep`,
-`uncertainty`, `compare`, `explore`, `seal`, `identify`, `calibrate`, `simulate`, `report`,
-`export`, `save`) are the same as in the terminal; `bending` is `identify --span` there,
-`compare_measured`, `servo_sensitivities` and `verify_dynamics` are options. Heavy modules load
-when a verb needs them.
+Most functions are named like the command that does the same in the terminal: `check`, `evaluate`,
+`optimise`, `sensitivity`, `pareto`, `sweep`, `uncertainty`, `compare`, `explore`, `seal`,
+`identify`, `calibrate`, `simulate`, `report` and `export`. `read` reads a design, `save` writes it,
+and `session` re-solves it quickly. `bending` is `identify --span` in the terminal;
+`compare_measured`, `servo_sensitivities` and `verify_dynamics` are options there. A module with
+slow imports loads when a function first needs it.
 """
 
 from __future__ import annotations
@@ -121,7 +122,7 @@ _PUBLIC = {
         write_simulation write_uncertainty
     """,
 }
-"""Public names by the module they come from, which loads when a name is first used."""
+"""The public names of each module; a module loads when one of its names is first used."""
 
 _HOMES = {name: module for module, names in _PUBLIC.items() for name in names.split()}
 

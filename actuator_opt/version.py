@@ -1,4 +1,4 @@
-"""The version, where every layer may read it."""
+"""The version of the program, in a module that every other module may import."""
 
 from __future__ import annotations
 

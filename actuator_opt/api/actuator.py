@@ -1,7 +1,7 @@
 """A design as read, its faults, and the stamp that marks a saved optimum.
 
-The stamp is the first line of the file. It contains a hash of the design and its material values,
-and the program's version. After any change of the design the hash no longer matches, and the file
+The stamp is the first line of the file. It contains a hash of the design, its material values and
+the program's version. After any change of the design the hash no longer matches, and the file
 counts as an ordinary design.
 """
 
@@ -36,7 +36,7 @@ class Actuator:
         return prepare(self.design, plugins=self.plugins)
 
     def changed(self, values: Mapping[str, float | str]) -> Actuator:
-        """The same actuator with other values by PATH (a number in SI, or text with a unit)."""
+        """A copy of the actuator with new values by PATH (a number in SI, or text with a unit)."""
         quantities = with_own(self.plugins)
         design = with_values(self.design, dict(values), metrics=quantities)
         return Actuator(design, self.source, self.plugins)
@@ -70,7 +70,8 @@ def read(
     Parameters
     ----------
     source : path or text
-    set : values to replace, by PATH; a number without a unit is SI
+    set : new values by PATH, such as ``{"cylinder.stroke": "112 mm"}``; a number without a unit is
+        SI
     plugins : the user's metrics and constraints: decorated functions or Python files
 
     Raises
@@ -118,13 +119,13 @@ def as_actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -
 
 
 def fault_of(actuator: Actuator) -> Callable[[str, str, str], Diagnostic] | None:
-    """A function that builds the Diagnostic of a faulty variable from its PATH, with its line."""
+    """A function from a variable's PATH, fault and remedy to a Diagnostic with its line."""
     return None if actuator.source is None else actuator.source.of_variable
 
 
 @contextmanager
 def located(actuator: Actuator) -> Iterator[None]:
-    """Add the line in the file to faults that only state a PATH."""
+    """Give faults that only state a PATH the line of that value in the design file."""
     try:
         yield
     except InputError as error:
@@ -143,7 +144,7 @@ def located(actuator: Actuator) -> Iterator[None]:
 def checked_design(
     design: Actuator | Design | str | Path, plugins: Plugins
 ) -> tuple[Actuator, PreparedDesign]:
-    """Turn a design in any form into the form that the models take.
+    """Read and prepare a design in any form: the actuator, and the form that the models take.
 
     Raises
     ------

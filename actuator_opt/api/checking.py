@@ -16,7 +16,7 @@ from .simulations import read_scenario
 
 
 class Examined(NamedTuple):
-    """Result of examining a file: its faults; if there are none, values that are implausible."""
+    """Result of examining a file: its faults or, if it has none, warnings of implausible values."""
 
     faults: list[Diagnostic]
     warnings: list[str]
@@ -31,7 +31,7 @@ def check(
     """Find all faults of a design or scenario; empty if there are none. Parameters as for `read`.
 
     The faults include variables that no model reads, and requirements on metrics that do not exist.
-    Finding them runs the models, but solves no oil film.
+    The models run once to find them, but no oil film is solved.
     """
     return examine(source, set=set, plugins=plugins).faults
 
@@ -68,7 +68,7 @@ def examine(
 
 
 def _of_models(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
-    """Faults that the models reveal: missing metrics, unread variables, impossible choices."""
+    """Faults that only the models reveal: missing metrics, unused variables, impossible choices."""
     try:
         faults = requirement_faults(actuator, subject)
         if faults:

@@ -40,7 +40,7 @@ def compare(
         first is the reference
     set : values to replace in every file
     plugins : the user's own metrics
-    optimise : whether to optimise first every design that has variables and is not yet an optimum
+    optimise : whether to optimise every design first if it has variables and is not yet an optimum
     seed : seed of these optimisations
 
     Raises
@@ -73,7 +73,7 @@ def compare(
 
 
 def _numbered(origins: Sequence[str]) -> list[str]:
-    """The origins of the designs; origins that occur several times get a number."""
+    """The origins of the designs; if several designs have the same origin, a number is added."""
     return [
         f"{origin} ({origins[: k + 1].count(origin)})" if origins.count(origin) > 1 else origin
         for k, origin in enumerate(origins)
@@ -83,7 +83,7 @@ def _numbered(origins: Sequence[str]) -> list[str]:
 def _resolved(
     design: Any, set: Any, plugins: Plugins, optimise: bool, seed: int
 ) -> tuple[Evaluation, str, DesignState]:
-    """The evaluation of a named design, its origin, and whether it is an optimum."""
+    """The evaluation of a design, where the design came from, and whether it is an optimum."""
     from ..optimisation.result import Optimisation
     from . import optimum
 
@@ -140,7 +140,7 @@ def comparison_json(comparison: Comparison) -> dict[str, Any]:
 
 
 def report_comparison(comparison: Comparison, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
-    """Draw the report of a comparison; its PNG and SVG have no title block."""
+    """Write the report of a comparison: figures without a title block, or HTML, or both."""
     folder, form = Path(paper.get("folder", "reports")), paper.get("format", "pdf")
     files = [] if form == "html" else report_files(draw_comparison(comparison, folder))
     if form == "pdf":

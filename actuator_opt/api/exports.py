@@ -49,7 +49,7 @@ def export(
     subject : a design in any form, an evaluation, or an optimisation (its best design)
     formats : any of "step", "dxf" (both need the extra ``cad``), "xlsx" (extra ``excel``)
     folder, stem : folder and name of the files; default: the design's name in ``reports/``
-    actuator : the design as read, if `subject` is its evaluation: its file names the exports
+    actuator : the design as read, if `subject` is its evaluation; exports are named after its file
     date : ISO date in the files; default: that of SOURCE_DATE_EPOCH, or else none
     plugins : the user's metrics and constraints, for a design that is not an `Actuator` yet
 
@@ -84,7 +84,7 @@ def export(
 
 
 ROWS = 5000
-"""Number of designs on a page; of a larger set, an even sample is shown."""
+"""Largest number of designs on a page; of a larger set, an even sample is shown."""
 
 
 def explore(
@@ -95,7 +95,7 @@ def explore(
     rows: int = ROWS,
     plugins: Sequence[str | Path] = (),
 ) -> list[ExplorerFile]:
-    """Write an interactive page of a stored sweep or a Pareto front, with its base design.
+    """Write an interactive page of a stored sweep or Pareto front, and a file of its base design.
 
     Parameters
     ----------

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from ..rendering.console import Style
 
 Status: TypeAlias = Literal["ok", "missing", "fault"]
-"""State of an item: as required; an optional package is not installed; commands will fail."""
+"""State of an item. "ok": as required. "missing": an optional package is not installed. "fault":
+some commands will fail."""
 
 _NAME = "actuator-opt"
 _OLDEST = (3, 11)
@@ -36,7 +37,7 @@ _BOUND = re.compile(r"(>=|<=|==|!=|~=|<|>)\s*([\d.]+)")
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """An item that was examined; `remedy` says how to correct its fault."""
+    """Result of examining one item of the installation; `remedy` says how to correct its fault."""
 
     group: str
     name: str
@@ -47,7 +48,7 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Installation(Displayed):
-    """The items that were examined; `ok` is True if no command will fail."""
+    """Results for all items that were examined; `ok` is True if no command will fail."""
 
     findings: tuple[Finding, ...]
 
@@ -145,7 +146,7 @@ def _packages() -> Iterator[Finding]:
         packages = [_package(text, modules) for text in texts]
         faults = [f"{name} {fault}" for name, _, fault in packages if fault]
         values = [f"{name} {value}" for name, value, fault in packages if not fault]
-        remedy = f"for it: pip install '{_NAME}[{extra}]'" if faults else ""
+        remedy = f"to add it: pip install '{_NAME}[{extra}]'" if faults else ""
         value = ", ".join(faults or values)
         yield Finding("extra", extra, "missing" if faults else "ok", value, remedy)
 
@@ -236,7 +237,7 @@ def _machine() -> Finding:
         usable = len(os.sched_getaffinity(0))
     except AttributeError:  # not available on every system
         usable = os.cpu_count() or 1
-    words = f"{usable} of {os.cpu_count() or usable} to be used; {_system()}"
+    words = f"{usable} of {os.cpu_count() or usable} can be used; {_system()}"
     return Finding("machine", "cores", "ok", words)
 
 

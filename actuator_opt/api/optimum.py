@@ -1,4 +1,7 @@
-"""Evaluates, optimises and prices a design, and searches for a Pareto front."""
+"""Evaluates and optimises a design, computes prices of its limits, and finds Pareto fronts.
+
+A price is the change of the best objective per unit change of a limit or parameter.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +36,8 @@ def evaluate(
     ----------
     design : the design
     plugins : the user's own metrics and constraints
-    seed : seed of the samples for a quick yield estimate (`with_yield`); None: no estimate
+    seed : seed of the samples for a quick estimate of the yield (see `with_yield`); None: no
+        estimate
     """
     actuator = as_actuator(design, plugins)
     evaluation = evaluate_subject(actuator.subject())
@@ -47,10 +51,12 @@ def with_yield(
 ) -> Evaluation:
     """Add a quick estimate of the yield to an evaluation (`uncertainties.study.quick_yield`).
 
+    The yield is the probability that an actuator built to the design meets all limits.
+
     Parameters
     ----------
     evaluation : evaluation of a design
-    plugins : the user's own metrics that the evaluation contains
+    plugins : the user's own metrics in the evaluation
     seed : seed of the samples
     """
     from ..uncertainties.study import quick_yield
@@ -132,31 +138,34 @@ def estimated(optimisation: Optimisation, plugins: tuple[Plugin, ...]) -> Optimi
 def sensitivity(
     design: Actuator | Design | str | Path, *, seed: int = 0, plugins: Plugins = ()
 ) -> tuple[Sensitivity, ...]:
-    """Compute the prices of requirements and parameters at the design's optimum."""
+    """Compute the prices of requirements and parameters at the design's optimum.
+
+    A price is the change of the best objective per unit change of a limit or parameter.
+    """
     return optimise(design, seed=seed, plugins=plugins).sensitivities
 
 
 @dataclass(frozen=True, slots=True)
 class Prices(Displayed):
-    """The prices at an optimum, as shown by `sensitivity`."""
+    """The prices of requirements and parameters at an optimum, as shown by `sensitivity`."""
 
     optimisation: Optimisation
 
     def to_dict(self) -> dict[str, Any]:
-        """The object of `sensitivity --json`; its prices are those of the continuous optimum."""
+        """The object of `sensitivity --json`; prices are those of the optimum before rounding."""
         data = replace(self.optimisation, rounding=None).to_dict()
         keys = ["name", "version", "status", "outcome", "objective", "sensitivities"]
         keys += ["what_buys_most", "kkt", "infeasibility"]
         return {key: data[key] for key in keys if key in data}
 
     def page(self) -> Page:
-        """The page: prices and movements, or the reason why there is no optimum."""
+        """The page: prices and movement of the optimum, or the reason for a missing optimum."""
         from ..pages.report import prices_page
 
         return prices_page(self.optimisation)
 
     def report(self, **paper: Any) -> list[ReportFile]:
-        """Write the report of the optimum that is priced."""
+        """Write the report of the optimum to which the prices belong."""
         from .reports import report_design
 
         return report_design(self.optimisation, **paper)
@@ -179,8 +188,8 @@ def pareto(
     objectives : two to four of ``METRIC:min`` or ``METRIC:max``
     n : number of designs requested
     seed : seed of the search; the same seed gives the same front
-    checks : number of independent searches between designs, which reveal designs that are only
-        locally best
+    checks : number of additional independent searches, which reveal designs that are only locally
+        best
     plugins : the user's metrics and constraints
     """
     from ..optimisation.pareto import pareto as run

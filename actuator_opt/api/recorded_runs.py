@@ -168,7 +168,7 @@ _WORDS = {str: "text", int: "a whole number", bool: "true or false", float: "a n
 
 
 def _fault(value: object, form: Form, path: str = "") -> str:
-    """Where a value deviates from a form, and what was expected there; "" if it fits."""
+    """Where a value deviates from its required form, and what was expected there; "" if it fits."""
     if isinstance(form, tuple):
         faults = [_fault(value, alternative, path) for alternative in form]
         return "" if "" in faults else faults[0]
@@ -189,7 +189,7 @@ def _fault(value: object, form: Form, path: str = "") -> str:
 
 
 def _object_fault(value: object, form: dict[str, Form], path: str) -> str:
-    """The result of `_fault` for an object."""
+    """The result of `_fault` for a dictionary of fields."""
     if not isinstance(value, dict):
         return f"{path or 'it'} must be an object"
     head = f"{path}." if path else ""
@@ -209,7 +209,8 @@ def _object_fault(value: object, form: dict[str, Form], path: str) -> str:
 
 _VERSION = re.compile(r"^Version: *(\S+)", re.MULTILINE)
 CLOSE = 1e-9
-"""A number counts as reproduced up to this relative difference: our choice, far above rounding."""
+"""Largest relative difference at which a number counts as reproduced: our choice, far above
+rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -430,13 +431,13 @@ def prune_runs(*, keep: int, folder: str | Path | None = None) -> list[str]:
 
 
 def differing(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """Names of values that differ by more than `CLOSE`, or that exist on one side only."""
+    """Names of values that differ by more than `CLOSE`, or that only one of the two contains."""
     names = dict.fromkeys([*then, *now])
     return [name for name in names if not same(then.get(name), now.get(name))]
 
 
 def same(a: Any, b: Any) -> bool:
-    """Whether two values are equal; numbers may differ by `CLOSE`."""
+    """Whether two values are equal; numbers may differ by a share of `CLOSE`."""
     if isinstance(a, (int, float)) and isinstance(b, (int, float)):
         return abs(a - b) <= CLOSE * max(abs(a), abs(b))
     return bool(a == b)
@@ -523,7 +524,7 @@ def record_front(
     date: str | None = None,
     folder: str | Path | None = None,
 ) -> Run | None:
-    """Record a Pareto front, so that it can be shown and reported later; parameters as `record`."""
+    """Record a Pareto front, to show and report it later; parameters as for `record`."""
     from ..optimisation.recorded import to_plain
 
     objectives, knee = front.objectives, None
@@ -609,7 +610,7 @@ def record_sweep(
 
 
 def _plan(swept: Swept) -> dict[str, Any]:
-    """The points of a sweep as plain data, values in SI; for texts, `quantity` is null."""
+    """The plan of a sweep as plain data, in SI; inputs with text values have no quantity."""
     from ..design import quantity_of
 
     plan, design = swept.study.plan, swept.study.design

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from ..rendering.blocks import Page
 
 MOST_BYTES = 1_000_000_000
-"""Largest permitted file of a record, as memory must hold it several times: our choice."""
+"""Largest permitted file of a record [bytes]: our choice, because memory must hold it several
+times."""
 _NOT_TESTED = (
     "name",
     "notes",
@@ -33,7 +34,7 @@ _NOT_TESTED = (
     "objective",
     "measured",
 )
-"""Keys of a design that are left out because they do not describe the tested actuator."""
+"""Keys of a design that do not describe the tested actuator, so two designs may differ in them."""
 Units = str | Path | Mapping[str, str] | None
 """Units of columns without a unit in their header: ``"SI"``, a file, or a mapping by column."""
 
@@ -50,7 +51,7 @@ def read_record(
     Parameters
     ----------
     source : path, ``"-"`` for standard input
-    columns : for a channel whose header is not a known name, this header, with a unit if the file
+    columns : header of every channel whose header is not a known name, with a unit if the file
         states none: ``{"p1": "Channel 3 [bar]"}``
     units : units of columns without a unit in their header: ``"SI"`` (m, s, Pa, N, m/s, K), a file
         with lines ``p1: bar`` (YAML) or ``p1,bar``, or a mapping. A unit in the header takes
@@ -107,10 +108,12 @@ def identify(
     columns, units : as for `read_record`
     cutoff, order, compensated : cut-off frequency [Hz] and order of the zero-phase Butterworth
         filter. If compensated, both passes together have -3 dB at the cut-off; otherwise each pass
-    mass : mass that moves between the piston and the force sensor [kg]; default: rod, piston and
-        fastening, and without a force channel also the design's load
-    load_force : load force against extension [N], if no channel measures it
-    pressure_lag : time by which the pressure signals lag [s]; None: fitted to the record
+        has -3 dB there
+    mass : mass that moves between the piston and the force sensor [kg]; default: the mass of rod,
+        piston and fastening; if there is no force channel, the design's load is added
+    load_force : load force that opposes extension [N], if no channel measures it
+    pressure_lag : delay of the pressure signals behind the other signals [s]; None: fitted to the
+        record
     bootstrap : number of resampled records for the confidence intervals; 0: intervals of the
         linearised model
     seed : seed of the resampling
@@ -148,7 +151,7 @@ def _record(
     units: Units,
     needed: Collection[str],
 ) -> Record:
-    """The record as read; rejects options of reading for a record that is already read."""
+    """Read a record from its file; if it is already read, reject reading options."""
     if isinstance(record, (str, Path)):
         return read_record(record, columns=columns, units=units, needed=needed)
     for option, fault in ((columns, "columns are named"), (units, "units are stated")):
@@ -174,8 +177,8 @@ def bending(
     ----------
     record : the record as read, or the path of its file
     span : distance between the supports [m]
-    design, part : the design, and which of its parts is tested, "rod" or "barrel". A metal part
-        also supplies its shear modulus
+    design, part : the design, and which of its parts is tested, "rod" or "barrel"; the shear
+        modulus of a metal part is taken from the design
     specimen : the specimen, in place of span, design and part
     columns, units : as for `read_record`
 
@@ -197,7 +200,7 @@ def bending(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Calibrated(Displayed):
-    """A design with measured seal friction, and how this changes its requirements.
+    """A design with measured seal friction, and the effect on its requirements.
 
     Parameters
     ----------
@@ -224,7 +227,7 @@ class Calibrated(Displayed):
         }
 
     def page(self) -> Page:
-        """The page: from the record to the redesigned actuator."""
+        """The page, from the record to the redesigned actuator."""
         from ..pages.calibration import page
         from ..studies.bench import bench
 
@@ -283,7 +286,7 @@ def calibrate(
 
 
 def _with_values(before: Actuator, calibration: Calibration) -> tuple[Actuator, list[str]]:
-    """The actuator with the measured values, no longer as variables; and warnings."""
+    """The actuator with the measured values, which are no longer variables; and warnings."""
     design, values = before.design, calibration.values()
     variables = {path: x for path, x in design.variables.items() if path not in values}
     choices = {path: x for path, x in design.choices.items() if path not in values}
@@ -320,7 +323,7 @@ def _require_use(
     unused = [*(name for name, argument in reading.items() if argument), *settings]
     if unused:
         message = f"{', '.join(unused)}: without effect, as the record is already identified"
-        raise InputError(Diagnostic(message, "give them to identify"))
+        raise InputError(Diagnostic(message, "pass them to identify"))
     own, other = (
         stated.model_copy(update=dict.fromkeys(_NOT_TESTED))
         for stated in (design, identified.bench.design)

@@ -42,7 +42,7 @@ class Rerun(Displayed):
     """The repeated result of a report's command, and its differences from the original result.
 
     `repeats` says whether the result is the same; it is None if the report has no result to
-    compare. `differences` has the values then and now, by name.
+    compare. `differences` maps the name of each value that differs to its old and new value.
     """
 
     file: Path
@@ -293,7 +293,7 @@ def _differences(
 
 
 def _hash(subject: Evaluation | Optimisation | ParetoFront) -> str | None:
-    """The hash in the subject's report; None if it only covers the input."""
+    """Hash of an evaluated design, to compare with the report's; None for a Pareto front."""
     from ..optimisation.pareto import ParetoFront
     from ..pages.report import parts_of
 
@@ -322,4 +322,4 @@ def _change(name: str, then: Any, now: Any) -> tuple[float, str]:
     if isinstance(then, (int, float)) and isinstance(now, (int, float)) and then:
         change = abs(now / then - 1)
         return change, f"{shown(name)} {100 * (now / then - 1):+.3g} %"
-    return float("inf"), f"{shown(name)} {shown(then)} before, {now} now"
+    return float("inf"), f"{shown(name)} was {shown(then)} and is now {now}"

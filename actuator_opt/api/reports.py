@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ..studies.seal import SealStudy
 
 REPLICAS = "actuator_opt.replicas"
-"""Package with the tables of published papers; imported by name, since a wheel lacks it."""
+"""Package with the tables of published papers; it is imported by name, since a wheel lacks it."""
 ABSENT = (
     "Caution: the tables that compare this design with {paper} are not part of this installation. "
     "The source distribution and the repository contain them, in actuator_opt/replicas."
@@ -39,7 +39,7 @@ _LAST_SECOND = 253_402_300_799
 
 
 def _seal_studies(subject: PreparedDesign) -> list[SealStudy]:
-    """Seal studies for a report, one for every seal location of the design with an oil film."""
+    """Seal studies for a report: of piston or rod seals whose friction follows from an oil film."""
     from ..studies.seal import study
 
     if not any(case.moves for case in subject.design.load_cases):
@@ -89,7 +89,7 @@ def page_of(
     ----------
     design : design that the page shows
     tail : text added to the name of the design's file
-    beside : file whose name is used instead
+    beside : file whose name is used instead of the design file's
     folder, stem, actuator, command, date, all_pages, format : as for `report`
 
     Raises
@@ -138,7 +138,7 @@ def report_design(
 
 
 def published(evaluation: Evaluation) -> list[Block]:
-    """The published numbers of the paper that a design reproduces, beside our numbers.
+    """Tables of the numbers published in the paper that a design reproduces, beside our numbers.
 
     The package with these tables is imported by name, because a wheel lacks it. In that case the
     report names the distributions that contain the tables.
@@ -174,7 +174,7 @@ def report_files(paths: Iterable[Path]) -> list[ReportFile]:
 
 
 def file_name(design: Design, source: FileSource | None) -> str:
-    """Name of the design's file; without a file, one made from the design's name."""
+    """Name of the design's file; if it has no file, a name made from the design's name."""
     if source is not None and not source.file.startswith("<"):
         return Path(source.file).name
     name = re.sub(r"[^\w-]+", "_", design.name).strip("_")

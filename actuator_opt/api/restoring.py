@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Restored(Displayed):
-    """A result restored from its record, and how today's models differ from the record."""
+    """A result restored from its record, and values that the present models compute differently."""
 
     run: Run
     result: Optimisation | ParetoFront | KeptSweep
@@ -65,7 +65,7 @@ def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
     kind = run.head.get("kind")
     if kind not in ("optimise", "pareto", "sweep"):
         message = f"is a run of {kind}, which has no such report"
-        raise InputError(Diagnostic(message, "name a run that runs list shows", str(run.path)))
+        raise InputError(Diagnostic(message, "name a run that `runs list` shows", str(run.path)))
     try:
         with damage_reported(run):
             source = run.body["input"]
@@ -84,7 +84,7 @@ def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
 
 
 def _solved(run: Run, plugins: tuple[Plugin, ...]) -> tuple[Optimisation | ParetoFront, Evaluation]:
-    """The recorded optimisation or Pareto front, and its evaluation."""
+    """The recorded optimisation or Pareto front, and the evaluation to compare with the record."""
     from ..optimisation.pareto import ParetoFront
     from ..optimisation.recorded import from_plain
     from ..optimisation.result import Optimisation
@@ -122,7 +122,7 @@ def changed_plugins(run: Run, loaded_plugins: Sequence[Plugin]) -> list[str]:
 
 
 def _doubts(run: Run, evaluation: Evaluation) -> list[str]:
-    """Notes where the present models do not reproduce the record."""
+    """Notes on values of the record that the present models do not reproduce."""
     recorded = {name: row["value"] for name, row in run.body["result"]["metrics"].items()}
     present = {name: row.value for name, row in evaluation.metrics.items()}
     changed = differing(recorded, present)
@@ -143,13 +143,13 @@ def report_run(
     """Write the report of a recorded run, identical to that of its command.
 
     For a Pareto front, this writes its page, figure and CSV file (``NAME_pareto.csv``), or nothing
-    without a front. For a sweep see `report_sweep`.
+    if the front has no designs. For a sweep see `report_sweep`.
 
     Parameters
     ----------
     of : a run as for `restore`, or the result of `restore`
     plugins : as for `restore`
-    paper : as for `report`; design and command are those of the run, and so is the date if none is
+    paper : as for `report`. Design and command are those of the run; so is the date, if none is
         given
     """
     restored = of if isinstance(of, Restored) else restore(of, plugins=plugins)

@@ -1,9 +1,9 @@
-"""Declares, once for every type of result, the functions that output it.
+"""Declares, once for every type of result, the functions that print, report and record it.
 
-The terminal and the library look up a result by its type to find its text and JSON, report, CSV,
-record and exit code. A function is named "module:function" below `actuator_opt` and imported when
-it is used, or it is a method of the result. None means that the type does not have this output. A
-function that is not declared raises an error at import.
+By the type of a result, the terminal and the library look up the functions for its text, JSON,
+report, CSV, record and exit code. A function is named "module:function" below `actuator_opt` and
+imported when it is used, or it is a method of the result. None means that the type does not have
+this output. A function that is not declared raises an error at import.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class ResultKind:
     csv : writes the result to a path
     record : records the run of (result, actuator=, command=, date=)
     data : gives plain data for JSON, SI
-    remarks : gives lines that follow the text on standard error
+    remarks : gives lines that are printed to standard error after the text
     writes : whether a report or CSV can be written; None: always
     """
 
@@ -67,7 +67,7 @@ class ResultKind:
 
 
 def _always(result: object) -> ExitCode:
-    """Exit code of a result that has no requirements to miss."""
+    """Exit code for results without requirements: always success."""
     return ExitCode.MET
 
 
@@ -112,7 +112,7 @@ def _unrounded(result: Any) -> list[str]:
 
 
 def kinds(*declared: ResultKind) -> dict[str, ResultKind]:
-    """The kinds by their type; rejects a type that is declared twice."""
+    """Index the declared kinds by their type; reject a type that is declared twice."""
     by_type = {kind.type: kind for kind in declared}
     if len(by_type) != len(declared):
         raise TypeError("a type of result is declared twice")
@@ -221,7 +221,7 @@ def kind_of(result: object) -> ResultKind:
 
 
 def piece(name: str, result: object) -> Callable[..., Any]:
-    """A function of the result's kind, ready to call; the result is its first argument."""
+    """A function of the result's kind, with the result already filled in as first argument."""
     module, _, function = name.rpartition(":")
     if not module:
         return getattr(result, name)  # type: ignore[no-any-return]
@@ -270,7 +270,7 @@ def data(result: object) -> dict[str, Any]:
 
 
 def remarks(result: object) -> list[str]:
-    """Lines that follow the text of a result on standard error."""
+    """Lines that are printed to standard error after the text of a result."""
     lines_of = kind_of(result).remarks
     return [] if lines_of is None else lines_of(result)
 

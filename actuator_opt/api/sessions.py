@@ -1,4 +1,7 @@
-"""A session: solves a design once, then quickly re-solves, predicts and prices changes."""
+"""A session: solves a design once, then quickly re-solves it, predicts and prices changes.
+
+A price is the change of the best objective per unit change of a number.
+"""
 
 from __future__ import annotations
 
@@ -22,13 +25,13 @@ if TYPE_CHECKING:
     from ..optimisation.result import Optimisation
 
 Changes = Mapping[str, float | str]
-"""New values of numbers by PATH: in SI, or as text with a unit."""
+"""New values of numbers by PATH, such as ``cylinder.stroke``: in SI, or as text with a unit."""
 
 STARTS, SAMPLES = 6, 2048
-"""Effort of the first solution of a session, the same as that of `optimise`."""
+"""Number of local searches and of sampled designs for the first solution, as in `optimise`."""
 
 NUDGE = 1e-4
-"""Relative change of a number that tests whether it affects other numbers."""
+"""Relative change of a number, to test whether it affects other numbers."""
 
 ROUNDING = 1e-9
 """Share of a change, or of a number, that counts as zero."""
@@ -38,9 +41,9 @@ ROUNDING = 1e-9
 class Prediction:
     """An optimum predicted by linear extrapolation from the session's optimum, in SI.
 
-    The prediction is f(p + d) = f(p) + s(d), x(p + d) = x(p) + J d: for a change d of the numbers
-    p, s is the slope of the objective f for changes in this direction, and J is the derivative of
-    the free dimensions x. J solves the linearised optimality conditions [Fiacco1983].
+    The prediction for a change d of the numbers p is f(p + d) = f(p) + s(d) and x(p + d) = x(p) + J
+    d. Here f is the objective, s its first-order change, x the free dimensions, and J their
+    derivative with respect to p. J solves the linearised optimality conditions [Fiacco1983].
 
     Parameters
     ----------
@@ -70,12 +73,12 @@ class Price:
     ----------
     path, value : PATH of the number, and its value
     slope_down, slope_up : derivative of the objective by the number, for a decrease and for an
-        increase of the number. Both differ only at a degenerate vertex. None if even the smallest
-        change in this direction leaves no feasible design
+        increase of the number. The two differ only at a degenerate vertex, where the multipliers
+        are not unique. None if even the smallest change in this direction leaves no feasible design
     holds : lowest and highest value between which, to first order, the same limits stay active;
         None on a side where they stay active up to a change of 100 %
-    changes : which limit becomes active or inactive at these values
-    movement : change of each free dimension per unit, by PATH
+    changes : which limit becomes active or inactive at each of the two values in `holds`
+    movement : change of each free dimension per unit of the number, by PATH
     """
 
     path: str
@@ -97,11 +100,11 @@ class OptimumCurve:
 
     Parameters
     ----------
-    path, quantity : PATH of the number, and its quantity
+    path, quantity : PATH of the number, and its physical quantity
     values : its values, in the requested order
     objectives : objective of each optimum; None if there is no feasible design
-    variables : the free dimensions of each optimum by PATH; empty without a design
-    objective : quantity of the objective; None for a weighted sum
+    variables : the free dimensions of each optimum by PATH; empty if there is no design
+    objective : physical quantity of the objective; None for a weighted sum
     """
 
     path: str
@@ -214,11 +217,11 @@ class Session:
     ) -> Optimisation:
         """Re-solve the optimum with some numbers changed.
 
-        Full steps start from the session's optimum. If they do not converge, restoration and
-        descent follow, then a search; only the search can report that no design exists. The
-        optimality conditions are checked to 1e-6. In the result, `start` is the session's optimum,
-        and `samples` is 0 if no search was needed. To learn why a result is infeasible, use
-        `optimise`.
+        Full Newton steps start from the session's optimum. If they do not converge, feasibility is
+        restored and the objective reduced; if that fails too, a full search follows. Only the
+        search can report that no design exists. The optimality conditions are checked to 1e-6. In
+        the result, `start` is the session's optimum, and `samples` is 0 if no search was needed. To
+        learn why a result is infeasible, use `optimise`.
 
         Parameters
         ----------
@@ -261,8 +264,9 @@ class Session:
     def predict(self, changes: Changes) -> Prediction:
         """Predict the optimum after a change of some numbers, linearly, without running models.
 
-        The first prediction with a number computes its derivatives, which runs the models once.
-        Parameters and errors as for `solve`; a number without a derivative raises `UsageError`.
+        Only the first prediction that involves a number runs the models, to compute its
+        derivatives. Parameters and errors as for `solve`; a number without a derivative raises
+        `UsageError`.
         """
         _, numbers = self._changed(changes)
         present = {path: self._priced(path) for path in numbers}
@@ -278,16 +282,16 @@ class Session:
         change = self._shown(line.above)
         why = ""
         if line.high is not None and line.high[0] < 1 - ROUNDING:
-            why = f"after {100 * abs(line.high[0]):.3g} % of the change {line.high[1]}"
+            why = f"after {100 * abs(line.high[0]):.3g} % of the change, {line.high[1]}"
         if not math.isfinite(line.above):
             why = "no design meets the limits in this direction"
         return Prediction(objective + change, self._named(x + line.moves), not why, why)
 
     def price(self, path: str) -> Price:
-        """Price a number at the session's optimum.
+        """Compute the price of a number at the session's optimum (see `Price`).
 
-        The slope is the derivative of the Lagrangian by the number [Fiacco1983]; at a degenerate
-        vertex it differs for an increase and a decrease [Gauvin1982].
+        The slope is the derivative of the Lagrangian with respect to the number [Fiacco1983]; at a
+        degenerate vertex it differs for an increase and a decrease [Gauvin1982].
 
         Parameters
         ----------
@@ -304,7 +308,7 @@ class Session:
         return self.prices([path])[0]
 
     def prices(self, paths: Sequence[str]) -> tuple[Price, ...]:
-        """Price several numbers as `price` does, computing their derivatives together."""
+        """Compute the prices of several numbers; their derivatives are computed together."""
         names = [self._path(path) for path in paths]
         values = {path: self._priced(path) for path in names}
         self._warm.differentiate(names)
@@ -330,9 +334,10 @@ class Session:
         *,
         stop: Callable[[], bool] | None = None,
     ) -> OptimumCurve:
-        """Compute the optima at several values of a number together, outwards from the optimum.
+        """Compute the optima for several values of one number.
 
-        On each side, the search stops at the first value without a feasible design.
+        The values are solved outwards from the session's own value. On each side, the search stops
+        at the first value without a feasible design.
 
         Parameters
         ----------
@@ -387,7 +392,7 @@ class Session:
             if name in self._actuator.design.variables:
                 raise UsageError(
                     Diagnostic(
-                        "a free dimension: the session computes its value",
+                        "is a free dimension, whose value the session computes",
                         f"to fix it, change lower, upper and start of variables.{name}",
                         path=path,
                     )
@@ -415,7 +420,7 @@ class Session:
                 raise InputError(
                     Diagnostic(
                         "is a word, not a number",
-                        "open a new session with the other word",
+                        "to change a word, open a new session with the changed design",
                         path=path,
                     )
                 ) from None
@@ -445,11 +450,11 @@ class Session:
             raise UsageError(
                 Diagnostic(
                     (
-                        "has no derivative at the optimum, because the design does not "
-                        "state it as a number"
+                        "has no derivative at the optimum, because the design does not state a "
+                        "number for it"
                     ),
                     remedy(path, numbers) if get(self._actuator.design, path) is None
-                    else "re-solve with it instead (session.solve)",
+                    else "re-solve with the changed value instead (session.solve)",
                     path=path,
                 )
             )  # fmt: skip
@@ -460,14 +465,14 @@ class Session:
                 Diagnostic(
                     "has no derivative here, because it is a whole number or also changes "
                     "other inputs",
-                    "re-solve with it instead (session.solve, session.curve)",
+                    "re-solve with the changed value instead (session.solve, session.curve)",
                     path=path,
                 )
             )
         return float(numbers[path])
 
     def _only_read(self, path: str, value: float) -> bool:
-        """Whether a number only enters the models directly, and no other number or factor.
+        """Whether a number is only an input of the models: no other number or factor depends on it.
 
         Counter-example: a temperature also changes the factors on strengths.
         """
@@ -483,14 +488,14 @@ class Session:
         return False
 
     def _shown(self, slope: float) -> float:
-        """A change of the objective with the sign that the user sees."""
+        """A change of the objective with the user's sign (the search itself always minimises)."""
         return self._warm.actuator.goal.shown(slope)
 
     def _slope(self, slope: float) -> float | None:
         return self._shown(slope) if math.isfinite(slope) else None
 
     def _end(self, end: tuple[float, str] | None, value: float) -> tuple[float | None, str | None]:
-        """The number's value at a change of the active limits, if within ±100 %."""
+        """The number's value at which the active limits change, if that is within ±100 %."""
         if end is None or abs(end[0]) > (abs(value) or 1.0):
             return None, None
         return value + end[0], end[1]
@@ -519,7 +524,7 @@ def _require_continuous(actuator: Actuator, sizes: object) -> None:
     if sizes is not None:
         raise UsageError(
             Diagnostic(
-                "a session re-solves continuous dimensions, but variables take listed sizes",
+                "a session re-solves continuous dimensions, but some variables take listed sizes",
                 "remove `sizes` and `step` of the variables",
                 path="variables",
             )

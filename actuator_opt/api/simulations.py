@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ..simulation.verification import Verification
 
 MOST_BYTES = 200_000_000
-"""Largest permitted file of a recorded input: our choice."""
+"""Largest permitted file of a recorded input [bytes]: our choice."""
 _TABLES = (".csv", ".txt", ".tsv")
 
 
@@ -64,7 +64,7 @@ def read_scenario(
     source : path or text
     set : values to replace, by PATH in the scenario, or else in its design; a number without a unit
         is SI
-    units : units of columns of recorded inputs whose header states none, as for `read_record`
+    units : units of the recorded inputs' columns whose header states no unit, as for `read_record`
 
     Raises
     ------
@@ -107,7 +107,7 @@ def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tupl
 
 
 def _where(fault: Diagnostic, path: str, loaded: LoadedScenario) -> Diagnostic:
-    """Give a fault of a record that has no line the line on which the scenario names the file."""
+    """If a record's fault has no line, add the line where the scenario names the file."""
     if fault.line is not None:
         return fault
     return loaded.diagnostic(path, f"{fault.file}: {fault.message}", fault.remedy)
@@ -127,7 +127,7 @@ def simulate(
     scenario : the scenario as read, or the path of its file
     set : values to replace, by PATH in the scenario, or else in its design; a number without a unit
         is SI
-    verify : whether to integrate again by another method and compare
+    verify : whether to integrate again by another method and compare the results
     method : "lsoda"; "cvodes" is faster (extra ``fast``); "radau"
 
     Returns
@@ -159,7 +159,7 @@ def simulate(
 
 @contextmanager
 def placed(trial: Trial) -> Iterator[None]:
-    """Add the line in the file to faults of a scenario's values."""
+    """Give faults of a scenario's values their line in the scenario file."""
     try:
         yield
     except InputError as error:
@@ -199,7 +199,8 @@ class Compared(Displayed):
     """A simulation compared with a measured record, and the parameters fitted to that record."""
 
     overlay: Overlay
-    """The simulation with the record; if parameters were fitted, with their fitted values."""
+    """Simulation and record together; if parameters were fitted, the simulation uses the fitted
+    values."""
     fit: Fit | None = None
 
     @property
@@ -241,9 +242,9 @@ def compare_measured(
     record : CSV file with t and any of p1, p2, x, v, F_L, ...
     fit : names of the parameters to fit, such as ``air_content``; see
         `simulation.measured.parameters`
-    columns : for a channel whose header is not a known name, this header
+    columns : header of every channel whose header is not a known name
     units : units of columns without a unit in their header, as for `read_record`
-    verify, method : as for `simulate`; with a fit, for the run with the fitted values
+    verify, method : as for `simulate`; if parameters are fitted, for the run with the fitted values
     simulation : result of the scenario, if it has been run already
 
     Raises
@@ -282,7 +283,7 @@ def servo_sensitivities(
     Parameters
     ----------
     scenario : the scenario as read, or the path of its file
-    names : PATHs of the parameters; default: those that matter for a servo
+    names : PATHs of the parameters; default: the usual parameters of a servo
     """
     from ..simulation.sensitivity import sensitivities
 
@@ -323,7 +324,7 @@ def fitting(trial: Trial, design: Actuator | Design | str | Path) -> Actuator:
     for key in ("motor", "held_ports"):
         if getattr(scenario, key) is not None:
             fault = trial.loaded.diagnostic(key, "replaces the cylinder")
-            raise InputError(replace(fault, remedy="verify a design with a scenario without it"))
+            raise InputError(replace(fault, remedy="verify with a scenario without this block"))
     changes = {change.path: change.value for change in trial.loaded.changes}
     actuator = as_actuator(design)
     actuator = actuator.changed(changes) if changes else actuator
@@ -352,7 +353,7 @@ def write_simulation(
 
     Raises
     ------
-    UsageError : `scenario` is missing; the simulation itself does not contain the file
+    UsageError : `scenario` is missing; it is needed because a simulation does not contain the file
     """
     from ..pages.measured import drawn
     from ..pages.simulation import page
@@ -404,7 +405,7 @@ def write_comparison(
 def _page(
     scenario: Trial, simulation: Simulation, tail: str, paper: ReportArguments
 ) -> tuple[Origin, ReportPlace]:
-    """The result of `page_of` for a scenario, whose file is attached and names the page."""
+    """The result of `page_of` for a scenario; its file is attached and gives the page its name."""
     source = scenario.loaded.source
     name = "scenario.yaml" if source.file.startswith("<") else Path(source.file).name
     paper["actuator"] = scenario.actuator

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..uncertainties import Uncertainty
 
 LEAST, MOST = 20, 10_000_000
-"""Minimum and maximum number of draws."""
+"""Minimum and maximum number of random draws in an uncertainty study."""
 
 
 def uncertainty(
@@ -31,10 +31,12 @@ def uncertainty(
     metrics: Sequence[str] = (),
     plugins: Plugins = (),
 ) -> Uncertainty:
-    """Compute yield, sensitivity indices and tornado of a design with uncertain inputs.
+    """Compute yield, sensitivity indices and tornado chart of a design with uncertain inputs.
 
-    The uncertain inputs come from the design (``uncertainty:``, ``measured:``), the libraries, ISO
-    286 and common practice.
+    The yield is the probability that an actuator built to the design meets all limits.
+
+    The distributions of the inputs come from the design (``uncertainty:``, ``measured:``), the
+    material libraries, ISO 286 and common practice.
 
     Parameters
     ----------
@@ -43,7 +45,8 @@ def uncertainty(
     seed : seed of the draws; the same seed gives the same result
     quasi_random : whether to draw scrambled Sobol points, with 16 randomisations, instead of
         independent points
-    rows : number of sample rows for the indices; each takes (inputs + 2) evaluations. 0: no indices
+    rows : size of the base sample for the sensitivity indices, each row of which takes (inputs + 2)
+        evaluations; 0 to omit the indices
     metrics : metrics to analyse besides the margins of all limits; default: those of the objective
     plugins : the user's own metrics and constraints
 
@@ -55,8 +58,9 @@ def uncertainty(
     from ..uncertainties import uncertainty as run
 
     if not LEAST <= count <= MOST:
-        message = f"{count} draws: {LEAST} to {MOST} are needed"
-        raise UsageError(Diagnostic(message, "10000 draws give a yield of 99 % within 0.2 %"))
+        message = f"{count} draws: {LEAST} to {MOST} are permitted"
+        remedy = "10000 draws suffice to estimate a yield of 99 % within 0.2 %"
+        raise UsageError(Diagnostic(message, remedy))
     actuator, subject = checked_design(design, plugins)
     with located(actuator):
         return run(
@@ -69,7 +73,7 @@ def write_uncertainty(study: Uncertainty, **paper: Unpack[ReportArguments]) -> l
 
     Raises
     ------
-    UsageError : `actuator` is missing; the study itself does not contain its design
+    UsageError : `actuator` is missing; it is needed because a study does not contain its design
     """
     from ..pages.uncertainty import page
     from ..rendering import paper as printed
@@ -110,17 +114,17 @@ def seal(
     place : "piston" or "rod"
     speed, pressure : speed of the counterface [m/s] and sealed gauge pressure [Pa]; default: those
         of the moving load case with the highest pressure
-    curves : whether to compute friction against speed at three pressures
-    mapped : whether to compute a map of speed and pressure
+    curves : whether to compute curves of friction versus speed at three pressures
+    mapped : whether to compute a map of the results over speed and pressure
     finite_elements : whether to compute the contact profiles of O-rings and step rings (extra
-        ``fem``); the design of the study then states them
+        ``fem``); the study's design then contains these profiles
 
     Raises
     ------
     InputError
         the speed is not positive, or the pressure lies beyond the stated contact profiles
     ActuatorError
-        this seal has no finite-element model, or no equilibrium
+        this seal has no finite-element model, or the model finds no equilibrium
     """
     from ..friction import film
     from ..studies.seal import study, with_elements
@@ -154,12 +158,12 @@ def with_contact(actuator: Actuator, study: SealStudy) -> Actuator:
 def write_seal(
     study: SealStudy, *, sheet: bool = True, **paper: Unpack[ReportArguments]
 ) -> list[ReportFile]:
-    """Write the sheet of a seal study (PDF and PNG) and its map, if there is one, as CSV.
+    """Write the page of a seal study (PDF and PNG) and its map, if there is one, as CSV.
 
     Parameters
     ----------
     study : result of `seal`
-    sheet : whether to write the sheet; if False, only the map is written
+    sheet : whether to write the page; if False, only the map is written
     paper : as for `report`
     """
     from ..pages.seal import page, series

@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     from ..sweeps.screen import Engine
 
 LARGE = 1_000_000
-"""A full sweep of this many points or more must be confirmed by the user."""
+"""A full sweep of more points than this must be confirmed by the user."""
 
 MOST_WORKERS = 1024
-"""Maximum number of processes on a machine: our choice; more are probably a slip and may overload
-it."""
+"""Maximum number of processes on a machine: our choice; a larger number is probably a typing error
+and may overload the machine."""
 
 
 def sweep(
@@ -62,16 +62,17 @@ def sweep(
     method : "grid" (full factorial), "sobol" or "lhs" (Latin hypercube)
     n : number of points for "sobol" and "lhs"
     seed : seed for "sobol" and "lhs"
-    store : database in which rows are looked up and stored
-    csv : file for every row
-    parquet : the same as Apache Parquet, typed and with metadata (extra `parquet`)
+    store : database file; rows already in it are reused, and new rows are added
+    csv : CSV file to write, with one row for each design
+    parquet : the same table as an Apache Parquet file, with data types and metadata (extra
+        `parquet`)
     keep : number of best feasible designs to return
-    reduce : whether to compute only the designs needed to find the best
+    reduce : whether to skip designs that cannot be among the best, and so evaluate fewer
     workers : number of processes; default: one per core
     scheduler : address of a Dask scheduler, used instead of local processes (extra `cluster`)
     engine : array library with which `reduce` rules out designs, "numpy" or "jax" (extra `gpu`);
         NumPy is used if JAX is missing
-    yes : whether a full sweep of a million points or more is confirmed
+    yes : whether a full sweep of more than a million points is confirmed
     plugins : the user's metrics and constraints
     figures : figures to draw as PNG and SVG: "parallel", "scatter", "contour", "ucurves"
     show : metrics in the figures; default: the objective and the requirements
@@ -128,7 +129,7 @@ def sweep(
 def writing(
     study: Study, csv: str | Path | None, parquet: str | Path | None
 ) -> Iterator[Callable[[Chunk], None]]:
-    """Write chunks of rows to all requested files, which only appear when all are complete."""
+    """Write chunks of rows to all requested files; no file appears before all are complete."""
     from ..pages.sweep import SweepColumns, about
     from ..rendering.series import CsvFile, ParquetFile
 
@@ -226,7 +227,7 @@ def study_of(
 
 
 def _watched(study: Study, figures: Sequence[str], show: Sequence[str]) -> tuple[str, ...]:
-    """Metrics for the figures' Pareto lines; rejects an invalid figure before the sweep starts."""
+    """Metrics of the figures' Pareto lines; rejects an invalid figure before the sweep."""
     if not figures:
         return ()
     from ..pages.sweep_figures.shared import watched
@@ -250,7 +251,8 @@ def draw_sweep(
     figures : "parallel" (varied inputs, objective, metrics), "scatter" (metrics in pairs with their
         Pareto lines), "contour" (metrics against the two numbers of a grid, with the boundary of
         every limit), "ucurves" (stiffness along the stroke, for the best designs)
-    show : metrics to draw; default: the objective and the requirements, for a contour the objective
+    show : metrics to draw; default: the objective and the requirements, but for a contour only the
+        objective
     out, stem : folder and name of the files; default: the design's name in ``reports/``
 
     Returns
@@ -268,7 +270,7 @@ def draw_sweep(
     -----
     At most 4096 of the feasible designs and of the others are drawn, sampled evenly, with a note in
     the figure. Pareto lines cover every feasible design if the metrics were known before the sweep
-    (``sweep(..., figures=["scatter"], show=...)``), else only the sample.
+    (``sweep(..., figures=["scatter"], show=...)``); otherwise they only cover the sample.
     """
     from ..pages.sweep_figures.shared import write_figures
 
@@ -278,7 +280,7 @@ def draw_sweep(
 
 @dataclass(frozen=True, slots=True)
 class KeptSweep(Displayed):
-    """A sweep as its record gives it: the study, and the run, which states where the rows are."""
+    """A sweep restored from its record: its study, and the run, which states where the rows are."""
 
     run: Run
     study: Study
@@ -336,7 +338,7 @@ def store_of(run: Run) -> tuple[Path, str]:
     store = run.body["asked"]["store"]
     if store is None:
         message = f"run {run.id} is a sweep without --store, so its rows were not stored"
-        remedy = "see its best with runs show, or run it again with --store F.db"
+        remedy = "see its best designs with runs show, or run it again with --store F.db"
         raise InputError(Diagnostic(message, remedy, str(run.path)))
     path = Path(store["path"])
     if not path.exists():

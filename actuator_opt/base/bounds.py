@@ -21,7 +21,7 @@ CHECKS = IntegerRange(0, 100)
 
 
 SEED = IntegerRange(0, 2**32 - 1)
-"""Seeds that every random generator accepts; NLopt's seed may have only 32 bits."""
+"""Seeds that every random generator accepts; the limit is NLopt, whose seed has only 32 bits."""
 
 
 FRONT = IntegerRange(3, 2000)
@@ -29,4 +29,4 @@ FRONT = IntegerRange(3, 2000)
 
 
 SWEEP_FIGURES = ("parallel", "scatter", "contour", "ucurves")
-"""Figures of a sweep, named as the modules of `pages.sweep_figures` that draw them."""
+"""Figures of a sweep; each is named like the module of `pages.sweep_figures` that draws it."""

@@ -4,7 +4,7 @@ Every chunk is written in one transaction, so a process killed at any moment lea
 chunks. Each row is stored once, whichever process computes it.
 
 Every row has a checksum of its study, its key and its numbers; rows with a wrong checksum are
-ignored. The checksum covers a row, not a chunk, since another sweep groups the same rows
+ignored. Each checksum covers one row, not a chunk, because another sweep may group the same rows
 differently. The hash is BLAKE2b, as for the keys; a cyclic redundancy check is faster but misses
 one change in 2^32. It guards against damage, not against forgery: anyone who edits a row can also
 write its checksum.
@@ -40,13 +40,13 @@ KEYS_PER_QUERY = 500
 """Keys per query; SQLite accepts at least 999 parameters."""
 
 TABLES = frozenset({"meta", "studies", "rows"})
-"""Names of the tables by which a database of this program is recognised."""
+"""Tables that a database must contain to be recognised as one of this program."""
 
 PAUSE = 0.01
 """Seconds between two attempts to open a file that another process is opening."""
 
 CHECK = 8
-"""Bytes of a checksum: of 2^64 damaged rows, one goes unnoticed."""
+"""Bytes of a checksum; on average, one damaged row in 2^64 goes unnoticed."""
 
 _PUT = "INSERT OR REPLACE INTO rows (study, key, numbers, failure, checksum) VALUES (?, ?, ?, ?, ?)"
 _TABLES = """
@@ -73,7 +73,7 @@ class NumberColumn(NamedTuple):
 
 
 class StoredNumbers(NamedTuple):
-    """Stored numbers (n, columns) of several keys; a failed design has NaN and a reason."""
+    """Stored numbers of several keys (keys, columns); a failed design has NaN and a reason."""
 
     numbers: Array
     failures: dict[int, str]
@@ -104,7 +104,7 @@ class Checksums:
 
 
 class Database:
-    """Open database of one study: a design, its varied inputs and the version of the models."""
+    """Open database of one study: one design, its varied inputs, one version of the models."""
 
     def __init__(
         self, connection: sqlite3.Connection, number: int, study: str, width: int, path: Path
@@ -120,7 +120,7 @@ class Database:
         return [k for k, key in enumerate(keys) if key in lacking], len(known) - len(sound)
 
     def known(self, keys: Sequence[bytes]) -> dict[int, tuple[Array | None, str | None]]:
-        """Rows already stored, by the index of their key; damaged rows are omitted."""
+        """Rows already stored, by the index of their key in `keys`; damaged rows are omitted."""
         rows = self._known(keys)
         stored: dict[int, tuple[Array | None, str | None]] = {}
         for k, key in enumerate(keys):
@@ -182,7 +182,8 @@ def opened(
     name, design : name and design of the study, for people who inspect the file
     columns : columns of its rows
     version : version of the models; rows of different versions are never mixed
-    texts : PATHs with their text values (materials, ...); rows store only the key of a text
+    texts : pairs of a PATH and a text value that it may have, such as a material; rows only contain
+        numbers
 
     Raises
     ------
@@ -238,7 +239,7 @@ def study_checksum(*about: object) -> bytes:
 
 
 def _retried(act: Callable[[], None]) -> None:
-    """Call a function again while SQLite refuses it because another process opens the file."""
+    """Repeat a call while SQLite refuses it because another process is opening the file."""
     end = time.monotonic() + BUSY
     while True:
         try:
@@ -250,7 +251,7 @@ def _retried(act: Callable[[], None]) -> None:
 
 
 def _prepare(connection: sqlite3.Connection, path: Path, version: str) -> None:
-    """Create the tables of a new file; refuse a foreign database."""
+    """Create the tables of a new file; refuse a database of another program."""
     tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}
     if tables and not tables >= TABLES:
         raise refused(path, "is another program's database", "name another file")
@@ -319,7 +320,7 @@ _SELECT = "SELECT key, numbers, failure, checksum FROM rows WHERE study = ?"
 
 
 class StoredRows(NamedTuple):
-    """Stored rows of one study; `texts` lists the text values that rows may have, by PATH."""
+    """A study and the number of its rows; `texts` has the possible text values by PATH."""
 
     number: int
     hash: str
@@ -413,8 +414,8 @@ class Reader:
     def rows(self, study: StoredRows) -> Iterator[tuple[list[bytes], Array]]:
         """Yield keys and numbers of the successful rows, in batches, ordered by key.
 
-        Keys are hashes, so every n-th row gives an even sample of the study. Damaged rows are
-        omitted.
+        Keys are hashes, so taking every n-th row gives an even sample of the study. Damaged rows
+        are omitted.
         """
         select = f"{_SELECT} AND failure IS NULL ORDER BY key"
         cursor = self.connection.execute(select, (study.number,))
@@ -460,7 +461,7 @@ def reading(path: Path, version: str) -> Iterator[Reader]:
 
 
 def _connected(path: Path) -> sqlite3.Connection:
-    """Connect read-only; as immutable if no lock file can be created beside the database."""
+    """Connect read-only; where no lock file can be created, treat the database as immutable."""
     name = f"file:{quote(os.fsencode(path.resolve()))}?mode=ro"
     connection = sqlite3.connect(name, uri=True, timeout=BUSY)
     try:

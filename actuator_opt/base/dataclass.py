@@ -1,4 +1,4 @@
-"""`dataclass` as in the standard library, for a start in a tenth of the time.
+"""`dataclass` as in the standard library, but classes are created in a tenth of the time.
 
 The standard decorator writes and compiles six functions for every class: 1 ms for a frozen class
 with slots, so that 250 classes cost a quarter of a second before any work. Here ``__init__`` is
@@ -23,7 +23,7 @@ else:
 
         Parameters
         ----------
-        frozen, slots, kw_only, eq, repr : as in `dataclasses.dataclass`; other options are unknown
+        frozen, slots, kw_only, eq, repr : as in `dataclasses.dataclass`; there are no other options
 
         Examples
         --------
@@ -127,7 +127,7 @@ def _field(cls: Any, name: str, annotation: Any, kw_only: bool) -> Field[Any]:
 
 
 def _first_init(self: Any, *args: Any, **arguments: Any) -> None:
-    """Compile the ``__init__`` of the class, which replaces this one, and call it."""
+    """Compile the ``__init__`` of the class, replace this method by it, and call it."""
     cls: Any = next(
         each for each in type(self).__mro__ if each.__dict__.get("__init__") is _first_init
     )
@@ -136,7 +136,7 @@ def _first_init(self: Any, *args: Any, **arguments: Any) -> None:
 
 
 def _compiled_init(cls: Any) -> Any:
-    """``__init__`` of a class, from its fields."""
+    """The ``__init__`` of a class, compiled from its fields."""
     names: dict[str, Any] = {"_set": object.__setattr__, "_MISSING": MISSING}
     positional, lines = ["self"], []
     keywords: list[str] = []
@@ -204,14 +204,14 @@ def _hash(self: Any) -> int:
 
 @recursive_repr()
 def _repr(self: Any) -> str:
-    """The class with its fields."""
+    """Text with the name of the class and the values of its fields."""
     fields = self.__dataclass_fields__.items()
     shown = ", ".join(f"{name}={getattr(self, name)!r}" for name, each in fields if each.repr)
     return f"{type(self).__qualname__}({shown})"
 
 
 def _refuse(self: Any, name: str, *value: Any) -> None:
-    """Raise, as a frozen object does not change."""
+    """Raise an error, because a frozen object cannot be changed."""
     raise FrozenInstanceError(f"cannot {'assign to' if value else 'delete'} field {name!r}")
 
 

@@ -18,7 +18,7 @@ from .dataclass import dataclass
 
 
 def closest(word: str, names: Iterable[str]) -> str | None:
-    """The most similar name: equal apart from upper and lower case, else with the fewest edits.
+    """The most similar name: equal except for upper and lower case, or else with the fewest edits.
 
     >>> closest("Bore", ["stroke", "bore"])
     'bore'
@@ -73,7 +73,7 @@ def escaped(text: str, own: str = "") -> str:
 
 
 def shown(text: object, limit: int = 60) -> str:
-    r"""Text for one line of a message: control characters escaped, long text shortened.
+    r"""Fit a text into one line of a message: escape control characters, shorten long text.
 
     >>> shown("two\nlines")
     'two\\nlines'
@@ -106,7 +106,7 @@ class ExitCode(IntEnum):
     BAD_INPUT = 3
     SOLVER_FAILED = 4
     FAULT = 70
-    """EX_SOFTWARE of sysexits.h: an internal error."""
+    """An internal error; the code is that of EX_SOFTWARE in sysexits.h."""
     INTERRUPTED = 130
 
 
@@ -165,7 +165,7 @@ class Diagnostic:
 class Fault:
     """A fault at a location in a file's tree; `at_key` marks the key instead of the value.
 
-    For a missing key, this is where the key would be; the message then points at its block.
+    For a missing key, the location is where the key would be; the message points at its block.
     """
 
     loc: tuple[str | int, ...]
@@ -193,7 +193,7 @@ class InputError(ActuatorError):
 
 
 class UsageError(ActuatorError):
-    """A command line that cannot be understood (exit 2)."""
+    """A wrong use of a command or function, such as an unknown option (exit 2)."""
 
     exit_code = ExitCode.USAGE
 
@@ -205,7 +205,7 @@ class Unsolvable(ActuatorError):
 
 
 EXTRAS = {"ezdxf": ("DXF", "cad"), "openpyxl": ("XLSX", "excel"), "pyarrow": ("Parquet", "parquet")}
-"""Format and package extra of every optional library."""
+"""For every optional library, the file format that it writes and the extra that installs it."""
 
 
 def library(name: str) -> Any:

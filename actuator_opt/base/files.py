@@ -43,11 +43,10 @@ def data_folder(name: str, *, package: Path = _PACKAGE) -> Path:
 
     Notes
     -----
-    A wheel carries the folder as ``_data/NAME`` inside the package. A folder beside the package
-    is used only if a ``pyproject.toml`` shows that it is a checkout: site-packages may contain an
-    unrelated
-    ``materials``. Plain paths are used because importing ``importlib.resources`` takes longer than
-    reading the files.
+    A wheel carries the folder as ``_data/NAME`` inside the package. A folder beside the package is
+    used only if a ``pyproject.toml`` shows that it is a checkout, because site-packages may contain
+    an unrelated folder ``materials``. Plain paths are used because importing
+    ``importlib.resources`` takes longer than reading the files.
     """
     packaged = package / "_data" / name
     if packaged.is_dir():
@@ -66,7 +65,8 @@ def read_bytes(source: str | Path, *, most: int, kinds: tuple[str, ...], what: s
     ----------
     source : path as the user wrote it; ``"-"`` for standard input
     most : largest number of bytes to read
-    kinds : suffixes of these files, to suggest a similar name
+    kinds : usual suffixes of such files; if the file is missing, one with a similar name is
+        suggested
     what : kind of file, in words
 
     Raises
@@ -277,7 +277,7 @@ def make_private(path: Path) -> None:
 
 
 def _publish(file: FileIO) -> None:
-    """Set the permissions that new files of this process have (its umask), and close the file."""
+    """Give the file the usual permissions of new files (from the umask), and close it."""
     mask = os.umask(0o077)
     os.umask(mask)
     if sys.platform != "win32":

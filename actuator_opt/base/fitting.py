@@ -1,6 +1,6 @@
 """Least-squares fits within limits, with confidence bounds and a verdict for each parameter.
 
-`relaxed` solves many small problems at once, each from its own start; resampling uses it.
+`relaxed` solves many small problems at once, each from its own start; it is used for resampling.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ import numpy as np
 from .numeric import Array
 
 FIRM, LIGHT, HEAVY = 1e-4, 1e-12, 1e8
-"""First, smallest and largest damping of a step, relative to the curvature (our choice)."""
+"""Initial, smallest and largest damping of a Levenberg-Marquardt step, relative to the curvature
+(our choice)."""
 CONFIDENCE = 0.95
 """Confidence level of the bounds."""
 NORMAL = 1.959964
@@ -23,13 +24,13 @@ WEAK = 0.3
 """A parameter is identifiable if its confidence bounds deviate by at most this share of its
 value."""
 ROUNDING = 1e-6
-"""Confidence bounds that deviate by at most this share of a parameter's scale are always close
-enough, even around an exponent of 0."""
+"""If the confidence bounds deviate by at most this share of a parameter's scale, the parameter is
+always identifiable, even if its value is 0 (such as an exponent)."""
 RANK = 1e-7
 """Smallest usable ratio of singular values: below it, a step is lost in double-precision rounding
 of the residuals."""
 SEEN = 1e-4
-"""Largest share that a parameter may have in directions that the points do not determine."""
+"""Largest component that a parameter may have along directions that the data do not determine."""
 
 Verdict = Literal["identifiable", "weakly identifiable", "not identifiable"]
 
@@ -61,9 +62,9 @@ def solve(
     residuals : weighted residuals (points,) of parameters (n,)
     start : initial parameters (n,); they are moved inside the limits
     bounds : lower and upper limits (n,); may be infinite
-    slopes : Jacobian of the residuals (points, n); default: central differences
-    sizes : scales of the parameters (n,); default: from the Jacobian
-    room : smallest distance of the start from the limits, since the method must start between them
+    slopes : Jacobian of the residuals (points, n); "3-point": by central differences
+    sizes : scales of the parameters (n,); "jac": from the Jacobian
+    room : smallest distance of the start from the limits, since the method must start inside them
     cost_tolerance, step_tolerance, slope_tolerance : tolerances for convergence: relative change of
         the sum, relative step, scaled gradient
     most : largest number of evaluations; default: 100 per parameter
@@ -93,11 +94,11 @@ class Parameter(NamedTuple):
     upper: float
     standard_error: float
     identifiable: bool
-    """Whether the confidence bounds lie within 30 % of the value."""
+    """Whether both confidence bounds lie within 30 % of the value."""
 
     @property
     def verdict(self) -> Verdict:
-        """Verdict on a parameter: it is weakly identifiable if the bounds at least exclude zero."""
+        """Verdict on a parameter; "weakly identifiable" if the bounds only exclude zero."""
         if self.identifiable:
             return "identifiable"
         signed = self.lower > 0 or self.upper < 0
@@ -121,7 +122,7 @@ def rated(value: float, lower: float, upper: float, standard_error: float) -> Pa
 
 
 class FittedParameters(NamedTuple):
-    """Fitted parameters and their covariance; infinite variance for undetermined parameters."""
+    """Fitted parameters and their covariance; undetermined parameters have infinite variance."""
 
     parameters: dict[str, Parameter]
     covariance: Array
@@ -131,7 +132,7 @@ class FittedParameters(NamedTuple):
 
 
 def quantile(spare: float) -> float:
-    """Student's t that has 95 % between -t and t; infinite without degrees of freedom."""
+    """Student's t for two-sided 95 % confidence bounds; infinite without degrees of freedom."""
     from scipy.special import stdtrit  # slow to import, rarely needed
 
     return float(stdtrit(spare, (1 + CONFIDENCE) / 2)) if spare > 0 else np.inf
@@ -147,9 +148,9 @@ def known(
 ) -> FittedParameters:
     """Confidence bounds from the linearised model and Student's t [SeberWild1989].
 
-    The covariance is s^2 (J^T J)^-1 with s^2 = sum r^2/(n - p), for the slopes J and residuals r of
-    n points and p parameters. It covers only directions that the points determine; a parameter with
-    a component in another direction is undetermined.
+    The covariance is s^2 (J^T J)^-1 with s^2 = sum r^2/(n - p), where J is the Jacobian `slopes`
+    and r the residuals of n points and p parameters. It covers only directions that the points
+    determine; a parameter with a component in another direction is undetermined.
 
     Parameters
     ----------
@@ -199,7 +200,7 @@ thousandth of the undamped step)."""
 
 
 class FitSearch(NamedTuple):
-    """Names of the numbers to search, with their limits."""
+    """Names of the numbers to fit, with their limits."""
 
     names: tuple[str, ...]
     low: Array
@@ -215,14 +216,15 @@ def relaxed(
 ) -> tuple[Array, Array]:
     """Solve many least-squares problems at once, each from its own start, within limits.
 
-    The search takes Levenberg-Marquardt steps. A number at a limit stays there while a lower cost
-    would lie beyond it.
+    The search takes Levenberg-Marquardt steps. A number at a limit stays there as long as the cost
+    falls only beyond that limit.
 
     Parameters
     ----------
-    misfit : function for residuals (rows, residuals) at rows, for the problems with the given
-        indices
-    slopes : function for their derivatives at rows (rows or 1, residuals, searched)
+    misfit : function of trial numbers (one row for each problem) and the indices of these problems;
+        returns their residuals (problems, residuals)
+    slopes : function of the same rows; returns the derivatives of the residuals (problems or 1,
+        residuals, searched)
     rows : start of each problem (problems, searched)
     search : names and limits of the searched numbers
     steps : largest number of steps

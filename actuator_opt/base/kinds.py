@@ -1,7 +1,7 @@
 """Registries of kinds (such as seal types and friction laws) that a design file names.
 
-Each kind is one module with one frozen dataclass; the registry lists them. Choices, help, JSON
-Schema, faults and tests read the registry, so no other code names a kind.
+Each kind is one module with one frozen dataclass; the registry lists them. Design choices, help,
+JSON Schema, fault messages and tests read the registry, so no other code names a kind.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class Kinds(dict[str, K]):
 
     @property
     def help(self) -> str:
-        """Every name with its meaning, as the help of a field lists them."""
+        """Every name with its meaning, as listed in the help of a field."""
         return "; ".join(f"{entry.name}: {entry.help}" for entry in self.values())
 
 
@@ -78,8 +78,8 @@ def kinds(what: str, *entries: K) -> Kinds[K]:
     Raises
     ------
     ValueError
-        if a name is duplicate or no lower-case word, or a field is None, empty, or no function
-        although annotated as one
+        if a name is a duplicate or not a lower-case word; if a field is None or empty; or if a
+        field annotated as a function is none
 
     Examples
     --------
@@ -110,7 +110,7 @@ def kinds_in(what: str, package: str, name: str, *modules: str) -> Kinds[Any]:
 
     Raises
     ------
-    ValueError : as for `kinds`, or if a module has no kind, or a kind of another name
+    ValueError : as for `kinds`; or if a module has no kind, or its kind has another name
     """
     entries = []
     for module in modules:

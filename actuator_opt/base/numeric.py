@@ -47,7 +47,7 @@ def real(value: Array) -> Array:
 
 
 def where(condition: Array, yes: Array, no: Array) -> Array:
-    """Elementwise choice; `condition` must come from real parts."""
+    """Elementwise choice; `condition` must only compare real parts."""
     if type(condition) is np.ndarray:  # the common case must be fast: models call it most often
         choice: Any = np.where(condition, yes, no)
         if choice.dtype.hasobject and type(choice) is np.ndarray:
@@ -74,7 +74,7 @@ def minimum(first: Array, second: Array) -> Array:
 
 
 def clip(value: Array, lower: Array, upper: Array) -> Array:
-    """Limit `value` to [lower, upper]; for physical limits only, never to hide a fault."""
+    """Limit `value` to [lower, upper]. Use it for physical limits only, never to hide a fault."""
     return minimum(maximum(value, lower), upper)
 
 
@@ -106,7 +106,7 @@ def angle(imaginary: Array, real_part: Array) -> Array:
 
 
 def expm1_quotient(value: Array) -> Array:
-    """expm1(value)/value, 1 at 0, smooth and complex-step safe."""
+    """expm1(value)/value, which is 1 at 0; smooth, and valid under a complex step."""
     xp = namespace(value)
     small = (real(value) < 1e-5) & (real(value) > -1e-5)
     safe = where(small, 0 * value + 1, value)
@@ -114,7 +114,7 @@ def expm1_quotient(value: Array) -> Array:
 
 
 def log1p_quotient(value: Array) -> Array:
-    """log1p(value)/value, 1 at 0, smooth and complex-step safe; NaN from -1 down."""
+    """log1p(value)/value, which is 1 at 0; valid under a complex step. NaN at -1 and below."""
     xp = namespace(value)
     undefined = real(value) <= -1
     small = (real(value) < 1e-5) & (real(value) > -1e-5)
@@ -144,7 +144,7 @@ def together(values: Sequence[Array], axis: int = 0) -> Array:
 
 
 def stacked(rows: Sequence[Sequence[Array]]) -> list[Array]:
-    """Stack the values of layers into an array (layers, ...), broadcast to a common batch shape."""
+    """Stack lists with one value per layer into arrays (layers, ...) of a common batch shape."""
     xp = namespace(*(value for row in rows for value in row))
     result = []
     for row in rows:
@@ -157,7 +157,7 @@ def stacked(rows: Sequence[Sequence[Array]]) -> list[Array]:
 
 
 def lifted(value: Array, dims: int) -> Array:
-    """Reshape a layer array (layers, ...) so that its batch axis is the last of `dims` axes."""
+    """Reshape an array (layers, ...) to `dims` axes, of which the batch axis is the last."""
     missing = dims + 1 - value.ndim
     if missing <= 0:
         return value
@@ -174,7 +174,8 @@ _SIZE = re.compile(
     r"|depth|height|land|engagement|clearance|tolerance|roughness|travel|area|volume"
     r"|second_moments?|wetted_(?:back|front))(?:_[ab12])?"
 )
-"""Pattern of argument names for lengths, areas, volumes and second moments: never negative."""
+"""Pattern of the argument names of lengths, areas, volumes and second moments, which are never
+negative."""
 _RATE = re.compile(r".*_per_.*")
 PAIRS = (
     ("outer_radius", "inner_radius"),
@@ -184,7 +185,8 @@ PAIRS = (
     ("radius", "hole_radius"),
     ("edge_radius", "hub_radius"),
 )
-"""Pairs of arguments of which the first is larger, as walls have a thickness and annuli an area."""
+"""Pairs of arguments whose first must be larger than the second, so that no wall or annulus
+vanishes."""
 
 
 def sizes(function: Callable[..., object]) -> tuple[str, ...]:
@@ -195,11 +197,11 @@ def sizes(function: Callable[..., object]) -> tuple[str, ...]:
 
 
 def geometry(function: Callable[P, T]) -> Callable[P, T]:
-    """Make a model return NaN if a size is negative, or an inner size is not below the outer.
+    """Make a model return NaN if a size is negative or an inner size is not below the outer.
 
     Of an array, only the impossible elements become NaN. The thicknesses of `layers` are checked
-    too. Symbols, and arrays of libraries other than NumPy, are not checked: the model is traced
-    once for many values, and the limits of the design exclude impossible values.
+    too. Symbols, and arrays of libraries other than NumPy, are not checked: such a model is traced
+    once for many values, and the limits of the design already exclude impossible values.
     """
     names = sizes(function)
     pairs = [pair for pair in PAIRS if pair[0] in names and pair[1] in names]
@@ -232,7 +234,7 @@ def geometry(function: Callable[P, T]) -> Callable[P, T]:
 
 
 def _possible(value: Any) -> bool:
-    """Whether no value of a size is negative; fast, as this is the common case."""
+    """Whether a size is certainly nowhere negative; a quick test for the common types."""
     if isinstance(value, float):
         return not value < 0
     if type(value) is np.ndarray and value.dtype.kind in "fc":
@@ -241,7 +243,7 @@ def _possible(value: Any) -> bool:
 
 
 def _checked(value: Any) -> tuple[Any, Any]:
-    """Replace negative values of a size, or several, by NaN; return also a mask of these values."""
+    """Replace negative values of one or several sizes by NaN; also return their mask."""
     if not isinstance(value, tuple | list):
         return _masked(real(value) < 0, value)
     elements = [_checked(element) for element in value]
@@ -250,7 +252,7 @@ def _checked(value: Any) -> tuple[Any, Any]:
 
 
 def _masked(impossible: Any, value: Any) -> tuple[Any, Any]:
-    """Replace impossible values by NaN; return also their mask. A single symbol is unchanged."""
+    """Replace impossible values by NaN; also return their mask. A single symbol is unchanged."""
     if impossible is False:
         return value, False
     if impossible is True:

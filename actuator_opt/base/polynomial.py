@@ -15,10 +15,10 @@ import numpy as np
 from .numeric import Array, namespace, real
 
 BEYOND = 1.324718
-"""Root of x^3 = x + 1; a factor for the distance from which Newton's steps start, beyond the outer
-root."""
+"""Root of x^3 = x + 1. The distance from the inflection point at which Newton's steps start is
+multiplied by it, so that they start beyond the outer root."""
 SHY = 1 + 1e-15
-"""Divisor of a Newton step, so that rounding does not carry it past the root."""
+"""Divisor that shortens a Newton step, so that rounding does not carry it past the root."""
 MOST = 120
 """Largest number of Newton steps: enough for a triple root, where a step covers a third of the
 distance."""
@@ -28,7 +28,7 @@ def cubic_roots(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> 
     """All roots of x^3 + square x^2 + slope x + constant, (..., 3) complex, the real root first.
 
     Newton's steps start beyond the outer real root and approach it from one side. The remaining
-    quadratic is divided out from the end that loses fewest digits [Kahan1986].
+    quadratic is found by synthetic division from the end that loses fewer digits [Kahan1986].
 
     Parameters
     ----------
@@ -63,10 +63,10 @@ def cubic_roots(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> 
 
 
 def _outer_root(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> np.ndarray:
-    """The outer real root of each cubic, found by Newton's steps from outside.
+    """The outermost real root of each cubic, found by Newton's steps from beyond it.
 
-    At a triple root, slope and value are only rounding errors, so steps stop at the inflection
-    point.
+    At a triple root, the computed slope and value are only rounding errors, so the steps stop at
+    the inflection point.
     """
     x = inflection = square * (-1 / 3)
     value, rise = _value(x, square, slope, constant)
@@ -117,7 +117,7 @@ def _vanishes(coefficient: Array) -> bool:
 
 
 def trimmed(polynomial: Polynomial) -> Polynomial:
-    """Drop leading coefficients that are the number 0."""
+    """Drop coefficients of the highest powers that are the number 0."""
     size = len(polynomial)
     while size and _vanishes(polynomial[size - 1]):
         size -= 1
@@ -203,9 +203,9 @@ def square_of_magnitude(polynomial: Polynomial) -> Polynomial:
 def roots(polynomial: Polynomial) -> np.ndarray:
     """All roots, (..., degree) complex: by formula for cubics, else companion-matrix eigenvalues.
 
-    Only real parts of the coefficients are used. Equal neighbours along the last axis (copies of a
-    design under a complex step) are solved once. A zero leading coefficient in an array gives a
-    root at minus infinity; coefficients that are not finite make every root NaN.
+    Only real parts of the coefficients are used. Equal neighbours along the last axis (copies of
+    one design for complex steps) are solved only once. A zero leading coefficient in an array gives
+    a root at minus infinity; coefficients that are not finite make every root NaN.
     """
     if len(polynomial) < 2:
         shape = np.shape(real(polynomial[0])) if polynomial else ()
@@ -283,10 +283,11 @@ def moved_root(polynomial: Polynomial, root: Parts) -> Parts:
 
 
 def positive_root(polynomial: Polynomial, start: Array) -> Array:
-    """A real root near `start`, refined by Newton's method, with the complex step that follows.
+    """A real root near `start`, refined by Newton's method, with its derivative as complex step.
 
-    The last Newton step uses the arithmetic of the coefficients: by the implicit-function theorem
-    the root gets its exact derivative. For a constant, which has no root, `start` is returned.
+    Only the last Newton step keeps the complex steps of the coefficients; by the implicit-function
+    theorem, this gives the root its exact derivative. For a constant, which has no root, `start` is
+    returned.
     """
     value = start
     if len(polynomial) < 2:

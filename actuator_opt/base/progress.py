@@ -1,4 +1,4 @@
-"""Progress of long computations, reported to a function if one is registered."""
+"""Reports the progress of long computations to a function, if one is registered."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _One = TypeVar("_One")
 
 @contextmanager
 def watched(watch: Watch | None) -> Iterator[None]:
-    """Send reports to this function from now on; None switches them off."""
+    """Send progress reports to this function within the context; None switches them off."""
     token = _watch.set(watch)
     try:
         yield
@@ -32,7 +32,7 @@ def tell(what: str, share: float | None = None) -> None:
 
 @contextmanager
 def whole(what: str, share: float | None = None) -> Iterator[None]:
-    """Report a task as a whole; reports from inside it are suppressed."""
+    """Report a task as a whole; progress reports from inside it are suppressed."""
     tell(what, share)
     with watched(None):
         yield

@@ -12,7 +12,7 @@ from . import units
 from .dataclass import dataclass
 
 Sense = Literal["min", "max"]
-"""Sense of a limit (at least, at most) or of a worst value (smallest, largest)."""
+"""Sense of a limit ("min": at least, "max": at most), or which value is the worst."""
 
 INFINITY = float("inf")
 
@@ -31,10 +31,10 @@ def short(value: float, digits: int = 4, *, full: bool = False) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A named physical quantity; limits in SI, `lower` and `upper` included.
+    """A named physical quantity, with the lowest and highest permitted value in SI.
 
-    `worst` states whether the smallest or largest value of a metric, over load cases and locations,
-    is the worst.
+    `worst` states which value of a metric is the worst among load cases and locations: the smallest
+    or the largest.
     """
 
     name: str
@@ -134,7 +134,7 @@ INPUTS = _table("""
  rated_flow           | q_r    | flow        | l/min| 0.001 | 100000| rated flow
  leakage_flow         | q_l    | flow        | l/min| 0     | 1000  | leakage flow
  pressure_drop        | dp     | pressure    | bar  | 0.01  | 1500  | pressure drop
- signal               | U      | voltage     | V    | 0.001 | 1000  | full signal
+ signal               | U      | voltage     | V    | 0.001 | 1000  | signal at full opening
  signal_offset        | U_0    | voltage     | V    | -1000 | 1000  | signal offset
  gain                 | K_p    | signal_gain | V/m  | 0.001 | 1e9   | gain
  oil_viscosity        | nu     | kinematic_viscosity | mm^2/s | 0.2 | 100000 | kinematic viscosity of the oil
@@ -163,7 +163,7 @@ MATERIAL_PROPERTIES = _table("""
  poissons_ratio_23    | nu_23  | ratio       | -      | 0     | 0.9   | Poisson's ratio 23
  yield_strength       | R_p02  | pressure    | MPa    | 1     | 4000  | yield strength
  ultimate_strength    | R_m    | pressure    | MPa    | 1     | 6000  | ultimate tensile strength
- fatigue_strength     | sigma_w| pressure    | MPa    | 0.5   | 3000  | fatigue strength (amplitude, basis stated)
+ fatigue_strength     | sigma_w| pressure    | MPa    | 0.5   | 3000  | fatigue strength (stress amplitude)
  strength_1_tension   | X_t    | pressure    | MPa    | 1     | 8000  | fibre tension strength
  strength_1_compression| X_c   | pressure    | MPa    | 1     | 8000  | fibre compression strength
  strength_2_tension   | Y_t    | pressure    | MPa    | 1     | 3000  | transverse tension strength
@@ -175,8 +175,8 @@ MATERIAL_PROPERTIES = _table("""
  thermal_expansion_2  | alpha_2| per_temperature | ppm/K | -20 | 500  | thermal expansion across the fibre
  minimum_thickness    | t_min  | length      | mm     | 0     | 50    | minimum thickness that can be made
  minimum_angle        | theta_min | angle    | deg    | 0     | 90    | smallest winding angle that can be made
- temperature_knockdown| k_T    | ratio       | -      | 0.05  | 1     | strength left at the stated temperature
- moisture_knockdown   | k_w    | ratio       | -      | 0.05  | 1     | strength left after moisture saturation
+ temperature_knockdown| k_T    | ratio       | -      | 0.05  | 1     | share of strength left at the knock-down temperature
+ moisture_knockdown   | k_w    | ratio       | -      | 0.05  | 1     | share of strength left after moisture saturation
  basis_knockdown      | k_b    | ratio       | -      | 0.05  | 1     | allowable strength, as a share of the stated value
  temperature_min      | T_min  | temperature | degC   | -200  | 300   | lowest service temperature
  temperature_max      | T_max  | temperature | degC   | -100  | 1000  | highest service temperature
@@ -195,17 +195,17 @@ MATERIAL_PROPERTIES = _table("""
  pressure_max         | p_max  | pressure    | bar    | 1     | 2000  | highest pressure without back-up ring
  bond_strength        | tau    | pressure    | MPa    | 0.5   | 200   | adhesive shear strength
  bearing_strength     | p_b    | pressure    | MPa    | 0.5   | 500   | allowable bearing pressure
- fatigue_cycles       | N_w    | ratio       | -      | 1      | 1e12 | cycles of the fatigue strength
- fatigue_stress_ratio | R      | ratio       | -      | -1     | 0.99 | stress ratio (lowest stress over highest) of the fatigue strength
+ fatigue_cycles       | N_w    | ratio       | -      | 1      | 1e12 | number of cycles to which the fatigue strength applies
+ fatigue_stress_ratio | R      | ratio       | -      | -1     | 0.99 | stress ratio of the fatigue strength: lowest stress divided by highest
  shear_strength       | tau_m  | pressure    | MPa    | 0.5    | 3000 | ultimate shear strength
- matrix_temperature_knockdown | k_Tm | ratio | -      | 0.05   | 1    | matrix strength left at the knock-down temperature
- matrix_moisture_knockdown | k_wm | ratio    | -      | 0.05   | 1    | matrix strength left after moisture saturation
+ matrix_temperature_knockdown | k_Tm | ratio | -      | 0.05   | 1    | share of matrix strength left at the knock-down temperature
+ matrix_moisture_knockdown | k_wm | ratio    | -      | 0.05   | 1    | share of matrix strength left after moisture saturation
  process_knockdown    | k_p    | ratio       | -      | 0.05   | 1    | fibre tension strength of the made part, as a share of the coupon's
- knockdown_temperature| T_k    | temperature | degC   | 30     | 1000 | temperature of the temperature knock-downs
+ knockdown_temperature| T_k    | temperature | degC   | 30     | 1000 | temperature at which the temperature knock-downs apply
  fibre_volume_fraction| V_f    | ratio       | -      | 0.1    | 0.8  | fibre volume fraction
- density_temperature  | T_rho  | temperature | degC   | -60    | 100  | temperature of the density
- bulk_modulus_temperature | T_K | temperature | degC  | -60    | 200  | temperature of the bulk modulus
- bulk_modulus_pressure| p_K    | pressure    | bar    | 0      | 1000 | gauge pressure of the bulk modulus
+ density_temperature  | T_rho  | temperature | degC   | -60    | 100  | temperature at which the density is stated
+ bulk_modulus_temperature | T_K | temperature | degC  | -60    | 200  | temperature at which the bulk modulus is stated
+ bulk_modulus_pressure| p_K    | pressure    | bar    | 0      | 1000 | gauge pressure at which the bulk modulus is stated
  bulk_modulus_decay   | b_K    | per_temperature | 1/K | 0     | 0.02 | relative fall of the bulk modulus per kelvin
  tait_modulus         | K_00   | pressure    | GPa    | 0.5    | 200  | zero-pressure bulk modulus of the Tait law, extended to 0 K
  tait_decay           | c_K    | per_temperature | 1/K | 0     | 0.02 | relative fall of the Tait modulus per kelvin
@@ -217,17 +217,18 @@ MATERIAL_PROPERTIES = _table("""
  asperity_friction    | f      | ratio       | -      | 0.001  | 1    | dry friction of the asperities in the film model
  seal_roughness       | sigma  | length      | um     | 0.01   | 20   | RMS roughness of the sliding face in the film model
  asperity_radius      | R_a    | length      | um     | 0.01   | 1000 | radius of the asperity tips
- asperity_density     | n_a    | per_area    | 1/m^2  | 1e9    | 1e17 | asperities per area
+ asperity_density     | n_a    | per_area    | 1/m^2  | 1e9    | 1e17 | number of asperities per unit area
 """)
 
 RECORDS = _table("""
  cutoff               | f_c    | frequency   | Hz     | 0.01  | 100000 | cut-off frequency of the filter
  moving_mass          | m      | mass        | kg     | 0     | 1e6    | mass moving inside the force sensor
- load_force           | F_L    | force       | N      | -2e7  | 2e7    | force of the load, against extension
- pressure_lag         | tau    | time        | ms     | -100  | 100    | time by which the pressure signals lag
+ load_force           | F_L    | force       | N      | -2e7  | 2e7    | force of the load, positive against extension
+ pressure_lag         | tau    | time        | ms     | -100  | 100    | delay of the pressure signals
  span                 | L      | length      | mm     | 1     | 20000  | span between the supports
 """)
-"""Quantities of a test record's settings; only forces and times may be negative."""
+"""Quantities of the settings with which a test record is evaluated; only forces and times may be
+negative."""
 
 SCENARIOS = _table("""
  duration             | T      | time        | s      | 1e-5  | 100000 | simulated time
@@ -237,8 +238,8 @@ SCENARIOS = _table("""
  signal_value         | U      | voltage     | V      | -1000 | 1000   | signal of the valve
  position_value       | x      | length      | mm     | -10000| 10000  | position
  speed_value          | v      | speed       | m/s    | -20   | 20     | speed
- force_value          | F_L    | force       | N      | -2e7  | 2e7    | force of the load, against extension
- torque_value         | M_L    | torque      | N*m    | -1e7  | 1e7    | torque of the load, against the positive direction of motion
+ force_value          | F_L    | force       | N      | -2e7  | 2e7    | force of the load, positive against extension
+ torque_value         | M_L    | torque      | N*m    | -1e7  | 1e7    | torque of the load, positive if it opposes positive motion
  flow_value           | q      | flow        | l/min  | -1e6  | 1e6    | flow
  shaft_speed_value    | n      | angular_speed | rpm  | -20000| 20000  | speed of the shaft
  shaft_angle_value    | phi    | angle       | deg    | -1e6  | 1e6    | angle of the shaft
@@ -258,10 +259,10 @@ SCENARIOS = _table("""
  load_stiffness       | k      | stiffness   | N/mm   | 0     | 1e9    | stiffness of the load
  shaft_damping        | b      | angular_damping | N*m*s/rad | 0 | 1e6 | damping of the shaft's load
  displacement         | V_g    | volume      | ml     | 0.01  | 100000 | displacement per revolution
- displacement_setting | eps    | ratio       | -      | 0.01  | 1      | setting of the displacement
- slip_coefficient     | C_s    | ratio       | -      | 0     | 1e-3   | laminar slip of the Wilson model
- coulomb_coefficient  | C_f    | ratio       | -      | 0     | 1      | Coulomb friction of the Wilson model
- viscous_coefficient  | C_v    | ratio       | -      | 0     | 1e9    | viscous friction of the Wilson model
+ displacement_setting | eps    | ratio       | -      | 0.01  | 1      | displacement setting, as a share of the largest displacement
+ slip_coefficient     | C_s    | ratio       | -      | 0     | 1e-3   | laminar slip coefficient of the Wilson model
+ coulomb_coefficient  | C_f    | ratio       | -      | 0     | 1      | Coulomb friction coefficient of the Wilson model
+ viscous_coefficient  | C_v    | ratio       | -      | 0     | 1e9    | viscous friction coefficient of the Wilson model
  constant_torque      | T_c    | torque      | N*m    | 0     | 1e6    | constant torque loss of the Wilson model
  drive_speed          | n      | angular_speed | rpm  | 0.1   | 50000  | speed of the pump's shaft
  pump_gain            | K_p    | conductance | l/min/bar | 1e-6 | 1e6  | flow per pressure of the pump's controller
@@ -269,7 +270,7 @@ SCENARIOS = _table("""
  static_force         | F_S    | force       | N      | 0     | 1e7    | breakaway friction
  stribeck_exponent    | delta  | ratio       | -      | 0.3   | 4      | exponent of the Stribeck curve
  bristle_damping      | sigma_1| damping     | N*s/m  | 0     | 1e8    | bristle damping
- damping_factor       | -      | ratio       | -      | 0     | 10     | damping of a stop, divided by the root of its stiffness times the moving mass
+ damping_factor       | -      | ratio       | -      | 0     | 10     | damping of a stop, divided by the square root of stiffness times moving mass
  cycles_per_window    | n      | count       | -      | 1     | 1000   | cycles in a window
 """)
 """Inputs of a scenario, in addition to its design; only coordinates of signals may be negative."""
@@ -280,7 +281,7 @@ RESULTS = _table("""
  overshoot            | M_p    | ratio       | %      | | | overshoot, as a share of the step
  steady_state_ratio   | e_ss   | ratio       | %      | | | steady-state error, as a share of the step
  following_error      | e      | length      | mm     | | | largest position error after the first period
- hold_drift           | v_d    | speed       | mm/s   | | | creep speed in the last tenth of the time
+ hold_drift           | v_d    | speed       | mm/s   | | | creep speed in the last tenth of the simulated time
  peak_pressure        | p_max  | pressure    | bar    | | | highest chamber pressure
  lowest_pressure      | p_min  | pressure    | bar    | | | lowest chamber pressure, gauge
  cavitation_margin    | p-p_v  | pressure    | bar    | | | lowest absolute chamber pressure minus the vapour pressure of the oil

@@ -2,7 +2,8 @@
 
 A record is a file of two lines of JSON: a short head for lists, and the body. Each line ends with a
 checksum of its text, which reveals damage. The checksum is no signature: anyone who writes a record
-can also write its checksum. This module does not interpret runs, and deletes only on request.
+can also write its checksum. This module does not interpret the content of a record, and deletes
+records only on request.
 """
 
 from __future__ import annotations
@@ -20,9 +21,10 @@ from .errors import Diagnostic, InputError, shown
 from .files import private_part, read_json
 
 FOLDER, SWITCH = "ACTUATOR_OPT_RUNS", "ACTUATOR_OPT_NO_RECORD"
-"""Environment variables: folder of the records, and a switch that disables records unless "0"."""
+"""Environment variables: the folder of the records, and a switch that disables them unless it is
+"0"."""
 FORMAT = 2
-"""Version of the files; newer versions are refused with an explanation. Format 1 has no
+"""Version of the file format; newer versions are refused with an explanation. Version 1 has no
 checksums."""
 SUFFIX = ".run"
 _ID = re.compile(r"[0-9]{8}-[0-9]{6}-[0-9a-f]{6}")
@@ -30,14 +32,14 @@ _BEGINNING = re.compile(r"[0-9]{4,8}(-[0-9]{0,6}(-[0-9a-f]{0,6})?)?")
 _MOST = 200_000_000
 """Largest size of a record in bytes, far above the size of any run."""
 _HEAD = 4_000_000
-"""Largest size of the first line in bytes: twice the longest command line."""
+"""Largest size of the first line in bytes: twice that of the longest command line."""
 _SEAL = "blake2b"
-"""Key of a line's checksum, the last key of its object."""
+"""Key of a line's checksum, which is the last key of the JSON object."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoredRun:
-    """A listed record: its file and its head."""
+    """A record in a list: its file and its head."""
 
     path: Path
     head: Mapping[str, Any]
@@ -172,7 +174,7 @@ def _parsed(line: bytes, path: Path, *, sealed: bool = False) -> tuple[dict[str,
 
     Raises
     ------
-    InputError : if it is no object, its checksum is wrong, or missing although `sealed`
+    InputError : if it is no object, its checksum is wrong, or `sealed` and it has no checksum
     """
     line = line.rstrip()
     try:

@@ -1,8 +1,8 @@
 """Approximate a costly smooth function by a Chebyshev polynomial in a box, with derivatives.
 
-Inputs with a range are axes of a tensor of Chebyshev polynomials [Boyd2001]. Other inputs have a
-first-order effect, by the slopes that the function returns. Evaluation is plain arithmetic and
-supports complex steps.
+Inputs with a range are axes of a tensor product of Chebyshev polynomials [Boyd2001]. The effect of
+other inputs is linearised, with the slopes that the function returns. Evaluation is plain
+arithmetic and supports complex steps.
 """
 
 from __future__ import annotations
@@ -25,8 +25,9 @@ class Interpolation:
     Parameters
     ----------
     values : outputs (m,)
-    slopes : derivatives of the outputs (m,) with respect to the logarithm of each input; slopes for
-        axes are ignored, and an input that is neither listed nor an axis has no effect
+    slopes : for each input by name, derivatives of the outputs (m,) with respect to its logarithm;
+        those of an axis only count with `hermite`, and an input that is neither listed nor an axis
+        has no effect
     why : reason for a failed evaluation; values and slopes are then unused
     """
 
@@ -39,7 +40,7 @@ class Interpolation:
 class SurrogateAxis:
     """An axis of the polynomial: the logarithm of an input, with 0 < lower < upper.
 
-    With `hermite` the fit also matches the slopes along the axis, with twice as many terms.
+    With `hermite` the fit also matches the slopes along the axis and has twice as many terms.
     """
 
     name: str
@@ -66,7 +67,7 @@ class SurrogateAxis:
         return (2 * np.log(limited) - low - high) / (high - low)
 
     def basis(self, value: Array) -> Array:
-        """Values of the Chebyshev polynomials (..., terms) at an input, limited to the axis."""
+        """Chebyshev polynomials (..., terms) at an input, which is first limited to the axis."""
         x = self._coordinate(value)
         rows = [np.ones_like(x), x]
         while len(rows) < self.terms:
@@ -74,7 +75,7 @@ class SurrogateAxis:
         return np.stack(rows[: self.terms], axis=-1)
 
     def basis_slope(self, value: Array) -> Array:
-        """Derivatives of the polynomials (..., terms) for the logarithm of the input."""
+        """Derivatives of the polynomials (..., terms) by the logarithm of the input."""
         x = self._coordinate(value)
         second = [np.ones_like(x), 2 * x]  # U_k; T_k' = k U_(k-1)
         while len(second) < self.terms:
@@ -83,7 +84,7 @@ class SurrogateAxis:
         return np.stack(rows, axis=-1) * (2 / (log(self.upper) - log(self.lower)))
 
     def holds(self, value: float) -> bool:
-        """Whether an input lies on the axis."""
+        """Whether an input lies within the range of the axis."""
         return self.lower * (1 - 1e-9) <= value <= self.upper * (1 + 1e-9)
 
 
@@ -93,10 +94,9 @@ class Surrogate:
 
     Parameters
     ----------
-    axes : inputs with an extent
-    base : reference value of every input
+    axes : inputs with a range base : reference value of every input
     coefficients : (terms of axis 1, terms of axis 2, ..., outputs, 1 + first-order inputs)
-    linear : inputs with a first-order effect
+    linear : inputs whose effect is linearised
     failed : reasons of failed points, which the fit omits
     """
 
@@ -127,7 +127,7 @@ class Surrogate:
         return np.moveaxis(result, -1, 0)
 
     def covers(self, inputs: Mapping[str, float]) -> bool:
-        """Whether a point lies in the box of the axes."""
+        """Whether a point lies within the ranges of all axes."""
         return all(axis.holds(inputs[axis.name]) for axis in self.axes if axis.name in inputs)
 
 
@@ -143,7 +143,7 @@ def surrogate(
     ----------
     function : evaluates a point (every input of `base`); successive points are neighbours
     base : reference values of all inputs, positive
-    axes : inputs with an extent
+    axes : inputs with a range
 
     Failed points are omitted and the others fitted by least squares. There is no surrogate if more
     than a tenth of the points failed.
@@ -182,7 +182,7 @@ def _fitted(
     values: Sequence[np.ndarray],
     results: Sequence[Interpolation],
 ) -> np.ndarray:
-    """Fit the coefficients (terms of every axis, outputs) to the values, and slopes if given."""
+    """Fit coefficients (terms of every axis, outputs) to values, and with `hermite` to slopes."""
     rows, targets = [_basis(axes, points)], [np.array(values)]
     for axis in axes:
         if axis.hermite:
@@ -195,7 +195,7 @@ def _fitted(
 def _basis(
     axes: Sequence[SurrogateAxis], points: Sequence[Mapping[str, float]], slope: str = ""
 ) -> np.ndarray:
-    """Products of the polynomials at points, (points, all terms), or their slopes along an axis."""
+    """Products of polynomials (points, all terms), or their derivatives along the axis `slope`."""
     matrix = np.ones((len(points), 1))
     for axis in axes:
         along = axis.basis_slope if axis.name == slope else axis.basis

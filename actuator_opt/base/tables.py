@@ -1,6 +1,6 @@
 """Plain text tables with aligned columns; JSON text; results shown in a notebook.
 
-A notebook shows a result as its page.
+A notebook shows a result as the HTML page of that result.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def aligned(rows: Sequence[Sequence[str]], *, right: Sequence[int] = ()) -> str:
 
 
 LOST = "not_finite"
-"""Key under which an object lists its numbers that are null because they are not finite."""
+"""Key under which a JSON object lists the numbers that are null because they are not finite."""
 
 
 def encoded(data: Mapping[str, Any], **style: Any) -> str:

@@ -40,7 +40,7 @@ class Job:
         images of all pages
     as_json, quiet : form of the answer
     record : whether to record the run
-    paper : keyword arguments that only this report has
+    paper : keyword arguments that only the report of this command has
     """
 
     design: str = ""

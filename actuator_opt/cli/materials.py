@@ -63,7 +63,7 @@ def show_material(
 ) -> None:
     """Show all properties of an entry, with scatter and source.
 
-    For a fluid, also over temperature and pressure.
+    For a fluid, also show how properties vary with temperature and pressure.
     """
     from ..design.materials import load_library
 

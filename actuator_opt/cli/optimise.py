@@ -102,7 +102,7 @@ optimize = optimise
 
 
 def _scenario(file: str, actuator: Actuator) -> Trial:
-    """Read the scenario in which the best design is verified; it must suit the design."""
+    """Read the scenario that will verify the best design; it must suit the design."""
     from .. import api as verbs
 
     trial = verbs.read_scenario(file)
@@ -134,7 +134,7 @@ def sensitivity(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Cost of each requirement and parameter at the optimum."""
+    """Show what each requirement and parameter costs."""
     from .. import api as verbs
 
     job = Job(
@@ -163,7 +163,7 @@ def pareto(
             min=CHECKS.least,
             max=CHECKS.most,
             metavar="N",
-            help="Number of full searches, to escape local optima.",
+            help="Number of additional full searches that look for better optima.",
         ),
     ] = 3,
     csv: Annotated[

@@ -30,7 +30,7 @@ Seed = Annotated[
         min=SEED.least,
         max=SEED.most,
         metavar="N",
-        help="Random seed: same seed, same result.",
+        help="Random seed; the same seed gives the same result.",
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object (SI) to stdout.")]
@@ -89,7 +89,7 @@ StandardSizes = Annotated[
     bool,
     typer.Option(
         "--standard-sizes",
-        help="Also find the best design with ISO 3320 bore and rod, whole plies and "
+        help="Also find the best design with bore and rod sizes of ISO 3320, whole plies and "
         "allowed angles.",
     ),
 ]
@@ -97,7 +97,7 @@ Certify = Annotated[
     bool,
     typer.Option(
         "--certify",
-        help="Prove an upper limit of the gap to the best possible design (takes seconds).",
+        help="Prove how close the result is to the best possible design (takes seconds).",
     ),
 ]
 Yield = Annotated[
@@ -148,7 +148,7 @@ def quantity_of(option: str, text: str | None, quantity: Quantity) -> float | No
 
 
 def named_columns(texts: list[str] | None) -> dict[str, str]:
-    """Channel and column of every ``--column``."""
+    """Header of the column for every channel that a ``--column`` option names."""
     columns: dict[str, str] = {}
     for text in texts or []:
         channel, equals, name = text.partition("=")

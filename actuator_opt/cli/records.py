@@ -40,14 +40,16 @@ Columns = Annotated[
     typer.Option(
         "--column",
         metavar="CHANNEL=NAME",
-        help='Column of a channel (t, p1, p2, x, v, F_L, T, w), e.g. "p1=Channel 3 [bar]". '
-        "Repeatable.",
+        help="Header of the column with a channel (t, p1, p2, x, v, F_L, T, w), "
+        'e.g. "p1=Channel 3 [bar]". Repeatable.',
     ),
 ]
 Cutoff = Annotated[
     str | None,
     typer.Option(
-        "--cutoff", metavar="F", help='Cut-off of the zero-phase filter; default: "30 Hz".'
+        "--cutoff",
+        metavar="F",
+        help='Cut-off frequency of the zero-phase filter; default: "30 Hz".',
     ),
 ]
 Order = Annotated[
@@ -60,13 +62,13 @@ Uncompensated = Annotated[
     bool,
     typer.Option(
         "--uncompensated",
-        help="Make each filter pass -3 dB at the cut-off, so that both together are -6 dB.",
+        help="Let each of the two filter passes have -3 dB at the cut-off (together -6 dB).",
     ),
 ]
 Mass = Annotated[
     str | None,
     typer.Option(
-        "--mass", metavar="M", help='Moving mass, e.g. "1.2 kg"; default: rod, piston (and load).'
+        "--mass", metavar="M", help='Moving mass, e.g. "1.2 kg"; default: that of the design.'
     ),
 ]
 LoadForce = Annotated[
@@ -74,7 +76,7 @@ LoadForce = Annotated[
     typer.Option(
         "--load-force",
         metavar="F",
-        help='Load force without a channel F_L, e.g. "0 N" for a free rod.',
+        help='Load force if the record has no channel F_L, e.g. "0 N" for a free rod.',
     ),
 ]
 PressureLag = Annotated[
@@ -82,7 +84,7 @@ PressureLag = Annotated[
     typer.Option(
         "--pressure-lag",
         metavar="T",
-        help='Lag of the pressures, e.g. "4 ms"; default: identified at the reversals.',
+        help='Delay of the pressure signals, e.g. "4 ms"; default: identified at the reversals.',
     ),
 ]
 Bootstrap = Annotated[
@@ -102,7 +104,7 @@ Bootstrap = Annotated[
 Series = Annotated[
     Path | None,
     typer.Option(
-        "--csv", metavar="FILE", help="Save friction, stiffness and bore growth over time."
+        "--csv", metavar="FILE", help="Save friction, stiffness and bore growth versus time."
     ),
 ]
 Span = Annotated[
@@ -112,7 +114,7 @@ Span = Annotated[
         metavar="L",
         help=(
             'Span of a three-point bending test, e.g. "300 mm"; the record (channels F_L, '
-            "w) then gives a modulus."
+            "w) then gives the modulus of a part."
         ),
     ),
 ]
@@ -128,7 +130,7 @@ Search = Annotated[
     bool,
     typer.Option(
         "--optimise/--no-optimise",
-        help="Also optimise the design with its stated and with the measured values.",
+        help="Also optimise the design twice: with its stated and with the measured values.",
     ),
 ]
 
@@ -159,7 +161,7 @@ def identify(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Friction and damping from a test record, with bounds."""
+    """Identify friction and damping from a test record."""
     from .. import api as verbs
 
     job = Job(
@@ -209,7 +211,7 @@ def calibrate(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Update a design with a record's friction; show the effects."""
+    """Update a design with the friction measured in a test."""
     from .. import api as verbs
 
     job = Job(
@@ -238,7 +240,9 @@ def _only_bending(options: Mapping[str, object]) -> None:
     """Refuse options that a bending test does not use."""
     unused = [name for name, value in options.items() if value is not None]
     if unused:
-        message = f"{', '.join(unused)}: not with --span: a bending test gives a modulus only"
+        message = (
+            f"{', '.join(unused)}: not with --span, because a bending test only gives a modulus"
+        )
         raise UsageError(Diagnostic(message, "remove --span, or these options"))
 
 

@@ -14,12 +14,14 @@ from .job import Job
 from .options import REPORTS, AllPages, Format, Json, NoRecord, PluginFile, Quiet
 
 runs = typer.Typer(
-    help="Recorded runs: list, show, delete, prune. Each optimise, pareto and sweep is recorded.",
+    help="List, show, delete or prune recorded runs. Each optimise, pareto and sweep is recorded.",
     no_args_is_help=True,
 )
 RunName = Annotated[
     str,
-    typer.Argument(metavar="RUN", help="Id of a run, beginning of an id, last, or a file."),
+    typer.Argument(
+        metavar="RUN", help="Id of a run or its beginning, the word last, or a record's file."
+    ),
 ]
 
 
@@ -64,8 +66,8 @@ def _no_runs(design: str | None, command: str | None) -> str:
     place = run_store.folder()
     if place is None:
         return f"runs are not recorded: {run_store.SWITCH} is set"
-    selection = " of this selection" if design or command else ""
-    return f"no runs{selection} are recorded in {place}"
+    selection = " matching" if design or command else ""
+    return f"no{selection} runs are recorded in {place}"
 
 
 @runs.command("show")

@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from ..rendering.console import Style
 
 NARROWEST, WIDEST, USUAL, TERMINAL = 40, 1000, 100, 80
-"""Line widths in characters: smallest, largest, without a terminal, for unknown terminals."""
+"""Line widths in characters: the smallest and largest allowed; the width without a terminal; the
+width of a terminal that does not state it."""
 PATIENCE, PAUSE = 1.0, 0.2
 """Seconds before the first progress report, and between reports."""
 
@@ -53,7 +54,7 @@ def interrupted() -> bool:
 
 
 class Interrupted(KeyboardInterrupt):
-    """Raised on Ctrl-C: a KeyboardInterrupt inside `exec` would make Python exit by signal."""
+    """Raised on Ctrl-C; a plain KeyboardInterrupt inside `exec` makes Python exit by signal."""
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
@@ -255,7 +256,7 @@ def unexpected(error: Exception) -> tuple[list[Diagnostic], ExitCode]:
 
 
 def _of_system(error: OSError) -> Diagnostic:
-    """Message and exit code for an error of the operating system."""
+    """Message and remedy for an error of the operating system."""
     reason = error.strerror or type(error).__name__
     if error.filename is not None:
         remedy = "free disk space, or write elsewhere" if error.errno in _FULL else "check the file"
@@ -265,7 +266,7 @@ def _of_system(error: OSError) -> Diagnostic:
     except OSError:
         message = f"the working directory cannot be used: {reason}"
         return Diagnostic(message, "change to a folder that exists")
-    return Diagnostic(f"the system refused: {reason}", "check disk space and open files")
+    return Diagnostic(f"the system refused: {reason}", "check disk space and number of open files")
 
 
 def _receiver() -> str:

@@ -32,9 +32,7 @@ from .options import (
 
 Draws = Annotated[
     int,
-    typer.Option(
-        "-n", "--samples", metavar="N", help="Number of draws for the yield, 20 to 10 million."
-    ),
+    typer.Option("-n", "--samples", metavar="N", help="Number of random draws, 20 to 10 million."),
 ]
 Quasi = Annotated[
     bool,
@@ -54,8 +52,8 @@ Rows = Annotated[
         max=1_000_000,
         metavar="N",
         help=(
-            "Number of samples for the sensitivity indices, each of (number of inputs + 2) "
-            "evaluations; 0: no indices."
+            "Size of the base sample for the sensitivity indices; takes (number of inputs + 2) "
+            "evaluations for each unit. 0: no indices."
         ),
     ),
 ]
@@ -64,7 +62,7 @@ Metrics = Annotated[
     typer.Option(
         "--metric",
         metavar="METRIC",
-        help="Also analyse this metric; default: the objective. Repeatable.",
+        help="Metric to analyse besides all margins; default: the objective. Repeatable.",
     ),
 ]
 
@@ -77,7 +75,9 @@ def uncertainty(
     metric: Metrics = None,
     csv: Annotated[
         Path | None,
-        typer.Option("--csv", metavar="FILE", help="Save the draws: inputs, margins, verdicts."),
+        typer.Option(
+            "--csv", metavar="FILE", help="Save inputs, margins and verdict of every draw."
+        ),
     ] = None,
     sets: Set = None,
     plugin: PluginFile = None,
@@ -90,7 +90,7 @@ def uncertainty(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Yield under scatter, Sobol indices and tornado."""
+    """Production yield under scatter, Sobol indices, tornado."""
     from .. import api as verbs
 
     job = Job(
@@ -115,18 +115,23 @@ SealPlace = Annotated[
 Speed = Annotated[
     str | None,
     typer.Option(
-        "--speed", metavar="V", help='Sliding speed, e.g. "0.1 m/s"; default: from a load case.'
+        "--speed",
+        metavar="V",
+        help='Sliding speed, e.g. "0.1 m/s"; default: that of the moving load case with the '
+        "highest pressure.",
     ),
 ]
 Pressure = Annotated[
     str | None,
     typer.Option(
-        "--pressure", metavar="P", help='Sealed pressure, e.g. "60 bar"; default: highest.'
+        "--pressure",
+        metavar="P",
+        help='Sealed pressure, e.g. "60 bar"; default: the highest of the moving load cases.',
     ),
 ]
 Mapped = Annotated[
     bool,
-    typer.Option("--map", help="Also compute a map over speed and pressure (and its CSV)."),
+    typer.Option("--map", help="Also compute a map over speed and pressure (also as CSV)."),
 ]
 FiniteElements = Annotated[
     bool,
@@ -138,7 +143,9 @@ FiniteElements = Annotated[
 ]
 ContactDesign = Annotated[
     Path | None,
-    typer.Option("--write", metavar="FILE", help="Save the design with these contact profiles."),
+    typer.Option(
+        "--write", metavar="FILE", help="Save the design with the computed contact profiles."
+    ),
 ]
 
 
@@ -191,7 +198,8 @@ ScenarioFile = Annotated[
 Verify = Annotated[
     bool,
     typer.Option(
-        "--verify", help="Integrate again by the Radau method and show the largest difference."
+        "--verify",
+        help="Integrate again by the Radau method; show the largest difference of the results.",
     ),
 ]
 Fast = Annotated[

@@ -24,7 +24,7 @@ Vary = Annotated[
     typer.Option(
         "--vary",
         metavar="PATH=A..B:N",
-        help="A range with steps, or a list: PATH=a,b,c. Repeatable.",
+        help="A range with its number of values, or a list (PATH=a,b,c). Repeatable.",
     ),
 ]
 Way = Annotated[
@@ -36,7 +36,9 @@ Count = Annotated[
 ]
 Store = Annotated[
     Path | None,
-    typer.Option("--store", metavar="F.db", help="Store every row here; a later run resumes."),
+    typer.Option(
+        "--store", metavar="F.db", help="Store every row in this database; a later run resumes."
+    ),
 ]
 Csv = Annotated[
     Path | None, typer.Option("--csv", metavar="F.csv", help="Write all rows to this file.")
@@ -73,10 +75,10 @@ Show = Annotated[
     typer.Option(
         "--show",
         metavar="METRIC",
-        help="Metric of the figures; default: objective and requirements. Repeatable.",
+        help="Metric to draw; default: objective and requirements. Repeatable.",
     ),
 ]
-Yes = Annotated[bool, typer.Option("--yes", help="Allow a million or more full evaluations.")]
+Yes = Annotated[bool, typer.Option("--yes", help="Allow more than a million full evaluations.")]
 Screening = Annotated[
     str,
     typer.Option("--engine", help="Library for --reduce: numpy, or jax (extra gpu)."),
@@ -206,7 +208,7 @@ def explore(
     quiet: Quiet = False,
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> None:
-    """Write a stored sweep or a front as one offline HTML page."""
+    """Write a sweep or Pareto front as one offline HTML page."""
     from .. import api as verbs
 
     pages = verbs.explore(store, out=out, study=study, rows=rows, plugins=plugin or [])

@@ -141,7 +141,7 @@ def _to_si(tree: dict[str, Any], root: type[Section]) -> None:
 
 
 def _unless_known(faults: Iterable[Fault], reported: Sequence[Fault]) -> list[Fault]:
-    """Leave out faults at or inside faulty locations; keep one fault per location."""
+    """Omit new faults at or inside locations that already have a fault; keep one per location."""
     faulty = {fault.loc for fault in reported}
     new = []
     for fault in faults:
@@ -152,7 +152,7 @@ def _unless_known(faults: Iterable[Fault], reported: Sequence[Fault]) -> list[Fa
 
 
 def _section_at(root: type[Section], loc: Loc) -> tuple[type[Section] | None, KeyEntry | None]:
-    """Section and key entry of the model at a location (None inside tables)."""
+    """Section type and key entry at a location of the file; None inside tables."""
     section: type[Section] | None = root
     entry: KeyEntry | None = None
     for key in loc:

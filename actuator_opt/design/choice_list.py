@@ -1,8 +1,8 @@
 """Block `choices`: the discrete values that the optimiser may try for each PATH.
 
 Allowed values are written like the value they replace: numbers with their unit, counts, names of
-materials, words. `recheck` converts them in the tree to values of a design and yields their faults.
-The optimiser skips combinations whose values contradict each other.
+materials, words. `recheck` replaces them in the tree by values in SI and yields their faults. The
+optimiser skips combinations whose values contradict each other.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ MOST_COMBINATIONS = 1000
 
 
 def recheck(tree: dict[str, Any]) -> Iterator[Fault]:
-    """Check that PATHs are known and no variables, and values valid, distinct and not too many."""
+    """Check every PATH (known, no variable) and its values (valid, distinct, not too many)."""
     block = tree.get("choices")
     if not isinstance(block, dict):
         return
@@ -83,7 +83,7 @@ def choosable(path: str, tree: Any) -> Target:
         target = resolve(path, tree)
     except ValueFault as fault:
         raise ValueFault(fault.message.removeprefix(f"{path}: "), fault.remedy) from None
-    remedy = "name a number, a material or a word of a part"
+    remedy = "write the PATH of a number, a material or a word of a part"
     if target.entry is None or target.entry.shape == "list" or len(target.loc) == 1:
         raise ValueFault("is not a value of an actuator part", remedy)
     if isinstance(target.entry.kind, Text) and not isinstance(target.entry.kind, MaterialName):

@@ -123,8 +123,8 @@ Chamber: TypeAlias = Annotated[
 LineType: TypeAlias = Annotated[
     Literal["pipe", "hose"],
     Choice(
-        "item of the stiffness budget to which the compliance of its wall is added (the material "
-        "determines that compliance); pipe: a rigid tube; hose: a flexible hose"
+        "item of the stiffness budget that contains the compliance of the line's wall (which "
+        "follows from the material); pipe: a rigid tube; hose: a flexible hose"
     ),
 ]
 End: TypeAlias = Annotated[

@@ -26,7 +26,7 @@ _ROUND = math.radians(0.01)
 
 
 class _Reach(NamedTuple):
-    """Smallest and largest pin-to-pin length of the actuator, and its linkage."""
+    """Pin-to-pin length of the retracted actuator, stroke, and dimensions of the linkage."""
 
     closed: float
     stroke: float
@@ -72,8 +72,8 @@ def _reach(view: FileView) -> _Reach | None:
 def linkage(view: FileView) -> Iterator[Fault]:
     """Check that the linkage reaches no dead point between the stops.
 
-    |a - r| < l < a + r, with the distances a and r of the two pivots from the joint axis and the
-    pin-to-pin length l.
+    At both stops, |a - r| < l < a + r must hold, where l is the pin-to-pin length and a and r are
+    the distances of the two pivots from the joint axis.
     """
     reach = _reach(view)
     if reach is None:
@@ -118,7 +118,7 @@ def linkage_load_cases(view: FileView) -> Iterator[Fault]:
             if key in case and not view.has("linkage"):
                 yield _no_linkage((*loc, key), instead)
             elif key in case and case.get(instead, unset) != unset:
-                message = f"{instead} and {key} in one load case"
+                message = f"both {instead} and {key} in one load case"
                 yield Fault((*loc, key), message, "keep one of them", at_key=True)
         yield from _angle(view, loc)
 
@@ -158,7 +158,7 @@ LINKAGE_CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
 
 
 def lines(view: FileView) -> Iterator[Fault]:
-    """Check that every line has a wall, and that a line beyond a throttle has this throttle."""
+    """Check that every line has a wall, and that a throttle is stated if a line is beyond it."""
     for index in range(len(view.items("lines"))):
         inner = view.number("lines", index, "inner_diameter")
         outer = view.number("lines", index, "outer_diameter")
@@ -180,7 +180,7 @@ ENDS = get_args(get_args(choices.End)[0])
 
 
 def ports(view: FileView) -> Iterator[Fault]:
-    """Check that the component at the selected end of the lines is described."""
+    """Check that the component selected as the end of the lines is described."""
     end = view.text("ports", "end")
     if end not in ENDS:  # reported as a separate fault
         return
@@ -189,7 +189,7 @@ def ports(view: FileView) -> Iterator[Fault]:
         yield Fault(
             ("ports", "end"),
             f"{end}: its block is missing",
-            f"add {'.'.join(block)}, or write closed or constant_pressure",
+            f'add {".".join(block)}, or write "end: closed" or "end: constant_pressure"',
         )
     if end != "reducing_valve" and view.has("ports", "reducing_valve"):
         yield Fault(
@@ -208,7 +208,7 @@ def ports(view: FileView) -> Iterator[Fault]:
 
 
 def valve(view: FileView) -> Iterator[Fault]:
-    """Check that a centred valve leaks less than it passes when open, at equal pressure drop."""
+    """Check that a valve leaks less when centred than flows when open, at equal pressure drop."""
     numbers = [
         view.number("valve", name)
         for name in ("rated_flow", "rated_drop", "leakage_flow", "leakage_drop")
@@ -227,7 +227,7 @@ def valve(view: FileView) -> Iterator[Fault]:
 
 
 def stiffness(view: FileView) -> Iterator[Fault]:
-    """Refuse the stiffness of sticking seals in combinations published without it."""
+    """Refuse sticking seals together with a published stiffness formula, which omits seals."""
     published = view.text("stiffness", "topology") != "per_chamber"
     if published and view.text("stiffness", "seals") == "sticking":
         yield Fault(
@@ -246,7 +246,7 @@ def control(view: FileView) -> Iterator[Fault]:
 
 
 def held_pressures(view: FileView) -> Iterator[Fault]:
-    """Check that held pressures are stated for both chambers or for neither."""
+    """Check that held pressures are stated for both chambers or neither, and below proof."""
     for index in range(len(view.items("load_cases"))):
         loc = ("load_cases", index)
         a, b = view.has(*loc, "pressure_a"), view.has(*loc, "pressure_b")
@@ -385,7 +385,7 @@ def _case_pressure(view: FileView, index: int) -> Iterator[Fault]:
 
 
 def load_cases(view: FileView) -> Iterator[Fault]:
-    """Check names (unique), force or torque with lever arm, pressures and positions (in range)."""
+    """Check each load case: unique name, force or torque with lever arm, pressure, position."""
     seen: dict[str, int] = {}
     stroke = view.number("cylinder", "stroke")
     for index, case in enumerate(view.items("load_cases")):

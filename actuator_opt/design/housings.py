@@ -26,7 +26,7 @@ class Housing:
     """Groove of a standard series, for a range of rod or bore diameters.
 
     `sizes` are the nominal diameters; empty if every diameter of the range is nominal. `section` is
-    the section of the O-ring behind a sliding ring, or the thickness of a guide; otherwise 0.
+    the cross-section of the O-ring behind a sliding ring, or the thickness of a guide; otherwise 0.
     `gaps` are the largest allowed radial gaps behind a seal, by pressure; `gap` is the radial gap
     of a guide, otherwise 0.
     """
@@ -122,7 +122,7 @@ def housings_for(element: str, place: Place, diameter: float) -> tuple[Housing, 
     ----------
     element : a seal type, ``guide`` or ``wiper`` (rod only)
     place : ``rod`` or ``piston``
-    diameter : of the rod or the bore, m
+    diameter : diameter of the rod or the bore, m
 
     Raises
     ------
@@ -131,7 +131,7 @@ def housings_for(element: str, place: Place, diameter: float) -> tuple[Housing, 
     listed = housings(element, place)
     fitting = [housing for housing in listed if housing.fits(diameter)]
     if not fitting:
-        message = f"no {place} housing of a {element} for {diameter * 1e3:.4g} mm"
+        message = f"no standard {place} groove of a {element} for {diameter * 1e3:.4g} mm"
         advice = "a wiper sits on the rod"
         if listed:
             low = min(housing.diameter_min for housing in listed) * 1e3
@@ -177,8 +177,8 @@ def gland_deviations(
 
     Parameters
     ----------
-    gland : standard gland for the section of the ring (`standard_sizes.gland`)
-    squeeze_min, squeeze_max : squeeze limits of the groove with its tolerances
+    gland : standard gland for the cross-section of the ring (`standard_sizes.gland`)
+    squeeze_min, squeeze_max : smallest and largest squeeze in this groove with its tolerances
     width : width of the groove, m
     fill : largest share of the groove filled by the ring
     stretch : stretch of the installed ring

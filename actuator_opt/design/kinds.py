@@ -111,7 +111,7 @@ def check_range(number: float, quantity: Quantity, shown_value: str | None = Non
 
 
 def _unit_fault(text: str, quantity: Quantity, error: units.UnitError) -> ValueFault:
-    """Extend a fault of a unit with the unit and an example of the quantity."""
+    """Add the quantity's units and an example to a fault about a unit."""
     name, message, remedy = shown(text.strip()), shown(error.message, 160), error.remedy
     if _DECIMAL_COMMA.match(text):
         return ValueFault(f'"{name}": decimal comma', f'write "{name.replace(",", ".", 1)}"')

@@ -39,7 +39,7 @@ _OWN_KEYS = ("plies", "ply_thickness", "angle", "thickness", "balanced")
 
 
 class NotationFault(ValueFault):
-    """A fault of a notation, with the position of the faulty character."""
+    """A fault in the notation of a lay-up, with the position of the faulty character."""
 
     def __init__(self, offset: int, message: str, remedy: str) -> None:
         super().__init__(message, remedy)
@@ -347,7 +347,7 @@ def _entries(item: Mapping[str, Any], layers: Sequence[PlyGroup]) -> Iterator[di
 
 
 def _places(document: Document, loc: Loc, layer_loc: Loc, layer: PlyGroup) -> dict[Loc, NodeSpan]:
-    """Locations of a layer's values: those where its angle is written in the notation."""
+    """Locations of a layer's values; each is the place of its angle in the notation."""
     angle_span = _character(document, (*loc, "plies"), layer.offset)
     places = {layer_loc: angle_span} | {
         (*layer_loc, key): angle_span for key in ("angle", "thickness", "balanced")

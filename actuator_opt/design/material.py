@@ -3,7 +3,7 @@
 All values are SI. A property may be a table over temperature or pressure; its `value` is then
 the value at the reference point, and scaling it scales the table.
 
-Fits of damping B over speed minimise sum w (B - B_fit)^2 over the measured points. The weights w
+Fits of damping B versus speed minimise sum w (B - B_fit)^2 over the measured points. The weights w
 are equal unless given; w = 1/B^2 fits relative errors. Linear parameters are eliminated, so only
 exponents are searched [GolubPereyra1973], from every start of a grid. Confidence bounds follow from
 the linearised model and Student's t [SeberWild1989]. They assume independent points: if the points
@@ -74,7 +74,7 @@ class Spread:
     ----------
     kind : ``cv`` (standard deviation divided by mean), ``tolerance`` (half width divided by value)
         or ``factor`` (largest divided by nominal value, equal to nominal divided by smallest value)
-    size : relative, or the factor
+    size : for ``cv`` and ``tolerance`` this quotient, else the factor
     """
 
     kind: str
@@ -83,7 +83,7 @@ class Spread:
 
 @dataclass(frozen=True, slots=True)
 class Property:
-    """A property of a material; `points` is its table over `argument`, if it has one."""
+    """A property of a material; `points` is its table versus temperature or pressure, if any."""
 
     quantity: Quantity
     value: float
@@ -121,8 +121,8 @@ class Property:
 
         Parameters
         ----------
-        argument : temperature (K) or pressure (Pa, gauge), as `argument` says
-        value : replaces `value` and scales the table
+        argument : temperature (K) or pressure (Pa, gauge), depending on the table value : value at
+            the reference point to use instead of the stated value; the table is scaled with it
         """
         reference = self.value if value is None else value
         if not self.points:
@@ -171,14 +171,15 @@ class Material:
 
     @property
     def isotropic(self) -> bool:
-        """Whether a single modulus describes the material (metals, polymers, apparent values)."""
+        """Whether a single modulus describes the material, as for metals and polymers."""
         return "youngs_modulus" in self.properties and "youngs_modulus_1" not in self.properties
 
     @property
     def unverified(self) -> tuple[str, ...]:
         """Names of the properties that nobody has checked against their source.
 
-        Nominal values are stated conditions (a test temperature, a cycle count), not measurements.
+        Nominal values (a test temperature, a cycle count) are omitted, because they are stated
+        conditions, not measurements.
         """
         return tuple(
             name
@@ -235,13 +236,14 @@ def compatible(fluid: Material, seal: Material) -> bool | None:
 
 
 def ply_constants(numbers: Mapping[str, Array]) -> dict[str, Array]:
-    """Complete the elastic constants of a ply; for isotropic materials also its strengths.
+    """Complete the elastic constants of a ply, and the strengths of an isotropic material.
 
-    Missing ply constants follow transverse isotropy: E3 = E2, nu13 = nu12, G13 = G12,
-    G23 = E2/(2(1 + nu23)), nu23 = 0.40. A material with one modulus becomes a ply with equal
-    constants, G = E/(2(1 + nu)) unless given. Its strength in tension and compression is the yield
-    (else ultimate) strength; in shear, this strength divided by sqrt(3) (von Mises). Elementwise,
-    complex-step safe.
+    Missing ply constants follow transverse isotropy: E3 = E2, nu13 = nu12, G13 = G12, G23 = E2/(2(1
+    + nu23)), nu23 = 0.40. A material with one modulus becomes a ply with the same constants in
+    every direction, with G = E/(2(1 + nu)) unless G is given. Its strength in tension and
+    compression is the yield strength or, if that is missing, the ultimate strength; its shear
+    strength is this value divided by sqrt(3) (von Mises). All formulas work elementwise and under a
+    complex step.
 
     Parameters
     ----------
@@ -288,10 +290,10 @@ def _isotropic_ply(numbers: Mapping[str, Array]) -> dict[str, Array]:
 
 
 def compliance_determinant(constants: Mapping[str, float]) -> float:
-    """Check of a ply's elastic constants: positive if its compliance is positive definite.
+    """A number that is positive if the compliance matrix of a ply is positive definite.
 
-    The smallest of 1 - nu12 nu21 - nu23 nu32 - nu13 nu31 - 2 nu21 nu32 nu13 [Lempriere1968] and
-    the three factors 1 - nu_ij nu_ji.
+    It is the smallest of 1 - nu12 nu21 - nu23 nu32 - nu13 nu31 - 2 nu21 nu32 nu13 [Lempriere1968]
+    and the three factors 1 - nu_ij nu_ji.
     """
     e1, e2, e3 = (constants[f"youngs_modulus_{i}"] for i in (1, 2, 3))
     nu12, nu13, nu23 = (constants[f"poissons_ratio_{i}"] for i in (12, 13, 23))
@@ -302,12 +304,11 @@ def compliance_determinant(constants: Mapping[str, float]) -> float:
 def allowable_factor(
     numbers: Mapping[str, Array], name: str, *, basis: str, temperature: Array, wet: bool = False
 ) -> Array:
-    """Share of a strength that remains after all knock-downs, as their product.
+    """Share of a strength that remains: the product of all its knock-down factors.
 
-    The knock-downs are for temperature, moisture, basis and process.
-
-    The temperature factor falls linearly from 1 at 23 degC to the stated knock-down at
-    `knockdown_temperature` and beyond, but not below 0.05; a missing knock-down is 1.
+    The factors are for temperature, moisture, basis and process; a missing factor is 1. The
+    temperature factor is 1 up to 23 degC, then falls linearly through the stated knock-down at
+    `knockdown_temperature`, but not below 0.05.
 
     Parameters
     ----------
@@ -315,7 +316,7 @@ def allowable_factor(
     name : the strength (``yield_strength``, ``strength_2_tension``, ``bond_strength``, ...)
     basis : basis of its value; ``typical`` and ``mean`` are reduced to the allowable basis
     temperature : K
-    wet : saturated with moisture
+    wet : whether the material is saturated with moisture
     """
     prefix = "matrix_" if name in _MATRIX else ""
     factor: Array = 1.0
@@ -382,7 +383,8 @@ def _needs(laws: Kinds[Any], law: str | None) -> tuple[str, ...]:
 
 
 FASTEST = 10.0
-"""Largest decay exponent between neighbouring points: beyond it, only one point has an effect."""
+"""Largest decay exponent between neighbouring points; above it, a single point would determine the
+exponential."""
 
 LARGEST_POWER = 300.0
 """Largest exponent when an amplitude is extrapolated to zero speed; it avoids overflow."""
@@ -431,9 +433,9 @@ class LawFit:
         return self.law(speed=speed, **self.values)
 
     def bounds(self, speed: Array) -> tuple[Array, Array]:
-        """Confidence bounds of the fitted curve at speeds; single measurements scatter further.
+        """Confidence bounds of the fitted curve at speeds; single measurements scatter more widely.
 
-        Infinite where the points leave a parameter unbounded.
+        They are infinite where the points leave a parameter unbounded.
         """
         slopes = _slopes(self.law, self.values, speed)
         with np.errstate(invalid="ignore"):
@@ -450,8 +452,8 @@ def fit_power_law(speed: Array, damping: Array, weights: Array | None = None) ->
     Parameters
     ----------
     speed : > 0 [m/s], (points)
-    damping : secant VDC [N s/m], (points)
-    weights : of the squared errors, > 0 (points); None for equal ones
+    damping : secant viscous damping coefficient [N s/m], (points)
+    weights : weights of the squared errors, > 0 (points); None: equal weights
 
     Returns
     -------
@@ -481,8 +483,8 @@ def fit_double_exponential(speed: Array, damping: Array, weights: Array | None =
     Parameters
     ----------
     speed : > 0 [m/s], (points)
-    damping : secant VDC [N s/m], (points)
-    weights : of the squared errors, > 0 (points); None for equal ones
+    damping : secant viscous damping coefficient [N s/m], (points)
+    weights : weights of the squared errors, > 0 (points); None: equal weights
 
     Returns
     -------
@@ -531,7 +533,7 @@ def assess(
     least: Mapping[str, float] | None = None,
     doubts: tuple[str, ...] = (),
 ) -> LawFit:
-    """Rate least-squares values of a law: confidence bounds, R-squared, undetermined parameters.
+    """Rate a least-squares fit: confidence bounds, R-squared, undetermined parameters.
 
     Parameters
     ----------
@@ -539,8 +541,8 @@ def assess(
     law : function B(speed, values), safe under a complex step
     values : least-squares parameters by name, SI
     speed, damping, weights : the points
-    least : scales of parameters that may be near 0, large enough to change the curve visibly; the
-        scale of another parameter is its value
+    least : smallest scales of parameters that may be near 0, large enough to change the curve
+        visibly; the scale of any other parameter is its value
     doubts : reasons for parameters that the search already left undetermined
 
     Returns
@@ -565,7 +567,7 @@ def assess(
         weak = [key for key, parameter in estimate.parameters.items() if not parameter.identifiable]
         if weak:
             reasons.append(
-                f"confidence interval of {', '.join(weak)} wider than {WEAK:.0%} of the value"
+                f"confidence interval of {', '.join(weak)} is wider than {WEAK:.0%} of the value"
             )
     return LawFit(
         name=name,
@@ -622,7 +624,7 @@ def _projected(
     basis: Callable[[float], Array],
     steepest: float,
 ) -> tuple[Array, Array]:
-    """Search least-squares rates; for every rate, linear least squares give the amplitudes.
+    """Search the rates of least squares; for given rates, the amplitudes follow linearly.
 
     The best distinct starting points are refined, with rates limited to +-steepest.
     """

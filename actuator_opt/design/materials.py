@@ -34,7 +34,8 @@ _ENTRY_KEYS = (
 )  # fmt: skip
 _PROPERTY_KEYS = ("value", "points", "note", *_META)
 _ARGUMENTS = {"temperature": 313.15, "pressure": float("inf")}
-"""Arguments of tables with their reference values; the table's nearest point gives the value."""
+"""Arguments of tables with their reference values. The point of a table nearest to the reference
+gives the property's single value."""
 Parent: TypeAlias = Callable[[str], Material | None]
 """Function that returns the material named by ``inherit:``; None if unknown."""
 
@@ -261,7 +262,7 @@ class _Reader:
             (key,) = keys
             argument = argument or key
             if key != argument:
-                self.fault((*loc, index), f"this table is over {argument}, not {key}")
+                self.fault((*loc, index), f"this table depends on {argument}, not {key}")
                 return None, ()
             x = self._number((*loc, index, key), INPUTS[key], row[key])
             y = self._number((*loc, index, "value"), quantity, row["value"])
@@ -293,7 +294,7 @@ class _Reader:
     ) -> Spread | None:
         match = _SCATTER.fullmatch(text)
         if match is None:
-            advice = 'write "not stated", "3 % CV", "+-5 %" or "factor 2", remarks after ";"'
+            advice = 'write "not stated", "3 % CV", "+-5 %" or "factor 2", then remarks after ";"'
             self.fault(loc, f'unknown scatter "{shown(text)}"', advice)
             return None
         if match["cv"]:
@@ -487,7 +488,7 @@ class Library:
         file = self._files[index]
         if key in self._open:
             raise InputError(
-                file.fault(name, "inherits from itself", "remove one inherit: of the cycle")
+                file.fault(name, "inherits from itself", "remove one of these inherit: keys")
             )
         self._open.append(key)
         try:
@@ -500,8 +501,8 @@ class Library:
     def _parent(self, index: int, name: str) -> Material | None:
         """Find the material that `inherit: name` refers to in file `index`.
 
-        It is searched in the same file first (except for the entry being read), then in the files
-        that this file overrides, last in the other files of its folder.
+        The same file is searched first (except for the entry being read), then the files that this
+        file overrides, and last the other files of its folder.
         """
         folder = Path(self._files[index].path).parent
         order = [index, *range(index - 1, -1, -1)]

@@ -35,7 +35,7 @@ from .seals import Seals
 
 
 class Line(Section):
-    """A pipe or hose of one chamber (a: cap side, b: rod side), in order from the port."""
+    """A pipe or hose of chamber a (cap side) or b (rod side); lines are listed from the port on."""
 
     chamber: choices.Chamber
     type: choices.LineType = "pipe"
@@ -45,7 +45,7 @@ class Line(Section):
     material: Annotated[str, MaterialName("isotropic")]
     rigid: Annotated[bool, Boolean("rigid wall: only the oil is compliant")] = False
     beyond_throttle: Annotated[
-        bool, Boolean("the line is between the throttle and the line's end")
+        bool, Boolean("the throttle is between the actuator and this line")
     ] = False
 
 
@@ -105,11 +105,11 @@ class ReducingValve(Section):
         float,
         Of(
             "conductance",
-            "flow change over pressure change of the regulated port, in slow (static) operation",
+            "change of flow per change of regulated pressure, in slow (static) operation",
         ),
     ]
     passive_conductance: Annotated[
-        float, Of("conductance", "flow over pressure drop of the valve opening, at any frequency")
+        float, Of("conductance", "flow per pressure drop of the valve opening, at any frequency")
     ] = 0.0
     natural_frequency: Annotated[float, Of("frequency", "natural frequency of the valve")]
     damping_ratio: Annotated[float, Of("damping_ratio", "damping ratio of the valve")]
@@ -126,7 +126,7 @@ class Accumulator(Section):
 
 
 class Ports(Section):
-    """Components at the ends of both lines while the load excites the actuator, without control."""
+    """Components at the ends of both lines when the load excites the uncontrolled actuator."""
 
     end: choices.End = "closed"
     throttle: Throttle | None = None
@@ -144,7 +144,7 @@ class PositionLoop(Section):
 
 
 class Linkage(Section):
-    """Two pivots around a joint axis, joined by the actuator; angles grow as it extends."""
+    """A joint that the actuator drives between two pivots; its angle grows on extension."""
 
     base_radius: Annotated[float, Of("pivot_radius", "distance from joint axis to fixed pivot")]
     crank_radius: Annotated[float, Of("pivot_radius", "distance from joint axis to crank pin")]
@@ -160,7 +160,7 @@ class Load(Section):
     mass: Annotated[float, Of("load_mass", "moving mass, reflected to the rod")] = 0.0
     inertia: Annotated[
         float,
-        Of("load_inertia", "moment of inertia about the joint of the linkage; it is added to mass"),
+        Of("load_inertia", "moment of inertia about the joint of the linkage, added to mass"),
     ] = 0.0
 
 
@@ -188,7 +188,7 @@ class Variable(Section):
 class TestBounds(Section):
     """95 % confidence bounds of a value of the design, from a test.
 
-    In SI; in the file, with units that suit the PATH.
+    The bounds are in SI here; in the file, they have units that suit the PATH.
     """
 
     lower: float
@@ -200,17 +200,17 @@ Shape: TypeAlias = Literal["normal", "lognormal", "uniform", "loguniform", "tria
 
 
 class Uncertain(Section):
-    """Scatter of a value, in SI; in the file, with units that suit the PATH."""
+    """Scatter of a value: here in SI, in the file with units that suit the PATH."""
 
     distribution: Annotated[
         Shape,
         Choice(
-            "distribution of the value; normal: about the value, by deviation or cv; "
-            "lognormal: the value is its median, by cv or by the factor that covers 95 %; "
+            "distribution of the value; normal: mean at the value, with deviation or cv; "
+            "lognormal: median at the value, with cv or the factor that covers 95 %; "
             "uniform: between bounds, half_width about the value, or an ISO 286 tolerance; "
-            "loguniform: uniform in its logarithm, between bounds or value/factor to value*factor; "
+            "loguniform: the logarithm is uniform, between bounds or value/factor to value*factor; "
             "triangular: as uniform, with the mode at the value; "
-            "fixed: no scatter, even if libraries or practice give some"
+            "fixed: no scatter, even if libraries or common practice state some"
         ),
     ]
     lower: float | None = None
@@ -239,7 +239,7 @@ class FluidSection(Section):
         float,
         Of(
             "polytropic_index",
-            "polytropic index of entrained air and accumulators: 1.4 fast (adiabatic), 1 slow",
+            "polytropic index of entrained air and accumulators: 1.4 for fast changes, 1 for slow",
         ),
     ] = 1.4
     bulk_modulus_law: choices.BulkModulusLaw = None
@@ -253,7 +253,9 @@ class Supply(Section):
     return_pressure: Annotated[
         float, Of("pressure", "gauge pressure at the port that is not driven")
     ] = 0.0
-    proof_ratio: Annotated[float, Of("safety_factor", "proof pressure over supply pressure")] = 1.5
+    proof_ratio: Annotated[
+        float, Of("safety_factor", "ratio of proof pressure to supply pressure")
+    ] = 1.5
 
 
 class Environment(Section):
@@ -301,7 +303,7 @@ class Cylinder(Section):
 
 
 class Ply(Section):
-    """One layer of a tube wall, from the inside outwards.
+    """One layer of a tube wall; the layers are listed from the inside outwards.
 
     In the file, an entry in compact notation (`layup`) may give several layers.
     """
@@ -314,7 +316,7 @@ class Ply(Section):
     balanced: Annotated[
         bool,
         Boolean(
-            "true: a balanced +-angle pair; false: one ply at the signed angle, the wall may twist"
+            "true: a balanced pair at +-angle; false: one ply at the signed angle (wall may twist)"
         ),
     ] = True
     ply_thickness: Annotated[
@@ -332,20 +334,23 @@ MOST_LAYERS = 24
 
 
 class Barrel(Section):
-    """The pressure tube; a single isotropic layer is a metal barrel."""
+    """The pressure tube, from layers; a metal barrel has a single isotropic layer."""
 
     layup: Annotated[tuple[Ply, ...], Field(min_length=1, max_length=MOST_LAYERS)]
     model: choices.WallModel = "auto"
     criterion: choices.Criterion = "max_stress"
     autofrettage_pressure: Annotated[
         float | None,
-        Of("autofrettage_pressure", "pressure that yields the metal liner once before use"),
+        Of("autofrettage_pressure", "pressure applied once before use, to yield the metal liner"),
     ] = None
     allowed_angles: Annotated[
         tuple[
             Annotated[
                 float,
-                Of("allowed_angle", "winding angle that can be made; a design is rounded to it"),
+                Of(
+                    "allowed_angle",
+                    "winding angle that can be made; designs are rounded to such angles",
+                ),
             ],
             ...,
         ]
@@ -367,7 +372,8 @@ class Thread(Section):
 class RetentionThread(Section):
     """Metric thread of tie rods, or of caps screwed onto the barrel's outside.
 
-    For caps, the barrel's end is turned down to the thread diameter; default: its outer diameter.
+    For caps, the barrel's end is turned down to the thread diameter. If that is missing, it is the
+    outer diameter of the barrel.
     """
 
     diameter: Annotated[
@@ -384,11 +390,9 @@ class Fitting(Section):
     """Metal ends bonded into a laminated rod."""
 
     material: Annotated[str | None, MaterialName("isotropic")] = None
-    """Default: the rod's material."""
+    """Material of the fittings; default: the rod's material."""
     adhesive: Annotated[str, MaterialName("fastening")]
-    length: Annotated[
-        float, Of("part_length", "length over which the fitting overlaps the tube, inside it")
-    ]
+    length: Annotated[float, Of("part_length", "length of the fitting inside the tube (overlap)")]
     wall: Annotated[
         float | None,
         Of("wall_thickness", "wall thickness of the fitting in the overlap; default: solid"),
@@ -425,7 +429,7 @@ class Piston(Section):
         float, Of("radial_clearance", "radial clearance between piston and bore")
     ] = 3e-5
     leakage_conductance: Annotated[
-        float, Of("conductance", "leakage across the piston per pressure difference")
+        float, Of("conductance", "leakage flow across the piston per pressure difference")
     ] = 0.0
 
 
@@ -448,7 +452,7 @@ class Caps(Section):
 
 
 class _Retention(Section):
-    """Joint of caps and head: skirts over the barrel (bond, thread), or tie rods.
+    """Joint of caps and head to the barrel: skirts over the barrel (bond, thread), or tie rods.
 
     `length` is the overlap of skirt and barrel, `wall` the thickness of the skirt, `material` the
     adhesive or the tie-rod metal. A thread is cut into the metal of barrel and caps.

@@ -4,7 +4,7 @@
 ``requirements.stiffness_min.min`` · ``variables.cylinder.bore.upper`` ·
 ``materials.NAME.PROPERTY``. A load case is given by name or by its index from 0; the canonical PATH
 uses the name. All functions accept a `Design` or its tree of dicts and lists; `resolve` also
-accepts other roots.
+accepts other types of file, such as scenarios.
 """
 
 from __future__ import annotations
@@ -44,9 +44,10 @@ class _Token(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """Target of a PATH: canonical spelling, location in the tree, and quantity of a number.
+    """Value that a PATH names: canonical spelling, location in the tree, and quantity.
 
-    `entry` is None for values of tables (variables, requirements, materials, …).
+    `quantity` is None for a text. `entry` is None for values of tables with free names (variables,
+    requirements, materials, …).
     """
 
     path: str
@@ -56,7 +57,7 @@ class Target:
 
 
 def spell(loc: Loc, tree: Any = None) -> str:
-    """The canonical PATH of a location; a load case is named if its name is unique in `tree`.
+    """The canonical PATH of a location; a load case is given by its name if no other case has it.
 
     >>> spell(("barrel", "layup", 1, "thickness"))
     'barrel.layup[1].thickness'
@@ -86,7 +87,7 @@ def resolve(
     metrics: Mapping[str, Quantity] | None = None,
     root: type[Section] = Design,
 ) -> Target:
-    """Find the target of `path` in a section of type `root`, or in its tree.
+    """Find the value that `path` names, in a section of type `root` or in its tree.
 
     Raises
     ------
@@ -117,7 +118,7 @@ def _resolve_section(
     section: type[Section],
     loc: Loc,
 ) -> Target:
-    """Follow `tokens` from a section of the tree; the section may be unset (None)."""
+    """Find the value that `tokens` name below a section, which the tree may lack (None)."""
     keys, tree = entries(section), whole[0]
     if not tokens:
         raise _not_a_value(path, list(keys))
@@ -129,7 +130,7 @@ def _resolve_section(
     node, loc = child(node, name), (*loc, name)
     if entry.shape in ("value", "choice"):
         if rest:
-            raise ValueFault(f"{path}: {spell(loc, tree)} is a single value", "name just that")
+            raise ValueFault(f"{path}: {spell(loc, tree)} is a single value", "write only this")
         return Target(spell(loc, tree), loc, entry.quantity(node), entry)
     if entry.shape == "list":
         if not rest or not rest[0].bracket:
@@ -159,7 +160,7 @@ def _index(path: str, text: str, node: Any, loc: Loc) -> int:
 
 
 def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quantity]) -> Target:
-    """Find a value of a table whose keys are free names (PATHs, metrics, materials)."""
+    """Find the value that a PATH names in a table with free keys (PATHs, metrics, materials)."""
     path = f"{head}.{rest}"
     name, _, last = rest.rpartition(".")
     if head in _TEXTS:
@@ -230,9 +231,9 @@ def _target(path: str, design: Design) -> Target:
 
 
 def numbers(design: Design) -> dict[str, float]:
-    """All numbers of a design in SI by canonical PATH; unset optional values are absent.
+    """Every number of a design (SI), by its canonical PATH; optional values not set are left out.
 
-    Positions stated as a fraction of the stroke stay fractions; bounds of variables are omitted.
+    Positions stated as a fraction of the stroke stay fractions. Bounds of variables are left out.
     """
     values: dict[str, float] = {}
     for loc, _, value in leaves(design):
@@ -266,13 +267,13 @@ def split_assignment(text: str) -> tuple[str, str]:
 def put(tree: dict[str, Any], target: Target, value: object) -> None:
     """Set a value in a tree of dicts and lists; missing blocks are added.
 
-    A number set on a position written as a fraction of the stroke stays a fraction; a new
-    objective replaces the existing objective.
+    If the tree has a position as a fraction of the stroke, the number that replaces it is also such
+    a fraction. A new objective replaces the existing objective.
 
     Raises
     ------
     ValueFault
-        if a block is needed at a PATH that has a single value
+        if the tree has a single value where the PATH needs a block
     """
     node: Any = tree
     for depth, key in enumerate(target.loc):

@@ -1,6 +1,6 @@
 """Read and check design files in one pass; every fault has its line and column.
 
-`load` reads files of other root sections in the same way.
+`load` reads other types of file, such as scenarios, in the same way.
 """
 
 from __future__ import annotations
@@ -29,7 +29,11 @@ SET: Final = "--set"
 
 
 class Override(NamedTuple):
-    """A value that replaces a file's value; `file` and `loc` give its origin in another file."""
+    """A value that replaces a value of the file.
+
+    If the new value comes from another file, `file` and `loc` are its location there; `file` is
+    None for the command line.
+    """
 
     path: str
     value: str
@@ -48,15 +52,15 @@ class Override(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class FileSource:
-    """Locations of the values of a file, for faults found later by evaluation or plug-in."""
+    """Locations of the values of a file, so that faults found later can name line and column."""
 
     document: Document
     overrides: Mapping[Loc, Override] = field(default_factory=dict)
-    """Values set from outside the file."""
+    """Values that the command line or another file sets, by location."""
     root: type[Section] = Design
-    """Section type of the file."""
+    """Type of the section that the whole file describes."""
     metrics: Mapping[str, Quantity] | None = None
-    """Allowed names of metrics in requirements; default: `metrics.METRICS`."""
+    """Metrics that requirements may name; default: `metrics.METRICS`."""
 
     @property
     def file(self) -> str:
@@ -97,7 +101,10 @@ class FileSource:
         return span[:2] if isinstance(span, NodeSpan) else (0, 0)
 
     def _find(self, fault: Fault) -> NodeSpan | Override | None:
-        """Nearest location in the text at or above a fault, or the override of the value."""
+        """Location in the text of the faulty value, else of the nearest block around it.
+
+        If the value was set from outside the file, its override.
+        """
         for depth in range(len(fault.loc), -1, -1):
             loc = fault.loc[:depth]
             if loc in self.overrides:
@@ -174,13 +181,13 @@ def load(
     overrides: Iterable[Override | tuple[str, str]] = (),
     metrics: Mapping[str, Quantity] | None = None,
 ) -> tuple[Root, FileSource]:
-    """Build the section that a document describes, and record the locations of its values.
+    """Build the object that a document describes, and record the locations of its values.
 
     Parameters
     ----------
     document : parsed YAML
-    root : section type of the whole file
-    build_section : builds the section from a tree, or lists the faults of the tree
+    root : type of the object, a section
+    build_section : function that builds the object from a tree, or lists the faults of the tree
     overrides : values that replace those of the document, as for `read_design`
     metrics : metrics that may be named; default: `metrics.METRICS`
 
@@ -213,7 +220,7 @@ def load(
 
 
 _MARKS = {"design": "cylinder", "scenario": "design"}
-"""Key that identifies each kind of file."""
+"""Key by which each kind of file is recognised."""
 
 
 def is_scenario(source: str | Path) -> bool:
@@ -223,7 +230,7 @@ def is_scenario(source: str | Path) -> bool:
 
 
 def _require_kind(document: Document) -> None:
-    """Refuse a scenario in place of a design, or a design in place of a scenario."""
+    """Raise an error if a scenario is given where a design is required, or the reverse."""
     for kind, mark in _MARKS.items():
         if mark in document.data and _MARKS[document.kind] not in document.data:
             remedy = "give the design file that it names"
@@ -238,7 +245,7 @@ def _unusable(fault: Fault, document: Document) -> bool:
 
 
 def _once(faults: Sequence[Fault], document: Document) -> list[Fault]:
-    """Drop repeated faults that the layers of a compact entry share."""
+    """Keep only the first of equal faults in the layers of one compact lay-up entry."""
     unique, seen = [], set()
     for fault in faults:
         shorthand = document.shorthand(fault.loc)
@@ -254,7 +261,7 @@ def _once(faults: Sequence[Fault], document: Document) -> list[Fault]:
 def _in_order(
     source: FileSource, diagnostics: Sequence[Diagnostic], faults: Sequence[Fault]
 ) -> list[Diagnostic]:
-    """Sort faults by line and column; keep at most `MOST_FAULTS` and count the omitted faults.
+    """Sort faults by line and column; keep at most `MOST_FAULTS` and state how many are omitted.
 
     Faults of other files and of the command line come first.
     """
@@ -282,7 +289,7 @@ def _bare_is_si(value: str, quantity: Quantity | None) -> str:
 
 
 def opened(source: str | Path, kind: str = "design") -> tuple[str, str]:
-    """Read text and name of a file, of standard input, or of a text of several lines."""
+    """Text and name of a source: a file, standard input, or a text of several lines."""
     if isinstance(source, str) and ("\n" in source or "\r" in source):
         return source, TEXT
     name = STDIN if source == "-" else str(source)
@@ -291,7 +298,7 @@ def opened(source: str | Path, kind: str = "design") -> tuple[str, str]:
 
 
 def library() -> MaterialLookup:
-    """The shipped material library, loaded when a design is read."""
+    """Load the shipped material library."""
     from .materials import load_library
 
     return load_library()

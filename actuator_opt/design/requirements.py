@@ -1,7 +1,7 @@
 """Check tables whose keys are free names: variables, requirements, measured values and others.
 
 The unit of an entry depends on its key (a PATH, a metric, a property). Each function converts the
-texts of its block to SI numbers in place and yields their faults.
+texts of its block to SI numbers in place and yields the faults that it finds.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ _LARGEST = {
     "flow": 1e3, "damping": 1e13, "energy": 1e12, "power": 1e12, "torque": 1e10,
     "time": 1e6,
 }  # fmt: skip
-"""Larger limits (SI) are refused as typing errors, whatever the metric."""
+"""Largest plausible limit (SI) by dimension; a larger one is refused as a typing error."""
 
 
 def limit_quantity(metric: Quantity) -> Quantity:
-    """Quantity for the limits of a metric, whose range contains only plausible values."""
+    """Quantity for the limits of a metric: its range is narrowed to plausible values."""
     largest = _LARGEST.get(metric.dimension, 1e15)
     return replace(metric, lower=max(metric.lower, 0.0), upper=min(metric.upper, largest))
 
 
 def _number(block: dict[str, Any], loc: Loc, quantity: Quantity) -> Fault | None:
-    """Convert the last key of `loc` to SI if present."""
+    """Convert the value of the last key of `loc` to SI, if the block has it; return its fault."""
     key = str(loc[-1])
     if block.get(key) is None:
         return None
@@ -80,7 +80,7 @@ def requirements(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Itera
 
 
 def variables(tree: dict[str, Any]) -> Iterator[Fault]:
-    """Check variables: PATHs of numbers, bounds ordered and in range, start between the bounds."""
+    """Check variables: each is the PATH of a number, with valid bounds and a start between them."""
     block = tree.get("variables")
     if not isinstance(block, dict):
         return
@@ -115,7 +115,7 @@ def variables(tree: dict[str, Any]) -> Iterator[Fault]:
 
 
 def measured(tree: dict[str, Any]) -> Iterator[Fault]:
-    """Check measured values: PATHs of numbers that are set, bounds ordered and in range."""
+    """Check measured values: each is the PATH of a number that is set, with valid bounds."""
     block = tree.get("measured")
     if not isinstance(block, dict):
         return
@@ -153,7 +153,7 @@ def measured(tree: dict[str, Any]) -> Iterator[Fault]:
 
 
 def in_faulty_block(path: str, tree: dict[str, Any]) -> bool:
-    """Whether the block of a PATH is missing or malformed, which is a separate fault."""
+    """Whether the block of a PATH is missing or malformed, which is reported elsewhere."""
     name = path.partition(".")[0]
     entry = entries(Design).get(name)
     if entry is None or entry.section is None or entry.shape == "table":
@@ -174,7 +174,7 @@ def _movable(path: str, tree: dict[str, Any]) -> Target:
     if target.quantity.dimension == "count":
         raise ValueFault(
             "is a count and cannot vary continuously",
-            "remove the entry; compare designs with other counts",
+            "remove the entry; evaluate one design for each count and compare them",
         )
     if target.entry is None or target.entry.shape == "list":
         raise ValueFault("is not a dimension of the actuator", "name a number of the design")
@@ -186,7 +186,10 @@ def _movable(path: str, tree: dict[str, Any]) -> Target:
 def _start(
     loc: tuple[str, str], bounds: dict[str, Any], target: Target, tree: dict[str, Any]
 ) -> Iterator[Fault]:
-    """Check the order of the bounds; the start is `start`, otherwise the value in the design."""
+    """Check that the bounds are in order and the start is between them.
+
+    The start is the key `start`, else the value in the design.
+    """
     quantity = target.quantity
     assert quantity is not None
     lower, upper, start = (bounds.get(key) for key in ("lower", "upper", "start"))
@@ -224,7 +227,7 @@ def _start(
 
 
 def _between(lower: float, start: float, upper: float) -> bool:
-    """Whether a start is within its bounds, apart from rounding when units are converted."""
+    """Whether a start is within its bounds, with a tolerance for rounding by unit conversion."""
     slack = 1e-12 * max(abs(lower), abs(upper))  # as for declared ranges, see `kinds.check_range`
     return lower - slack <= start <= upper + slack
 
@@ -237,7 +240,7 @@ def objective(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator
     stated = [key for key in ("minimise", "maximise") if key in block]
     if len(stated) != 1:
         if stated:
-            message = "both minimise and maximise"
+            message = "both minimise and maximise are stated"
             yield Fault(("objective", stated[1]), message, "keep one of them", at_key=True)
         else:
             yield Fault(("objective", "minimise"), "missing", 'add e.g. "minimise: mass"')
@@ -278,7 +281,7 @@ def waivers(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[F
 
 
 def materials(tree: dict[str, Any]) -> Iterator[Fault]:
-    """Check properties that a design changes, in their units (`faults` checks material names)."""
+    """Check the material properties that a design changes; `faults` checks the material names."""
     block = tree.get("materials")
     property_quantities = quantities.MATERIAL_PROPERTIES
     for material, properties in block.items() if isinstance(block, dict) else ():

@@ -56,7 +56,7 @@ def text_of(help: str, quantity: Quantity | None = None) -> str:
 
 
 def _unit_pattern(name: str) -> str:
-    """Pattern of a unit in every accepted spelling: N*m, N·m, N m, Nm; m^3, m³, m3, m**3."""
+    """Regular expression for all accepted spellings of a unit: N*m, N·m, N m, Nm; m^3, m³, m3."""
     pattern = re.escape(name).replace(r"\ ", " ").replace(r"\-", "-").replace(r"\*", "[*·⋅ ]?")
     for power, raised in (("2", "²"), ("3", "³")):
         pattern = pattern.replace(rf"\^{power}", rf"(\^|\*\*)?{power}".join(("(", f"|{raised})")))
@@ -132,7 +132,10 @@ def value_schema(kind: ValueKind | None, materials: MaterialLookup | None) -> Sc
         schema |= {"title": "material", "examples": [kind.example]}
         if materials is not None:
             names = [n for n in materials.names() if materials.kind(n) in ROLES[kind.role]]
-            schema |= {"enum": names, "errorMessage": "unknown material, or unsuitable kind"}
+            schema |= {
+                "enum": names,
+                "errorMessage": "unknown material, or a material of an unsuitable kind",
+            }
         return schema
     # names such as 12 or true are text to the reader, but numbers or booleans to an editor
     schema["type"] = ["string", "number", "boolean"]
@@ -145,7 +148,7 @@ def value_schema(kind: ValueKind | None, materials: MaterialLookup | None) -> Sc
 
 
 def entry_schema(entry: KeyEntry, materials: MaterialLookup | None) -> Schema:
-    """Schema of the value of a section's key."""
+    """Schema for the value of a key."""
     if entry.shape == "choice":
         help = entry.kind.help if entry.kind is not None else ""
         schema: Schema = {"description": help, "type": "string", "enum": list(entry.choices)}
@@ -172,7 +175,7 @@ def entry_schema(entry: KeyEntry, materials: MaterialLookup | None) -> Schema:
 
 
 def section_schema(section: type[Section], materials: MaterialLookup | None) -> Schema:
-    """Schema of a block of keys; the editor offers the required keys as a snippet."""
+    """Schema of a block of keys; the editor offers its required keys as a snippet."""
     keys = entries(section)
     schema: Schema = {
         "description": (section.__doc__ or "").split("\n\n")[0].replace("\n    ", " "),
@@ -190,12 +193,13 @@ def section_schema(section: type[Section], materials: MaterialLookup | None) -> 
 
 
 def _with_notation(schema: Schema) -> Schema:
-    """Schema of a wall's entry: a layer, or several layers in compact notation."""
+    """Schema of an entry of a lay-up: one layer, or several layers in compact notation."""
     excluded = [{"required": [key]} for key in ("angle", "thickness", "balanced")]
     schema["properties"]["plies"] = {
         "title": "lay-up in compact notation",
-        "description": "Several layers, from the inside outwards: angles in degrees, +-25 is a "
-        "balanced pair of plies, 25 one ply at that angle, _n repeats, s mirrors a group",
+        "description": "Several layers, from the inside outwards, given by angles in degrees. +-25 "
+        "is a balanced pair of plies, 25 is one ply at that angle, _n repeats a group n times, "
+        "s mirrors it",
         "type": ["string", "number"],
         "pattern": r"^[-+±0-9./_\[\]sS\s]+$",
         "examples": [layup.EXAMPLE],
@@ -222,11 +226,11 @@ def _snippet(entry: KeyEntry) -> Any:
 
 _REFERENCE = str.maketrans({"/": "_per_", "^": "", "*": "_", "%": "percent"})
 _LISTED = {"barrel.layup": 6, "rod.layup": 4, "lines": 2}
-"""Number of list entries whose PATHs are offered by name under `variables`."""
+"""Number of entries of each list whose PATHs the editor offers under `variables`."""
 _OF_TABLES = (
     r"^(name|notes|(objective|requirements|variables|measured|uncertainty|materials|waivers)\..+)$"
 )
-"""PATHs that `set` accepts in addition to those of the parts."""
+"""Pattern of the PATHs that `set` accepts in addition to the values of the design's parts."""
 
 
 def json_schema(
@@ -269,7 +273,7 @@ def json_schema(
 
 
 def _of_parts(section: type[Section] = Design, prefix: str = "") -> dict[str, KeyEntry]:
-    """PATHs of all values of a part; ``[*]`` is the index of a list."""
+    """All values below a section by PATH; ``[*]`` replaces the index in a list."""
     parts: dict[str, KeyEntry] = {}
     for name, entry in entries(section).items():
         path = f"{prefix}.{name}" if prefix else name
@@ -281,7 +285,10 @@ def _of_parts(section: type[Section] = Design, prefix: str = "") -> dict[str, Ke
 
 
 def _by_path(schemas: Mapping[str, Schema]) -> Schema:
-    """Schemas by PATH: patterns for indexed PATHs, and names for the first entries of a list."""
+    """Schema of a table with PATHs as keys.
+
+    PATHs with an index are patterns; for the first entries of a list they are also listed by name.
+    """
     properties: Schema = {}
     patterns: Schema = {}
     for path, schema in schemas.items():
@@ -326,7 +333,7 @@ def _variables(definitions: Schema) -> Schema:
 
 
 def _start_and_sizes(quantity: Quantity, path: str) -> Schema:
-    """Schemas of a variable's keys apart from its bounds."""
+    """Schemas of the keys `start`, `step` and `sizes` of a variable."""
     value = {"$ref": f"#/definitions/{quantity.name}"}
     suitable = [s for s in SERIES.values() if s.paths.fullmatch(path.replace("[*]", "[0]"))]
     sizes = {"type": "array", "minItems": 1, "maxItems": MOST_SIZES, "uniqueItems": True}
@@ -336,7 +343,7 @@ def _start_and_sizes(quantity: Quantity, path: str) -> Schema:
     return {
         "start": value,
         "step": {
-            "description": "step: the variable takes only multiples of it",
+            "description": "The variable takes only multiples of this step",
             "allOf": [value],
         },
         "sizes": {"description": SizesKind.help, "anyOf": [*options, sizes | {"items": value}]},
@@ -351,7 +358,7 @@ def _measured(definitions: Schema) -> Schema:
             bounds["required"] = [*bounds["required"], "record"]
             bounds["properties"]["record"] = {
                 "type": "string",
-                "description": "name of the record in a report",
+                "description": "name of the test record, for reports",
             }
     help = (
         "Values from a test record: PATH with the bounds of its 95 % confidence interval "
@@ -372,14 +379,14 @@ def _uncertainty(definitions: Schema) -> Schema:
         pattern = rf"^materials\.[^.]+\.{name}$"
         schema["patternProperties"][pattern] = schemas[f"materials.[*].{name}"]
     help = (
-        "Scatter of values, in addition to that from libraries and practice: PATH with a "
-        "distribution."
+        "Scatter of values: PATH with a distribution. The scatter of library values and usual "
+        "tolerances need no entry."
     )
     return {"description": help} | schema
 
 
 def _distribution(title: str, quantity: Quantity, definitions: Schema) -> Schema:
-    """Schema of an entry of `uncertainty`; entries of the same quantity share a definition."""
+    """Schema of an entry of `uncertainty`, by reference to the definition for its quantity."""
     name = f"uncertainty_{quantity.name}"
     if name not in definitions:
         definitions[name] = _shared(quantity, definitions)
@@ -387,7 +394,7 @@ def _distribution(title: str, quantity: Quantity, definitions: Schema) -> Schema
 
 
 def _shared(quantity: Quantity, definitions: Schema) -> Schema:
-    """Shared definition of an entry of `uncertainty`, for all values of a quantity."""
+    """Definition that all entries of `uncertainty` with the same quantity share."""
     schema = section_schema(Uncertain, None)
     for key in [name for name in schema["properties"] if name not in NUMBERS]:
         definitions.setdefault(f"key_{key}", schema["properties"][key])
@@ -420,7 +427,7 @@ def _set(materials: MaterialLookup | None, definitions: Schema) -> Schema:
         schemas[path]["title"] = path
     schema = _by_path(schemas)
     schema["patternProperties"][_OF_TABLES] = {"type": ["string", "number"]}
-    return {"description": "Changed values of the design, by PATH."} | schema
+    return {"description": "Values of the design that the scenario changes, by PATH."} | schema
 
 
 def _choices() -> Schema:
@@ -495,7 +502,11 @@ def _waivers(metrics: Mapping[str, Quantity]) -> Schema:
         "description": "Checks that do not apply: METRIC with the reason, which reports print.",
         "additionalProperties": False,
         "properties": {
-            name: {"type": "string", "title": metric.label, "description": "why it does not apply"}
+            name: {
+                "type": "string",
+                "title": metric.label,
+                "description": "reason why the check does not apply",
+            }
             for name, metric in metrics.items()
         },
     }

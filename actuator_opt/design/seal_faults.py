@@ -20,7 +20,7 @@ from .structure import FileView, Loc, MaterialLookup, Properties, child_at, leng
 
 
 def elements(view: FileView) -> Iterator[Loc]:
-    """Location of every sealing element that the file states."""
+    """Yield the location of every sealing element that the file states."""
     for name in ("piston", "rod"):
         yield ("seals", name)
         if view.has("seals", name, "secondary"):
@@ -28,7 +28,7 @@ def elements(view: FileView) -> Iterator[Loc]:
 
 
 def fields(view: FileView) -> Iterator[Fault]:
-    """Check that a seal has exactly the sizes of its type, and that a piston has no wiper."""
+    """Check that a seal states all sizes of its type and no others, and a piston has no wiper."""
     for loc in elements(view):
         kind = _kind(view, loc)
         if kind is not None:
@@ -37,7 +37,7 @@ def fields(view: FileView) -> Iterator[Fault]:
     if view.has("seals", "piston", "wiper"):
         yield Fault(
             ("seals", "piston", "wiper"),
-            "a piston has no wiper: it is not exposed to dirt",
+            "a piston needs no wiper, because it is not exposed to dirt",
             "remove the block",
             at_key=True,
         )
@@ -68,7 +68,7 @@ def _sizes(view: FileView, loc: Loc, kind: SealType) -> Iterator[Fault]:
 
 
 def _back_ups(view: FileView, loc: Loc) -> Iterator[Fault]:
-    """Check that back-up rings have material and thickness, which have no effect without rings."""
+    """Check that material and thickness are stated for back-up rings, and only if there are any."""
     stated = view.text(*loc, "back_up") != "none"
     for field, example in (("back_up_material", "back_up_ptfe"), ("back_up_thickness", "1.4 mm")):
         if stated and not view.has(*loc, field):
@@ -87,7 +87,7 @@ def _back_ups(view: FileView, loc: Loc) -> Iterator[Fault]:
 
 
 def widths(view: FileView) -> Iterator[Fault]:
-    """Check that rings fit the width of their groove, and that no land is wider than its ring."""
+    """Check that rings fit into the width of their groove, and no land is wider than its ring."""
     for loc in elements(view):
         kind = _kind(view, loc)
         if kind is None:
@@ -118,7 +118,7 @@ def widths(view: FileView) -> Iterator[Fault]:
 
 
 def _grooves(view: FileView, seal: str) -> Iterator[tuple[Loc, float, float]]:
-    """For every groove of a seal: location for faults, depth at nominal squeeze, least width."""
+    """Yield location, depth at nominal squeeze and least width of every groove of a seal."""
     for loc in elements(view):
         if loc[1] != seal:
             continue
@@ -172,8 +172,9 @@ def grooves(view: FileView) -> Iterator[Fault]:
             if core < bore and rest <= core:
                 yield Fault(
                     deep,
-                    f"groove too deep: {length_text(max(rest, 0.0))} core remains in the piston, "
-                    f"but the rod needs {length_text(core)}",
+                    "groove too deep: it leaves a core with a diameter of "
+                    f"{length_text(max(rest, 0.0))} in the piston, but the hole for the rod has "
+                    f"{length_text(core)}",
                     "use a smaller section, a larger bore or a rod thread that fits",
                 )
         elif rod_diameter < bore <= rod_diameter + 2 * depth:
@@ -186,7 +187,7 @@ def grooves(view: FileView) -> Iterator[Fault]:
 
 
 def clearances(view: FileView) -> Iterator[Fault]:
-    """Check that the gap behind a ring is smaller than the groove depth, so it cannot slip out."""
+    """Check that no ring can slip out through its gap: the gap is less than the groove's depth."""
     for seal, part in (("piston", "piston"), ("rod", "head")):
         gap = view.number(part, "clearance")
         seal_grooves = [(depth, loc) for loc, depth, _ in _grooves(view, seal)]
@@ -197,14 +198,14 @@ def clearances(view: FileView) -> Iterator[Fault]:
             ring = ".".join(str(key) for key in loc[:-1])
             yield Fault(
                 (part, "clearance"),
-                f"{length_text(gap)}: not smaller than the groove of {ring}, {length_text(depth)} "
-                "deep from the mating part",
+                f"{length_text(gap)}: not smaller than the depth of the groove of {ring}, which is "
+                f"{length_text(depth)} from the mating surface",
                 f"write less than {length_text(depth)}, e.g. 0.03 mm",
             )
 
 
 def squeeze(view: FileView) -> Iterator[Fault]:
-    """Check that an O-ring's nominal squeeze is in the range of its law; of other rings, > 0."""
+    """Check that the nominal squeeze of O-rings is in the range of their law, of others above 0."""
     for loc in elements(view):
         value, kind = view.number(*loc, "squeeze"), _kind(view, loc)
         if value is None or kind is None:
@@ -224,13 +225,13 @@ def squeeze(view: FileView) -> Iterator[Fault]:
         if not low <= value <= high:
             yield Fault(
                 (*loc, "squeeze"),
-                f"{value * 100:.4g} %: outside the range of the law {law.name}",
+                f"{value * 100:.4g} %: outside the range of the contact law {law.name}",
                 f"write {low * 100:g} % to {high * 100:g} %",
             )
 
 
 def shapes(view: FileView) -> Iterator[Fault]:
-    """Check that inner dimensions of a ring fit into its section."""
+    """Check that the dimensions of a ring's profile fit into its section."""
     for loc in elements(view):
         kind = _kind(view, loc)
         if kind is not None:
@@ -248,19 +249,19 @@ def shapes(view: FileView) -> Iterator[Fault]:
         if section is not None and thickness >= section:
             yield Fault(
                 (*loc, "thickness"),
-                f"{length_text(thickness)}: the lip fills the section ({length_text(section)})",
+                f"{length_text(thickness)}: not smaller than the section ({length_text(section)})",
                 f"write less than {length_text(section)}",
             )
 
 
 def _at_loc(loc: Loc, size_faults: Iterable[SizeFault]) -> Iterator[Fault]:
-    """Convert faults of sizes to faults at a location of the file."""
+    """Give each fault of a size its location in the file."""
     for size_fault in size_faults:
         yield Fault((*loc, size_fault.key), size_fault.message, size_fault.remedy)
 
 
 def profiles(view: FileView) -> Iterator[Fault]:
-    """Check that profiles have positions rising from 0, a stress for each, and rising pressures."""
+    """Check contact profiles: rising pressures, positions from 0 up, a stress at every position."""
     for loc in elements(view):
         last = -1.0
         for index, _ in enumerate(view.items(*loc, "contact")):
@@ -271,7 +272,7 @@ def profiles(view: FileView) -> Iterator[Fault]:
             if pressure is not None and pressure <= last:
                 yield Fault(
                     (*at, "pressure"),
-                    f"{INPUTS['pressure'].text(pressure)}: not above the previous profile",
+                    f"{INPUTS['pressure'].text(pressure)}: not above that of the previous profile",
                     "sort the profiles by pressure, and state each pressure once",
                 )
             last = last if pressure is None else pressure
@@ -282,7 +283,7 @@ def profiles(view: FileView) -> Iterator[Fault]:
                     (*at, "stresses"),
                     "the contact pressure nowhere exceeds the sealed pressure "
                     f"({INPUTS['pressure'].text(pressure)}), so this contact does not seal",
-                    "state contact pressures that include the sealed pressure",
+                    "state total contact pressures, to which the sealed pressure contributes",
                 )
             if len(positions) != len(stresses):
                 yield Fault(
@@ -301,7 +302,7 @@ def profiles(view: FileView) -> Iterator[Fault]:
 
 
 def reach(view: FileView) -> Iterator[Fault]:
-    """Check that stated profiles extend from zero pressure to the supply pressure."""
+    """Check that stated contact profiles range from zero pressure to the supply pressure."""
     supply, text = view.number("supply", "pressure"), INPUTS["pressure"].text
     for loc in elements(view):
         count = len(view.items(*loc, "contact"))
@@ -322,7 +323,7 @@ def reach(view: FileView) -> Iterator[Fault]:
 
 
 def films(view: FileView) -> Iterator[Fault]:
-    """Check that a pair has a common friction law, and a film has a single ring or a pair."""
+    """Check that two seals in tandem have one friction law, and that a film has one ring or two."""
     for name in ("piston", "rod"):
         both: list[Loc] = [("seals", name)]
         if view.has("seals", name, "secondary"):
@@ -331,8 +332,8 @@ def films(view: FileView) -> Iterator[Fault]:
         if len(set(models)) > 1:
             yield Fault(
                 (*both[1], "friction"),
-                f"{models[1]}, while seals.{name}.friction is {models[0]}",
-                "write the same law for both: they share the oil",
+                f"friction is {models[1]} here, while seals.{name}.friction is {models[0]}",
+                "write the same law for both, because the same oil passes both seals",
             )
         for loc in both:
             count = view.number(*loc, "count")
@@ -341,7 +342,7 @@ def films(view: FileView) -> Iterator[Fault]:
                 yield Fault(
                     (*loc, "count"),
                     f"{count:g} rings in a row, but the film model covers one ring or a pair",
-                    "write count: 1, and a block secondary for the second ring",
+                    'write "count: 1", and add a block "secondary:" for the second ring',
                 )
 
 
@@ -355,8 +356,8 @@ def _numbers(block: object) -> dict[str, float]:
 
 
 SLIDING_RING = 3.0
-"""Stated modulus divided by the modulus that follows from hardness: from this ratio on, a compound
-is taken for a plastic sliding ring on rubber. For a hard polyurethane the ratio is about 1."""
+"""Stated modulus over the modulus that follows from hardness. Above this ratio, a compound is taken
+for a plastic sliding ring on rubber. For a hard polyurethane the ratio is about 1."""
 
 
 def sliding_rings(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
@@ -376,7 +377,9 @@ def sliding_rings(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
         modulus, hardness = properties.get("youngs_modulus", 0.0), properties.get("hardness", 0.0)
         sliding = modulus > SLIDING_RING * float(modulus_gent(hardness=hardness))
         if sliding != (kind.modulus_by == "hardness"):
-            statement = "is a plastic ring on rubber" if sliding else "has no sliding ring"
+            statement = (
+                "is a plastic sliding ring on rubber" if sliding else "has no plastic sliding ring"
+            )
             fits = " or ".join(x.name for x in TYPES.values() if x.modulus_by == "hardness")
             other = f"write type: {fits}" if sliding else "use e.g. ptfe_bronze_nbr_70"
             yield Fault(

@@ -17,14 +17,14 @@ from . import choices
 from .kinds import MaterialName, Of, Section
 
 BACK_UPS = {"none": 0, "one": 1, "both": 2}
-"""Number of back-up rings for each word of `back_up`."""
+"""Number of back-up rings for each value of the key `back_up`."""
 
 
 class ContactProfile(Section):
-    """Static contact pressure of an element at one sealed pressure, from test or simulation.
+    """Static contact pressure along an element at one sealed pressure, from test or simulation.
 
-    Profiles are interpolated between sealed pressures; the last profile must be at or above supply
-    pressure.
+    Between the sealed pressures of two profiles, the contact pressure is interpolated. The last
+    profile must be at or above supply pressure.
     """
 
     pressure: Annotated[float, Of("pressure", "sealed pressure of this profile, gauge")]
@@ -71,7 +71,8 @@ class SealElement(Section):
     back_up: choices.BackUp = "none"
     back_up_material: Annotated[str | None, MaterialName("isotropic")] = None
     back_up_thickness: Annotated[
-        float | None, Of("part_length", "axial thickness of a back-up ring including its clearance")
+        float | None,
+        Of("part_length", "axial thickness of a back-up ring, with its axial clearance"),
     ] = None
     friction: choices.FrictionModel = coefficient.LAW.name
     friction_coefficient: Annotated[
@@ -89,11 +90,12 @@ class SealElement(Section):
         float | None,
         Of(
             "stribeck_speed",
-            "sliding speed over which breakaway friction decays; default: the compound's",
+            "sliding speed over which breakaway friction decays to running friction; default: the "
+            "compound's",
         ),
     ] = None
     viscous_friction: Annotated[
-        float, Of("viscous_friction", "viscous part of the seal friction")
+        float, Of("viscous_friction", "viscous part of the seal friction, per speed")
     ] = 0.0
 
     @property
@@ -112,7 +114,7 @@ class SealElement(Section):
         return BACK_UPS[self.back_up]
 
     def stated_sizes(self) -> dict[str, float]:
-        """Sizes of the element's type that the design states, SI."""
+        """Sizes that the seal type requires and the design states, SI."""
         sizes = {size.key: getattr(self, size.key) for size in SIZES}
         return {key: value for key, value in sizes.items() if value is not None}
 
@@ -150,7 +152,7 @@ class Guide(Section):
 
 
 class Seal(SealElement):
-    """Seals of piston or rod: the pressure-sealing element, with wiper and guides."""
+    """Seals of piston or rod: the element that seals the pressure, with wiper and guide rings."""
 
     counterface_roughness: Annotated[
         float, Of("rms_roughness", "RMS roughness of the rod or the bore")
@@ -161,7 +163,10 @@ class Seal(SealElement):
     guide: Guide | None = None
 
     def elements(self) -> dict[str, SealElement]:
-        """Sealing elements by the end of their PATH, from the pressure side outwards."""
+        """Sealing elements from the pressure side outwards.
+
+        Each key is the end of the element's PATH.
+        """
         second = {} if self.secondary is None else {"secondary.": self.secondary}
         return {"": self, **second}
 

@@ -1,8 +1,9 @@
 """Discrete sizes of a variable: from its own list, a step, a standard series, or whole plies.
 
 Some sizes depend on another variable: the rod of a catalogue cylinder on its bore, the squeeze of a
-standard gland on its ring, an odd number of plies on their angle, the bore of a tubular rod on its
-outer diameter. `groups` joins such variables and lists their allowed combinations.
+standard gland on its ring, the bore of a tubular rod on its outer diameter. Whether a layer may
+have an odd number of plies depends on their angle. `groups` joins such variables and lists their
+allowed combinations.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ MOST_SIZES = 1000
 """Largest number of sizes of a variable, and of combinations of a group."""
 
 ROOM = 1e-9
-"""Relative distance by which a size may exceed a bound, for rounding."""
+"""Relative distance by which a size may exceed a bound, as a tolerance for rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,9 +51,14 @@ class _Rule:
 
 
 def read(loc: Loc, bounds: dict[str, Any], quantity: Quantity) -> Iterator[Fault]:
-    """Convert `sizes` and `step` of a variable to SI, in place; yields their faults."""
+    """Convert `sizes` and `step` of a variable to SI, in place, and yield their faults."""
     if "sizes" in bounds and "step" in bounds:
-        yield Fault((*loc, "step"), "sizes and step of the same variable", "keep one", at_key=True)
+        yield Fault(
+            (*loc, "step"),
+            "both sizes and step are stated for this variable",
+            "keep one",
+            at_key=True,
+        )
     if bounds.get("step") is not None:
         yield from _read_step(loc, bounds, quantity)
     sizes = bounds.get("sizes")
@@ -71,7 +77,9 @@ def read(loc: Loc, bounds: dict[str, Any], quantity: Quantity) -> Iterator[Fault
             )
         elif SERIES[sizes].paths.fullmatch(str(loc[-1])) is None:
             series = SERIES[sizes]
-            yield Fault(here, f"{sizes} has no sizes for {loc[-1]}", f"it is for {series.suits}")
+            yield Fault(
+                here, f"{sizes} has no sizes for {loc[-1]}", f"this series is for {series.suits}"
+            )
     elif not isinstance(sizes, list):
         yield Fault(
             here, f"need sizes, not {shape_in_words(sizes)}", f"write {sample}, or a series"
@@ -97,11 +105,15 @@ def _read_step(loc: Loc, bounds: dict[str, Any], quantity: Quantity) -> Iterator
     if step == 0.0 or (upper - lower) / step > MOST_SIZES:
         message = f"{quantity.text(step)}: more than {MOST_SIZES} sizes between the bounds"
         least = quantity.text((upper - lower) / MOST_SIZES)
-        yield Fault(here, message, f"write at least {least}, or leave the variable free")
+        yield Fault(
+            here,
+            message,
+            f"write at least {least}, or remove the line so that the variable is continuous",
+        )
 
 
 def _difference(quantity: Quantity) -> Quantity:
-    """Quantity of a step: its range is from zero to the width of the variable's range."""
+    """Quantity of a step: like that of the variable, but without negative values."""
     if quantity.dimension == "temperature":
         raise ValueFault("a temperature has no step", "list its sizes")
     return replace(quantity, lower=0.0)
@@ -148,7 +160,7 @@ def groups(
 
     Returns
     -------
-    groups, and faults of variables without a suitable size
+    groups of variables, and faults of variables that no size suits
     """
     view = FileView(tree)
     rules = {path: rule for path in _paths(tree) if (rule := _rule(view, path, plies, standard))}
@@ -162,14 +174,14 @@ def groups(
 
 
 class _NoSize(Exception):
-    """A variable without a suitable size."""
+    """No size suits a variable."""
 
     def __init__(self, path: str, message: str, remedy: str) -> None:
         super().__init__(message)
         self.path, self.message, self.remedy = path, message, remedy
 
     def fault(self, tree: Any) -> Fault:
-        """Fault at the key that requires sizes; without such a key, at the variable."""
+        """The fault, located at the key `sizes` or `step`, else at the variable itself."""
         block: Loc = ("variables", self.path)
         for key in ("sizes", "step"):
             if child_at(tree, (*block, key)) is not None:
@@ -178,7 +190,7 @@ class _NoSize(Exception):
 
 
 def _paths(tree: Any) -> list[str]:
-    """List the variables that are numbers with valid bounds."""
+    """PATHs of the variables that are numbers with valid bounds."""
     block = child(tree, "variables")
     numeric = []
     for path in block if isinstance(block, dict) else ():
@@ -195,7 +207,10 @@ def _paths(tree: Any) -> list[str]:
 
 
 def _rule(view: FileView, path: str, plies: bool, standard: bool) -> _Rule | None:
-    """Rule for the sizes of a variable, from file or option; None if it varies continuously."""
+    """Rule for the sizes of a variable, from the file or a command-line option.
+
+    None if the variable is continuous.
+    """
     sizes, step = (child_at(view.tree, ("variables", path, key)) for key in ("sizes", "step"))
     lower, upper = _bounds(view, path)
     if isinstance(step, float):
@@ -238,13 +253,16 @@ def _bounds(view: FileView, path: str) -> tuple[float, float]:
 
 
 def _multiples(step: float, bounds: tuple[float, float]) -> list[float]:
-    """Multiples of a step, from just below to just above the bounds, exact in decimals."""
+    """Multiples of a step, from just below to just above the bounds, without rounding errors."""
     first, last = (int(bound // step) for bound in bounds)
     return [float(count * Decimal(repr(step))) for count in range(first - 1, last + 3)]
 
 
 def _families(rules: dict[str, _Rule]) -> Iterator[list[_Rule]]:
-    """Group rules that depend on each other, parents first, in the order of the variables."""
+    """Yield groups of rules whose sizes depend on each other.
+
+    Groups are in the order of the variables; in each, a parent comes before its dependants.
+    """
     remaining = dict(rules)
 
     def below(path: str) -> Iterator[_Rule]:
@@ -281,15 +299,17 @@ def _group(view: FileView, members: Sequence[_Rule]) -> VariableGroup:
         if not extended:
             raise _none_fits(view, rule, sorted(offered))
         if len(rows) > 1 and len(extended) > MOST_SIZES:
-            message = f"{len(extended)} combinations with the sizes of {rule.parent}: too many"
-            raise _NoSize(rule.path, message, f"narrow the bounds, for at most {MOST_SIZES}")
+            message = f"{len(extended)} combinations with the sizes of {rule.parent} are too many"
+            raise _NoSize(
+                rule.path, message, f"narrow the bounds; at most {MOST_SIZES} are allowed"
+            )
         rows = extended
     paths, labels = tuple(rule.path for rule in members), tuple(rule.label for rule in members)
     return VariableGroup(paths, labels, tuple(sorted(set(rows))))
 
 
 def _fixed(view: FileView, rule: _Rule, column: dict[str, int]) -> float | None:
-    """Value of a fixed parent; None if there is no parent, or if the parent is a variable."""
+    """Value of the parent variable if the design fixes it; None if it varies or there is none."""
     if rule.parent is None or rule.parent in column:
         return None
     if child_at(view.tree, ("variables", rule.parent)) is None:
@@ -298,13 +318,13 @@ def _fixed(view: FileView, rule: _Rule, column: dict[str, int]) -> float | None:
         raise _NoSize(
             rule.path,
             f"its sizes depend on {rule.parent}, which varies continuously",
-            f"give {rule.parent} sizes too, or fix it",
+            f"state sizes for {rule.parent} too, or fix its value",
         )
     return None
 
 
 def _none_fits(view: FileView, rule: _Rule, values: Sequence[float]) -> _NoSize:
-    """Fault if no size lies between the bounds; it states the nearest sizes."""
+    """The fault that no size lies between the bounds; it states the nearest sizes outside."""
     quantity = resolve(rule.path, view.tree).quantity
     assert quantity is not None
     lower, upper = _bounds(view, rule.path)

@@ -3,9 +3,9 @@
 Tables: ISO 3320 bores and rods, ISO 6020-2/6022 pairs, O-rings and glands. Lengths are in m,
 pressures in Pa; every row states source and confidence.
 
-Series for the `sizes` of a variable are standards, whole plies and feasible angles. A series states
-for which PATHs and designs it applies, on which variable its sizes depend, and the sizes
-themselves.
+A variable can take its `sizes` from a series: a standard, whole plies, or allowed angles. A series
+states to which PATHs and designs it applies, on which other variable its sizes depend, and the
+sizes themselves.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ Use: TypeAlias = Literal["reciprocating", "static"]
 Direction: TypeAlias = Literal["nearest", "up", "down"]
 
 _SAME = 0.005
-"""A tabulated gland applies to ring sections within 0.5 % of its own; others are interpolated."""
+"""Largest relative difference between a ring section and a tabulated one for which the tabulated
+gland applies. For other sections the gland is interpolated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,8 +70,9 @@ class ORing:
 class Gland:
     """Groove of an O-ring; its depth is the whole radial space of the ring, up to rod or bore.
 
-    If a table has no tolerances, both limits are equal and the radii are 0. `back_up_widths` are
-    the smallest and largest widths, with one and with two back-up rings; empty if not tabulated.
+    If a table has no tolerances, smallest and largest values are equal; missing radii are 0.
+    `back_up_widths` are the (smallest, largest) widths with one and with two back-up rings; empty
+    if not tabulated.
     """
 
     use: str
@@ -108,7 +110,9 @@ class Gland:
         widths = ((self.width_min, self.width_max), *self.back_up_widths)
         if not 0 <= back_up_rings < len(widths):
             message = f"no width with {back_up_rings} back-up rings in the {self.table} table"
-            raise InputError(Diagnostic(message, f"it has widths for 0 to {len(widths) - 1}"))
+            raise InputError(
+                Diagnostic(message, f"the table has widths for 0 to {len(widths) - 1} rings")
+            )
         return widths[back_up_rings]
 
     @property
@@ -131,7 +135,7 @@ class Gland:
 
 @functools.lru_cache(maxsize=1)
 def tables() -> Mapping[str, Any]:
-    """Contents of ``standards.yaml``, with numbers as text."""
+    """Contents of ``standards.yaml``; numbers are texts, so that they stay exact."""
     path = store.data_folder("materials") / "standards.yaml"
     text = yaml_source.decode(path.read_bytes(), str(path))
     document = yaml_source.parse(text, str(path))
@@ -146,7 +150,7 @@ def metres(text: str) -> float:
 
 
 def citation(key: str) -> str:
-    """Source of a key of the tables."""
+    """Full text of a source that the tables name by its key."""
     return str(tables()["sources"][key])
 
 
@@ -197,7 +201,7 @@ def cylinder_pairs(series: str | None = None) -> tuple[CylinderPair, ...]:
 
 @functools.cache
 def o_rings() -> tuple[ORing, ...]:
-    """GB/T 3452.1 series G rings, by section, then inside diameter, m."""
+    """O-rings of GB/T 3452.1 series G, sorted by section, then by inside diameter; m."""
     table = tables()["o_rings"]
     source = citation(table["source"])
     return tuple(
@@ -214,7 +218,7 @@ def ring_sections() -> tuple[float, ...]:
 
 
 def section_tolerance(section: float) -> StandardSize:
-    """Tolerance (plus or minus, m) of a ring's free section: ISO 3601-1, else by size band.
+    """Tolerance (plus or minus, m) of a ring's free section: by ISO 3601-1, else by size band.
 
     Raises
     ------
@@ -228,7 +232,7 @@ def section_tolerance(section: float) -> StandardSize:
         if section <= metres(size) * (1 + 1e-9):
             return StandardSize(metres(tolerance), bands["confidence"], citation(bands["source"]))
     message = f"no tolerance for a section of {section * 1e3:.4g} mm"
-    raise InputError(Diagnostic(message, "the bands end at 8.4 mm"))
+    raise InputError(Diagnostic(message, "the table of size bands ends at 8.4 mm"))
 
 
 @functools.cache
@@ -273,7 +277,7 @@ def gland(section: float, use: Use = "reciprocating", *, table: str | None = Non
     ----------
     section : free section, m
     use : ``reciprocating`` or ``static``
-    table : ``as568``, ``metric`` or ``series_g``; default: AS568 for AS568 sections, else metric
+    table : ``as568``, ``metric`` or ``series_g``; default: ``as568`` for its sections, else metric
 
     Raises
     ------
@@ -316,7 +320,7 @@ def _between(rows: Sequence[Gland], section: float) -> Gland:
 def nearest_standard(
     kind: Literal["bore", "rod", "section"], value: float, direction: Direction = "nearest"
 ) -> float:
-    """The standard size next to a value, m.
+    """The standard size nearest to a value, or next above or below it, m.
 
     Parameters
     ----------
@@ -344,7 +348,7 @@ def nearest_standard(
 
 
 WHOLE = 1e-6
-"""Fraction of a ply, and angle (rad), below which a value counts as zero."""
+"""Tolerance below which a difference counts as zero: in plies, or for angles in rad."""
 Bounds = tuple[float, float]
 
 
@@ -357,7 +361,7 @@ class SizeSeries:
     name, label : name in the file and in reports
     suits, paths : variables to which it applies, in words and as a pattern of PATHs
     option : command-line option that selects the series ("file": only the file can select it)
-    needs_parent : whether its sizes require those of the parent variable
+    needs_parent : whether its sizes exist only for a known size of the parent variable
     """
 
     name: str
@@ -368,11 +372,11 @@ class SizeSeries:
     needs_parent: bool = False
 
     def fault(self, view: FileView, path: str) -> tuple[str, str] | None:
-        """Why the series does not apply to a variable, and the remedy."""
+        """Reason and remedy if the series does not apply to a variable; None if it applies."""
         return None
 
     def parent(self, path: str) -> str | None:
-        """The parent variable, on which the sizes of a variable depend."""
+        """PATH of the parent, on which the sizes of a variable depend; None if there is none."""
         return None
 
     def each(self, view: FileView, path: str) -> str:
@@ -382,12 +386,12 @@ class SizeSeries:
     def values(
         self, view: FileView, path: str, parent: float | None, bounds: Bounds
     ) -> Sequence[float]:
-        """The sizes for a value of the parent (None: no parent, or a free parent)."""
+        """The sizes for a value of the parent; None if there is no parent, or it is continuous."""
         raise NotImplementedError
 
 
 def along(angle: float) -> bool:
-    """Whether an angle is 0 or 90 degrees, where both plies of a balanced pair are equal."""
+    """Whether an angle is 0 or 90 degrees, so that both plies of a balanced pair are alike."""
     return abs(math.sin(2 * angle)) <= WHOLE
 
 
@@ -407,7 +411,7 @@ class _Iso3320(SizeSeries):
 
 
 class _Pairs(SizeSeries):
-    """Bore and rod of a catalogue cylinder: both vary, or one varies and the other is fixed."""
+    """Bores or rods of catalogue cylinders; the other of the two also varies, or is fixed."""
 
     def _other(self, path: str) -> str:
         return "cylinder.bore" if path != "cylinder.bore" else "rod.outer_diameter"
@@ -417,7 +421,7 @@ class _Pairs(SizeSeries):
         variable = child_at(view.tree, ("variables", other))
         if variable is None or child_at(variable, ("sizes",)) == self.name:
             return None
-        message = f"{self.name} has pairs of bore and rod, but {other} is not of this series"
+        message = f"{self.name} has pairs of bore and rod, but {other} does not use this series"
         return message, f'add "sizes: {self.name}" to {other} too'
 
     def parent(self, path: str) -> str | None:
@@ -445,7 +449,10 @@ class _Walls(SizeSeries):
     def fault(self, view: FileView, path: str) -> tuple[str, str] | None:
         if path == "rod.inner_diameter" or _layer(view, path, "ply_thickness") is None:
             return None
-        return f"{self.name} has tube walls, but this layer consists of plies", "write whole_plies"
+        return (
+            f"{self.name} lists tube walls, but this layer consists of plies",
+            "write whole_plies",
+        )
 
     def parent(self, path: str) -> str | None:
         return "rod.outer_diameter" if path == "rod.inner_diameter" else None
@@ -462,7 +469,7 @@ class _Walls(SizeSeries):
 
 
 class _Glands(SizeSeries):
-    """O-ring sections, each with squeeze and groove of its gland at mid-tolerance."""
+    """O-ring sections, and for each the squeeze and groove width of its gland (mid-tolerance)."""
 
     def _seal(self, path: str) -> tuple[str, ...]:
         return tuple(path.split(".")[:-1])
@@ -471,8 +478,8 @@ class _Glands(SizeSeries):
         kind = TYPES.get(view.text(*self._seal(path), "type") or "")
         if kind is None or kind.o_ring_gland:
             return None
-        message = f"{self.name} has O-rings and their glands, but this is a {kind.name}"
-        return message, "list its sizes"
+        message = f"{self.name} lists O-rings and their glands, but this seal is a {kind.name}"
+        return message, "list the sizes of this seal"
 
     def parent(self, path: str) -> str | None:
         head, _, last = path.rpartition(".")
@@ -499,14 +506,17 @@ class _WholePlies(SizeSeries):
     def fault(self, view: FileView, path: str) -> tuple[str, str] | None:
         if _layer(view, path, "ply_thickness") is not None:
             return None
-        remedy = 'add e.g. "ply_thickness: 0.2 mm" to it; for a metal layer write a step'
+        remedy = 'add e.g. "ply_thickness: 0.2 mm" to the layer; for a metal layer write a step'
         return "the layer has no ply_thickness", remedy
 
     def parent(self, path: str) -> str | None:
         return path.removesuffix("thickness") + "angle"
 
     def _singly(self, view: FileView, path: str, angle: float | None) -> bool:
-        """Whether a layer may have an odd number of plies: not balanced, or at 0 or 90 degrees."""
+        """Whether a layer may have an odd number of plies.
+
+        It may if it is not balanced, or if its plies are at 0 or 90 degrees.
+        """
         balanced = view.flag(*self._loc(path), "balanced")
         return balanced is False or (angle is not None and along(angle))
 

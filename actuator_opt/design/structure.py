@@ -1,7 +1,7 @@
-"""Structure of the model; look-up of a tree's values by their location, and faults at locations.
+"""Structure of input files: keys of each section, look-up of values by location, and faults there.
 
 Reader, PATHs, writer and JSON Schema find the keys of each section and the kind of each value here,
-so none of them names a field.
+so none of them has its own list of keys.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .kinds import Choice, Fraction, Of, PositionKind, Section, ValueKind
 from .model import Design
 
 Loc: TypeAlias = tuple[str | int, ...]
-"""Keys and indices from the root to a value."""
+"""Location of a value: keys and indices from the root of the tree."""
 
 Shape: TypeAlias = Literal["value", "choice", "section", "list", "table"]
 
@@ -28,9 +28,10 @@ Shape: TypeAlias = Literal["value", "choice", "section", "list", "table"]
 class KeyEntry:
     """A key of a section.
 
-    `kind` is set for a value, a list of values or a choice; `choices` for a choice; `section` for a
-    section, a list of sections, or a table of sections under free names. A table without `section`
-    contains texts, numbers or tables (waivers, objective, materials).
+    `kind` is set for a value, a list of values or a choice; `choices` only for a choice. `section`
+    is the type of a section, of the entries of a list, or of the entries of a table with free
+    names. A table without `section` contains texts, numbers or tables (waivers, objective,
+    materials).
     """
 
     name: str
@@ -42,10 +43,10 @@ class KeyEntry:
     section: type[Section] | None = None
     least: int = 0
     most: int | None = None
-    """Smallest and largest number of entries of a list."""
+    """`least` and `most` are the smallest and largest number of entries of a list."""
 
     def quantity(self, value: object = None) -> Quantity | None:
-        """Quantity of this number; for a position it depends on the notation."""
+        """Quantity of the key's number; a position is a length or a fraction, as `value` is."""
         if isinstance(self.kind, PositionKind):
             return self.kind.quantity_of(value)
         return self.kind.quantity if isinstance(self.kind, Of) else None
@@ -96,7 +97,7 @@ def _options(annotation: Any) -> tuple[Any, ...]:
 
 
 def child(node: Any, key: str | int) -> Any:
-    """Child of a node, or None; nodes are sections, dicts, lists or None."""
+    """Child of a node under a key; None if missing. Nodes are sections, dicts, lists or None."""
     if isinstance(node, Mapping):
         return node.get(key)
     if isinstance(node, (list, tuple)):
@@ -105,7 +106,7 @@ def child(node: Any, key: str | int) -> Any:
 
 
 def child_at(tree: Any, loc: Loc) -> Any:
-    """Value at a location of a tree, or None."""
+    """Value at a location of a tree; None if missing."""
     for key in loc:
         tree = child(tree, key)
     return tree
@@ -113,7 +114,7 @@ def child_at(tree: Any, loc: Loc) -> Any:
 
 @cache
 def lists_of(section_type: type[Section], section: type[Section] = Design) -> tuple[Loc, ...]:
-    """Locations of all lists in a section type.
+    """Locations of all lists of `section_type` below `section`.
 
     >>> from .model import Ply
     >>> lists_of(Ply)
@@ -133,8 +134,8 @@ def leaves(
 ) -> Iterator[tuple[Loc, KeyEntry, Any]]:
     """Yield all stated values and choices below a node: (loc, entry, value).
 
-    Tables of free names (variables, requirements, …) are skipped, as are parts of a faulty dict
-    that do not have the model's structure.
+    Tables with free names (variables, requirements, …) are skipped. In a faulty tree, parts that
+    are not a list or block as expected are skipped too.
     """
     for name, entry in entries(section).items():
         below = child(node, name)
@@ -163,7 +164,7 @@ def number_of(value: object) -> float | None:
 
 
 def value_at(tree: Any, loc: Loc, section: type[Section] = Design) -> Any:
-    """Value at a location of a section or its tree; if not stated, the default of the model."""
+    """Value at a location of a section or its tree; if not stated, the default of its key."""
     node, default = tree, None
     for key in loc:
         node = child(node, key)
@@ -202,7 +203,7 @@ class Properties(Protocol):
 
 
 class FileView:
-    """Read values of a tree in SI, with the model's defaults; None for unusable values."""
+    """Reads the values of a tree in SI; defaults replace missing values, None unusable values."""
 
     def __init__(self, tree: Any, root: type[Section] = Design) -> None:
         self.tree = tree
@@ -239,7 +240,7 @@ class FileView:
 def without_effect(
     view: FileView, loc: Loc, keys: Iterable[str], where: str, remedy: str = "remove the line"
 ) -> Iterator[Fault]:
-    """Yield a fault for each of these keys, below a location, that the file states in vain."""
+    """Yield a fault for each of these keys below a location that the file states without effect."""
     for key in keys:
         if view.has(*loc, key):
             yield Fault((*loc, key), f"without effect {where}", remedy, at_key=True)

@@ -1,7 +1,7 @@
 """Entries of ``uncertainty``: quantities of their keys, and ranges of the distributions.
 
-Distributions are centred on the value in the design and move with it, except for absolute bounds.
-An optimiser can therefore vary the value.
+A distribution is centred on the value in the design and moves with it, so an optimiser can vary the
+value. Only a distribution that is stated by absolute bounds does not move.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ def _table() -> dict[str, Any]:
 
 
 def source() -> str:
-    """Source of the table, with its confidence."""
+    """Source of the table of ISO 286-1 tolerances, with its confidence."""
     return f"{citation(_table()['source'])} ({_table()['confidence']})"
 
 
 def class_limits(name: str, size: float) -> tuple[float, float]:
-    """Lower and upper deviation (m) from the nominal size (m) of a class of ISO 286-1.
+    """Lower and upper deviation (m) of an ISO 286-1 tolerance class, for a nominal size (m).
 
-    Holes have capital, shafts small letters. The fundamental deviation of a hole is the negative
-    of that of the shaft with the same letter (d to h); js and JS are symmetric.
+    Holes have capital letters, shafts small letters. The fundamental deviation of a hole is the
+    negative of that of the shaft with the same letter (d to h); js and JS are symmetric.
 
     Raises
     ------
@@ -54,8 +54,8 @@ def class_limits(name: str, size: float) -> tuple[float, float]:
     is_letter = letter.lower() in (*letters, "h", "js")
     if match is None or int(match[2]) not in grades or not is_letter:
         message = f'"{name}" is not a supported tolerance class'
-        ends = f"{', '.join(sorted(letters))}, h or js and {grades[0]} to {grades[-1]}"
-        raise ValueFault(message, f"write e.g. H8 or f7: {ends}, capitals for holes")
+        ends = f"{', '.join(sorted(letters))}, h or js, and grades {grades[0]} to {grades[-1]}"
+        raise ValueFault(message, f"write e.g. H8 (hole) or f7 (shaft); letters are {ends}")
     row = next((r for r in table["rows"] if size <= metres(r["to"]) * (1 + 1e-12)), None)
     if row is None or size <= 0:
         message = f"{name}: the ISO 286 table ends at {table['rows'][-1]['to']} mm"
@@ -68,12 +68,12 @@ def class_limits(name: str, size: float) -> tuple[float, float]:
 
 
 def _place(row: dict[str, Any]) -> int:
-    """Index of the size step that a row's text names."""
+    """Index of a row of the table, which gives its range of sizes."""
     return [step["to"] for step in _table()["rows"]].index(row["to"])
 
 
 Stated = Mapping[str, Any]
-"""Keys of an entry, numbers in SI."""
+"""Keys of an entry with their values; numbers are in SI."""
 
 KEYS: dict[str, tuple[tuple[str, ...], ...]] = {
     "normal": (("deviation",), ("cv",)),
@@ -83,7 +83,7 @@ KEYS: dict[str, tuple[tuple[str, ...], ...]] = {
     "triangular": (("half_width",), ("tolerance",), ("lower", "upper")),
     "fixed": ((),),
 }
-"""Groups of keys for each distribution; an entry uses exactly one group."""
+"""For each distribution, the alternative groups of keys; an entry states exactly one group."""
 
 VARIATION = replace(
     INPUTS["coefficient"], name="variation", symbol="CV", unit="%", upper=1.0,
@@ -96,11 +96,11 @@ NUMBERS = ("lower", "upper", "deviation", "half_width", "cv", "factor")
 """Keys with numeric values."""
 
 REACH = 5.0
-"""Normal and lognormal samples are truncated at this many standard deviations; 6e-7 lie beyond."""
+"""Standard deviations at which normal and lognormal samples are truncated; 6e-7 lie beyond."""
 
 
 def quantity_of_entry(key: str, quantity: Quantity) -> Quantity | None:
-    """Quantity of a key of an entry, from the quantity of its PATH; None for a text."""
+    """Quantity of a key of an entry whose PATH has `quantity`; None if the key has a text."""
     if key in ("lower", "upper"):
         return quantity
     if key == "cv":
@@ -117,7 +117,7 @@ def quantity_of_entry(key: str, quantity: Quantity) -> Quantity | None:
 
 
 def limits(shape: str, entry: Stated, value: float) -> tuple[float, float]:
-    """Smallest and largest sample (SI); raises `ValueFault` for a tolerance class.
+    """Smallest and largest sample (SI); raises `ValueFault` for an invalid tolerance class.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def limits(shape: str, entry: Stated, value: float) -> tuple[float, float]:
 
 
 def ratio(shape: str, entry: Stated) -> float:
-    """Largest sample divided by the value in the design, for a logarithmic distribution."""
+    """Largest sample over the value in the design, for a lognormal or loguniform distribution."""
     if shape == "loguniform":
         return float(entry["factor"])
     return exp(REACH * log_deviation(entry))
@@ -156,7 +156,7 @@ def log_deviation(entry: Stated) -> float:
 
 
 def misfit(shape: str, entry: Stated, value: float, quantity: Quantity) -> tuple[str, str]:
-    """Fault and remedy of a distribution around a value; empty texts if valid."""
+    """Message and remedy if a distribution is invalid for a value; empty texts if it is valid."""
     try:
         low, high = limits(shape, entry, value)
     except ValueFault as fault:
@@ -178,7 +178,7 @@ def misfit(shape: str, entry: Stated, value: float, quantity: Quantity) -> tuple
             else "reduce the scatter, or use a lognormal distribution"
         )
         return (
-            f"samples from {text(low)} to {text(high)} leave the valid range ({quantity.label})",
+            f"samples from {text(low)} to {text(high)} exceed the valid range ({quantity.label})",
             f"stay within {quantity.range_text()}: {remedy}",
         )
     return "", ""

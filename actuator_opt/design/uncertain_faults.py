@@ -1,4 +1,4 @@
-"""Faults of the block ``uncertainty``: PATHs, keys and sizes of distributions."""
+"""Faults of the block ``uncertainty``: PATHs, keys and widths of distributions."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .uncertain import KEYS, NUMBERS, misfit, quantity_of_entry
 
 
 def faults(tree: dict[str, Any]) -> Iterator[Fault]:
-    """Convert the texts of `uncertainty` to SI in place; yields faults of PATHs, keys and order."""
+    """Convert the texts of `uncertainty` to SI in place, and yield all faults of its entries."""
     block = tree.get("uncertainty")
     for path, entry in block.items() if isinstance(block, dict) else ():
         loc = ("uncertainty", path)
@@ -43,7 +43,7 @@ def _number(path: str, tree: dict[str, Any]) -> Target:
     if target.quantity is None or (target.entry is None and not material):
         raise ValueFault("is not a number of the actuator", "remove the entry")
     if target.quantity.dimension == "count":
-        raise ValueFault("is a count and does not scatter", "remove the entry")
+        raise ValueFault("is a count, which has no scatter", "remove the entry")
     if target.path != path:
         raise ValueFault("is not the canonical PATH", f"write {target.path}")
     if not material and value_at(tree, target.loc) is None:
@@ -68,7 +68,7 @@ def _read(loc: tuple[str, str], entry: dict[str, Any], target: Target) -> Iterat
 def _fit(
     loc: tuple[str, str], entry: dict[str, Any], target: Target, tree: dict[str, Any]
 ) -> Iterator[Fault]:
-    """Check that keys suit the distribution, bounds include the value, and samples are in range."""
+    """Check that the keys suit the distribution, and its range suits the value in the design."""
     shape = entry.get("distribution", "uniform" if "tolerance" in entry else None)
     if shape is None:
         yield Fault((*loc, "distribution"), "missing", 'add e.g. "distribution: normal"')
@@ -90,9 +90,9 @@ def _fit(
         return
     value = number_of(value_at(tree, target.loc))
     if "lower" in stated and target.path in (tree.get("variables") or {}):
-        message = "fixed bounds, while the optimiser varies the value"
+        message = "the bounds are fixed, while the optimiser varies the value"
         yield Fault(
-            (*loc, "lower"), message, "write half_width, factor or cv, which follow the value"
+            (*loc, "lower"), message, "write half_width, factor or cv, which move with the value"
         )
     elif value is not None:
         assert target.quantity is not None

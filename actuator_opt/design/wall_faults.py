@@ -1,6 +1,7 @@
 """Check barrel, rod and joint: impossible layers, unsuitable materials, unsuitable keys.
 
-The module of each joint in `joints` declares its keys of `retention` and its checks.
+Each joint of caps and head has a module in `joints`. This declares the keys of the block
+`retention` that the joint uses, and the checks of their values.
 """
 
 from __future__ import annotations
@@ -32,16 +33,16 @@ PLY_STRENGTHS = (
     "strength_1_tension", "strength_1_compression", "strength_2_tension",
     "strength_2_compression", "strength_12",
 )  # fmt: skip
-"""Strengths that every failure criterion needs; other strengths have defaults."""
+"""Strengths that every failure criterion needs; other strengths have default values."""
 
 _WITHOUT_PLIES = ("isotropic", "as_published")
-"""Wall models that do not check the failure of plies."""
+"""Wall models that do not predict the failure of plies."""
 
 _ELASTIC = (*PLY_CONSTANTS, "youngs_modulus", "poissons_ratio", "shear_modulus")
 
 
 def signs(view: FileView) -> Iterator[Fault]:
-    """Check that angles of balanced pairs have no sign, neither as values nor as bounds."""
+    """Check that the angle of a balanced pair is not negative, and neither is its lower bound."""
     for wall in lists_of(Ply):
         for index in range(len(view.items(*wall))):
             loc = (*wall, index, "angle")
@@ -54,7 +55,7 @@ def signs(view: FileView) -> Iterator[Fault]:
                     text = quantities.INPUTS["winding_angle"].text
                     yield Fault(
                         place,
-                        f"{text(angle)}: a balanced +-pair has no sign",
+                        f"{text(angle)}: the angle of a balanced +-pair has no sign",
                         f'write {text(-angle)}, or add "balanced: false" for one signed ply'
                         if place == loc
                         else f'write 0 deg or more, or add "balanced: false" to {spell(loc[:-1])}',
@@ -73,7 +74,7 @@ def barrel_model(view: FileView) -> Iterator[Fault]:
 
 
 def autofrettage(view: FileView) -> Iterator[Fault]:
-    """Check that autofrettage has a liner that yields above supply pressure, and outer layers."""
+    """Check that the autofrettage pressure exceeds supply, and that layers surround a liner."""
     loc = ("barrel", "autofrettage_pressure")
     pressure, supply = view.number(*loc), view.number("supply", "pressure")
     if pressure is None:
@@ -96,11 +97,14 @@ def autofrettage(view: FileView) -> Iterator[Fault]:
 
 
 def laminated_rod(view: FileView) -> Iterator[Fault]:
-    """Check that a laminated rod states no bore, and that only a laminated rod has fittings."""
+    """Check a laminated rod: its layers leave a bore, which the file does not state.
+
+    Only a laminated rod may have fittings.
+    """
     layers = len(view.items("rod", "layup"))
     if not layers:
         if view.has("rod", "fitting"):
-            remedy = "remove it, or add the layers: rod.layup"
+            remedy = "remove it, or add the layers as rod.layup"
             yield Fault(
                 ("rod", "fitting"), "only a rod with layup has fittings", remedy, at_key=True
             )
@@ -122,7 +126,7 @@ def laminated_rod(view: FileView) -> Iterator[Fault]:
         yield Fault(
             ("rod", "layup"),
             f"layers of {length_text(total)} leave no bore in a rod of {length_text(outer)}",
-            f"write less than {length_text(outer / 2)} in total, or a larger rod.outer_diameter",
+            f"write less than {length_text(outer / 2)} in total, or increase rod.outer_diameter",
             at_key=True,
         )
         return
@@ -130,7 +134,7 @@ def laminated_rod(view: FileView) -> Iterator[Fault]:
     if wall is not None and wall > room * (1 + 1e-9):
         yield Fault(
             ("rod", "fitting", "wall"),
-            f"{length_text(wall)}: the bore has a radius of {length_text(room)}",
+            f"{length_text(wall)}: too thick for a bore with a radius of {length_text(room)}",
             f"write at most {length_text(room)}, or remove it for a solid fitting",
         )
 
@@ -158,7 +162,7 @@ def _names(view: FileView, wall: Loc) -> list[str | None]:
 
 
 def _kinds(view: FileView, materials: MaterialLookup) -> Iterator[Fault]:
-    """Check that autofrettage has a metal liner, and a laminated rod has metal fittings."""
+    """Check for a metal liner under autofrettage, and for metal fittings in a laminated rod."""
     first = next(iter(_names(view, ("barrel", "layup"))), None)
     stated = view.number("barrel", "autofrettage_pressure") is not None
     if stated and first is not None and materials.kind(first) not in (None, "metal"):
@@ -175,12 +179,12 @@ def _kinds(view: FileView, materials: MaterialLookup) -> Iterator[Fault]:
         yield Fault(
             ("rod", "fitting"),
             "missing: a laminated rod needs bonded end fittings",
-            'add a block "fitting:" with adhesive, length',
+            'add a block "fitting:" with adhesive and length',
         )
 
 
 class _StatedProperties:
-    """Properties of the library, overridden by the design."""
+    """Properties of the library's materials; those that the design states replace them."""
 
     def __init__(self, view: FileView, materials: Properties) -> None:
         self.block = child(view.tree, "materials")
@@ -222,7 +226,7 @@ def _strengths(view: FileView, properties: _StatedProperties) -> Iterator[Fault]
 
 
 def _stiffness(view: FileView, properties: _StatedProperties) -> Iterator[Fault]:
-    """Check that with changed elastic constants, the stiffness is still positive definite."""
+    """Check that elastic constants changed by the design give a positive definite stiffness."""
     for name in properties.block if isinstance(properties.block, Mapping) else ():
         changed = [key for key in properties.changed(name) if key in _ELASTIC]
         numbers = properties.numbers(name) if changed else {}
@@ -234,7 +238,7 @@ def _stiffness(view: FileView, properties: _StatedProperties) -> Iterator[Fault]
             yield Fault(
                 ("materials", name, (ratios or changed)[-1]),
                 "these elastic constants are impossible: the stiffness is not positive definite",
-                "check the Poisson's ratios against the moduli: nu_12^2 < E_1/E_2 and similar",
+                "correct the Poisson's ratios or the moduli: nu_12^2 < E_1/E_2 and similar",
             )
 
 
@@ -242,12 +246,12 @@ _TYPE = ("retention", "type")
 
 
 def joint_of(view: FileView) -> Joint | None:
-    """The joint of a file; None if unknown."""
+    """The joint of caps and head that the file names; None if unknown."""
     return JOINTS.get(view.text(*_TYPE) or "")
 
 
 def keys(view: FileView) -> Iterator[Fault]:
-    """Check that all keys that the joint needs are stated, and no others."""
+    """Check that `retention` states all input keys that its joint needs, and no others."""
     joint = joint_of(view)
     if joint is None:
         return
@@ -260,7 +264,10 @@ def keys(view: FileView) -> Iterator[Fault]:
 
 
 def _unused(view: FileView, joint: Joint) -> Iterator[Fault]:
-    """Keys that are used neither by the joint nor by a joint among the choices, except defaults."""
+    """Yield a fault for each stated key that the joint does not use.
+
+    Keys that an alternative joint in `choices` uses are allowed, as are default values.
+    """
     alternatives = [JOINTS.get(name) for name in view.items("choices", ".".join(_TYPE))]
     used = _keys(candidate for candidate in (joint, *alternatives) if candidate is not None)
     for name, entry in entries(Retention).items():
@@ -277,7 +284,7 @@ def _unused(view: FileView, joint: Joint) -> Iterator[Fault]:
 
 
 def _keys(joints: Iterable[Joint]) -> set[str]:
-    """Keys of `retention` that only some joints use."""
+    """Keys of `retention` that these joints use."""
     return {field.key.partition(".")[0] for joint in joints for field in joint.fields}
 
 
@@ -286,7 +293,7 @@ def _have(joints: list[Joint]) -> str:
 
 
 def skirts(view: FileView) -> Iterator[Fault]:
-    """Check that the skirts of both ends do not meet on the barrel."""
+    """Check that the skirts of cap and head, which overlap the barrel, do not meet on it."""
     joint = joint_of(view)
     if joint is None or not joint.skirts:
         return
@@ -305,14 +312,14 @@ def skirts(view: FileView) -> Iterator[Fault]:
 
 
 def values(view: FileView) -> Iterator[Fault]:
-    """Faults that the joint reports for the values of the file."""
+    """Yield the faults that the module of the joint finds in the file's values."""
     joint = joint_of(view)
     if joint is not None:
         yield from joint.faults(view)
 
 
 class _EndMaterials:
-    """The library, overridden by the properties that the design states."""
+    """The library, where properties that the design states replace those of the library."""
 
     def __init__(self, view: FileView, materials: MaterialLookup) -> None:
         self._view, self._materials = view, materials
@@ -329,7 +336,7 @@ class _EndMaterials:
 
 
 def of_end_materials(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
-    """Faults of the joint that depend on the material library."""
+    """Yield the faults of the joint that depend on the material library."""
     view = FileView(tree)
     joint = joint_of(view)
     if joint is not None:

@@ -2,7 +2,7 @@
 
 If the design was read from a text, only changed values are replaced, so comments, units and layout
 are kept. A text that cannot be edited in this way is rewritten. The start file of `init` is a
-complete, commented design, every value with its unit.
+complete, commented design; every value has its unit.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def exact_text(value: float, quantity: Quantity | None, unit: str | None = None)
 
 
 def _candidates(value: float, unit: units.Unit) -> Iterator[str]:
-    """Texts in a unit for an SI value, shortest first, then for neighbouring numbers."""
+    """Yield texts in a unit for an SI value, shortest first, then for the nearest other numbers."""
     low = high = unit.from_si(value)
     for digits in (6, 9, 12, 15, 16, 17):
         yield f"{low:.{digits}g}"
@@ -105,11 +105,11 @@ def to_yaml(
 
 
 _TABLES = (("variables",), ("requirements",), ("measured",), ("uncertainty",))
-"""Tables of sections under free names."""
+"""Tables whose entries are sections with free names."""
 
 
 class _CannotEdit(Exception):
-    """The text cannot be edited: flow style, removed blocks, changed number of plies."""
+    """The text cannot be edited: it has flow style, or blocks or plies were added or removed."""
 
 
 class _Edit(NamedTuple):
@@ -122,7 +122,7 @@ class _Edit(NamedTuple):
 
 
 class _Leaves:
-    """Writes the values of a design."""
+    """Writes the single values of a design as YAML."""
 
     def __init__(self, design: Design, metrics: Mapping[str, Quantity]) -> None:
         self.design = design
@@ -151,7 +151,7 @@ class _Leaves:
         return entry.quantity(value) if entry else None
 
     def text(self, loc: Loc, value: Any, old: str | None = None) -> str:
-        """YAML scalar of a value, in the unit of the text that it replaces."""
+        """YAML scalar of a value, in the unit of the text `old` that it replaces."""
         number = number_of(value)
         if number is None:
             return str(value).lower() if isinstance(value, bool) else scalar(value)
@@ -181,7 +181,7 @@ class _Leaves:
 
 
 def _is_default(key: str, value: Any, section: type[Section] | None, loc: Loc, design: Any) -> bool:
-    """Whether a value can be left out of the file."""
+    """Whether a value equals its default and can therefore be left out of the file."""
     if loc[0] == "variables" and key == "start":
         target = resolve(str(loc[1]), design)
         return bool(number_of(value_at(design, target.loc)) == number_of(value))
@@ -201,7 +201,7 @@ def _below(section: type[Section] | None, key: str) -> type[Section] | None:
 def _stated(
     node: dict[str, Any], section: type[Section] | None, design: Design, loc: Loc = ()
 ) -> dict[str, Any]:
-    """Convert a section to a tree, without values that equal the model's defaults."""
+    """Convert a section to a tree, without the values that equal their defaults."""
     stated: dict[str, Any] = {}
     table = loc in _TABLES
     for key, value in node.items():
@@ -252,7 +252,7 @@ def _edited_text(design: Design, document: Document | None, metrics: Mapping[str
 
 
 def _in_list_form(document: Document) -> Document | None:
-    """Rewrite compact lay-ups of a document as lists; None if it has none."""
+    """Rewrite compact lay-ups of a document as lists of layers; None if nothing is compact."""
     text, newline = document.text, "\r\n" if "\r\n" in document.text else "\n"
     for shorthand in sorted(document.shorthands, key=lambda s: s.entry.start, reverse=True):
         start, end = shorthand.entry.start, shorthand.entry.end
@@ -274,7 +274,7 @@ def _in_list_form(document: Document) -> Document | None:
 
 
 def _as_read(text: str) -> str:
-    """Write a text of the file as YAML; booleans and numbers with a unit need no quotes."""
+    """Write a scalar of the file as YAML; booleans and numbers with a unit need no quotes."""
     plain = text == "false" or re.fullmatch(r"[+-]?[\w.]+ \w+", text)
     return text if plain else scalar(text)
 
@@ -311,7 +311,7 @@ def _compare(
     writer: _Leaves,
     edits: list[_Edit],
 ) -> None:
-    """Compare a block with the document and collect its edits."""
+    """Compare a block with the document, and add the necessary edits to `edits`."""
     if not isinstance(old, dict) or any(key not in node for key in old):
         raise _CannotEdit
     table = loc in _TABLES
@@ -339,7 +339,7 @@ def _compare(
 def _replacement(
     value: Any, old: Any, loc: Loc, document: Document, writer: _Leaves
 ) -> Iterator[_Edit]:
-    """Edit that replaces a value, if it changed."""
+    """Yield the edit that replaces a value, if the value changed."""
     if not isinstance(old, str):
         raise _CannotEdit
     if writer.same(loc, value, old):
@@ -351,7 +351,7 @@ def _replacement(
 
 
 def _insertion(stated: dict[str, Any], loc: Loc, document: Document, writer: _Leaves) -> _Edit:
-    """Edit that adds new values at the end of a block, below the line of its last value."""
+    """The edit that adds new values at the end of a block, below its last line."""
     text = document.text
     block = document.values[loc]
     if document.shorthand(loc):
@@ -393,7 +393,7 @@ fluid:
 supply:
   pressure: 100 bar            # gauge, at the actuator's port
   return_pressure: 2 bar
-  proof_ratio: 1.5             # proof pressure over supply pressure
+  proof_ratio: 1.5             # proof pressure divided by supply pressure
 
 environment:
   temperature_min: -20 degC
@@ -416,8 +416,8 @@ barrel:
     - material: t700_epoxy     # hoop layer: carries the pressure
       angle: 88 deg            # from the tube axis; a balanced +- pair
       thickness: 1.2 mm
-                               # or both composite layers: plies: "+-88_3 / +-20_2" and
-                               # ply_thickness: 0.2 mm instead of angle and thickness
+                               # one entry can also state both composite layers, with
+                               # plies: "+-88_3 / +-20_2" and ply_thickness: 0.2 mm
     - material: t700_epoxy     # axial layer: carries the end forces
       angle: 20 deg
       thickness: 0.8 mm
@@ -496,10 +496,11 @@ lines:                         # between valve and chambers; optional
 
 load:
   mass: 20 kg                  # moving mass, reflected to the rod
-# linkage:                     # two pivots about a joint: allows joint_torque without lever_arm,
-#   base_radius: 280 mm        # joint_angle, joint_speed and load.inertia
-#   crank_radius: 70 mm        # joint axis to the crank pin
-#   angle_offset: 10 deg       # between both radii at joint angle 0; grows as it extends
+# linkage:                     # joint that the actuator drives: allows joint_angle, joint_speed,
+#                              # load.inertia, and joint_torque without lever_arm
+#   base_radius: 280 mm        # from joint axis to fixed pivot
+#   crank_radius: 70 mm        # from joint axis to crank pin
+#   angle_offset: 10 deg       # angle between the radii at joint angle 0; extending increases it
 
 load_cases:                    # every requirement holds in the worst case
   - name: stance

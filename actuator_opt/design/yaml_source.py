@@ -53,7 +53,7 @@ class NodeSpan(NamedTuple):
 
 
 class Shorthand(NamedTuple):
-    """Entries `first` to `first + layers - 1` of a list, written as one compact entry."""
+    """One compact entry of a lay-up, expanded to the entries `first` to `first + layers - 1`."""
 
     wall: Loc
     first: int
@@ -74,11 +74,11 @@ class Document:
     faults: list[Diagnostic] = field(default_factory=list)
     """Faults that do not stop the parser: duplicate keys, tags, anchors."""
     unusable: set[Loc] = field(default_factory=set)
-    """Locations of unreadable values (aliases)."""
+    """Locations of values that cannot be read (aliases)."""
     shorthands: tuple[Shorthand, ...] = ()
-    """Layers in compact notation, expanded by `layup.expanded`."""
+    """Entries in compact notation, which `layup.expanded` replaces by layers."""
     kind: str = "design"
-    """Kind of the file, in words."""
+    """Kind of the file: design, scenario or units."""
 
     def shorthand(self, loc: Loc) -> Shorthand | None:
         """The compact entry that contains a location."""
@@ -157,19 +157,19 @@ class _Stop(Exception):
 
 @dataclass(slots=True)
 class _Frame:
-    """An open mapping or list; `loc` None means that its content is discarded."""
+    """A mapping or list that the parser has not closed yet; if `loc` is None, it is discarded."""
 
     node: dict[str, Any] | list[Any]
     loc: Loc | None
     start: Any
     key: str | None = None
-    """Key of the next value; None if a key is expected."""
+    """Key of the next value; None if a key must come next."""
     drop: bool = False
     """Whether the next value belongs to a refused key and is dropped."""
 
 
 class _Builder:
-    """Builds the tree from parser events, iteratively, with limits of depth and size."""
+    """Builds the tree from parser events, without recursion, and limits its depth and size."""
 
     def __init__(self, document: Document) -> None:
         self.document = document
@@ -185,7 +185,7 @@ class _Builder:
             if isinstance(event, yaml.DocumentStartEvent):
                 documents += 1
                 if documents > 1:
-                    advice = f"one {self.document.kind} per file"
+                    advice = f"write one {self.document.kind} per file"
                     self._stop(event, "a second document starts here", advice)
             elif isinstance(event, yaml.NodeEvent):
                 nodes += 1
@@ -246,7 +246,7 @@ class _Builder:
             self.document.keys[loc] = _span(event)
 
     def _refuse_key(self, frame: _Frame, event: Any) -> None:
-        """Read and discard a key that is a block or list, and its value."""
+        """Skip a key that is itself a block or list, together with its value."""
         frame.key, frame.drop = "", True
         if isinstance(event, (yaml.MappingStartEvent, yaml.SequenceStartEvent)):
             node: Any = {} if isinstance(event, yaml.MappingStartEvent) else []
@@ -288,7 +288,7 @@ class _Builder:
         if event.anchor is not None:
             self._fault(event, f'anchor "&{event.anchor}"', "remove it")
         if event.tag is not None:
-            self._fault(event, f'tag "{shown(event.tag)}"', "remove it, values are text")
+            self._fault(event, f'tag "{shown(event.tag)}"', "remove it; values are read as text")
 
     def _fault(self, event: Any, message: str, remedy: str) -> None:
         if len(self.document.faults) < 100:

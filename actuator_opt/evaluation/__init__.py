@@ -1,4 +1,4 @@
-"""Evaluation: combines design and models into every metric of one or many designs."""
+"""Evaluation: applies the models to one or many designs and computes all their metrics."""
 
 from __future__ import annotations
 

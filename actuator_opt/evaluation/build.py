@@ -1,7 +1,8 @@
 """Evaluation of a design with its requirements, checks and warnings; margins of many designs.
 
-A deviation of bore, rod, glands or housings from standard sizes gives a remark; it is not a limit.
-If many designs are evaluated at once, each gets only the governing value of every metric and limit.
+If bore, rod, glands or housings deviate from standard sizes, the result has a remark but no limit
+is missed. Designs that are evaluated together get only the governing value of every metric and
+limit.
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ from .wall_study import study as wall_study
 PLACES: tuple[Place, ...] = ("piston", "rod")
 
 NEAR = 0.02
-"""Relative difference from a standard housing's depth or length below which no remark is made."""
+"""Relative difference from a standard housing's depth or length above which a remark is made."""
 
 NO_ANSWER = "not computable for these dimensions"
 NOT_COMPUTED = "not computed for this design"
@@ -64,7 +65,7 @@ _SIZES, _GLANDS, _SECTIONS = "standard sizes", "standard glands", "ISO 3601-2 se
 
 
 def sizes(design: Design) -> Check:
-    """State whether bore and rod are ISO 3320 sizes; if not, name the nearest sizes."""
+    """Check whether bore and rod are ISO 3320 sizes; if not, name the nearest sizes."""
     nonstandard = []
     dimensions: tuple[tuple[Literal["bore", "rod"], float], ...] = (
         ("bore", design.cylinder.bore),
@@ -75,23 +76,26 @@ def sizes(design: Design) -> Check:
         if abs(near - value) > 1e-9:
             nonstandard.append(f"{part} {1e3 * value:.4g} mm (nearest {1e3 * near:g} mm)")
     if nonstandard:
-        reason = "free sizes: " + ", ".join(nonstandard)
+        reason = "sizes that are not standard: " + ", ".join(nonstandard)
         return Check(_SIZES, "not_checked", reason, source="ISO 3320")
     return Check(_SIZES, "met", "bore and rod are standard sizes", source="ISO 3320")
 
 
 def glands(rings: Iterable[Ring]) -> Check:
-    """State whether every groove conforms to a standard; if not, list the differences."""
+    """Check whether every groove conforms to a standard; if not, list the differences."""
     nonstandard = [text for ring in rings for text in _remarks(floats(ring, 0))]
     if nonstandard:
         return Check(
-            _GLANDS, "not_checked", "free glands: " + "; ".join(nonstandard), source=_SECTIONS
+            _GLANDS,
+            "not_checked",
+            "glands that are not standard: " + "; ".join(nonstandard),
+            source=_SECTIONS,
         )
     return Check(_GLANDS, "met", "all glands are standard", source=_SECTIONS)
 
 
 def _remarks(ring: Ring) -> Iterator[str]:
-    """List the deviations of a groove from its standard."""
+    """Yield the deviations of a ring's groove from its standard."""
     if ring.element.seal_type.o_ring_gland:
         yield from _o_ring(ring)
     elif any(housings(ring.element.type, place) for place in PLACES):
@@ -119,7 +123,7 @@ def _o_ring(ring: Ring) -> Iterator[str]:
     for deviation in deviations:
         scale, unit = (1e3, "mm") if deviation.quantity == "groove width" else (100, "%")
         yield (
-            f"{ring.label}: {deviation.quantity} {scale * deviation.value:.3g} {unit}, "
+            f"{ring.label}: {deviation.quantity} {scale * deviation.value:.3g} {unit}, standard "
             f"{scale * deviation.lower:.3g} to {scale * deviation.upper:.3g} {unit}"
         )
 
@@ -142,8 +146,8 @@ def _housing(ring: Ring) -> Iterator[str]:
         for housing in standard_housings[:2]
     )
     yield (
-        f"{ring.label}: groove {1e3 * depth:.3g} x {1e3 * length:.3g} mm, "
-        f"{standard_housings[0].standard} has {listed} mm"
+        f"{ring.label}: the groove is {1e3 * depth:.3g} x {1e3 * length:.3g} mm, in "
+        f"{standard_housings[0].standard} it is {listed} mm"
     )
 
 
@@ -201,7 +205,7 @@ def prepare(
 
 
 def spec_hash(subject: PreparedDesign) -> str:
-    """Hash of the inputs that determine the result: design, material data, program version."""
+    """Hash of all inputs that determine the result: design, material data and program version."""
     design = subject.design.model_dump(mode="json")
     if not design["uncertainty"]:  # unset fields are left out: hashes of older designs stay valid
         del design["uncertainty"]
@@ -278,7 +282,7 @@ def _metric(
         computed_at_all = name in computed.metrics
         why = computed.why.get(name, NO_ANSWER if computed_at_all else NOT_COMPUTED)
         if value == math.inf:
-            why = computed.why.get(name, "no load, so the safety factor is unlimited")
+            why = computed.why.get(name, "there is no load, so the safety factor is unlimited")
         definition = None if name in METRICS else subject.quantities[name]
         return Metric(name=name, value=None, why=why, definition=definition)
     _, case, place = next(row for row in rows if row[0] == value)
@@ -413,7 +417,7 @@ def _against(check: Check) -> str:
         return check.reason
     quantity = METRICS[check.metric]
     word = "at least" if check.sense == "min" else "at most"
-    return f"{quantity.text(check.value)}, should be {word} {quantity.text(check.limit)}"
+    return f"{quantity.text(check.value)}, but should be {word} {quantity.text(check.limit)}"
 
 
 def _curve(run: ModelRun, v: Values, case: str | None) -> StrokeCurve:
@@ -439,8 +443,8 @@ class Many:
     """Results of many designs, arrays (designs,).
 
     `metrics` are the governing values, NaN if missing. `margin` is the smallest margin of all
-    limits, including the check list; `missed` is the index in `limits` of the limit with this
-    margin. `read` are the PATHs that models and limits have read.
+    limits, including those of the check list. `missed` is the index in `limits` of the limit with
+    this margin. `read` are the PATHs of the numbers that models and limits have used.
     """
 
     metrics: dict[str, Array]
@@ -521,7 +525,7 @@ def margins_many(
 def _margins(
     limits: Sequence[MetricLimit], computed: MetricArrays, v: Values, count: int
 ) -> Iterator[tuple[int, Array]]:
-    """Yield the index of a limit with its margins (designs,), for each load case and location."""
+    """Yield (index of limit, its margins (designs,)) for each limit, load case and location."""
     for number, limit in enumerate(limits):
         for row in rows_of(limit, computed, v):
             yield number, np.broadcast_to(row.margin, (count,))

@@ -1,4 +1,4 @@
-"""Hydraulic circuit of the chambers: lines, throttles, valve, boundary conditions of the lines."""
+"""Hydraulic circuit at the chambers: lines, throttles, valve, and conditions at the lines' ends."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ class ChamberLines:
     resistance: Array = 0.0
     inertance: Array = 0.0
     far: Array = 0.0
-    """Compliance at the line node away from the chamber, in the dynamic model. It is half of every
-    line (pi element), or all lines beyond the throttle if there is one."""
+    """Compliance at the node of the dynamic model away from the chamber. It contains half of every
+    line (pi element), or, with a throttle, all lines beyond the throttle."""
 
 
 def wall_compliance(v: Values, line: Line, at: str) -> Array:
-    """Expansion of the volume of a line per pressure, from its wall alone."""
+    """Compliance [m^3/Pa] of a line's wall: volume by which the line expands per unit pressure."""
     if line.rigid:
         return 0.0
     material = f"materials.{line.material}."
@@ -50,7 +50,7 @@ def wall_compliance(v: Values, line: Line, at: str) -> Array:
 
 
 def branches(v: Values, design: Design, state: LoadState) -> dict[Chamber, ChamberLines]:
-    """Lumped lines of chambers A and B."""
+    """Lumped properties of the lines of chambers A and B."""
     throttled = design.ports.throttle is not None
     modulus = {"a": state.bulk_modulus_a, "b": state.bulk_modulus_b}
     viscosity = {"a": state.dynamic_viscosity_a, "b": state.dynamic_viscosity_b}
@@ -80,7 +80,7 @@ def branches(v: Values, design: Design, state: LoadState) -> dict[Chamber, Chamb
 
 
 class Ways(NamedTuple):
-    """A property of a chamber that depends on the direction of the piston."""
+    """A property of a chamber that has one value for each direction of motion."""
 
     extending: Array
     retracting: Array
@@ -91,7 +91,7 @@ class Ways(NamedTuple):
 
 
 class LinearValve(NamedTuple):
-    """The valve linearised at the spool position that holds the load."""
+    """The valve, linearised about the spool position at which it holds the load."""
 
     gains: dict[Chamber, Ways]
     """Flow gains K_q into the lines [m^3/s/V], by spool direction."""
@@ -99,12 +99,12 @@ class LinearValve(NamedTuple):
     """Flow-pressure coefficients K_c [m^3/s/Pa]; empty if the valve does not leak."""
 
     def held(self, chamber: Chamber) -> LineEnd:
-        """Boundary condition that the valve sets for a chamber's line while it holds the load."""
+        """Condition at the valve end of a chamber's line while the valve holds the load."""
         ways = self.conductances.get(chamber)
         return LineEnd((maximum(*ways),)) if ways else line_ends.CLOSED
 
     def driving(self, chamber: Chamber, extending: Array) -> LineEnd:
-        """Boundary condition that the valve sets for a chamber's line while it drives the load."""
+        """Condition at the valve end of a chamber's line while the valve moves the load."""
         ways = self.conductances.get(chamber)
         return LineEnd((ways.toward(extending),)) if ways else line_ends.CLOSED
 
@@ -113,7 +113,7 @@ class Edges(NamedTuple):
     """Flow coefficients of the valve's metering edges [m^3/s/sqrt(Pa)]."""
 
     rated: Array
-    """Coefficient of a fully open edge, at the viscosity of the oil."""
+    """Coefficient of a fully open edge, corrected for the viscosity of the oil."""
     supply: Array
     """Coefficient of the supply edges P-A and P-B with the spool centred."""
     tank: Array
@@ -141,7 +141,7 @@ def valve_edges(v: Values, design: Design, state: LoadState) -> Edges:
 
 
 def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) -> LinearValve | None:
-    """Linearise the valve at the holding pressures, where it supplies the leakage."""
+    """Linearise the valve while it holds the load and makes up for leakage; None without valve."""
     if design.valve is None:
         return None
     edges = valve_edges(v, design, state)
@@ -174,7 +174,7 @@ def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) ->
 def throttle_conductances(
     v: Values, design: Design, state: LoadState, geometry: Geometry
 ) -> dict[Chamber, Ways]:
-    """Conductance of the throttles by piston direction, at the flow for each load case's speed."""
+    """Conductance of the throttles by piston direction, for the flow of each load case."""
     if design.ports.throttle is None:
         return {}
     at = "ports.throttle."
@@ -206,7 +206,7 @@ def line_end(
     accumulators: tuple[LineEnd, ...],
     chamber: Chamber,
 ) -> LineEnd:
-    """Boundary condition at the end of a chamber's line while the load excites the actuator."""
+    """Condition at the end of a chamber's line while an oscillating load excites the actuator."""
     ends = list(accumulators)
     kind = design.ports.end
     if kind == "valve" and holding is not None:
@@ -229,7 +229,7 @@ def line_end(
 def accumulator_ends(
     v: Values, design: Design, state: LoadState, chamber: Chamber
 ) -> tuple[LineEnd, ...]:
-    """Boundary conditions set by all accumulators on the line of a chamber."""
+    """Conditions that the accumulators set at the end of a chamber's line."""
     ends = []
     for i, entry in enumerate(design.ports.accumulators):
         if entry.chamber != chamber:

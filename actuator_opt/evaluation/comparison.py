@@ -1,7 +1,8 @@
-"""Comparison of designs: inputs that differ, and the parts that explain the different results.
+"""Comparison of designs: inputs that differ, and contributions that explain different results.
 
 The comparison answers which design is lighter, stiffer and smoother. It splits each answer into
-contributions that add up: mass of parts, compliances at the weakest position, friction of seals.
+contributions that add up: masses of parts, compliances of parts at the stroke position of least
+stiffness, friction of seals.
 """
 
 from __future__ import annotations
@@ -28,16 +29,16 @@ Name: TypeAlias = Literal["lighter", "stiffer", "smoother"]
 SAME = 1e-9
 """Relative difference up to which two numbers count as equal. Our choice, above rounding errors."""
 _IDLE = ("name", "notes")
-"""Keys of a design without effect on the result."""
+"""Keys of a design that do not affect its results."""
 _DUTY = ("supply", "load", "load_cases", "fluid", "environment", "linkage")
-"""Keys of a design that state its duty: supply, load and environment."""
+"""Blocks of a design that state its duty."""
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """An input that differs, with one value per design: a number (SI), a word, or None if absent.
+    """An input that differs, with its value in each design: a number (SI), a word, or None.
 
-    A block that only some designs have is a single change with the value "given".
+    A block that only some designs have is a single change; its value is "given" in these designs.
     """
 
     path: str
@@ -49,9 +50,9 @@ class Change:
 class Question:
     """Which design is better by a metric, and the contributions of parts that explain it.
 
-    `values` are the values of the metric (SI), one per design. `parts` are contributions that add
-    up: mass in kg, compliance in m/N, friction in N. `best` and `other` are the indices of the two
-    designs whose parts are compared; both are None if no design is better.
+    `values` are the values of the metric (SI), one per design. `parts` are the contributions of
+    parts, whose sum is compared: mass in kg, compliance in m/N, friction in N. `best` and `other`
+    are the indices of the two designs whose parts are compared; None if no design is better.
     """
 
     name: Name
@@ -63,7 +64,7 @@ class Question:
 
     @property
     def steps(self) -> tuple[tuple[str, float], ...]:
-        """Change of each part's contribution (SI) from `other` to `best`, largest first."""
+        """Change of each part's contribution (SI) from design `other` to `best`, largest first."""
         if self.best is None or self.other is None:
             return ()
         rows = [(part, x[self.best] - x[self.other]) for part, x in self.parts.items()]
@@ -71,7 +72,7 @@ class Question:
 
     @property
     def leaders(self) -> tuple[int, ...]:
-        """Indices of the best design and of designs equal to it; empty without a best design."""
+        """Indices of the best design and of designs with an equal value; empty if none is best."""
         best = None if self.best is None else self.values[self.best]
         if best is None:
             return ()
@@ -81,7 +82,7 @@ class Question:
 
 @dataclass(frozen=True, slots=True)
 class DesignState:
-    """Whether a compared design is an optimum.
+    """Whether a compared design is known to be an optimum.
 
     `status` is the status of the optimisation; None if the design was only evaluated.
     """
@@ -91,7 +92,7 @@ class DesignState:
 
     @property
     def word(self) -> Literal["optimum", "evaluated"]:
-        """The state in JSON."""
+        """Word for the state in JSON."""
         return "optimum" if self.optimum else "evaluated"
 
 
@@ -100,14 +101,14 @@ class Comparison(Displayed):
     """Designs side by side; the first design is the reference."""
 
     labels: tuple[str, ...]
-    """A, B, C, ..."""
+    """Letter of each design: A, B, C, ..."""
     origins: tuple[str, ...]
     """File or run of each design."""
     evaluations: tuple[Evaluation, ...]
     changes: tuple[Change, ...]
     questions: tuple[Question, ...]
     states: tuple[DesignState, ...] = ()
-    """Which designs are optima."""
+    """Whether each design is an optimum; empty if unknown."""
 
     @property
     def not_optimised(self) -> tuple[int, ...]:
@@ -116,9 +117,10 @@ class Comparison(Displayed):
 
     @property
     def unlike(self) -> Mapping[str, tuple[Sense | None, ...]]:
-        """Metrics governed by their smallest value in one design and by their largest in another.
+        """Metrics whose smallest value governs in one design and whose largest governs in another.
 
-        This happens where the designs limit or optimise a metric in opposite senses.
+        This happens where designs limit or optimise a metric in opposite senses. The values are
+        the senses in each design.
         """
         names = dict.fromkeys(name for e in self.evaluations for name in e.metrics)
         by_metric = {name: _senses(name, self.evaluations) for name in names}
@@ -126,18 +128,21 @@ class Comparison(Displayed):
 
     @property
     def duties_differ(self) -> tuple[str, ...]:
-        """PATHs of the duty inputs that differ between the designs."""
+        """PATHs of differing inputs that state the duty, such as supply, load and environment."""
         roots = ((c.path, c.path.partition(".")[0].partition("[")[0]) for c in self.changes)
         return tuple(path for path, root in roots if root in _DUTY)
 
     def limits(self) -> Iterator[tuple[str, str, tuple[Any, ...]]]:
-        """Name, sense and results (one per design, None if it lacks it) of every requirement."""
+        """Yield name, sense and results of every requirement.
+
+        There is one result for each design; None if the design lacks the requirement.
+        """
         known = [{(r.name, r.sense): r for r in e.requirements} for e in self.evaluations]
         for key in dict.fromkeys(key for rows in known for key in rows):
             yield *key, tuple(rows.get(key) for rows in known)
 
     def metrics(self) -> Iterator[tuple[str, Quantity, tuple[float | None, ...]]]:
-        """Names of all metrics that have a value in at least one design."""
+        """Yield name, quantity and values of all metrics with a value in at least one design."""
         names = dict.fromkeys(name for e in self.evaluations for name in e.metrics)
         for name in names:
             rows = [e.metrics.get(name) for e in self.evaluations]
@@ -146,7 +151,7 @@ class Comparison(Displayed):
                 yield name, next(row.quantity for row in rows if row is not None), values
 
     def to_dict(self) -> dict[str, Any]:
-        """The `compare --json` object (SI), without the sentences."""
+        """The object that `compare --json` writes (SI), without its sentences."""
         return {
             "designs": [
                 {
@@ -202,7 +207,7 @@ def compare(
     ----------
     evaluations : two or more; the first is the reference
     origins : file or run of each design, in words
-    states : which are optima; default: unknown
+    states : whether each design is an optimum; default: unknown
 
     Raises
     ------
@@ -253,7 +258,7 @@ def _union(parts: Sequence[Mapping[str, float]]) -> dict[str, tuple[float, ...]]
 
 
 def _senses(metric: str, evaluations: Sequence[Evaluation]) -> tuple[Sense | None, ...]:
-    """Whether the smallest or largest value governs each design; None if it has only one value."""
+    """Whether the smallest or largest value of a metric governs each design; None if neither."""
     rows = [e.metrics.get(metric) for e in evaluations]
     return tuple(None if row is None or row.value is None else row.sense for row in rows)
 
@@ -261,7 +266,7 @@ def _senses(metric: str, evaluations: Sequence[Evaluation]) -> tuple[Sense | Non
 def _question(
     name: Name, metric: str, evaluations: Sequence[Evaluation], parts: dict[str, tuple[float, ...]]
 ) -> Question:
-    """Compare the best design with the first, or the first with the second best if it is best."""
+    """Compare the best design with the first, or with the second best if the first is best."""
     values = tuple(e.metrics[metric].value for e in evaluations)
     sign = -1.0 if name == "stiffer" else 1.0
     known = [(sign * v, k) for k, v in enumerate(values) if v is not None and math.isfinite(v)]
@@ -276,14 +281,17 @@ def _question(
 
 
 class _Missing:
-    """Marks a missing value."""
+    """Type of the object that marks a missing value."""
 
 
 _MISSING = _Missing()
 
 
 def _tree(design: Design) -> dict[str, Any]:
-    """Inputs that affect the result, without starting points of the search; load cases by name."""
+    """Inputs of a design that affect its result, with load cases by name.
+
+    Starting values of variables are left out.
+    """
     tree = {key: value for key, value in to_tree(design).items() if key not in _IDLE}
     tree["variables"] = {
         path: {key: value for key, value in variable.items() if key != "start"}
@@ -297,11 +305,14 @@ def _tree(design: Design) -> dict[str, Any]:
 
 
 class _Named(dict[str, Any]):
-    """A list whose entries have names in brackets."""
+    """A list of named entries; their PATHs have the names in brackets."""
 
 
 def _differences(nodes: Sequence[Any], path: str) -> Iterator[tuple[str, tuple[Any, ...]]]:
-    """Yield PATH and values of all differences; a block that is missing in some counts once."""
+    """Yield PATH and values of all differences.
+
+    A block that some designs lack is one difference.
+    """
     if all(_same(node, nodes[0]) for node in nodes):
         return
     if all(isinstance(node, dict) for node in nodes):

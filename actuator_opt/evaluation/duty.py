@@ -1,4 +1,4 @@
-"""Life and service of an actuator: pressure cycles, end stop, temperature, trapped oil."""
+"""Life and service limits of an actuator: pressure cycles, end stop, temperature, trapped oil."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ def compute(
 ) -> None:
     """Compute all life and service metrics.
 
-    `net` is the net force in every load case, `stop` the net force when the piston runs into a
-    stop.
+    `net` is the net force of the actuator in every load case. `stop` has force, speed and mass of
+    the load when the piston runs into a stop.
     """
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
@@ -61,7 +61,7 @@ def _endurance(
     pull: Array,
     out: MetricArrays,
 ) -> None:
-    """Compute the pressure-cycle life of metal wall layers, rod (push/pull) and thread roots."""
+    """Compute the pressure-cycle life of metal layers, the rod (push and pull) and thread roots."""
     cycles = wall.cycles | rod_strength.cycles(design, section, supply, push, pull)
     loads = [(place, c.material, c.span, c.mean) for place, c in cycles.items()]
     if design.rod.thread is not None:
@@ -102,7 +102,7 @@ def _endurance(
         if values:
             out.put(metric, values)
         else:
-            out.skip(metric, f"unknown fatigue strength of {', '.join(dict.fromkeys(unknown))}")
+            out.skip(metric, f"fatigue strength is unknown for {', '.join(dict.fromkeys(unknown))}")
 
 
 def _end_stop(
@@ -117,11 +117,12 @@ def _end_stop(
 ) -> None:
     """Compute energy and peak pressure when the piston hits its stop at the speed of the load case.
 
-    The load still acts; the net force of pressure and load drives the piston into the stop.
+    During the impact, the load still acts, and the net force of pressure and load drives the piston
+    into the stop.
     """
     if design.cylinder.end_stop == "external":
         for name in ("end_stop_energy", "end_stop_pressure", "end_stop_factor"):
-            out.skip(name, "the end stop is outside the actuator")
+            out.skip(name, "the end stop is external, not in the actuator")
         return
     stiffness = end_stop.stop_stiffness(
         area=g.area_a, pressure=supply, travel=v["cylinder.stop_travel"]
@@ -152,7 +153,7 @@ def _trapped(
     supply: Array,
     out: MetricArrays,
 ) -> None:
-    """Compute the pressure of oil that warms up between blocked ports."""
+    """Compute the pressure of trapped oil that warms up while the ports are blocked."""
     environment = design.environment
     rise = None if environment is None else environment.trapped_rise
     oil = design.fluid.material
@@ -177,7 +178,7 @@ def _trapped(
 
 
 def _layers(stock: MaterialValues, wall: Wall, out: MetricArrays) -> None:
-    """Compute metrics that only a multi-layer wall has: liner and fibres, cold and in service."""
+    """Compute metrics that only a wall of several layers has, for its liner, fibres and bonds."""
     ranges, strains = {}, {}
     for place, cycle in wall.cycles.items():
         strength = stock.allowable(cycle.material, "yield_strength", "ultimate_strength")
@@ -199,7 +200,7 @@ def _layers(stock: MaterialValues, wall: Wall, out: MetricArrays) -> None:
         (
             "ply_fatigue_factor",
             wall.ply_fatigue,
-            "no plies with a known fatigue strength",
+            "there are no plies with a known fatigue strength",
         ),
     ):
         if values:
@@ -228,8 +229,9 @@ def _clearance(
 ) -> None:
     """Compute the radial clearance of piston and rod at the coldest and hottest temperature.
 
-    Clearance: c + r (alpha_outside - alpha_inside) dT, with the clearance c at assembly, radius r,
-    expansion coefficients alpha of the outer and inner part, and dT from the assembly temperature.
+    The clearance is c + r (alpha_outside - alpha_inside) dT, with the clearance c at assembly, the
+    radius r, the expansion coefficients alpha of outer and inner part, and the temperature change
+    dT since assembly.
     """
     if design.environment is None:
         out.skip("clearance_min", "no temperature range stated: add environment")

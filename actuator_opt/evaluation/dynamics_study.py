@@ -1,4 +1,4 @@
-"""Dynamics along the stroke and over frequency: modes, Bode data, transmission-line stiffness.
+"""Dynamics along the stroke and over frequency: modes, Bode data, and distributed lines.
 
 SI units. Only the governing load case and stroke position are studied.
 """
@@ -26,7 +26,7 @@ from .values import Values, of_case, plain
 
 
 def _end(end: LineEnd, frequencies: Array, index: int) -> Array:
-    """Admittance at the end of a line; infinite at constant pressure."""
+    """Admittance (flow per unit pressure) at the end of a line; infinite at constant pressure."""
     case_end = LineEnd(
         tuple(of_case(c, index) for c in end.numerator),
         tuple(of_case(c, index) for c in end.denominator),
@@ -43,7 +43,7 @@ def port_admittance(
     index: int,
     frequencies: Array,
 ) -> Array:
-    """Complex admittance at a chamber port, by frequency: flow into the lines per pressure."""
+    """Complex admittance at a chamber port by frequency: flow into its lines per unit pressure."""
     modulus = of_case(state.bulk_modulus_a if chamber == "a" else state.bulk_modulus_b, index)
     viscosity = state.dynamic_viscosity_a if chamber == "a" else state.dynamic_viscosity_b
     density = of_case(state.density, index)
@@ -103,9 +103,9 @@ def dynamic_stiffness(
 ) -> Array:
     """Complex dynamic stiffness at a position, with the lines as transmission lines.
 
-    k_p = k_s + B s + s a^T M^-1 a, with the seal stiffness k_s, damping B, piston areas a, and the
-    matrix M of chamber compliances and port admittances. The compliance of the rod is in series
-    with k_p; the mass is at its far end.
+    At the piston it is k_p = k_s + B s + s a^T M^-1 a, with seal stiffness k_s, damping B, piston
+    areas a, and the matrix M of chamber compliances and port admittances. The compliance of the rod
+    is in series with k_p, and the mass is at the outer end of the rod.
     """
     s = 2j * pi * frequencies
     budget = motion.springs
@@ -136,12 +136,15 @@ def dynamic_stiffness(
 FREQUENCIES = np.geomspace(0.1, 1000.0, 121)
 """Frequencies of the responses [Hz]; more are added around every resonance."""
 AROUND = np.array([-8.0, -3.0, -1.0, 0.0, 1.0, 3.0, 8.0])
-"""Extra frequencies at a resonance, in half-widths from its peak, so that no peak is missed."""
+"""Distances of extra frequencies from a resonance, as multiples of its half-width.
+
+With these frequencies, no peak is missed.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Pole:
-    """A pole of the held actuator: frequency [Hz] and damping ratio (above 1: overdamped)."""
+    """A pole of the actuator that holds a load: frequency [Hz] and damping ratio (1: real pole)."""
 
     frequency: float
     damping_ratio: float
@@ -149,7 +152,7 @@ class Pole:
 
 @dataclass(frozen=True, slots=True)
 class ShakenCase:
-    """A load case with excitation, at the stroke position where its dynamic stiffness is least."""
+    """A load case with an oscillating load, at its stroke position of least dynamic stiffness."""
 
     name: str
     frequency: float
@@ -158,12 +161,15 @@ class ShakenCase:
     stiffness: float
     """Dynamic stiffness [N/m]."""
     phase: float
-    """Phase lead of the force over the displacement [rad]."""
+    """Phase by which the force leads the displacement [rad]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """Dynamic stiffness [N/m] and phase lead of the force [rad] over frequency, at one position."""
+    """Dynamic stiffness at one position, as a function of frequency.
+
+    `magnitude` is in N/m; `phase` is the angle by which the force leads the displacement [rad].
+    """
 
     place: str
     position: float
@@ -175,13 +181,13 @@ class Response:
 
 @dataclass(frozen=True, slots=True)
 class LoopStudy:
-    """The position loop in a load case at a position; arrays over the frequencies of the study."""
+    """The position loop in a load case at a position; arrays have one entry per frequency."""
 
     case: str
     place: str
     gain: float
     tuned: bool
-    """Whether the design states no gain, so that the default, half the ultimate gain, applies."""
+    """Whether `gain` is the default, half the ultimate gain, because the design states none."""
     ultimate_gain: float
     ultimate_frequency: float
     gain_margin: float
@@ -189,10 +195,10 @@ class LoopStudy:
     crossover: float | None
     bandwidth: float | None
     governs: tuple[str, ...]
-    """Metrics whose least value occurs here: gain_margin, phase_margin, bandwidth."""
+    """Those of gain_margin, phase_margin and bandwidth whose least value occurs in this loop."""
     open_magnitude: Array
     open_phase: Array
-    """Phase of the open loop [rad], decreasing from -pi/2 without jumps."""
+    """Phase of the open loop [rad], from near -pi/2 at low frequency, without jumps by 2 pi."""
     closed_magnitude: Array
 
 
@@ -203,14 +209,14 @@ class DynamicsStudy:
     case: str
     mass: float
     end: str
-    """Termination of the lines: closed, valve, constant_pressure, reducing_valve."""
+    """Connection at the end of the lines: closed, valve, constant_pressure, reducing_valve."""
     position: Array
-    """Positions along the stroke [m], from the cap end. The next three fields are arrays over
-    them."""
+    """Positions along the stroke [m], from the cap end. The next three arrays have one entry for
+    each position."""
     closed_frequency: Array
-    """Frequency [Hz] with closed ports."""
+    """Natural frequency [Hz] with closed ports."""
     frequency: Array
-    """Frequency [Hz] with the lines connected to `end`."""
+    """Natural frequency [Hz] with the lines connected to `end`."""
     damping_ratio: Array
     friction_share: float
     """Contribution of friction and oil shear to the damping ratio at the weakest position."""
@@ -220,18 +226,20 @@ class DynamicsStudy:
     """All poles at the weakest position, lowest frequency first."""
     frequencies: Array
     response_case: str
-    """Load case of the responses: that with the least dynamic stiffness, or `case` if none is
-    excited."""
+    """Load case of `responses`: the case with the least dynamic stiffness, or `case` if there is no
+    excitation."""
     responses: tuple[Response, ...]
     """Responses at the cap end, the weakest position and the rod end."""
     distributed: Array | None
-    """Dynamic stiffness at the weakest position with transmission lines; None without lines."""
+    """Dynamic stiffness at the weakest position, with the lines as transmission lines; None without
+    lines."""
     shaken: tuple[ShakenCase, ...]
-    """Load cases with excitation, each at its worst stroke position."""
+    """Load cases with an oscillating load, each at its position of least dynamic stiffness."""
     position_loop: LoopStudy | None
     """Position loop with the least gain margin; None without a valve."""
     other_loops: tuple[LoopStudy, ...] = ()
-    """Position loops with the least phase margin and the least bandwidth, if not the same."""
+    """Position loops with the least phase margin and the least bandwidth, if they differ from
+    `position_loop`."""
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
@@ -305,7 +313,7 @@ def _damping_ratio(motion: Motion, there: Array, index: int) -> float:
 
 
 def _loops(run: ModelRun, design: Design) -> list[_Loop]:
-    """Position loops that govern a stability margin or the bandwidth, and the governed metrics."""
+    """Position loops that have the least gain margin, phase margin or bandwidth."""
     rows: dict[tuple[int, str], tuple[str, ...]] = {}
     for metric in ("gain_margin", "phase_margin", "bandwidth"):
         row = _worst(run, metric, design)
@@ -315,7 +323,7 @@ def _loops(run: ModelRun, design: Design) -> list[_Loop]:
 
 
 def _shaken(design: Design, run: ModelRun) -> tuple[ShakenCase, ...]:
-    """All load cases with excitation, each at the position of its least dynamic stiffness."""
+    """All load cases with an oscillating load, each at its position of least dynamic stiffness."""
     shaken = []
     for i, case in enumerate(design.load_cases):
         if case.frequency is None:
@@ -336,7 +344,7 @@ def _distributed(
 
 
 def _row(value: Array, index: int, along: Array) -> Array:
-    """The values of one load case from an array (cases, points)."""
+    """The values of one load case, at the points of `along`, from an array (cases, points)."""
     array = np.broadcast_to(np.atleast_2d(value), (np.shape(np.atleast_2d(value))[0], along.size))
     return array[min(index, array.shape[0] - 1)]
 
@@ -388,7 +396,7 @@ def _frequencies(polynomials: list[tuple[Polynomial, int]]) -> Array:
 
 
 def _integrators(polynomial: Polynomial) -> int:
-    """Number of zero roots of a polynomial: leading coefficients that are 0."""
+    """Number of roots at zero of a polynomial, whose coefficients ascend in power of s."""
     nonzero = (
         k for k, coefficient in enumerate(polynomial) if np.any(np.asarray(coefficient) != 0)
     )
@@ -437,7 +445,7 @@ class _Loop:
         return cls(index, place, gain, position_open_loop, governs)
 
     def polynomials(self) -> list[Polynomial]:
-        """Numerator, denominator, and the denominator of the closed loop."""
+        """Numerator and denominator of the open loop, and denominator of the closed loop."""
         open_loop = self.open_loop
         return [
             open_loop.numerator,
@@ -449,7 +457,7 @@ class _Loop:
 def _loop(
     subject: PreparedDesign, v: Values, run: ModelRun, at: _Loop, frequencies: Array
 ) -> LoopStudy:
-    """Frequency response of a position loop, with its margins and bandwidth from the metrics."""
+    """Frequency response of a position loop; its margins and bandwidth are those of the metrics."""
 
     def value_of(metric: str) -> float:
         return of_case(run.computed.metrics[metric][at.place], at.index)
@@ -481,6 +489,6 @@ def _loop(
 
 
 def _unwrapped(response: Array) -> Array:
-    """Phase without jumps, starting near -pi/2, where the integrator dominates."""
+    """Phase of a response without jumps by 2 pi; the integrator makes it start near -pi/2."""
     phase = np.unwrap(np.angle(response))
     return phase - 2 * pi * np.round((phase[0] + pi / 2) / (2 * pi))

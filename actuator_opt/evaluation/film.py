@@ -33,16 +33,16 @@ from ..models.rough_surface import composite_roughness
 from .rings import Place, Ring, seal_contact, static_profile
 
 NODES = 121
-"""Number of nodes along the contact. Results are within 0.3 % of those on a finer mesh."""
+"""Number of nodes along the contact. Results on a finer mesh differ by less than 0.3 %."""
 
 HIGHEST, AT_LEAST = 1.5, 10e6
-"""Upper bound of the interseal pressure in the search: the larger of this multiple of the sealed
-pressure and this absolute pressure [Pa]. At low sealed pressure, the outer seal can hold many
-times the sealed pressure."""
+"""Upper bound in the search for the pressure between two seals: `HIGHEST` times sealed pressure,
+but no less than `AT_LEAST` [Pa, absolute]. At low sealed pressure, the pressure between the seals
+can reach many times the sealed pressure."""
 
 LEAST_SQUEEZE = 0.02
-"""Smallest squeeze for which a film is solved; smaller values are raised to it. They mean that the
-contact is lost, and the check on squeeze fails anyway."""
+"""Smallest squeeze for which a film is solved; smaller values are raised to it. In such a design
+the ring loses contact, and its check of squeeze is missed anyway."""
 
 _NOT_OF_FILM = frozenset(
     {
@@ -65,10 +65,10 @@ _NOT_OF_FILM = frozenset(
         "viscous_friction",
     }
 )
-"""Inputs of a ring that do not affect its film, or that both rings of a pair share."""
+"""Numbers of a ring that do not affect its film, or that both rings of a pair share."""
 
 SHARED = ("speed", "viscosity", "viscosity_coefficient")
-"""Inputs common to both rings of a pair, in addition to the pressures."""
+"""Inputs that both rings of a pair share, in addition to the pressures."""
 
 
 Stroke = Literal["drive", "return"]
@@ -81,7 +81,7 @@ def films_asked(design: Design) -> bool:
 
 
 def on_stroke(rings: Sequence[Ring], stroke: Stroke) -> tuple[Ring, ...]:
-    """The rings with the sealed pressure of a stroke; the return stroke has its own."""
+    """The rings with the sealed pressure of a stroke, which is different on the return stroke."""
     if stroke == "drive":
         return tuple(rings)
     return tuple(ring.at(pressure=ring["return_pressure"]) for ring in rings)
@@ -93,7 +93,7 @@ def of_place(rings: Sequence[Ring], place: Place) -> tuple[Ring, ...]:
 
 
 def floats(ring: Ring, case: int, sample: int = 0) -> Ring:
-    """Plain numbers of a ring for one load case and one design."""
+    """A ring with plain numbers, those of one load case and one design."""
 
     def number(value: Array) -> float:
         array = np.atleast_2d(np.asarray(value, dtype=float))
@@ -130,7 +130,7 @@ class FilmRow:
         return inputs
 
     def at(self, point: Mapping[str, Array]) -> FilmRow:
-        """The row with other values of `inputs`; each ring has the full pressure difference."""
+        """The row with other values of `inputs`; each ring gets the whole pressure difference."""
         shared = {name: point[name] for name in SHARED if name in point}
         shared["outer_pressure"] = point["outer"] - ATMOSPHERIC_PRESSURE
         shared["pressure"] = point["sealed"] - point["outer"]
@@ -144,7 +144,10 @@ class FilmRow:
         )
 
     def between(self, pressure: Array) -> tuple[Ring, ...]:
-        """The rings, each with its share of the pressure at an absolute interseal pressure."""
+        """The rings, each with its part of the pressure difference.
+
+        `pressure` is the absolute pressure between two rings.
+        """
         if len(self.rings) == 1:
             return self.rings
         first, second = self.rings
@@ -156,19 +159,19 @@ class FilmRow:
         )
 
     def frictions(self, values: Array) -> tuple[Array, ...]:
-        """Friction of every ring [N], from drag and load of its film."""
+        """Friction of every ring [N], from the drag and asperity load of its film."""
         return tuple(
             np.pi * ring["diameter"] * (film.drag + ring["asperity_friction"] * film.load)
             for ring, film in zip(self.rings, ring_films(values), strict=True)
         )
 
     def contacts(self, between: Array) -> tuple[Contact, ...]:
-        """Film-solver inputs of every ring, for an absolute interseal pressure."""
+        """Film-solver input of every ring; `between` is the absolute pressure between two rings."""
         return tuple(contact(ring, outward=self.outward) for ring in self.between(between))
 
 
 def contact(ring: Ring, *, outward: bool, nodes: int = NODES) -> Contact:
-    """Film-solver input of a ring; any number may have a complex step, for derivatives."""
+    """Film-solver input of a ring; its numbers may have a complex step, to obtain derivatives."""
     outer = ring["outer_pressure"] + ATMOSPHERIC_PRESSURE
     width, static = static_profile(ring, nodes)
     return Contact(
@@ -207,18 +210,18 @@ def _lubricant(ring: Ring) -> Lubricant:
 
 
 class RingFilm(NamedTuple):
-    """Film results of a ring, per circumference; arrays if the inputs are arrays."""
+    """Film results of a ring, per unit circumference; arrays if the inputs are arrays."""
 
     drag: Array
     """Viscous drag, positive against the motion [N/m]."""
     load: Array
-    """Normal force between the asperities [N/m]."""
+    """Normal force that the asperities carry [N/m]."""
     thickness: Array
     """Mean film thickness [m]."""
 
 
 def ring_films(values: Array) -> tuple[RingFilm, ...]:
-    """Split `Solved.values` by ring; flow and interseal pressure are the last two values."""
+    """Split `Solved.values` by ring, without its last two values (flow, interseal pressure)."""
     return tuple(RingFilm(*values[i : i + 3]) for i in range(0, len(values) - 2, 3))
 
 
@@ -231,7 +234,7 @@ class Solved:
     row : the rings as solved
     films : one film per ring; empty after a failure
     why : reason for a failure
-    pair : for two rings, the interseal pressure and the flow mismatch
+    pair : solution for two rings, with the pressure between them and the mismatch of their flows
     """
 
     row: FilmRow
@@ -241,7 +244,7 @@ class Solved:
 
     @property
     def between(self) -> float:
-        """Absolute interseal pressure [Pa]; NaN for a single ring."""
+        """Absolute pressure between two rings [Pa]; NaN for a single ring."""
         return nan if self.pair is None else self.pair.pressure
 
     @property
@@ -257,7 +260,7 @@ class Solved:
 
 
 def solve(row: FilmRow, last: Solved | None = None) -> Solved:
-    """Solve the films of one or two rings, starting from the films of a nearby operating point."""
+    """Solve the films of one or two rings; the films of a nearby point are the initial guess."""
     if len(row.rings) == 1:
         if opened := _opened(row.rings[0]):
             return Solved(row, (), opened)
@@ -273,11 +276,13 @@ def solve(row: FilmRow, last: Solved | None = None) -> Solved:
 
 
 def _opened(ring: Ring) -> str:
-    """Reason why the sealed pressure opens the contact of a ring; empty if it does not."""
+    """Message if the sealed pressure lifts a ring off its counterface, else empty."""
     pressure = ring["pressure"]
     if seal_contact(ring.at(pressure=abs(pressure))).excess > 0:
         return ""
-    return f"{pressure / 1e6:.4g} MPa lifts the {ring.label} off: its contact load is too small"
+    return (
+        f"a sealed pressure of {pressure / 1e6:.4g} MPa lifts the {ring.label} off its counterface"
+    )
 
 
 def _tandem(row: FilmRow, start: Tandem | None) -> Tandem:
@@ -305,7 +310,7 @@ def _tandem(row: FilmRow, start: Tandem | None) -> Tandem:
 
 
 def slopes(solved: Solved, names: Sequence[str]) -> dict[str, np.ndarray]:
-    """Exact derivatives of `Solved.values` by the logarithms of the named inputs."""
+    """Exact derivatives of `Solved.values` with respect to the logarithm of each named input."""
     row = solved.row
     point = row.inputs()
     stepped = [
@@ -336,7 +341,7 @@ def slopes(solved: Solved, names: Sequence[str]) -> dict[str, np.ndarray]:
 
 
 def _as_starved(contact: Contact, solved: Contact) -> Contact:
-    """A contact whose ends are starved of oil to the same degree as in the solution."""
+    """A copy of a contact, with its ends starved of oil as much as in a solved contact."""
     return replace(
         contact,
         sealed_cavitation=solved.sealed_cavitation,

@@ -1,9 +1,9 @@
 """Film tables of a design: one for each load case and stroke of piston and rod seals with a film.
 
-Each table is a surrogate model, interpolated from solved films. Its axes are the inputs with the
-largest effect on the film within the bounds of the design variables. All other inputs enter to
-first order, by the exact derivatives of the films. The tables are made once for a design with the
-bounds of its variables, so a single evaluation and the optimiser use the same film.
+Each table is a surrogate model that interpolates between solved films. Its axes are the inputs with
+the largest effect on the film within the bounds of the design variables. The effect of all other
+inputs is linear, from the exact derivatives of the films. The tables are made once for a design and
+the bounds of its variables. Therefore a single evaluation and the optimiser use the same film.
 """
 
 from __future__ import annotations
@@ -25,19 +25,20 @@ from .rings import Place, Ring
 from .values import Values, of_case
 
 SAMPLES = 64
-"""Number of samples within the bounds of the variables; they define the range of the tables."""
+"""Number of samples of the variables, from which the range of the tables follows."""
 POINTS = 6
 """Number of nodes of a surrogate along each axis."""
 MOST_AXES = 2
 """Largest number of axes of a surrogate; each further axis needs `POINTS` times as many films."""
 SPEEDS, SPEED_ROOM = 3, 1.25
-"""Number of nodes and relative range of the speed axis. Every surrogate has this axis, so that the
-derivative by speed depends on all other inputs. The middle node is the speed of the load case."""
+"""Number of nodes of the speed axis, and ratio of its end to the speeds that occur. Every surrogate
+has this axis, so that the derivative with respect to speed varies with all other inputs. The middle
+node is the speed of the load case."""
 CHECKS = 4
-"""Number of points within the range at which a surrogate is compared with solved films."""
+"""Number of samples at which a surrogate is compared with solved films, besides the design."""
 MISSED = 0.005
-"""Largest first-order error, relative to the load, for an input that needs no axis. The error is
-taken at the ends of the input's range."""
+"""Largest error of linear extrapolation, relative to the load, for an input without its own axis.
+The error is that at the ends of the input's range."""
 Key = tuple[Place, int, Stroke]
 """Location (piston or rod), load case and stroke of a table."""
 
@@ -49,9 +50,9 @@ class Running:
     Parameters
     ----------
     viscous : viscous drag, positive against the motion [N]
-    load : normal force between the asperities [N]
+    load : normal force that the asperities carry [N]
     thickness : mean film [m]
-    viscous_slope, load_slope : derivatives of the first two by the speed [N s/m]
+    viscous_slope, load_slope : derivatives of `viscous` and `load` with respect to speed [N s/m]
     flow : flow towards the outer side [m^3/s]
     between : absolute pressure between two rings [Pa]; NaN for a single ring
     """
@@ -67,16 +68,16 @@ class Running:
 
 @dataclass(frozen=True, slots=True)
 class FilmTable:
-    """Surrogate of the films of one ring, or two in series, in a load case; with its error."""
+    """Surrogate for the films of one ring, or two in series, in a load case; with its errors."""
 
     surrogate: Surrogate
     row: FilmRow
     errors: Mapping[str, float]
-    """Largest relative errors of friction, flow and film thickness, from films solved at the design
-    and within the range. The error of the flow is relative to its largest value."""
+    """Largest relative errors of friction, flow and film thickness, by comparison with films solved
+    for the design and for some samples. The error of the flow is relative to the largest flow."""
 
     flow: float = 0.0
-    """Flow of the film at the design itself, per circumference [m^2/s]."""
+    """Flow of the film in the design itself, per unit circumference [m^2/s]."""
 
     def running(self, rings: Sequence[Ring]) -> tuple[Running, ...]:
         """Interpolate the films for rings whose numbers are arrays (designs,) or floats."""
@@ -103,13 +104,13 @@ class FilmTable:
 
 
 class _Walker:
-    """Solve films at a sequence of nearby points, each starting from the previous film."""
+    """Solves films at a sequence of nearby points; each previous film is the initial guess."""
 
     def __init__(self, row: FilmRow) -> None:
         self.row = row
         self.last: Solved | None = None
         self.names: list[str] = []
-        """Inputs that affect the films, known after the first point."""
+        """Inputs that affect the films; empty before the first point is solved."""
 
     def solve(self, point: Mapping[str, Array]) -> Solved:
         solved = solve(self.row.at(point), self.last)
@@ -117,7 +118,7 @@ class _Walker:
         return solved
 
     def __call__(self, point: dict[str, float]) -> Interpolation:
-        """Values of the films with their derivatives."""
+        """Values of the films at a point, with their derivatives."""
         solved = self.solve(point)
         if solved.why:
             return Interpolation(np.zeros(1), {}, why=solved.why)
@@ -127,7 +128,7 @@ class _Walker:
 
 
 def table(row: FilmRow, samples: Sequence[FilmRow]) -> FilmTable:
-    """Build the surrogate for a row of rings, over the range of inputs that the sample rows span.
+    """Build the surrogate for a row of rings, for the range of inputs that the samples span.
 
     Raises
     ------
@@ -170,7 +171,7 @@ def _axes(
     others: Sequence[Mapping[str, Array]],
     at_design: Interpolation,
 ) -> tuple[SurrogateAxis, ...]:
-    """Choose the axes: the speed, and the inputs with the largest first-order errors."""
+    """Choose the axes: speed, and the inputs whose linear extrapolation has the largest errors."""
     spans = {
         name: (min(values), max(values))
         for name, value in base.items()
@@ -193,7 +194,10 @@ def _axes(
 def _missed(
     walker: _Walker, base: Mapping[str, float], at_design: Interpolation, name: str, end: float
 ) -> float:
-    """First-order error of drag and load at one end of an input's range, relative to the load."""
+    """Error of linear extrapolation to one end of an input's range.
+
+    It is the error of drag or load, whichever is larger, relative to the load.
+    """
     solved = walker.solve({**base, name: end})
     if solved.why:
         return 1.0
@@ -208,7 +212,7 @@ def _missed(
 def _errors(
     walker: _Walker, film_surrogate: Surrogate, points: Sequence[Mapping[str, Array]]
 ) -> dict[str, float]:
-    """Largest relative differences between surrogate and solved films."""
+    """Largest relative differences between surrogate and solved films at these points."""
     rows = []
     for point in points:
         solved = walker.solve({name: float(point[name]) for name in film_surrogate.base})
@@ -237,11 +241,11 @@ def _errors(
 
 
 def _outward(place: Place, push: bool) -> dict[Stroke, bool]:
-    """Strokes that need a film, with whether the counterface moves outwards on each.
+    """Strokes that need a film, each with whether the counterface moves outwards.
 
-    The piston always moves away from the pressurised chamber. So, in both directions, the bore
-    moves inwards past the piston seal, towards the sealed oil. The rod seal also needs the return
-    stroke, which draws oil back.
+    The piston always moves away from the pressurised chamber. Relative to the piston seal, the bore
+    therefore always moves inwards, towards the sealed oil. The rod seal also needs a film for the
+    return stroke, which draws oil back.
     """
     return {"drive": False} if place == "piston" else {"drive": push, "return": not push}
 
@@ -279,12 +283,12 @@ def tables(
 
 @lru_cache(maxsize=64)
 def _table(inputs: bytes) -> FilmTable:
-    """Call `table` with pickled inputs and cache the result: equal films are solved only once."""
+    """Call `table` with pickled inputs and cache its result: equal films are solved only once."""
     return table(*pickle.loads(inputs))
 
 
 def unsolved(design: Design, rings: tuple[Ring, ...]) -> dict[Key, FilmTable]:
-    """Empty tables for all films of a design: they return NaN."""
+    """Tables without a surrogate for all films of a design; their results are NaN."""
     film_tables = {}
     for key, row in _rows(design, rings):
         inputs = {name: float(value) for name, value in row.inputs().items()}
@@ -294,7 +298,7 @@ def unsolved(design: Design, rings: tuple[Ring, ...]) -> dict[Key, FilmTable]:
 
 
 def _rows(design: Design, rings: tuple[Ring, ...]) -> Iterator[tuple[Key, FilmRow]]:
-    """For each film table of a design, the row of rings that it describes."""
+    """Yield the key of each film table of a design, and the row of rings it describes."""
     places: tuple[Place, ...] = ("piston", "rod")
     for place in places:
         place_rings = of_place(rings, place)
@@ -322,9 +326,10 @@ def _spread(design: Design) -> dict[str, np.ndarray]:
 def _with_corners(
     design: Design, spread: dict[str, np.ndarray], rings: Sequence[Ring]
 ) -> dict[str, np.ndarray]:
-    """Add to the samples those corners of the bounds at which an input of a ring should be extreme.
+    """Add corners of the variables' bounds to the samples.
 
-    The corner follows from the signs of the input's correlation with every variable.
+    For each input of a ring, a corner is chosen at which the input should be extreme, by the signs
+    of its correlation with every variable.
     """
     paths = list(spread)
     varied = np.array([spread[path] - np.mean(spread[path]) for path in paths])
@@ -349,9 +354,9 @@ def _with_corners(
 def running(
     tables: Mapping[Key, FilmTable], rings: Sequence[Ring], stroke: Stroke, cases: int
 ) -> tuple[Running, ...]:
-    """Films of the piston's or rod's rings in every load case, (cases, designs); 0 at rest.
+    """Films of the rings of piston or rod in every load case, (cases, designs); 0 at rest.
 
-    Empty if no load case has a film on this stroke.
+    The result is empty if no load case has a film on this stroke.
     """
     film_rings = rings and of_place(rings, rings[0].name)
     case_tables = [
@@ -380,7 +385,7 @@ def _stacked(films: Sequence[Running | None]) -> Running:
 
 
 def _row(ring: Ring, case: int) -> Ring:
-    """Inputs of a ring in one load case, floats or arrays (designs,)."""
+    """A ring with its inputs in one load case, as floats or arrays (designs,)."""
 
     def row(value: Array) -> Array:
         array = array_of(value)

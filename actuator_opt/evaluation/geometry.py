@@ -2,8 +2,8 @@
 
 Axial layout, from the outer face of the cap plate: plate, barrel (piston retracted against the
 plate, stroke, head plug), head plate, exposed rod, eye. Every seal element, wiper and guide has its
-groove in piston or head. A joint of `joints` holds both plates; both ends have the same joint, so a
-single `End` represents both.
+groove in piston or head. Both end plates are held by the same type of joint (see `joints`), so a
+single `End` describes both ends.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from .values import Values
 
 
 class Numbers:
-    """Values of the block `retention` by key, from the values of an evaluation."""
+    """Values of the block `retention` by key, in an evaluation, where they may be arrays."""
 
     def __init__(self, v: Values) -> None:
         self._v = v
@@ -80,7 +80,7 @@ def end_of(
     barrel_length: Array,
     plate: Array,
 ) -> End:
-    """Describe an end of the barrel; `thicknesses` are the thicknesses of the barrel's layers."""
+    """Describe an end of the barrel; `thicknesses` are those of the barrel's layers."""
     layers = zip(design.barrel.layup, thicknesses, strict=True)
     return End(
         sizes=sizes,
@@ -95,7 +95,7 @@ def end_of(
 
 
 class GroovePart(NamedTuple):
-    """A ring in a groove: material, free section [m^2], depth of its centre below the face [m]."""
+    """A ring in a groove: material, area of its section [m^2], radial depth of its centre [m]."""
 
     material: str
     area: Array
@@ -104,7 +104,10 @@ class GroovePart(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Groove:
-    """A radial groove: its part, gland depth at nominal squeeze, width, and number of grooves."""
+    """A groove in piston or head, or several equal ones: its rings and dimensions.
+
+    `gland_depth` is that at nominal squeeze, and `count` the number of equal grooves.
+    """
 
     place: str
     path: str
@@ -194,7 +197,7 @@ def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[
 
 
 def groove_totals(grooves: Sequence[Groove]) -> tuple[Array, Array, Array]:
-    """Total axial length of all grooves, their number, and the largest depth."""
+    """Sum of the axial lengths of all grooves, number of grooves, and largest depth."""
     length: Array = 0.0
     count: Array = 0.0
     deepest: Array = 0.0
@@ -227,7 +230,7 @@ class Geometry:
     head_clearance: Array
     plate: Array
     fit: EndDimensions
-    """Dimensions that the joint sets for caps and head; they are the same at both ends."""
+    """Dimensions of cap and head that follow from the joint; they are the same at both ends."""
     has_skirts: bool
     barrel_length: Array
     eye_offset: Array
@@ -317,7 +320,7 @@ def end_at(design: Design, sizes: JointSizes, g: Geometry) -> End:
 
 
 def lands(geometry: Geometry, thread_radius: Array) -> dict[str, Array]:
-    """Wall thicknesses that must stay positive; each is a constraint of the optimiser."""
+    """Wall thicknesses and clearances that must be positive, as constraints of the optimiser."""
     g = geometry
     piston_length, piston_count, piston_depth = groove_totals(g.piston_grooves)
     head_length, head_count, head_depth = groove_totals(g.rod_grooves)
@@ -343,9 +346,9 @@ def manufacture_margins(
 ) -> tuple[dict[str, Array], dict[str, Array]]:
     """Margins to the manufacturing limits of plies, by layer of barrel and rod.
 
-    The margins are winding angle minus smallest feasible angle [rad], and the ratio of layer
-    thickness to smallest feasible thickness, minus one. A layer at exactly 0 deg is laid along the
-    mandrel, not wound, so it has no smallest angle.
+    The first margin is the winding angle minus the smallest feasible angle [rad]. The second is
+    layer thickness divided by smallest feasible thickness, minus one. A layer at exactly 0 deg is
+    laid along the mandrel, not wound, so it has no smallest angle.
     """
     angle_margins: dict[str, Array] = {}
     thickness_margins: dict[str, Array] = {}
@@ -360,7 +363,7 @@ def manufacture_margins(
 
 
 def _layers(design: Design) -> Iterator[tuple[str, Ply]]:
-    """All layers of barrel and rod by PATH."""
+    """Yield all layers of barrel and rod, with their PATHs."""
     for part, layup in (("barrel", design.barrel.layup), ("rod", design.rod.layup)):
         for i, entry in enumerate(layup):
             yield f"{part}.layup[{i}]", entry

@@ -1,8 +1,8 @@
 """All metrics of one or many designs from one run of the models, and their governing values.
 
-Only this module defines the governing value of a metric over load cases and locations. Tables,
-JSON, sweeps, fronts, the optimiser and reports all show this value. The module also computes oil
-damping, leakage, flow and line losses.
+Only this module defines which of a metric's values, of all load cases and locations, governs a
+design. Tables, JSON, sweeps, fronts, the optimiser and reports all use this value. The module also
+computes oil damping, leakage, flow and line losses.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ from .values import Values
 def compute_damping(
     geometry: Geometry, state: LoadState, friction: Friction, out: MetricArrays
 ) -> Array:
-    """Compute oil damping (pipe form and annular gaps); return the total with that of the seals."""
+    """Compute the damping of oil in pipes and annular gaps; return the total with the seals."""
     g = geometry
     viscosity = 0.5 * (state.dynamic_viscosity_a + state.dynamic_viscosity_b)
     pipe = damping.pipe_flow(dynamic_viscosity=viscosity, length=g.stroke)
@@ -85,9 +85,9 @@ def compute_leakage(
 ) -> Array:
     """Compute the leakage across the moving piston; return its conductance.
 
-    The conductance is the sum of the stated conductance, the oil film of the seal, and the gap of a
-    piston without seals, widened by bore growth. The flow of a film is taken at the speed of the
-    load case; a film that draws oil back to the driven side counts as tight.
+    It is the sum of the stated conductance and that of the seal's oil film or, without seals, of
+    the gap around the piston, widened by bore growth. The flow of a film is that at the speed of
+    the load case; a film that draws oil back to the driven side counts as tight.
     """
     path = "piston.leakage_conductance"
     conductance = v[path]
@@ -153,7 +153,7 @@ def compute_flow(
 def _compute_lines(
     v: Values, design: Design, state: LoadState, flow: dict[str, Array], out: MetricArrays
 ) -> None:
-    """Compute velocity, pressure drop, hammer and resonance of the lines."""
+    """Compute velocity, pressure drop, water hammer and resonance of the lines."""
     velocity, drop, hammer = {}, {}, {}
     lengths: dict[str, Array] = {}
     times: dict[str, Array] = {}  # travel time of a wave through the lines of a chamber
@@ -211,18 +211,20 @@ class PreparedDesign:
     materials: dict[str, Material]
     numbers: Mapping[str, float]
     factors: Mapping[tuple[str, str, bool], float]
-    """Knock-down factor of every strength, by (material, property, whether at the coldest)."""
+    """Knock-down factor of every strength, by (material, property, whether at the lowest
+    temperature)."""
     plugins: tuple[Plugin, ...] = ()
     reserves: Mapping[str, float] = field(default_factory=dict)
     """Extra margin that a robust optimisation requires, by name of the limit."""
     aims: Mapping[str, Sense] = field(default_factory=dict)
-    """Objectives of a front, each minimised or maximised; empty: the objective of the design."""
+    """Objectives of a Pareto front, minimised or maximised; empty: the objective of the design."""
     lenient: bool = False
-    """Whether an exception in a user metric gives NaN with the reason, without stopping the run."""
+    """Whether a user metric that raises an exception is NaN with a reason, instead of stopping the
+    run."""
     constants: dict[str, dict[str, Array]] = field(default_factory=dict, compare=False)
-    """Ply constants by material, cached."""
+    """Elastic constants of materials as plies, by name; a cache."""
     films: dict[Key, FilmTable] = field(default_factory=dict, compare=False)
-    """Tables of the seals' oil films, cached."""
+    """Tables of the seals' oil films; a cache."""
 
     @property
     def quantities(self) -> Mapping[str, Quantity]:
@@ -235,11 +237,11 @@ class PreparedDesign:
         return tuple(case.name for case in self.design.load_cases)
 
     def values(self, varied: Mapping[str, Array] | None = None) -> Values:
-        """The numbers to evaluate; those in `varied` are replaced by arrays."""
+        """The numbers to evaluate; arrays in `varied` replace the numbers of the design."""
         return Values(self.numbers, self.cases, varied)
 
     def touch(self, values: Values) -> None:
-        """Run the models once, so that `values.read` lists the numbers they use."""
+        """Run the models once, so that `values.read` contains the PATHs of all numbers they use."""
         compute(self, values)
 
 
@@ -258,7 +260,7 @@ class ModelRun:
     springs: springs.Springs
     motion: motion.Motion
     weakest: Array
-    """Position of least stiffness."""
+    """Piston position of least stiffness."""
     places: dict[str, Array]
     """Stroke positions at which dynamic results are computed, by name."""
     mass_parts: dict[str, Array]
@@ -277,9 +279,10 @@ class Base:
 
 @dataclass(frozen=True, slots=True)
 class Implicit:
-    """Models that are no closed formula of the dimensions.
+    """Models that are not a closed formula of the dimensions.
 
-    For a lower bound on a design space, the caller passes bounds in their place.
+    To bound the metrics of a whole design space, the caller replaces them by functions that return
+    bounds.
     """
 
     wall: Callable[[Values, Design, MaterialValues, Geometry, LoadState], Wall] = (
@@ -292,7 +295,7 @@ IMPLICIT = Implicit()
 
 
 def base(subject: PreparedDesign, v: Values, implicit: Implicit = IMPLICIT) -> Base:
-    """Compute dimensions, state, wall and seals of the designs in `v`."""
+    """Compute dimensions, state of the load cases, wall and seals of the designs in `v`."""
     design = subject.design
     stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
     g = geometry_module.derive(v, design)
@@ -304,7 +307,7 @@ def base(subject: PreparedDesign, v: Values, implicit: Implicit = IMPLICIT) -> B
 
 @dataclass(frozen=True, slots=True)
 class Statics:
-    """All results that do not depend on the position of least stiffness, and the moving mass."""
+    """All results that do not depend on the position of least stiffness."""
 
     base: Base
     rod: RodSection
@@ -317,7 +320,7 @@ class Statics:
     """Mass that moves with the rod, including the load."""
     beam: Beam
     damping: Array
-    """Incremental damping of oil and seals."""
+    """Damping of oil and seals: increase of their force with speed."""
     leakage: Array
 
 
@@ -385,7 +388,7 @@ def statics(
 def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = None) -> ModelRun:
     """Compute all metrics of the designs in `v`; invalid designs give NaN.
 
-    With `wanted`, costly metrics that are not in it may be left out.
+    If `wanted` is stated, costly metrics that it does not contain may be left out.
     """
     design = subject.design
     with np.errstate(all="ignore"):
@@ -434,7 +437,7 @@ def _at_stops(
     parts: dict[str, Array],
     out: MetricArrays,
 ) -> None:
-    """Compute stiffness and frequency with the load at either stop of a linkage, one entry each."""
+    """Compute stiffness and frequency as loaded at each stop of a linkage, one entry per stop."""
     s = basis.state
     differing = joint.open_cases(v, design, s.positions)
     if not differing.any():
@@ -457,7 +460,7 @@ def _at_stops(
 def without_films(subject: PreparedDesign) -> PreparedDesign:
     """Copy a design without solving its oil films; results that need a film are NaN.
 
-    Which metrics exist, and which numbers they read, does not depend on the films.
+    The same metrics exist as with films, and they use the same numbers of the design.
     """
     if not film.films_asked(subject.design):
         return subject
@@ -525,8 +528,8 @@ def sense_of(metric: str, subject: PreparedDesign) -> Sense | None:
     """Whether the smallest ("min") or the largest ("max") value of a metric governs a design.
 
     1. For an objective, the worst value governs: the largest if it is minimised.
-    2. For a metric with a requirement, the value nearest to the limit governs. With a lower and an
-       upper limit the result is None: the value with the smaller margin governs.
+    2. For a metric with a requirement, the value with the least margin governs. With a lower and
+       an upper limit the result is None, because either extreme may have the least margin.
     3. For any other metric, the worst value according to `metrics.METRICS` governs.
     """
     objective = subject.design.objective
@@ -563,7 +566,8 @@ def extreme(
 def governing(metric: str, computed: MetricArrays, v: Values, subject: PreparedDesign) -> Array:
     """Governing value of a metric for every design (designs,), SI.
 
-    Infinite for an unloaded part; NaN if a value is missing or the metric is not computed.
+    It is infinite for a part without load, and NaN if a value is missing or the metric is not
+    computed.
     """
     sense = sense_of(metric, subject)
     if sense is not None:

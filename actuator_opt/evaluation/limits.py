@@ -1,8 +1,8 @@
 """Limits of a design: its requirements, the forces of its load cases, and the check list.
 
-The check list contains the usual professional checks of an actuator. Each line has a limit with its
-source, unless only the user can set the limit. A requirement on the same metric in the same sense
-replaces the limit. `waivers` remove a line, and the report prints the reason for each waiver.
+The check list contains the usual professional checks of an actuator. Each check has a limit with
+its source, unless only the user can set the limit. A requirement on the same metric in the same
+sense replaces this limit. An entry in `waivers` removes a check; the report prints its reason.
 """
 
 from __future__ import annotations
@@ -26,9 +26,10 @@ from .values import Values
 
 @dataclass(frozen=True, slots=True)
 class MetricLimit:
-    """A limit of a metric: a number of the design (`path`) or a constant.
+    """A limit of a metric: a number of the design (at `path`) or a constant.
 
-    For a load case with a joint torque, `path` is the PATH of the torque, `lever` that of the arm.
+    For a load case that states a joint torque and a lever arm, `path` is the PATH of the torque and
+    `lever` the PATH of the arm; the limit is their ratio.
     """
 
     name: str
@@ -44,7 +45,7 @@ class MetricLimit:
     """Locations (such as a seal or stroke position) at which the limit applies; None: all."""
 
     def value(self, v: Values) -> Array:
-        """The limit in SI, an array if it is varied."""
+        """The limit in SI; an array if a number that defines it is varied."""
         if self.path is None:
             return self.constant
         return v[self.path] if self.lever is None else v[self.path] / v[self.lever]
@@ -52,11 +53,12 @@ class MetricLimit:
 
 ENDS = ("retracted", "extended")
 OWN_PLACE = "position of the case"
-"""Positions at which a joint torque is limited: both stops, and a load case's stated position."""
+"""Positions at which a joint torque is limited: both stops, or the stated position of a load
+case."""
 
 
 def requirement_limits(design: Design) -> list[MetricLimit]:
-    """Limits in the design file: `requirements`, and force or torque of every load case."""
+    """Limits in the design file: `requirements`, and the force or torque of every load case."""
     limits = []
     for metric, limit in design.requirements.items():
         for sense in ("min", "max"):
@@ -69,7 +71,7 @@ def requirement_limits(design: Design) -> list[MetricLimit]:
 
 
 def _case_limit(case: LoadCase) -> MetricLimit:
-    """Limit from the force of a load case, or from its torque if it acts through the linkage."""
+    """Limit by the force of a load case, or by its joint torque if this acts through a linkage."""
     at = f"load_cases[{case.name}]"
     if case.through_linkage:
         at_position = case.angle is not None or case.position != "worst"
@@ -130,7 +132,7 @@ def default_limits() -> dict[str, float]:
 
 
 def geometry_limits() -> list[MetricLimit]:
-    """Walls and clearances that must stay positive for a valid geometry."""
+    """Limits that keep wall thicknesses and clearances positive."""
     return [
         MetricLimit(
             name,
@@ -156,9 +158,10 @@ def all_limits(design: Design, plugins: Iterable[Plugin] = ()) -> list[MetricLim
 
 
 def margin(value: Array, limit: Array, sense: Sense) -> Array:
-    """Relative margin (value − limit)/|limit|, negative of this for `max`; ≥ 0 if the limit is met.
+    """Relative margin, ≥ 0 if the limit is met.
 
-    For a limit of zero the margin is the value itself, with opposite sign for `max`.
+    It is (value − limit)/|limit| for a lower limit, with opposite sign for an upper limit (`max`).
+    For a limit of zero it is the value itself, also with opposite sign for `max`.
     """
     scale = where(real(limit) == 0, 1.0 + 0 * limit, absolute(limit))
     difference = (value - limit) / scale
@@ -167,7 +170,7 @@ def margin(value: Array, limit: Array, sense: Sense) -> Array:
 
 ALL_CASES = "all"
 UNLIMITED = 1e300
-"""Value that replaces infinity (an unloaded part) in margins, which must be finite."""
+"""Value that replaces infinity (a part without load), so that margins are finite."""
 
 
 @dataclass(slots=True)
@@ -175,8 +178,9 @@ class MetricArrays:
     """Results of an evaluation: metric → location → array, and reasons for missing metrics.
 
     Values are floats or arrays (designs,), (cases, 1) or (cases, designs). A location is a ply, a
-    seal, a part or a stroke position; "" if the metric has only one. `applies` marks the load cases
-    to which a metric applies, `applies_at` those to which it applies at one location.
+    seal, a part or a stroke position; it is "" if the metric has a single location. `applies` marks
+    the load cases to which a metric applies. For a metric and location in `applies_at`, the marks
+    there apply instead.
     """
 
     metrics: dict[str, dict[str, Array]] = field(default_factory=dict)
@@ -187,7 +191,9 @@ class MetricArrays:
     """Running friction of each seal; the sum is `friction_running`."""
 
     def put(self, name: str, value: Array | dict[str, Array], cases: Array = None) -> None:
-        """Record a metric: an array, or one per location; `cases` marks where it applies.
+        """Record a metric: an array, or one array per location.
+
+        `cases` marks the load cases to which the metric applies; None for all.
 
         Raises
         ------
@@ -206,7 +212,7 @@ class MetricArrays:
 
 @dataclass(frozen=True, slots=True)
 class LimitRow:
-    """A limit in one load case at one location: `value`, `limit` and `margin` are (designs,)."""
+    """A limit in one load case at one location; `value`, `limit` and `margin` are (designs,)."""
 
     limit_of: MetricLimit
     case: str
@@ -215,7 +221,7 @@ class LimitRow:
     limit: Array
     margin: Array
     case_index: int | None = None
-    """Index of the load case in the computed array, if the array has an entry per load case."""
+    """Index of the load case; None if the value is the same for all load cases."""
 
     @property
     def label(self) -> str:
@@ -227,7 +233,7 @@ class LimitRow:
 def by_case(
     computed: MetricArrays, metric: str, array: Array, cases: tuple[str, ...], place: str = ""
 ) -> Iterator[tuple[str, Array]]:
-    """Split an array into (name of load case, array (designs,)), for the load cases that apply."""
+    """Yield the values (designs,) of each load case to which a metric applies, with its name."""
     array = np.asarray(array)
     if array.ndim < 2:
         yield ALL_CASES, np.atleast_1d(array)
@@ -239,7 +245,7 @@ def by_case(
 
 
 def rows_of(limit: MetricLimit, computed: MetricArrays, v: Values) -> Iterator[LimitRow]:
-    """Yield a limit for every load case and location; nothing if its metric was not computed."""
+    """Yield a row for each load case and location of a limit; no rows if its metric is missing."""
     bound = limit.value(v)
     for place, array in computed.metrics.get(limit.metric, {}).items():
         if limit.places is not None and place not in limit.places:
@@ -280,8 +286,8 @@ def allowances(
 
     The knock-downs are for temperature, moisture, statistical basis of the data, and process.
 
-    The keys are (material, property, cold), with `cold` True for the lowest and False for the
-    highest of `temperatures`. `numbers` (by PATH) may override the knock-downs of the library.
+    The keys are (material, property, cold); `cold` is True for the lowest and False for the highest
+    of `temperatures`. `numbers` contains the material data by PATH, as changed by the design.
     """
     factors = {}
     for name, material in materials.items():
@@ -299,7 +305,7 @@ def allowances(
 
 
 class MaterialValues:
-    """Materials of a design: their properties, which may be varied, and their allowables."""
+    """Materials of a design: properties, which may be arrays, and strengths after knock-downs."""
 
     def __init__(
         self,
@@ -340,7 +346,7 @@ class MaterialValues:
         return self._constants[name]
 
     def get(self, name: str, *properties: str, default: Array = None) -> Array:
-        """The first of several properties that the material states; `default` if it states none."""
+        """The first of these properties that the material states; `default` if it has none."""
         for key in properties:
             if key in self.materials[name].numbers:
                 return self._v[f"materials.{name}.{key}"]
@@ -349,8 +355,8 @@ class MaterialValues:
     def allowable(self, name: str, *properties: str, cold: bool = False) -> Array:
         """A strength after all applicable knock-downs; None if not stated.
 
-        The knock-downs are for the highest temperature of oil, load cases and environment; with
-        `cold`, for the lowest.
+        The knock-downs are those for the highest temperature of oil, load cases and environment;
+        with `cold`, for the lowest.
         """
         for key in properties:
             if key in self.materials[name].numbers:

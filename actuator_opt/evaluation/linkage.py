@@ -1,8 +1,8 @@
 """The driven joint of a linkage: lever arms, angles, torque, inertia.
 
-Between the dead points the lever arm rises to a maximum and then falls. So over the stroke it is
-shortest at one of the stops. Each stop has its own result, so the optimiser meets no kink where
-the shorter arm changes from one stop to the other.
+From one dead point to the other, the lever arm rises to a maximum and then falls. Within the stroke
+it is therefore shortest at one of the stops. Each stop has its own result. A single result
+would have a kink, bad for the optimiser, where the shorter arm changes from one stop to the other.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class DrivenJoint:
         )
 
     def lever_arm(self, position: Array) -> Array:
-        """Piston travel per joint angle at a piston position."""
+        """Lever arm about the joint (piston travel per joint angle) at a piston position."""
         return self._at(self.angle(position)).lever_arm
 
     def _at(self, angle: Array) -> linkage.LinkageGeometry:
@@ -68,10 +68,11 @@ class DrivenJoint:
 
     @property
     def largest(self) -> Array:
-        """Largest lever arm over the stroke: the shorter radius, at a right angle to the actuator.
+        """Largest lever arm within the stroke.
 
-        There the pin-to-pin length is sqrt(|a^2 - r^2|), with base radius a and crank radius r. If
-        the actuator cannot reach this length, the lever arm is largest at a stop.
+        The lever arm is largest, and equal to the shorter radius, where this radius is at a right
+        angle to the actuator. There the pin-to-pin length is sqrt(|a^2 - r^2|), with base radius a
+        and crank radius r. If the actuator cannot reach this length, it is largest at a stop.
         """
         square = absolute(self.base_radius * self.base_radius - self.crank_radius**2)
         return self.lever_arm(clip(sqrt(square) - self.closed, 0.0, self.stroke))
@@ -84,7 +85,7 @@ class Demand:
     force: Array
     speed: Array
     mass: Array
-    """Mass of the load at the rod, including the inertia of a joint, reflected by the lever arm."""
+    """Effective mass of the load at the rod, including the inertia of a driven joint."""
 
 
 def derive(v: Values, design: Design, g: Geometry) -> DrivenJoint | None:
@@ -101,9 +102,9 @@ def derive(v: Values, design: Design, g: Geometry) -> DrivenJoint | None:
 
 
 def arms(joint: DrivenJoint, positions: Sequence[Array | None]) -> dict[str, Array]:
-    """Lever arm in every load case (cases, designs), at both stops and where it is largest.
+    """Lever arms of every load case (cases, designs): at both stops and where the arm is largest.
 
-    A load case with a stated position has the lever arm at that position.
+    For a load case with a stated position, all are the lever arm at that position.
     """
     placed = [None if x is None else joint.lever_arm(x) for x in positions]
     everywhere = joint.ends | {LARGEST: joint.largest}
@@ -114,7 +115,7 @@ def arms(joint: DrivenJoint, positions: Sequence[Array | None]) -> dict[str, Arr
 
 
 def demand(v: Values, design: Design, lever_arm: Array = None) -> Demand:
-    """Force, speed and mass that every load case demands, with `lever_arm` (cases, designs)."""
+    """Force, speed and mass that every load case demands, for `lever_arm` (cases, designs)."""
     forces, speeds = [], []
     for i, case in enumerate(design.load_cases):
         at = f"load_cases[{case.name}]."
@@ -143,8 +144,8 @@ def demands(
 ) -> dict[str, Demand]:
     """Force, speed and mass that every load case demands, at several positions of the joint.
 
-    `WORST` combines the largest force with the largest speed, `WORKING` has the largest force and
-    its speed; the others are both stops.
+    `WORST` combines the largest force with the largest speed. `WORKING` has the largest force and
+    the speed at the same position. The other entries are those at the two stops.
     """
     if joint is None:
         case_demand = demand(v, design)
@@ -169,7 +170,7 @@ def at_stop(demands: dict[str, Demand], push: Array) -> Demand:
 
 
 def open_cases(v: Values, design: Design, positions: Sequence[Array | None]) -> np.ndarray:
-    """Load cases whose force or mass differs between the stops."""
+    """Whether the force or mass of each load case differs between the stops."""
     if design.linkage is None:
         return np.array([False])
     heavy = "load.inertia" in v.varied or design.load.inertia > 0
@@ -188,7 +189,7 @@ def compute(
     net: Array,
     out: MetricArrays,
 ) -> None:
-    """Compute torque and range of the joint; `net` is the force delivered in every load case."""
+    """Compute torque and range of the joint; `net` is the actuator's force in each load case."""
     if joint is None:
         for name in METRICS:
             out.skip(name, "no linkage stated: add linkage")
@@ -216,11 +217,11 @@ def compute(
     for direction in ("push", "pull"):
         cases = [case for case in design.load_cases if case.direction == direction]
         if cases and all(case.through_linkage for case in cases):
-            out.skip(f"{direction}_force", "stated as a joint torque: torque[NAME]")
+            out.skip(f"{direction}_force", "the load cases state a joint torque: see torque[NAME]")
 
 
 def _dead_points(joint: DrivenJoint) -> dict[str, Array]:
-    """Lengths between each stop and the dead point beyond it."""
+    """Distance of each stop from the dead point beyond it."""
     base, crank = joint.base_radius, joint.crank_radius
     return {
         ENDS[0]: joint.closed - absolute(base - crank),
@@ -229,14 +230,15 @@ def _dead_points(joint: DrivenJoint) -> dict[str, Array]:
 
 
 def warnings(design: Design, joint: DrivenJoint | None) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) for each metric that is calculated at a single position of the stroke."""
+    """Yield (metric, sentence) if the joint's inertia is reflected at a single stroke position."""
     if joint is None or not design.load.inertia > 0:
         return
     ends = {end: float(np.min(real(arm))) for end, arm in joint.ends.items()}
     end = min(ends, key=lambda name: ends[name])
     yield (
         "",
-        "at the rod, the inertia of the joint acts like a mass of "
-        f"{design.load.inertia / ends[end] ** 2:.4g} kg where the lever arm is least ({end}); load "
-        "cases without a stated position use this mass",
+        "where the lever arm is least "
+        f"({end}), the inertia of the joint acts at the rod like a mass of "
+        f"{design.load.inertia / ends[end] ** 2:.4g} kg; load cases without a stated position use "
+        "this mass",
     )

@@ -1,8 +1,8 @@
 """Linear dynamics of the actuator: modes, dynamic stiffness and the position loop.
 
 All three use one model (`models.linear`). Results are computed at several stroke positions; those
-of the position loop also for both spool directions. Each is a separate entry, so the optimiser
-limits each by itself and needs no smooth maximum.
+of the position loop also for both spool directions. Each combination is a separate entry with its
+own limit in the optimiser, which therefore needs no smooth maximum.
 """
 
 from __future__ import annotations
@@ -34,34 +34,38 @@ from .state import LoadState
 from .values import Values
 
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
-"""Positions of the dynamic results, as shares of the stroke; the weakest position is added."""
+"""Positions of the dynamic results, as shares of the stroke. Results are also computed at the
+position of least stiffness."""
 
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """Position-independent inputs of the linear model; arrays (cases, designs)."""
+    """Inputs of the linear model that do not depend on the position; arrays (cases, designs)."""
 
     springs: Springs
     mass: Array
     damping: Array
-    """Incremental friction and oil damping at the piston [N s/m]."""
+    """Damping of oil and friction at the piston: increase of force with speed [N s/m]."""
     leakage: Array
     branches: dict[Chamber, ChamberLines]
     throttles: dict[Chamber, Ways]
     """Conductance of the throttles at their operating point [m^3/s/Pa]; empty without throttles."""
     push: Array
-    """Load cases with an extending piston; sets the throttle direction under load excitation."""
+    """Whether the piston extends in each load case. For an oscillating load, this direction selects
+    the conductance of the throttles."""
     held: dict[Chamber, LineEnd]
-    """Boundary conditions of the lines under load excitation, including accumulators."""
+    """Conditions at the ends of the lines, with accumulators, while an oscillating load excites the
+    actuator."""
     accumulators: dict[Chamber, tuple[LineEnd, ...]]
     """Accumulators at the ports."""
     valve: LinearValve | None
     spool: tuple[Array, Array] | None
 
     def model(self, position: Array, *, extending: Array | None = None) -> LinearActuator:
-        """Linear model at a position: excited by the load or, with `extending`, valve-driven.
+        """Linear model at a position, excited by the load or driven by the valve.
 
-        `extending` is True, False, or an array of booleans; None: load excitation.
+        If the valve drives it, `extending` is its direction: True, False, or an array of booleans.
+        None: the load excites the actuator.
         """
         s = self.springs
         near = s.total().at(position, s.geometry.stroke)
@@ -99,7 +103,7 @@ class Motion:
         )
 
     def position_loop(self, position: Array, *, extending: Array) -> loop.PositionOpenLoop:
-        """Open position loop with a gain of 1."""
+        """Open position loop with a controller gain of 1."""
         assert self.spool is not None
         frequency, damping = self.spool
         return loop.open_loop(
@@ -109,13 +113,16 @@ class Motion:
         )
 
     def closed_frequency(self, position: Array) -> Array:
-        """Natural frequency with closed ports [Hz]; both chambers count, for every topology."""
+        """Natural frequency with closed ports [Hz].
+
+        Each chamber is a separate spring, whichever topology the design states.
+        """
         return dynamics.natural_frequency(
             stiffness=self.springs.per_chamber_stiffness(position), mass=self.mass
         )
 
     def mode(self, model: LinearActuator, position: Array) -> loop.Mode:
-        """Mode of the load on the actuator that holds it."""
+        """Mode in which the load oscillates on the actuator that holds it."""
         return loop.load_mode(model=model, near=self.closed_frequency(position))
 
 
@@ -186,7 +193,7 @@ def compute(
 
 
 def _by_place(names: list[str], value: Array, positions: Array) -> dict[str, Array]:
-    """Split a value by stroke position; a single entry if it does not depend on the position."""
+    """Split a value into one entry per stroke position."""
     shape = np.broadcast_shapes(np.shape(value), positions.shape)
     return dict(zip(names, np.broadcast_to(value, shape), strict=True))
 
@@ -205,7 +212,7 @@ def _dynamic_stiffness(
     excited = np.array([case.frequency is not None for case in design.load_cases])
     if not excited.any():
         for name in ("dynamic_stiffness", "dynamic_phase"):
-            out.skip(name, "no load case with excitation: add load_cases[NAME].frequency")
+            out.skip(name, "no load case has an oscillating load: add load_cases[NAME].frequency")
         return
     parts = linear.dynamic_stiffness(model=model, frequency=v.case("frequency", 1.0))
     values = magnitude(parts.real, parts.imaginary)
@@ -253,12 +260,12 @@ def _position_loop(
 
 
 LEAST_GAIN = 1e-3
-"""Gain assumed for a loop that is unstable at any gain [V/m]: too low for tracking, but its results
-are finite."""
+"""Gain [V/m] that replaces a default gain of zero, for a loop that is unstable at any gain. It is
+too low for tracking, but results are finite."""
 
 
 def _least(values: Array) -> Array:
-    """Least value over directions, positions and load cases, by real part: (designs,)."""
+    """Least value of all directions, positions and load cases, by real part; (designs,)."""
     flat = values.reshape(-1, values.shape[-1])
     best = np.argmin(real(flat), axis=0)[None]
     return np.take_along_axis(flat, best, axis=0)[0]
@@ -270,18 +277,19 @@ NEAR_RESONANCE = 0.8
 """Ratio of bandwidth to natural frequency above which the loop is near resonance (our choice)."""
 LONGEST = 0.1
 """Largest length of a chamber's lines, in wavelengths, for which a lumped element is valid. Our
-choice: the admittance of a closed line is in error by 3 %, at constant end pressure by 7 %."""
+choice: at this length, the error in admittance is 3 % for a closed line and 7 % for a line with
+constant pressure at its end."""
 
 
 def warnings(
     v: Values, design: Design, motion: Motion, state: LoadState, out: MetricArrays
 ) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) for each use of the linear model outside its range."""
+    """Yield (metric, sentence) for each use of the linear model outside its valid range."""
     slowest = float(np.min(np.real(motion.damping)))
     if slowest < 0:
         yield (
             "damping_ratio",
-            f"friction falls with speed ({slowest:.3g} N*s/m): stick-slip is possible",
+            f"friction falls with speed (slope {slowest:.3g} N*s/m): stick-slip is possible",
         )
     if "ultimate_gain" in out.metrics:
         yield from _loop(v, motion, out)
@@ -298,20 +306,20 @@ def warnings(
 
 
 def _weakest_gain(motion: Motion) -> Array:
-    """Smallest flow gain of the valve over chambers and directions, in every case."""
+    """Smallest flow gain of the valve for any chamber and direction, in every load case."""
     assert motion.valve is not None
     gains = [np.abs(np.real(gain)) for ways in motion.valve.gains.values() for gain in ways]
     return np.min(np.stack(np.broadcast_arrays(*gains)), axis=0)
 
 
 def _loop(v: Values, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, str]]:
-    """Warn of a position loop that is unstable, poorly damped, near resonance or without drive."""
+    """Warn if the position loop is unstable, poorly damped or near resonance, or cannot move."""
     damped = min(float(np.min(np.real(x))) for x in out.metrics["damping_ratio"].values())
     if 0 <= damped < LEAST_DAMPING:
         yield (
             "damping_ratio",
-            f"the load has almost no damping (ratio {damped:.1g}), which permits a slow position "
-            "loop only; to add damping, state valve.leakage_flow with ports.end: valve, or "
+            f"the load has almost no damping (ratio {damped:.1g}), so only a slow position loop "
+            "is stable; to add damping, state valve.leakage_flow with ports.end: valve, or "
             "piston.leakage_conductance",
         )
     weakest = weakest_per_chamber(motion.springs)
@@ -353,13 +361,13 @@ def _loop(v: Values, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, s
 def _ports(
     v: Values, design: Design, motion: Motion, state: LoadState
 ) -> Iterable[tuple[str, str]]:
-    """Warn of valves and accumulators at the lines with less effect than expected."""
+    """Warn of valves, throttles and accumulators whose effect may not be as expected."""
     if design.valve is not None and design.ports.end == "closed":
         for metric in ("damping_ratio", "dynamic_stiffness"):
             yield (
                 metric,
                 "ports.end is closed, so damping ratio and dynamic stiffness exclude the leakage "
-                "of the holding valve; write end: valve to include it",
+                'of the holding valve; write "ports.end: valve" to include it',
             )
     slow = np.ravel(np.real(state.speed)) == 0
     excited = [case.frequency is not None for case in design.load_cases]

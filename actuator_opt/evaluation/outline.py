@@ -2,10 +2,10 @@
 
 The volumes of the sections equal those of the mass model.
 
-Many designs are drawn from a few templates. Every coordinate in `outlines` is a weighted sum of
-dimensions, as long as no part appears, vanishes or changes its form. A template contains these
-sums, determined by varying each dimension. A design is drawn from a template that reproduces its
-outlines; if no template does, the design is not drawn.
+Many designs are drawn from a few templates. As long as no part appears, vanishes or changes its
+form, every coordinate in `outlines` is a linear function of the dimensions. A template contains
+these functions, which are found by varying each dimension. A design is drawn from a template that
+reproduces its outlines; without such a template, it is not drawn.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from .result import Outline
 from .rods import end_material
 
 _Part: TypeAlias = tuple[str, str, list[Polygon], int]
-"""Part, material, polygons, and number of round bars."""
+"""Name of a part, material, polygons, and number of round bars (0 for a turned part)."""
 
 _Kind: TypeAlias = Literal["metal", "composite", "polymer", "seal", "oil"]
 
@@ -37,7 +37,7 @@ _Kind: TypeAlias = Literal["metal", "composite", "polymer", "seal", "oil"]
 def _grooves(
     start: float, length: float, grooves: Sequence[Groove]
 ) -> Iterator[tuple[Groove, float, float]]:
-    """Axial start and end of all grooves, in order and evenly spaced over the length of a part."""
+    """Yield the grooves of a part with their axial start and end, evenly spaced over its length."""
     used, count, _ = groove_totals(grooves)
     land = (length - float(used)) / (round(float(count)) + 1)
     x = start + land
@@ -59,7 +59,7 @@ def _grooved(
 ) -> Polygon:
     """A ring with rectangular grooves cut from outside or inside.
 
-    The gland depth is measured from the counterface.
+    The gland depth is measured from the counterface, the bore or rod on which the seal slides.
     """
     surface = outer if outside else inner
     edge = [(x0, surface)]
@@ -73,7 +73,7 @@ def _grooved(
 
 
 def _eye(centre: float, pin: float, side: int) -> list[Polygon]:
-    """Half of an eye in side view: a lug of radius `pin` around the pin hole, and its neck."""
+    """Half of an eye in side view: a lug of radius `pin` around its hole, and its neck."""
     angles = [pi * k / 24 for k in range(25)]
     rim = [(centre + pin * cos(a), pin * sin(a)) for a in angles]
     hole = [(centre + pin / 2 * cos(a), pin / 2 * sin(a)) for a in reversed(angles)]
@@ -89,7 +89,7 @@ def _kind(material: Material) -> _Kind:
 
 @dataclass(frozen=True, slots=True)
 class _Stations:
-    """Axial stations from the cap pin, and radii, as floats."""
+    """Axial positions of faces and ends, measured from the cap pin, and radii."""
 
     face: float
     start: float
@@ -140,7 +140,7 @@ def _turned_down(shape: Polygon, radius: float, length: float) -> Polygon:
 
 
 def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
-    """Caps, with the shapes that the joint adds to them, and further parts of the joint."""
+    """Cap and head plate with the shapes that their joint adds, and separate parts of the joint."""
     plate, radius = float(g.plate), float(g.fit.plate_radius)
     caps = [
         rectangle(at.face, at.start, 0.0, radius),
@@ -205,7 +205,7 @@ def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
 def _rings(
     start: float, length: float, grooves: Sequence[Groove], counterface: float, side: int
 ) -> Iterator[_Part]:
-    """Parts in every groove. A round ring is as wide as its section; others fill the groove."""
+    """Rings in every groove. A round ring is as wide as its section; others fill the groove."""
     shapes: dict[tuple[str, str], list[Polygon]] = {}
     for groove, left, right in _grooves(start, length, grooves):
         middle, half = (left + right) / 2, min(float(groove.ring_width), right - left) / 2
@@ -268,7 +268,7 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
 
 
 def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
-    """Sentences on details of the joint that the section does not show."""
+    """Sentences about details of the joint that the drawn section does not show."""
     joint = joint_of(design)
     if joint is None or design.retention is None:
         return []
@@ -285,15 +285,15 @@ def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
 
 
 MOST = 24
-"""Largest number of templates for a prepared design."""
+"""Largest number of templates for the variants of a design."""
 
 
 SAME = 1e-7
-"""Largest error of a coordinate drawn from a template [m]."""
+"""Largest permissible error of a coordinate that is drawn from a template [m]."""
 
 
 STEP = 1e-4
-"""Change of a dimension that determines its effect on the coordinates [m]."""
+"""Small change of a dimension, which shows its effect on the coordinates [m]."""
 
 
 LENGTHS = ("bore", "rod", "stroke", "closed_length")
@@ -308,10 +308,10 @@ _Change: TypeAlias = Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class Template:
-    """Outlines of a design, and the derivatives of their coordinates by the dimensions.
+    """Outlines of a design, and the derivatives of their coordinates by each dimension.
 
-    `numbers` [m] are x and r of every point in order, then `LENGTHS`. `slopes` are their
-    derivatives (numbers, dimensions), and `origin` the dimensions of the template's design.
+    `numbers` [m] are the coordinates x and r of every point in order, then `LENGTHS`. `slopes` are
+    their derivatives (numbers, dimensions), and `origin` the dimensions of the template's design.
     """
 
     outlines: tuple[Outline, ...]
@@ -320,16 +320,16 @@ class Template:
     origin: Array
 
     def at(self, dimensions: Array) -> Array:
-        """Coordinates and lengths (numbers, designs) for other dimensions (dimensions, designs)."""
+        """Coordinates and lengths (numbers, designs) of designs with these dimensions."""
         numbers: Array = self.numbers[:, None] + self.slopes @ (dimensions - self.origin[:, None])
         return numbers
 
 
 @dataclass(frozen=True)
 class Shapes:
-    """Sections of many designs: their dimensions (dimensions, designs), and a template for each.
+    """Drawn sections of many designs: their dimensions (dimensions, designs), and templates.
 
-    `which` is the index of the template, -1 if no template reproduces the outlines.
+    `which` is the index of the template for each design, -1 if no template reproduces its outlines.
     """
 
     dimensions: Array
@@ -381,7 +381,7 @@ def same_dimensions(
     second: tuple[PreparedDesign, Mapping[str, Array]],
     count: int,
 ) -> bool:
-    """Whether two prepared designs with their varied inputs have the same dimensions."""
+    """Whether two prepared designs, each with its varied inputs, have the same dimensions."""
     dimensions = []
     for subject, varied in (first, second):
         geometry = geometry_module.derive(subject.values(varied), subject.design)
@@ -393,7 +393,7 @@ def same_dimensions(
 
 @dataclass(frozen=True)
 class _Parts:
-    """One of many designs, with the outlines at its dimensions."""
+    """One of many designs, whose outlines can be drawn for its dimensions."""
 
     subject: PreparedDesign
     geometry: Geometry
@@ -401,7 +401,7 @@ class _Parts:
     hidden: tuple[str, ...]
 
     def drawn(self, moved: int | None = None) -> tuple[tuple[Outline, ...], Array]:
-        """Outlines and their coordinates, with the dimensions shifted slightly."""
+        """Outlines and their coordinates; the dimension with index `moved` is changed by `STEP`."""
         values = self.dimensions.astype(float)
         if moved is not None:
             values[moved] += STEP
@@ -426,7 +426,7 @@ def _template(parts: _Parts, drawn: tuple[tuple[Outline, ...], Array], moving: A
 
 
 def _form(outlines: tuple[Outline, ...]) -> list[object]:
-    """Parts, materials and point counts, which are equal if outlines differ only in dimensions."""
+    """Parts, materials and numbers of points; equal for outlines that differ only in dimensions."""
     return [(o.part, o.material, o.kind, [len(p) for p in o.polygons]) for o in outlines]
 
 

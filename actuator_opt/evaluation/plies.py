@@ -1,7 +1,7 @@
 """Layers of a laminated wall or rod, as inputs of models; strengths are after knock-downs.
 
 Residual stresses matter at both ends of the temperature range. In the cold, cooling from cure is
-largest; in the heat, the matrix is weakest. Each `Climate` has the allowables of its temperature.
+largest; in the heat, the matrix is weakest. Each `Climate` has the strengths at its temperature.
 """
 
 from __future__ import annotations
@@ -34,7 +34,11 @@ STRENGTHS = (
 
 @dataclass(frozen=True, slots=True)
 class Climate:
-    """A service extreme: temperature change from the stress-free state [K], and allowables."""
+    """Lowest or highest service temperature.
+
+    `change` is the temperature change from the stress-free state [K]; `cold` selects the strengths
+    at the lowest temperature.
+    """
 
     name: str
     change: Array
@@ -43,7 +47,7 @@ class Climate:
 
 @dataclass(frozen=True, slots=True)
 class Layer:
-    """A layer with its properties; `strengths` and `yields` are per climate, None if unknown."""
+    """A layer with its properties; `strengths` and `yields` have an entry per climate if known."""
 
     label: str
     name: str
@@ -56,16 +60,16 @@ class Layer:
     strengths: tuple[PlyStrength, ...]
     yields: tuple[Array, ...]
     fatigue: Array = None
-    """Fibre stress amplitude endured for the stated number of cycles; None if unknown."""
+    """Fibre stress amplitude at failure after the stated number of cycles; None if unknown."""
 
     @property
     def strength(self) -> PlyStrength | None:
-        """Ply strengths in the hottest climate (the last), where the matrix is weakest."""
+        """Ply strengths at the highest temperature (weakest matrix); None for a metal."""
         return self.strengths[-1] if self.strengths else None
 
     @property
     def yield_strength(self) -> Array:
-        """Yield strength at the hottest temperature; None for a ply."""
+        """Yield strength at the highest temperature; None for a ply."""
         return self.yields[-1] if self.yields else None
 
     @property
@@ -89,7 +93,10 @@ class Layer:
         )
 
     def as_wall(self, climate: int | None = None) -> WallLayer:
-        """The layer as input of the burst models, for a climate or for all (climates, 1, 1)."""
+        """The layer as input of the burst models.
+
+        Its strengths are those of one climate, or of all climates (climates, 1, 1).
+        """
         c, (first, second) = self.constants, self.expansions or (0.0, 0.0)
         return WallLayer(
             expansion_1=first,
@@ -110,13 +117,13 @@ class Layer:
 
 
 def stress_of(parts: Iterable[Array]) -> Stress:
-    """Ply stresses along 1, 2 and 3 and in shear 12, as a tuple of four."""
+    """Ply stresses in directions 1, 2 and 3 and shear stress 12, as a tuple of four."""
     along, across, through, shear = parts
     return along, across, through, shear
 
 
 def _of_climate(values: Sequence[Any], climate: int | None, combine: Callable[..., Any]) -> Any:
-    """The value in a climate, or the combined values of all climates; None if missing."""
+    """The value in one climate, or, without `climate`, the combined values of all climates."""
     if not values:
         return None
     if climate is not None:
@@ -125,12 +132,12 @@ def _of_climate(values: Sequence[Any], climate: int | None, combine: Callable[..
 
 
 def _axis(values: Sequence[Array]) -> Array:
-    """Put one value per climate on an axis before those of load paths and designs."""
+    """Stack one value per climate to (climates, 1, designs); the second axis is for load paths."""
     return np.stack(np.broadcast_arrays(*[np.atleast_1d(value) for value in values]))[:, None, :]
 
 
 def _of_all(strengths: Sequence[PlyStrength]) -> PlyStrength:
-    """Combine the ply strengths of all climates in arrays."""
+    """Combine the ply strengths of all climates into arrays."""
 
     def of_climates(name: str) -> Array:
         return _axis([getattr(strength, name) for strength in strengths])
@@ -147,7 +154,7 @@ def _of_all(strengths: Sequence[PlyStrength]) -> PlyStrength:
 
 
 def climates(v: Values, design: Design) -> tuple[Climate, ...]:
-    """Coldest and hottest climate with cure stresses; by default only the hottest, without them."""
+    """Coldest and hottest climate; without a cure temperature, one climate without cure stress."""
     environment = design.environment
     if environment is None or environment.cure_temperature is None:
         return (Climate("", 0.0, cold=False),)
@@ -219,7 +226,7 @@ def _solid(constants: dict[str, Array]) -> Solid:
 
 
 def worst(values: Array, axes: tuple[int, ...]) -> Array:
-    """Largest value by real part over some axes; its complex part keeps the derivative."""
+    """Largest value along some axes, by real part; its imaginary part (a derivative) is kept."""
     other_axes = [i for i in range(values.ndim) if i not in axes]
     flattened = np.transpose(values, (*axes, *other_axes)).reshape(
         -1, *(values.shape[i] for i in other_axes)
@@ -247,8 +254,8 @@ def utilisations(
 ) -> dict[str, Array]:
     """Utilisation 1/SR (SR: strength ratio) by failure mode of one criterion.
 
-    Stresses are (faces, plies, climates, ...), with batch axes last. The strengths of each ply and
-    climate are on the same axes.
+    Stresses are (faces, plies, climates, ...); further axes, such as load paths and designs, come
+    last. The strengths of every ply and climate are on the same axes.
     """
     extra = stress[0].ndim - 3
 
@@ -281,7 +288,7 @@ def utilisations(
 
 
 def _strengths(plies: Sequence[Layer], name: str, extra: int) -> Array:
-    """One strength for every ply and climate, (plies, climates, ...)."""
+    """The strength `name` of every ply and climate, (plies, climates, ...)."""
     rows = [
         np.stack(
             np.broadcast_arrays(

@@ -1,8 +1,8 @@
 """User metrics and constraints, from a script or a ``--plugin`` file.
 
 A metric is a function of a `View`: it reads numbers of the design by PATH and built-in metrics by
-name, and returns an array. If its operators and NumPy functions accept complex numbers, its
-gradient is exact; otherwise the optimiser uses finite differences.
+name, and returns an array. If all operators and NumPy functions in it accept complex numbers, the
+optimiser calculates its exact gradient; otherwise it uses finite differences.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from .values import Values
 
 _MARK = "_actuator_opt_plugin"
 _LONGEST = 300
-"""Largest number of characters of an exception's text that a line shows."""
+"""Largest number of characters that a message quotes of an exception's text."""
 
 
 class View:
@@ -44,7 +44,8 @@ class View:
         self._values = values
         self._metrics = metrics
         self._design = design
-        """Index and number of designs if only one design is shown; None for all at once."""
+        """Index of the single design that the function gets, and number of designs; None: all
+        designs at once."""
 
     def __getitem__(self, path: str) -> Array:
         """The number at a PATH (``cylinder.bore``), a float or an array of designs."""
@@ -53,7 +54,7 @@ class View:
         return self._for_design(self._values[path])
 
     def metric(self, name: str) -> Array:
-        """A computed metric; the worst value if it has several locations."""
+        """A built-in metric; if it has several locations, its worst value."""
         if name not in self._metrics:
             raise KeyError(f"no metric {name}")
         places = list(self._metrics[name].values())
@@ -65,7 +66,10 @@ class View:
         return self._for_design(worst)
 
     def _for_design(self, value: Array) -> Array:
-        """A value for all designs; for a single design a number, or one number per load case."""
+        """Select the value of a single design: a number, or a column with a number per load case.
+
+        If all designs are shown at once, the value is unchanged.
+        """
         shape = np.shape(value)
         if self._design is None or not shape:
             return value
@@ -76,7 +80,7 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Plugin:
-    """A user metric; with a `sense`, it is also a constraint with the limit zero."""
+    """A user metric; if it has a `sense`, it is also a constraint with the limit zero."""
 
     name: str
     quantity: Quantity
@@ -93,10 +97,10 @@ class Plugin:
     ) -> PluginValue:
         """The metric of every design; NaN with a reason if the function raised.
 
-        A function that raises an exception for many designs at once is called for each design
-        separately. So one failing design does not affect the others, and functions without array
-        support work. Text that the function prints goes to standard error, because standard output
-        is for data.
+        If the function raises an exception for many designs at once, it is called again for each
+        design separately. A failing design then does not affect the others, and functions that do
+        not support arrays work too. Text that the function prints goes to standard error, because
+        standard output is for data.
 
         Raises
         ------
@@ -151,13 +155,13 @@ class Plugin:
 
 
 def with_own(plugins: Iterable[Plugin]) -> dict[str, Quantity]:
-    """All metrics by name: built-in metrics and user metrics."""
+    """Quantities of all metrics by name: built-in metrics and user metrics."""
     return {**METRICS, **{plugin.name: plugin.quantity for plugin in plugins}}
 
 
 @dataclass(frozen=True, slots=True)
 class PluginValue:
-    """Result of a user function, and the exceptions that it raised, by index of the design."""
+    """Result of a user function, and the text of its first exception."""
 
     value: Array
     raised: str = ""
@@ -199,12 +203,12 @@ def _designs(values: Values) -> int:
 
 
 def _complex(values: Values) -> bool:
-    """Whether complex steps, which carry derivatives, are among the values."""
+    """Whether some values are complex, to calculate derivatives by complex steps."""
     return any(np.iscomplexobj(value) for value in values.varied.values())
 
 
 def _checked(plugin: Plugin, returned: object, values: Values, designs: int) -> Array:
-    """Check that a user function returned a number per design (and load case); return the array."""
+    """Return the array of a user function, after a check: one number per design (and load case)."""
     try:
         array = np.asarray(returned)
     except KeyboardInterrupt:
@@ -242,7 +246,7 @@ def metric(
     unit_name : display unit; default the SI unit
     label : name in tables and reports
 
-    The largest value over load cases governs, unless a requirement or the objective makes the
+    The largest value of all load cases governs, unless a requirement or the objective makes the
     smallest govern.
     """
     if not isinstance(name, str):
@@ -297,7 +301,7 @@ def collect(*functions: Callable[[View], Array]) -> tuple[Plugin, ...]:
 
 
 def _marked(values: Iterable[object]) -> list[Plugin]:
-    """Plugins among the values of a module; skip values that raise an exception on access."""
+    """Plugins among the values of a module; values whose access raises an exception are skipped."""
     plugins = []
     for value in values:
         with contextlib.suppress(Exception):

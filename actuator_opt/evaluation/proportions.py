@@ -1,8 +1,8 @@
-"""Implausible values: slips of unit or decimal point that no limit would reveal.
+"""Warnings of implausible values: wrong units or decimal points that no limit would reveal.
 
-A table of ratios with their usual range. Every range is our choice, wider than in catalogues. A
-value outside it gives a warning, never a fault. The ratios need only dimensions and no models, so
-the command `check` can give these warnings too.
+`TABLE` contains ratios with their usual ranges. Every range is our choice, wider than in
+catalogues. A value outside its range gives a warning, never a fault. The ratios need only
+dimensions and no models, so the command `check` gives these warnings too.
 """
 
 from __future__ import annotations
@@ -75,7 +75,10 @@ def _dead(chamber: str) -> Ratio:
 
 
 def _stated(path: str, over: Callable[[Geometry], Array]) -> Ratio:
-    """Ratio of an optional value of the design file to a dimension; None if not stated."""
+    """Return a function for the ratio of an optional value, at a PATH, to a dimension.
+
+    The ratio is None if the design does not state the value.
+    """
 
     def ratio(v: Values, design: Design, g: Geometry) -> Array | None:
         value = v.get(path, None)
@@ -155,14 +158,14 @@ _WIDE = "our choice"
 TABLE: tuple[Proportion, ...] = (
     Proportion(
         "cylinder.dead_volume_a", "times the swept volume of the piston", 0.0, 1.0,
-        "our choice: most of the oil moves", _dead("a"),
+        "our choice: most of the oil should be swept", _dead("a"),
     ),
     Proportion(
         "cylinder.dead_volume_b", "times the swept volume of the piston", 0.0, 1.0,
-        "our choice: most of the oil moves", _dead("b"),
+        "our choice: most of the oil should be swept", _dead("b"),
     ),
     Proportion(
-        "lines", "times the swept volume of the piston, in one line", 0.0, 20.0, _WIDE,
+        "lines", "times the swept volume of the piston (volume of one line)", 0.0, 20.0, _WIDE,
         _lines,
     ),
     Proportion(
@@ -187,8 +190,8 @@ TABLE: tuple[Proportion, ...] = (
         "barrel.layup", "times the inner radius (wall thickness)", 0.005, 2.0, _WIDE, _wall,
     ),
     Proportion(
-        "supply.pressure", "MPa (mean hoop stress, pressure times radius over wall)", 0.2,
-        2500.0, "our choice: more than the fibres of the library withstand", _hoop,
+        "supply.pressure", "MPa (mean hoop stress: pressure x radius / wall thickness)", 0.2,
+        2500.0, "our choice: the fibres of the library do not withstand more", _hoop,
     ),
     Proportion(
         "supply.return_pressure", "times the supply pressure", 0.0, 0.5, _WIDE,

@@ -1,9 +1,9 @@
 """The `Evaluation`: all metrics and requirements of a design, for printing and export.
 
-It also states the reserve of a design: which limits are met without reserve, and what share of
-the actuators built to it is expected to meet all requirements. An optimum lies on some of its
-limits. It meets them at nominal dimensions, but with tolerances many of the actuators built to it
-miss a limit.
+It also states the reserve of a design: which limits it meets without reserve, and which share of
+the actuators built to the design is expected to meet all requirements. An optimum lies exactly on
+some of its limits. With nominal dimensions it meets them, but because of tolerances, many of the
+actuators built to it miss a limit.
 """
 
 from __future__ import annotations
@@ -22,11 +22,12 @@ from .dynamics_study import DynamicsStudy
 from .wall_study import WallStudy
 
 NO_RESERVE = 1e-3
-"""Margin below which a limit is met without reserve. Our choice: the width of a single tolerance.
-IT7 at 20 mm is 21 um, or 0.1 % (ISO 286-1). An optimum on a limit has a margin below 1e-6."""
+"""Relative margin below which a limit is met without reserve. Our choice: the width of a single
+tolerance, such as IT7 at 20 mm, which is 21 um or 0.1 % (ISO 286-1). An optimum that lies on a
+limit has a margin below 1e-6."""
 NO_ROOM = 1e-6
-"""As `NO_RESERVE`, for a limit of 0, whose margin is the value itself in SI. Equal to the tolerance
-within which a limit counts as met."""
+"""As `NO_RESERVE`, but for a limit of 0, whose margin is the value itself in SI. It equals the
+tolerance within which a limit counts as met."""
 MOST_NAMED = 5
 """Largest number of limits without reserve that a sentence names."""
 
@@ -55,9 +56,9 @@ class YieldEstimate:
 
     Parameters
     ----------
-    value, lower, upper : share and its exact 95 % bounds; None if not estimated
+    value, lower, upper : share and its exact 95 % confidence bounds; None if not estimated
     draws : number of independent samples
-    with_checks : share that also meets every check; None if the design itself misses a check
+    with_checks : share that also passes every check; None if the design itself misses a check
     worst, worst_fails : requirement that fails most often, and the share of samples that fail it
     why : reason why there is no estimate
     """
@@ -72,7 +73,7 @@ class YieldEstimate:
     why: str = ""
 
     def to_dict(self) -> dict[str, Any] | None:
-        """JSON entry `reserve.yield`; None if not estimated."""
+        """The entry `reserve.yield` in JSON; None if not estimated."""
         if self.value is None:
             return None
         worst = None
@@ -87,7 +88,7 @@ class YieldEstimate:
     def sentence(self) -> str:
         """The estimate in a sentence, or the reason why it is missing."""
         if self.value is None or self.lower is None or self.upper is None:
-            return f"Yield not estimated ({self.why}); `actuator-opt uncertainty` computes it."
+            return f"Yield not estimated ({self.why}); `actuator-opt uncertainty` estimates it."
         shown = f"{_percent(self.lower)} to {_percent(self.upper)} %, {self.draws} samples"
         text = (
             f"About {_percent(self.value)} % of the actuators built to this design would meet "
@@ -96,16 +97,16 @@ class YieldEstimate:
         if self.with_checks is not None and self.with_checks < self.value:
             text += f", and {_percent(self.with_checks)} % would also pass every check"
         if self.worst is not None and self.worst_fails:
-            text += f"; {self.worst} fails most often, in {_percent(self.worst_fails)} %"
+            text += f"; {self.worst} is missed most often, by {_percent(self.worst_fails)} %"
         return f"{text}."
 
 
 UNKNOWN = YieldEstimate(why="an evaluation draws no samples")
-"""Yield of a plain evaluation."""
+"""Yield of an evaluation without samples."""
 
 
 def sentences(names: Sequence[str], estimate: YieldEstimate, *, movable: bool) -> tuple[str, ...]:
-    """Sentences with the limits without reserve, the yield, and remedies.
+    """Sentences that name the limits without reserve, the yield, and what to do about them.
 
     Parameters
     ----------
@@ -117,18 +118,18 @@ def sentences(names: Sequence[str], estimate: YieldEstimate, *, movable: bool) -
     if names:
         more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
         named = ", ".join(names[:MOST_NAMED])
-        lines.append(f"Without reserve (margin below {100 * NO_RESERVE:g} %): {named}{more}.")
+        lines.append(f"Met without reserve (margin below {100 * NO_RESERVE:g} %): {named}{more}.")
     lines.append(estimate.sentence)
     estimated = estimate.value is not None
     if movable and (names or (estimated and estimate.value != 1)):
-        lines.append("`actuator-opt optimise --yield 0.99` adds a reserve to every limit.")
+        lines.append("`actuator-opt optimise --yield 0.99` finds a design with reserves.")
     elif estimated and estimate.value != 1:
-        lines.append("`actuator-opt uncertainty` shows the causes of scatter.")
+        lines.append("`actuator-opt uncertainty` shows which inputs cause the scatter.")
     return tuple(lines)
 
 
 def _percent(share: float) -> str:
-    """Format a share in per cent, with a decimal near 0 and 100.
+    """Format a share in per cent, with a decimal below 10 and above 90.
 
     >>> _percent(0.026), _percent(0.436), _percent(0.9967), _percent(1.0), _percent(0.0)
     ('2.6', '44', '99.7', '100', '0')
@@ -146,7 +147,7 @@ State: TypeAlias = Literal["met", "no_reserve", "missed", "not_checked"]
 class Metric:
     """A metric at its governing load case and location (a ply, a seal, a part).
 
-    `value` is in SI, or None with the reason in `why`. `by_case` has the worst value of every load
+    `value` is in SI; if it is None, `why` is the reason. `by_case` has the worst value of each load
     case. `sense` states whether the smallest ("min") or the largest ("max") value governs; None if
     all values are equal.
     """
@@ -188,7 +189,7 @@ class Requirement:
 
     @property
     def state(self) -> State:
-        """Whether the requirement is met, and whether with reserve (`NO_RESERVE`)."""
+        """Whether the requirement is met, and with a reserve (a margin of `NO_RESERVE`)."""
         if not self.met:
             return "missed"
         return "no_reserve" if without_reserve(self.margin, self.limit) else "met"
@@ -213,7 +214,7 @@ class Check:
 
     @property
     def state(self) -> State:
-        """Status of the check, and whether it is met with reserve (`NO_RESERVE`)."""
+        """Status of the check; if met, whether with a reserve (a margin of `NO_RESERVE`)."""
         if self.status != "met":
             return self.status
         return "no_reserve" if without_reserve(self.margin, self.limit) else "met"
@@ -221,7 +222,7 @@ class Check:
 
 @dataclass(frozen=True, slots=True)
 class ModelUse:
-    """Use of a model: source of its equation, valid range, and the metrics that use it."""
+    """A model that was used: source of its equation, valid range, and the metrics from it."""
 
     name: str
     equation: str
@@ -233,7 +234,7 @@ class ModelUse:
 
 @dataclass(frozen=True, slots=True)
 class Unverified:
-    """A library value of the design that nobody has checked against its primary source."""
+    """A library value used by the design that nobody has checked against its primary source."""
 
     material: str
     property: str
@@ -244,10 +245,11 @@ class Unverified:
 
 @dataclass(frozen=True, slots=True)
 class StrokeCurve:
-    """Stiffness over the stroke in the governing case; arrays over `position` [m] from the cap end.
+    """Stiffness along the stroke in the governing load case.
 
-    `stiffness` is the total (N/m); `contributions` maps a part (oil, barrel, lines, rod, mount)
-    to its compliance (m/N), so that the contributions add up to 1/stiffness.
+    `position` is measured from the cap end [m]; the other arrays have a value for each position.
+    `stiffness` is the total [N/m]. `contributions` are the compliances of the parts [m/N], such as
+    oil, barrel, lines, rod and mount, whose sum is 1/stiffness.
     """
 
     case: str
@@ -267,19 +269,22 @@ class StrokeCurve:
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """Half-section of a part, retracted: closed polygons of (axial position, radius) [m]."""
+    """Half-section of a part of the retracted actuator.
+
+    The polygons are closed; their points are (axial position, radius) [m].
+    """
 
     part: str
     material: str
     polygons: tuple[tuple[tuple[float, float], ...], ...]
     kind: Literal["metal", "composite", "polymer", "seal", "oil"]
     bars: int = 0
-    """Number of round bars about the axis; 0: a turned part."""
+    """Number of round bars around the axis, such as tie rods; 0 for a turned part."""
 
 
 @dataclass(frozen=True, slots=True)
 class Evaluation(Displayed):
-    """Complete results of a design: metrics, requirements, checks, drawing, provenance."""
+    """Complete results of a design: metrics, requirements, checks, drawing, and sources."""
 
     name: str
     version: str
@@ -298,7 +303,7 @@ class Evaluation(Displayed):
     lengths: Mapping[str, float]
     """Dimensions for the drawing (m): bore, rod, barrel outer diameter, stroke, closed length…"""
     wall: WallStudy | None = None
-    """Stresses through the thickness of the barrel; None with the published wall model."""
+    """Stresses through the thickness of the barrel; None with the wall model `as_published`."""
     dynamics: DynamicsStudy | None = None
     """Modes along the stroke, dynamic stiffness over frequency, and the position loop."""
     friction_parts: Mapping[str, float] = field(default_factory=dict)
@@ -313,7 +318,7 @@ class Evaluation(Displayed):
 
     @property
     def tight(self) -> tuple[str, ...]:
-        """Names of the limits met without reserve: requirements, then checks."""
+        """Names of the limits that are met without reserve: first requirements, then checks."""
         required = {(row.metric, row.sense, row.limit) for row in self.requirements}
         names = [row.name for row in self.requirements if row.state == "no_reserve"]
         names += [
@@ -333,7 +338,7 @@ class Evaluation(Displayed):
 
     @property
     def counts(self) -> dict[str, int]:
-        """Count unverified library values, and metrics and models outside their valid range."""
+        """Numbers of unverified library values, and of extrapolated metrics and models."""
         return {
             "unverified": len(self.unverified),
             "extrapolated": len(self.extrapolated),
@@ -350,7 +355,7 @@ class Evaluation(Displayed):
 
     @property
     def tally(self) -> str:
-        """Number of requirements met and, if all are met, the missed checks."""
+        """Sentence: number of requirements met and, if all are met, the missed checks."""
         total, met = len(self.requirements), sum(row.met for row in self.requirements)
         missed = [check.name for check in self.checks if check.status == "missed"]
         more = f" and {len(missed) - 1} more" if len(missed) > 1 else ""
@@ -382,7 +387,7 @@ class Evaluation(Displayed):
         return "\n".join([*head, aligned(rows, right=(1, 2, 3)), "", aligned(values), *missed])
 
     def to_dict(self) -> dict[str, Any]:
-        """The `evaluate --json` object (SI)."""
+        """The object that `evaluate --json` writes (SI)."""
         return {
             "name": self.name,
             "version": self.version,

@@ -1,7 +1,7 @@
-"""Sealing rings in an evaluation: sizes under pressure and bore growth, contact, gland checks.
+"""Sealing rings in an evaluation: squeeze with bore growth, contact pressure, gland checks.
 
-The contact follows from the model of the seal type, unless the design states it. Gland checks
-cover squeeze, fill and extrusion gap, with tolerances, bore growth and temperature.
+The contact pressure follows from the model of the seal type, unless the design states it. Gland
+checks cover squeeze, fill and extrusion gap, with tolerances, bore growth and temperature.
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ Place = Literal["piston", "rod"]
 class Ring:
     """A sealing element with its numbers by name; arrays broadcast to (cases, designs).
 
-    `numbers` has the values of the design file, and in addition `diameter`, `youngs_modulus` of the
-    squeezed part, `pressure` (sealed difference), `outer_pressure` (gauge) and `squeeze_left`
-    (nominal squeeze minus the loss by bore growth). For an oil film it also has `speed`,
-    `viscosity`, `return_pressure` (p_B on the return stroke) and the roughness of the face.
+    `numbers` contains the values of the design file and in addition `diameter`, `youngs_modulus` of
+    the squeezed part, `pressure` (the sealed pressure difference), `outer_pressure` (gauge) and
+    `squeeze_left` (nominal squeeze minus the loss by bore growth). For an oil film it also contains
+    `speed`, `viscosity`, `return_pressure` (p_B on the return stroke) and roughness of the ring.
     """
 
     name: Place
@@ -47,14 +47,14 @@ class Ring:
     groove: Groove
     numbers: Mapping[str, Array]
     viscosity_law: str = "none"
-    """Name of the law for the viscosity of the oil over pressure."""
+    """Name of the law by which the viscosity of the oil depends on pressure."""
 
     def __getitem__(self, name: str) -> Array:
         return self.numbers[name]
 
     @property
     def sizes(self) -> SealSizes:
-        """Its numbers and laws, as inputs of seal types and friction laws."""
+        """Numbers and laws of the ring, as inputs of the models of seal types and friction."""
         element = self.element
         return SealSizes(self.numbers, element.law, element.hardness_model, self.name == "rod")
 
@@ -69,7 +69,7 @@ class Ring:
 
 
 def places(g: Geometry) -> tuple[tuple[Place, tuple[Groove, ...], Array], ...]:
-    """Yield grooves and counterface diameter of the piston seals and of the rod seals."""
+    """Name, grooves and counterface diameter of the piston seals and of the rod seals."""
     return ("piston", g.piston_grooves, g.bore), ("rod", g.rod_grooves, g.rod_diameter)
 
 
@@ -86,7 +86,7 @@ def hardness_modulus(v: Values, compound: str, law: str) -> Array:
 
 
 def face_modulus(v: Values, compound: str, law: str, temperature: Array) -> Array:
-    """Young's modulus of a sliding face at a temperature; from hardness if not stated."""
+    """Young's modulus of a ring's sliding face at a temperature; by default from its hardness."""
     at = f"materials.{compound}."
     stated = f"{at}youngs_modulus"
     modulus = v[stated] if stated in v else hardness_modulus(v, compound, law)
@@ -110,8 +110,8 @@ def rings(
 ) -> tuple[Ring, ...]:
     """All sealing rings; on piston and rod, the first ring seals the pressure.
 
-    The piston seal is under the pressure difference of the chambers, the rod seal under p_B.
-    `growth` is the growth of the bore far from the seal.
+    The piston seal seals the pressure difference between the chambers, the rod seal the pressure
+    p_B. `growth` is the radial growth of the bore far from the seal.
     """
     across: dict[str, tuple[Array, Array]] = {
         "piston": (
@@ -155,13 +155,13 @@ def rings(
 
 
 _OWN = ("friction_coefficient", "breakaway_ratio", "stribeck_speed")
-"""Values of a seal that default to those of its compound."""
+"""Keys of a seal whose default is the value of its compound."""
 
 
 def _numbers(
     v: Values, element: SealElement, groove: Groove, diameter: Array, temperature: Array
 ) -> dict[str, Array]:
-    """Inputs for the contact of a sealing ring."""
+    """Numbers of a sealing ring from which its contact pressure follows."""
     at, compound, kind = groove.path, f"materials.{element.compound}.", element.seal_type
     law = element.friction_law
     face = face_modulus(v, element.compound, element.hardness_model, temperature)
@@ -194,18 +194,18 @@ def _numbers(
 
 
 INCOMPRESSIBLE = 0.495
-"""Default Poisson's ratio of rubber (0.49 to 0.499 in use)."""
+"""Default Poisson's ratio of rubber (common values are 0.49 to 0.499)."""
 
 
 def seal_contact(ring: Ring) -> SealContact:
-    """Contact of a ring at its `squeeze_left` and `pressure`."""
+    """Contact pressure of a ring, at its numbers `squeeze_left` and `pressure`."""
     if ring.element.contact:
         return stated_profile.contact(ring.element.contact, ring["pressure"])
     return ring.element.seal_type.contact(ring.sizes)
 
 
 def static_profile(ring: Ring, nodes: int) -> tuple[Array, Array]:
-    """Contact width [m] and static contact pressure [Pa gauge] at uniform nodes; plain floats."""
+    """Contact width [m], and static contact pressure [Pa gauge] at evenly spaced nodes."""
     position = np.linspace(0.0, 1.0, nodes)
     pressure, outer = ring["pressure"], ring["outer_pressure"]
     if real(pressure) >= 0:
@@ -234,9 +234,10 @@ def gland_metrics(
 ) -> dict[str, Array]:
     """Gland metrics of a ring; `growth` is the largest growth of the bore at the ring.
 
-    Squeeze and fill are for the worst tolerances, hot and cold, with rod and bore concentric as in
-    gland tables. The extrusion gap allows for side load, which moves the rod aside: on one side the
-    gap is then larger by the clearance. The smaller squeeze there is shown in the seal report.
+    Squeeze and fill are for the worst tolerances, at the highest and lowest temperature, with rod
+    and bore concentric as in gland tables. The extrusion gap includes the effect of a side load: it
+    moves the rod aside, so that on one side the gap is larger by the clearance. The seal report
+    shows the smaller squeeze on that side.
     """
     clearance, aside = clearances(geometry, state, ring)
     cold, hot = (
@@ -258,7 +259,7 @@ def gland_metrics(
 
 
 def _fill(ring: Ring) -> Array:
-    """Largest fill of an O-ring's groove at assembly, which occurs in the shallowest groove."""
+    """Largest filled share of an O-ring's groove at assembly: thickest ring, shallowest groove."""
     back_up_width = sum(piece.area for piece in ring.groove.pieces[1:]) / ring["gland_depth"]
     return gland.gland_fill(
         section=gland.stretched_section(
@@ -270,14 +271,15 @@ def _fill(ring: Ring) -> Array:
 
 
 def clearances(geometry: Geometry, state: LoadState, ring: Ring) -> tuple[Array, Array]:
-    """Radial clearance behind a ring, and radial shift of rod or piston by side load, by case."""
+    """Radial clearance behind a ring, and radial shift of rod or piston by the side load."""
     clearance = geometry.piston_clearance if ring.name == "piston" else geometry.head_clearance
     return clearance, where(real(state.side_load) > 0, 1.0, 0.0) * clearance
 
 
 def squeezes(ring: Ring, *, growth: Array, aside: Array, ratio: Array) -> tuple[Array, Array]:
-    """Least squeeze of a ring, with bore growth and stretch, and largest squeeze without them.
+    """Least and largest squeeze of a ring.
 
+    The least squeeze includes the effects of bore growth and stretch, the largest excludes them.
     `ratio` is the result of `volume_ratio`; `aside` is the eccentricity of rod or piston.
     """
     section = ring["section"]
@@ -299,7 +301,10 @@ def squeezes(ring: Ring, *, growth: Array, aside: Array, ratio: Array) -> tuple[
 def volume_ratio(
     v: Values, design: Design, stock: MaterialValues, ring: Ring, temperature: Array
 ) -> Array:
-    """Ratio of ring to groove volume at a temperature, relative to assembly; 1 if unknown."""
+    """Ratio of ring volume to groove volume at a temperature, divided by that at assembly.
+
+    It is 1 if the thermal expansion is unknown.
+    """
     expansion = stock.get(ring.element.compound, "volume_expansion")
     part = design.piston if ring.name == "piston" else design.head
     housing = stock.get(part.material, "thermal_expansion")
@@ -314,7 +319,10 @@ def volume_ratio(
 
 
 def _extrusion(v: Values, stock: MaterialValues, ring: Ring, gap: Array) -> Array:
-    """Ratio of allowable to actual gap of the seal or its back-up ring at supply pressure."""
+    """Allowable divided by actual extrusion gap, at supply pressure.
+
+    The allowable gap is that of the seal or of its back-up ring.
+    """
     pressure, element = v["supply.pressure"], ring.element
     if stock.material(element.compound).properties.get("extrusion_gap_max") is None:
         hardness = v[f"materials.{element.compound}.hardness"]
@@ -336,7 +344,7 @@ def _extrusion(v: Values, stock: MaterialValues, ring: Ring, gap: Array) -> Arra
 
 
 def _stated_end(material: Material) -> float:
-    """Highest pressure for which a material states a gap limit; 0 if it states none."""
+    """Highest pressure for which a material states a limit of the extrusion gap, or 0."""
     limit = material.properties.get("extrusion_gap_max")
     if limit is None:
         return 0.0
@@ -344,7 +352,7 @@ def _stated_end(material: Material) -> float:
 
 
 def _stated(stock: MaterialValues, name: str, pressure: Array) -> Array:
-    """Gap limit that a material states for a pressure; 0 if it states none."""
+    """Extrusion gap that a material states as its limit at a pressure; 0 if not stated."""
     limit = stock.material(name).properties.get("extrusion_gap_max")
     if limit is None:
         return 0.0
@@ -356,7 +364,7 @@ def _stated(stock: MaterialValues, name: str, pressure: Array) -> Array:
 
 
 def extrusion_end(ring: Ring, materials: Mapping[str, Material]) -> float:
-    """Highest pressure for which a gap limit of a ring is known."""
+    """Highest pressure for which a limit of a ring's extrusion gap is known."""
     compound, back_up = materials[ring.element.compound], ring.element.back_up_material
     ends = [0.0 if back_up is None else _stated_end(materials[back_up])]
     if "extrusion_gap_max" in compound.properties:

@@ -1,8 +1,8 @@
 """Strength of the rod: yield, strength of plies and metal layers, buckling, bending.
 
 Push and pull are the largest forces that supply pressure can cause. The actuator is a slender
-beam: a push amplifies the moment of side load and own weight, the more the closer it is to the
-critical load (`Beam.under`). In a pull, the rod inside chamber B is under chamber pressure.
+beam. A push amplifies the bending moment of side load and own weight, the more, the closer it is to
+the critical load (`Beam.under`). In a pull, the chamber pressure acts on the rod inside chamber B.
 """
 
 from __future__ import annotations
@@ -33,22 +33,23 @@ GRAVITY = 9.80665
 """Standard gravity, m/s^2 (3rd CGPM, 1901)."""
 
 NEAR = 0.75
-"""Share of the critical load above which the amplified moment continues along its tangent. Our
-choice: designs far beyond buckling, which the buckling check rejects, then have finite results."""
+"""Share of the critical load above which the curve of the amplified moment is replaced by its
+tangent. Our choice: results are then finite even for designs far beyond buckling, which the
+buckling check rejects."""
 
 LEAST = 1e-6
-"""Least rod length outside the head [m], to avoid a division by zero."""
+"""Smallest rod length outside the head in calculations [m]; avoids a division by zero."""
 
 
 @dataclass(frozen=True, slots=True)
 class Beam:
-    """Critical load [N], and largest bending moment in the rod without push [N m], by load case."""
+    """Critical load [N] and largest bending moment without push [N m], in each load case."""
 
     critical: Array
     moment: Array
 
     def under(self, push: Array) -> Array:
-        """Moment amplified by a push [N]; above `NEAR` of the critical load, along the tangent."""
+        """Moment amplified by a push [N]; above `NEAR` of the critical load, it rises linearly."""
         share = push / self.critical
         near = minimum(share, NEAR)
         amplified = column.amplified_moment(
@@ -58,14 +59,14 @@ class Beam:
 
 
 def lengths(g: Geometry, state: LoadState) -> tuple[Array, Array]:
-    """Lengths of the cylinder and of the rod outside it; together, the distance from eye to eye."""
+    """Lengths of the cylinder and of the rod outside it; their sum is the eye-to-eye distance."""
     cylinder = g.eye_offset + 2 * g.plate + g.barrel_length
     return cylinder, maximum(state.reach + g.rod_extension + g.eye_offset, LEAST)
 
 
 CriticalLoad: TypeAlias = Callable[[Design, Wall, RodSection, tuple[Array, Array]], Array]
-"""Function for the critical load of a design, from wall, rod and lengths of cylinder and exposed
-rod."""
+"""Function that returns a design's critical load, from its wall, its rod, and the lengths of the
+cylinder and the exposed rod."""
 
 
 def derive(
@@ -79,7 +80,7 @@ def derive(
     *,
     critical_load: CriticalLoad,
 ) -> Beam:
-    """Critical load and moment in every load case, with the actuator horizontal (our choice)."""
+    """Critical load and bending moment in every load case; our choice is a horizontal actuator."""
     segments = lengths(g, state)
     weight_moment = _weight(v, design, g, state, rod, parts, segments)
     return Beam(
@@ -91,7 +92,10 @@ def derive(
 def critical_load(
     design: Design, wall: Wall, rod: RodSection, lengths: tuple[Array, Array]
 ) -> Array:
-    """Critical load, with shear, of barrel and rod, or of the rod alone if mounted at the head."""
+    """Critical load of barrel and rod, or, if mounted at the head, of the rod alone.
+
+    Shear deformation is included.
+    """
     mount = design.cylinder.mount
     if mount.startswith("head"):
         factor = FIXED_PINNED if mount == "head_flange" else 1.0
@@ -130,9 +134,10 @@ def _weight(
 ) -> Array:
     """Largest bending moment in the rod by the actuator's own weight.
 
-    For every cap mount the actuator is pinned at both eyes; a fixed cap would be stronger. Mounted
-    at the head, the rod spans from the head to its eye: the moment is w L^2/8, with weight per
-    length w and span L, pinned or fixed at the head. On trunnions the barrel overhangs behind.
+    With a cap mount, the actuator is calculated as pinned at both eyes; a fixed cap would be
+    stronger. With a head mount, the rod spans from the head to its eye. Its moment is w L^2/8, with
+    weight per length w and span L, whether the rod is pinned or fixed at the head. On trunnions,
+    the barrel behind the head is a cantilever.
     """
     outside = rod.mass_per_length * (state.reach + g.rod_extension)
     inside = sum(parts.values()) - parts["clevises"] - outside
@@ -162,7 +167,7 @@ def yields(
     section: RodSection,
     beam: Beam,
 ) -> dict[str, Array]:
-    """Yield over working stress of a rod of one metal, at the pressure of every load case."""
+    """Yield strength divided by stress of a rod of one metal, at the pressure of each load case."""
     if section.layers:
         return {}
     strength = stock.allowable(design.rod.material, "yield_strength", "strength_1_compression")
@@ -184,7 +189,7 @@ def compute(
     pull: Array,
     out: MetricArrays,
 ) -> None:
-    """Compute the strength of the layers, and of the wall against local buckling."""
+    """Compute the strength of a rod's layers, and of its wall against local buckling."""
     push_moment = beam.under(push)
     _layers(design, section, (push_moment, beam.moment), supply, push, pull, out)
     if not section.hollow:
@@ -241,8 +246,8 @@ def _layers(
 
 
 DIRECTIONS = {"push": slice(0, 2), "pull": slice(2, 6)}
-"""Indices of the stress states, on both sides of the bent rod: two in a push, four in a pull (with
-and without outside pressure)."""
+"""Indices of the stress states on both sides of the bent rod. There are two in a push and four in a
+pull, with and without outside pressure."""
 
 
 def _factors(
@@ -287,10 +292,11 @@ def _rows(section: RodSection, label: str, utilisation: Array) -> dict[str, Arra
 def cycles(
     design: Design, section: RodSection, supply: Array, push: Array, pull: Array
 ) -> dict[str, Cycle]:
-    """Pulsating stress of the rod's metals; a compressive mean counts as zero.
+    """Stresses of the rod's metals while push and pull alternate: range and mean.
 
-    The stress of a metal layer includes its cure stress and, in a pull, the pressure of chamber B.
-    The mean is the equivalent stress of the pull minus half the range.
+    A compressive mean counts as zero. The stress of a metal layer includes its cure stress and, in
+    a pull, the effect of the pressure of chamber B. Its mean is the equivalent stress in the pull
+    minus half the range.
     """
     if not section.layers:
         size = {"outer_diameter": section.outer_diameter, "inner_diameter": section.inner_diameter}
@@ -321,7 +327,7 @@ def cycles(
 
 
 def _unit_load(section: RodSection, rows: list[int], load: int) -> list[Array]:
-    """Ply stresses of the layers in `rows` per unit load, (faces, layers, 1, 1, 1, designs)."""
+    """Ply stresses of layers `rows` under a unit load, (faces, layers, 1, 1, 1, designs)."""
     assert section.unit is not None
     return [part[:, rows][:, :, load][:, :, None, None, None] for part in section.unit]
 

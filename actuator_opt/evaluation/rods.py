@@ -1,4 +1,4 @@
-"""Section of the rod (a bar of one metal, or a layered tube), and the bonds of its metal fittings.
+"""Section of the rod (a bar of one metal, or a layered tube), and bonds of its end fittings.
 
 Only this module distinguishes bar and tube; all later code works with a `RodSection`.
 """
@@ -34,7 +34,8 @@ from .plies import Climate, Layer
 from .values import Values
 
 OUTSIDE, FORCE, WARMTH = range(3)
-"""Unit loads of `Rod.unit`: outside pressure, axial force, temperature change."""
+"""Indices of the unit loads in `RodSection.unit`: outside pressure, axial force, temperature
+change."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,9 +44,9 @@ class RodSection:
 
     The section has axial stiffness EA [N], bending stiffness EI [N m^2], shear stiffness kappa G A
     [N] and mass per length [kg/m]. `shell_modulus` and `shell_ratio` are Young's modulus and
-    Poisson's ratio of an isotropic wall with the same local buckling load. `expansion` is axial
-    [1/K], None if not stated. A layered rod also has `unit`, its ply stresses per unit load,
-    (faces, layers, loads, designs).
+    Poisson's ratio of an isotropic wall with the same local buckling load. `expansion` is the
+    axial thermal expansion [1/K], None if not stated. A layered rod also has `unit`, the ply
+    stresses under each unit load, (faces, layers, loads, designs).
     """
 
     outer_diameter: Array
@@ -81,7 +82,7 @@ class RodSection:
 
     @property
     def place(self) -> str:
-        """Name of the model for the section; empty for a plain bar."""
+        """Location under which results name the model of the section; empty for a plain bar."""
         return "layered tube" if self.layers else ""
 
 
@@ -172,7 +173,7 @@ def _tube(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> RodS
 
 
 def _unit(tube: LayeredTube, state: TubeState) -> Stress:
-    """Ply stresses at the faces; if the tube twists, those of both plies in each +/- pair."""
+    """Ply stresses at the faces of the layers; if the tube twists, of both plies in a +/- pair."""
     plus = ply_stresses_at_faces(tube=tube, state=state)
     if not tube.twisting:
         return plus
@@ -181,7 +182,7 @@ def _unit(tube: LayeredTube, state: TubeState) -> Stress:
 
 
 def _shell(tube: LayeredTube, layers: Sequence[Layer]) -> tuple[Array, Array]:
-    """Young's modulus and Poisson's ratio of an isotropic wall that buckles at the same load."""
+    """Young's modulus and Poisson's ratio of an isotropic wall with the same buckling load."""
     zz, zt, zr, tt, tr, rr, *_, ss = tube.wall
     sheet = [zz - zr * zr / rr, zt - zr * tr / rr, tt - tr * tr / rr]
     thicknesses = [layer.thickness for layer in layers]
@@ -219,7 +220,7 @@ def _mass(v: Values, design: Design, g: Geometry) -> Array:
 
 
 def fittings(v: Values, stock: MaterialValues, design: Design, rod: RodSection) -> Overlap | str:
-    """Bonds of the end fittings in a laminated rod, or a reason why the rod has none."""
+    """Bonds of the end fittings in a laminated rod, or the reason why there are no bonds."""
     fitting = design.rod.fitting
     if fitting is None:
         return "the rod has no bonded fittings"
@@ -237,7 +238,7 @@ def fittings(v: Values, stock: MaterialValues, design: Design, rod: RodSection) 
 
 
 def fitting_hole(v: Values, design: Design, rod: RodSection) -> Array:
-    """Inner diameter of a fitting; zero for a plug, and for a sleeve as thick as the bore."""
+    """Inner diameter of a fitting; zero for a solid plug, or if the wall fills the rod's bore."""
     if design.rod.fitting is None or design.rod.fitting.wall is None:
         return 0.0 * rod.inner_diameter
     return maximum(rod.inner_diameter - 2 * v["rod.fitting.wall"], 0.0)
@@ -253,10 +254,10 @@ def fitting_area(v: Values, design: Design, rod: RodSection) -> Array:
 def thermal(
     v: Values, design: Design, bonds: Mapping[str, Thermal | str], out: MetricArrays
 ) -> None:
-    """Compute bond strength over edge shear by temperature alone, at the coldest and the hottest.
+    """Compute bond strength divided by the shear at the bond's edge that temperature alone causes.
 
-    `bonds` are bonded overlaps by location; a string is the reason why a location has none. The
-    temperature change counts from joining.
+    It is computed at the lowest and the highest temperature; the temperature change is that since
+    joining. `bonds` are the bonded overlaps by location; a string is the reason for a missing bond.
     """
     metric = "bond_thermal_factor"
     if design.environment is None:

@@ -1,4 +1,4 @@
-"""Piston and rod seals in an evaluation: squeeze after growth, contact, gap, friction, damping."""
+"""Piston and rod seals in an evaluation: squeeze, contact, extrusion gap, friction, damping."""
 
 from __future__ import annotations
 
@@ -84,12 +84,12 @@ def compute(
     secant = damping.secant(friction=total.running, speed=state.speed)
     out.put("damping_seal", secant, cases=moving)
     if not moving.any():
-        out.skip("damping_seal", "give a load case a `speed` to get the secant damping")
+        out.skip("damping_seal", "no load case has a speed: add load_cases[NAME].speed")
     return total
 
 
 Films = Mapping[str, Running]
-"""Oil films by label of the ring; rings without a film are left out."""
+"""Oil films by label of the ring; rings without an oil film are missing."""
 
 
 def films_of(
@@ -108,9 +108,9 @@ def films_of(
 def compute_film(
     geometry: Geometry, state: LoadState, drive: Films, return_: Films, out: MetricArrays
 ) -> None:
-    """Compute results that need both strokes: oil left outside, interseal pressure.
+    """Compute results of the oil films: leakage past the rod seal, and pressure between two seals.
 
-    The oil left outside per double stroke is the oil dragged out minus the oil drawn back.
+    The leakage per double stroke is the oil dragged out minus the oil drawn back.
     """
     moving = real(state.speed) > 0
     if "rod seal" in drive and "rod seal" in return_:
@@ -131,7 +131,10 @@ def compute_film(
 
 
 def _row_load(ring: Ring, contact: SealContact) -> Array:
-    """Line load of all rings in series: the first seals the pressure, the others are squeezed."""
+    """Sum of the line loads of `count` rings in series.
+
+    The first ring seals the pressure; the others are only squeezed.
+    """
     count = ring["count"]
     if isinstance(count, float) and count == 1.0:
         return contact.line_load
@@ -140,7 +143,7 @@ def _row_load(ring: Ring, contact: SealContact) -> Array:
 
 
 def _at_interseal_pressure(ring: Ring, films: Films) -> Ring:
-    """The ring with its share of the pressure, if it is one of two with an interseal pressure."""
+    """A ring with the pressure that it seals: two rings with a film share the difference."""
     film = films.get(ring.label)
     if film is None:
         return ring
@@ -156,7 +159,7 @@ def _at_interseal_pressure(ring: Ring, films: Films) -> Ring:
 
 
 def _wipers_and_guides(v: Values, design: Design, geometry: Geometry, state: LoadState) -> Friction:
-    """Coulomb friction of wipers, and of guide rings under the side load."""
+    """Coulomb friction of the wipers, and of the guide rings under the side load."""
     total: Array = sum((wiper.friction for wiper in wipers(v, design, geometry, state)), 0.0)
     reactions = side_reactions(geometry, state)
     for name, grooves, _ in places(geometry):
@@ -170,7 +173,7 @@ def _wipers_and_guides(v: Values, design: Design, geometry: Geometry, state: Loa
 
 
 class WiperFriction(NamedTuple):
-    """A wiper: where it is, PATH of its block, friction coefficient, Coulomb friction [N]."""
+    """A wiper: PATH of its block, friction coefficient, and Coulomb friction [N]."""
 
     path: str
     coefficient: Array
@@ -214,30 +217,31 @@ def _wiper(
 
 
 SHARES = (0.25, 0.5, 0.75, 1.0)
-"""Sealed pressures of the contact profiles as shares of supply pressure, in addition to zero."""
+"""Sealed pressures, besides zero, at which contact profiles are computed, as shares of the supply
+pressure."""
 POINTS = 81
-"""Number of points of a contact profile, evenly selected from the finite-element nodes."""
+"""Number of points of a contact profile; they are evenly selected from the finite-element nodes."""
 
 
 def room(ring: Ring) -> float:
-    """Axial groove length between the back-up rings [m]."""
+    """Axial length of the groove without its back-up rings [m]."""
     backs = ring.element.back_ups * (ring.element.back_up_thickness or 0.0)
     return float(ring["groove_width"]) - backs
 
 
 def closed_form(ring: Ring) -> SealContact:
-    """Contact of the ring by the formula of its type, at its pressure and mounted squeeze.
+    """Contact of the ring by the formula of its type, at its pressure and nominal squeeze.
 
-    For comparison with finite elements: like these, it ignores bore growth and stated profiles.
+    It is compared with finite elements, and like them ignores bore growth and stated profiles.
     """
     bare = replace(ring, element=ring.element.model_copy(update={"contact": ()}))
     return seal_contact(bare.at(squeeze_left=ring["squeeze"], pressure=abs(ring["pressure"])))
 
 
 def contacts(ring: Ring, supply: float) -> tuple[MountedContact, ...]:
-    """Solve a ring by finite elements: mounted, and at `SHARES` of the supply pressure.
+    """Solve a ring by finite elements: without pressure, and at `SHARES` of the supply pressure.
 
-    Back-up rings count as rigid, like the groove.
+    Back-up rings are rigid, like the groove.
 
     Parameters
     ----------
@@ -256,7 +260,7 @@ def contacts(ring: Ring, supply: float) -> tuple[MountedContact, ...]:
         )
         raise ActuatorError(
             Diagnostic(
-                f"{ring.label}: no finite elements for a {ring.element.type}",
+                f"{ring.label}: finite elements are not available for a {ring.element.type}",
                 f"use them for {types}, or state measured or computed contact profiles",
             )
         )
@@ -264,7 +268,7 @@ def contacts(ring: Ring, supply: float) -> tuple[MountedContact, ...]:
     if solution.failure:
         raise Unsolvable(
             Diagnostic(
-                f"{ring.label}: finite elements: {solution.failure}",
+                f"{ring.label}: the finite elements have no solution: {solution.failure}",
                 "lower the squeeze or the pressure, or widen the groove",
             )
         )
@@ -272,7 +276,7 @@ def contacts(ring: Ring, supply: float) -> tuple[MountedContact, ...]:
 
 
 def profiles(mounted_contacts: Iterable[MountedContact]) -> tuple[ContactProfile, ...]:
-    """Contact profiles in the form that a design file has."""
+    """Contact profiles in the form of the design file."""
     return tuple(
         _profile(
             mounted_contact.pressure, mounted_contact.positions, mounted_contact.contact_pressure
@@ -282,7 +286,10 @@ def profiles(mounted_contacts: Iterable[MountedContact]) -> tuple[ContactProfile
 
 
 def _profile(pressure: float, positions: np.ndarray, stresses: np.ndarray) -> ContactProfile:
-    """Contact profile with fewer points, rounded to 10 nm and 10 Pa; its end has outer pressure."""
+    """Contact profile with fewer points, rounded to 10 nm and 10 Pa.
+
+    Its last point has the outer pressure.
+    """
     offsets = positions - positions[0]
     indices = np.unique(
         np.linspace(0, len(offsets) - 1, min(POINTS, len(offsets))).round().astype(int)

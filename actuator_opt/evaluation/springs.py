@@ -1,4 +1,4 @@
-"""The stiffness budget: all compliances between load and ground, over the stroke."""
+"""The stiffness budget: all compliances between load and ground, along the stroke."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Give(NamedTuple):
     """Compliance from one cause (such as oil or barrel wall) as a function of piston position x.
 
     The compliance of chamber A is a0 + a1 x, that of chamber B is b0 + b1 (s - x), with stroke s.
-    The coupling c0 + c1 x is the volume change of one chamber per pressure in the other.
+    The coupling c0 + c1 x is the volume change of one chamber per unit pressure in the other.
     """
 
     a0: Array = 0.0
@@ -53,7 +53,7 @@ class Compliances(NamedTuple):
 
 
 OIL = ("oil A", "oil B", "oil in lines")
-"""Names of the compliances due to oil, not walls."""
+"""Names of the compliances that oil causes, not walls."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,10 +61,10 @@ class Springs:
     """All compliances between load and ground."""
 
     chambers: dict[str, Give]
-    """Compliances by cause: oil in A, in B and in the lines, barrel wall, axial stretch of the
-    barrel, walls of pipes and hoses."""
+    """Compliances of the chambers by cause: oil in A, in B and in the lines, barrel wall, axial
+    stretch of the barrel, walls of pipes and hoses."""
     seals: Array | None
-    """Stiffness of seals that stick, in parallel with the oil; None if they slide."""
+    """Stiffness of sticking seals, in parallel with the oil; None if the seals slide."""
     chain: dict[str, Array]
     """Stiffnesses in series with the chambers, such as rod, mount and load cell."""
     geometry: Geometry
@@ -79,12 +79,12 @@ class Springs:
         return tuple(cause for cause in OIL if cause in self.chambers)
 
     def total(self, causes: Iterable[str] | None = None) -> Give:
-        """Total compliance of the named causes; default: of all."""
+        """Sum of the compliances of the named causes; default: of all causes."""
         chosen = [self.chambers[cause] for cause in (causes or self.chambers)]
         return Give(*(sum(part[1:], start=part[0]) for part in zip(*chosen, strict=True)))
 
     def hydraulic(self, position: Array, causes: Iterable[str] | None = None) -> Array:
-        """Stiffness of the closed chambers at a position, from the named causes only."""
+        """Stiffness of the closed chambers at a position, with the named compliances only."""
         g = self.geometry
         a, b, ab = self.total(causes).at(position, g.stroke)
         return stiffness.hydraulic_stiffness(
@@ -98,10 +98,10 @@ class Springs:
     def compliances(self, position: Array) -> dict[str, Array]:
         """Compliance by part at a position (m/N); the sum is 1/stiffness.
 
-        The contribution of each part is twice its strain energy under a unit force. For a part of
-        the chambers it is p^T C_part p, with the chamber pressures p and the part's compliance
-        matrix C_part; for the seals it is k x^2, with stiffness k and displacement x. So the result
-        does not depend on the order of the parts.
+        The contribution of each part is twice its strain energy under a unit force, and therefore
+        does not depend on the order of the parts. For a part of the chambers it is p^T C_part p,
+        with the chamber pressures p and the part's compliance matrix C_part. For the seals it is
+        k x^2, with stiffness k and displacement x.
         """
         if self.topology != "per_chamber":
             parts = self._published(position)
@@ -131,12 +131,12 @@ class Springs:
         return parts
 
     def _published(self, position: Array) -> dict[str, Array]:
-        """Compliances with the total of each kind in series, as in the published sources."""
+        """Compliances by part, with the totals of oil, barrel and lines in series, as published."""
         g = self.geometry
         square_a, square_b = g.area_a * g.area_a, g.area_b * g.area_b
 
         def in_series(a: Array, b: Array) -> Array:
-            """Compliance of the springs of both chambers in parallel; an empty chamber is rigid."""
+            """Compliance of the springs of both chambers in parallel."""
             return a * b / (a + b)
 
         def side_a(cause: str) -> Array:
@@ -169,18 +169,19 @@ class Springs:
         return 1 / sum(self.compliances(position).values())
 
     def per_chamber_stiffness(self, position: Array) -> Array:
-        """Axial stiffness at a position, with a separate spring per chamber, for every topology."""
+        """Axial stiffness at a position; for every topology, each chamber is a separate spring."""
         return 1 / (sum(self._by_energy(position).values()) + self.series_compliance())
 
 
 def _stretch(design: Design, g: Geometry, wall: Wall, extra: Array) -> Give:
-    """Compliance by axial stretch of the barrel, under the pressure of the chamber that loads it.
+    """Compliance by axial stretch of the barrel, which the pressure of one chamber causes.
 
-    With a cap mount, the axial force is N = p_B A_B over the whole length L. The head moves by
-    e_N L N + e_p (x p_A + y p_B), and N narrows both chambers by e_p N per length. Here e_N is the
-    axial strain per axial force, e_p that per pressure, x the piston position, and y the wetted
-    length of chamber B: the rest of the stroke and the extra length of the barrel (`extra`). With
-    a head mount, N = p_A A_A. Tie rods carry their share of N.
+    With a cap mount, the axial force is N = p_B A_B along the whole barrel length L. The head moves
+    by e_N L N + e_p (x p_A + y p_B), and N reduces the volume of both chambers by e_p N per unit
+    length. Here e_N is the axial strain per unit axial force, and e_p that per unit pressure. The
+    piston position is x, and y is the wetted length of chamber B: the rest of the stroke and the
+    extra length of the barrel (`extra`). With a head mount, N = p_A A_A. Tie rods carry their share
+    of N.
     """
     shortening = wall.swelling.shortening * wall.path.share
     cap = design.cylinder.mount.startswith("cap")
@@ -257,7 +258,7 @@ def weakest(s: Springs) -> Array:
 
 
 def weakest_per_chamber(s: Springs) -> Array:
-    """Position of least stiffness, with a separate spring per chamber, for every topology."""
+    """Position of least stiffness, with each chamber as a separate spring, for every topology."""
     give = s.total()
     return stiffness.weakest_position(
         area_a=s.geometry.area_a,
@@ -275,8 +276,8 @@ def weakest_per_chamber(s: Springs) -> Array:
 def _softest(curve: Callable[[Array], Array], stroke: Array) -> Array:
     """Find the position of least stiffness by grid refinement.
 
-    Only real parts are used: at a minimum, a small change of position does not affect the
-    stiffness, so derivatives need no change of position.
+    Only real parts are used. At a minimum, a small change of position does not affect the
+    stiffness. The position therefore has no complex step for derivatives.
     """
     length = array_of(real(stroke))
     middle, reach = 0.5 * length, 0.5 * length
@@ -303,32 +304,36 @@ def compute(s: Springs, moving_mass: Array, out: MetricArrays) -> Array:
     if s.seals is not None:
         out.put("stiffness_seals", s.seals)
     else:
-        out.skip("stiffness_seals", "the seals slide: state stiffness.seals: sticking")
+        out.skip(
+            "stiffness_seals",
+            "not available with sliding seals; for it, set "
+            '"stiffness.seals: sticking" in the design',
+        )
     out.put("natural_frequency", dynamics.natural_frequency(stiffness=total, mass=moving_mass))
     return position
 
 
 def warnings(s: Springs) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) for effects that the stiffness neglects or assumes."""
+    """Yield (metric, sentence) for effects that the stiffness neglects or assumes."""
     if s.topology != "per_chamber":
         for metric in ("stiffness_min", "natural_frequency"):
             yield (
                 metric,
                 f"stiffness as published ({s.topology.partition('_')[0]}): the totals of oil, "
-                "barrel and lines are taken in series, which errs by up to 13 % with hoses; "
-                "topology per_chamber is exact",
+                "barrel and lines are in series, which is wrong by up to 13 % with hoses; "
+                '"topology: per_chamber" is exact',
             )
         for cause in ("pipes", "hoses"):
             give = s.chambers.get(cause)
             if give is not None and not (np.all(give.a0) and np.all(give.b0)):
                 yield (
                     "stiffness_min",
-                    f"in the published formula, {cause} on a single chamber have no effect, "
+                    f"in the published formula, {cause} at only one chamber have no effect, "
                     "because the other chamber counts as infinitely stiff",
                 )
     if s.seals is not None:
         yield (
             "",
-            "the stiffness includes that of sticking seals, which vanishes as soon as the seals "
+            "the stiffness includes that of sticking seals, which is lost as soon as the seals "
             "slide",
         )

@@ -1,9 +1,9 @@
-"""State of all load cases: pressures, force, speed, temperature, and oil properties there.
+"""State of all load cases: pressures, force, speed, temperature, and properties of the oil.
 
-Oil properties are bulk modulus, viscosity, density and vapour pressure. The module also warns
-outside their range: boiling, pressures beyond the laws, temperatures beyond the data. Pressures
-are gauge. If the design states no law, that of the library entry applies. All are properties of
-the pure liquid, except `bulk_modulus`, which includes entrained air.
+Oil properties are bulk modulus, viscosity, density and vapour pressure. The module also warns of
+boiling, and of pressures and temperatures outside the range of the oil's laws and data. Pressures
+are gauge. If the design states no law, that of the oil's library entry applies. All properties are
+those of the pure liquid, except `bulk_modulus`, which includes entrained air.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Law: TypeAlias = Callable[..., Array]
 
 
 def alone(material: Material, **choices: object) -> tuple[Values, FluidSection, MaterialValues]:
-    """Inputs of the oil functions in this module, for a library oil without a design.
+    """Inputs for the oil functions of this module, for a library oil that no design uses.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def pure_bulk_modulus(
 
 
 def _properties(stock: MaterialValues, name: str) -> Callable[[str], Array]:
-    """Properties of an oil by name."""
+    """Return a function that looks up a property of an oil by its key."""
     return lambda key: stock.get(name, key)
 
 
@@ -103,7 +103,10 @@ def oil_density(
 def kinematic_viscosity(
     v: Values, section: FluidSection, stock: MaterialValues, temperature: Array
 ) -> Array:
-    """Kinematic viscosity at zero gauge pressure, from the oil's table scaled to its viscosity."""
+    """Kinematic viscosity at zero gauge pressure.
+
+    The oil's table over temperature is scaled, in case its `kinematic_viscosity` is varied.
+    """
     oil = stock.material(section.material)
     points = oil.viscosity_points
     stated = oil.numbers["kinematic_viscosity"]
@@ -131,7 +134,7 @@ def dynamic_viscosity(
 def pressure_law(
     section: FluidSection, stock: MaterialValues, temperature: Array
 ) -> tuple[str, Array]:
-    """Name of the viscosity law over pressure, and its coefficient at a temperature."""
+    """Name of the law of viscosity versus pressure, and its coefficient at a temperature."""
     name = section.material
     oil = stock.material(name)
     law = VISCOSITY_LAWS[viscosity_law(section.viscosity_pressure, oil.numbers)]
@@ -171,7 +174,7 @@ def vapour_pressure(stock: MaterialValues, name: str, temperature: Array) -> Arr
 
 
 def laws(section: FluidSection, oil: Material) -> Iterable[tuple[Law, str]]:
-    """(function, quantity) of every law over pressure that an evaluation uses for the oil."""
+    """Yield (function, quantity) for every law that depends on the pressure of the oil."""
     modulus = BULK_MODULUS_LAWS[bulk_modulus_law(section.bulk_modulus_law, oil.numbers)]
     if modulus.model is not None:
         yield modulus.model, "bulk modulus"
@@ -185,9 +188,10 @@ def laws(section: FluidSection, oil: Material) -> Iterable[tuple[Law, str]]:
 class LoadState:
     """Quantities of the load cases, (cases, 1) or (cases, designs). Pressures are gauge.
 
-    While the piston moves, the driven chamber is at the pressure of the load case (default: supply)
-    and the other chamber at return pressure. While the load is held, a critical-centre servo valve
-    closes the ports against the force [Merritt1967].
+    While the piston moves (`moving_a`, `moving_b`), the driven chamber is at the pressure of the
+    load case (default: supply), and the other chamber at return pressure. While the actuator holds
+    the load (`holding_a`, `holding_b`), a critical-centre servo valve closes the ports, and the
+    pressures balance the force [Merritt1967].
     """
 
     push: np.ndarray
@@ -195,13 +199,13 @@ class LoadState:
     positions: tuple[Array | None, ...]
     """Piston position of every load case; None: the worst position."""
     reach: Array
-    """Piston position for buckling and side load: stated, or the full stroke (worst)."""
+    """Piston position for buckling and side load: as stated, else the full stroke (worst)."""
     demands: dict[str, Demand]
     """Force, speed and mass that the load demands, by position (`linkage.demands`)."""
     force: Array
-    """Force at the worst position: at the shortest lever arm of a linkage, unless stated."""
+    """Force at the stated position, else the largest force: at a linkage's shortest lever arm."""
     speed: Array
-    """Speed at the worst position: at the largest lever arm of a linkage, unless stated."""
+    """Speed at the stated position, else the largest speed: at a linkage's largest lever arm."""
     side_load: Array
     temperature: Array
     driven_pressure: Array
@@ -212,11 +216,11 @@ class LoadState:
     kinematic_viscosity: Array
     density: Array
     dynamic_viscosity: Array
-    """The two viscosities and the density are at the temperature of the load case and zero gauge
-    pressure."""
+    """`dynamic_viscosity`, `kinematic_viscosity` and `density` are those at the load case's
+    temperature and zero gauge pressure."""
     dynamic_viscosity_a: Array
     dynamic_viscosity_b: Array
-    """The viscosities in chambers A and B are at the chamber pressures while moving."""
+    """Viscosities in chambers A and B are at the pressures `moving_a` and `moving_b`."""
     bulk_modulus_a: Array
     bulk_modulus_b: Array
 
@@ -253,14 +257,17 @@ def _positions(
 
 
 def _reach(geometry: Geometry, positions: Sequence[Array | None]) -> Array:
-    """Position of every load case; ``worst`` is full extension, one number if all are ``worst``."""
+    """Position of every load case; ``worst`` is full extension.
+
+    If all positions are ``worst``, it is a single number.
+    """
     if all(position is None for position in positions):
         return geometry.stroke
     return stacked([geometry.stroke if x is None else x for x in positions])
 
 
 def _stated(v: Values, design: Design, field: str, otherwise: Array) -> Array:
-    """One of the holding pressures of every load case: stated, or `otherwise`."""
+    """Holding pressure of one chamber in every load case: as stated, else `otherwise`."""
     stated = np.array([[getattr(case, field) is not None] for case in design.load_cases])
     return where(stated, v.case(field, 0.0), otherwise) if stated.any() else otherwise
 
@@ -285,7 +292,7 @@ def _holding(
 def holding(
     v: Values, design: Design, stock: MaterialValues, geometry: Geometry, s: LoadState, end: str
 ) -> LoadState:
-    """Copy the state, with the load of a joint held at one of its stops."""
+    """Copy the state, with the load held at one of the stops of a linkage."""
     force = s.demands[end].force
     holding_a, holding_b = _holding(v, design, geometry, s.push, force)
     return replace(
@@ -341,7 +348,7 @@ def derive(v: Values, design: Design, stock: MaterialValues, geometry: Geometry)
 def compute(
     section: FluidSection, stock: MaterialValues, state: LoadState, out: MetricArrays
 ) -> None:
-    """Compute the pressure margin of the chambers to boiling of the oil, in every load case."""
+    """Compute by how much the lowest chamber pressure exceeds the oil's vapour pressure."""
     limit = vapour_pressure(stock, section.material, state.temperature)
     if limit is None:
         why = f"{section.material} has no vapour_pressure: add it under materials"
@@ -356,7 +363,7 @@ def compute(
 def warnings(
     section: FluidSection, oil: Material, cases: Sequence[str], state: LoadState
 ) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) for each use of the oil outside the range of its data or laws."""
+    """Yield (metric, sentence) for each use of the oil outside the range of its data or laws."""
     yield from _temperatures(oil, cases, state)
     law = bulk_modulus_law(section.bulk_modulus_law, oil.numbers)
     chambers = [state.moving_a, state.moving_b, state.holding_a, state.holding_b]
@@ -364,8 +371,8 @@ def warnings(
     limit = BULK_MODULUS_LAWS[law].largest_pressure
     if highest > limit:
         text = (
-            f"bulk modulus: {highest / 1e5:.0f} bar exceeds the limit of {limit / 1e5:.0f} bar of "
-            f"the {law} law of the oil"
+            f"bulk modulus: a chamber has {highest / 1e5:.0f} bar, but the {law} law of the oil is "
+            f"valid up to {limit / 1e5:.0f} bar"
         )
         yield from ((metric, text) for metric in OIL_FED)
     law = viscosity_law(section.viscosity_pressure, oil.numbers)
@@ -373,8 +380,8 @@ def warnings(
     if highest > limit:
         yield (
             "oil_viscosity",
-            f"viscosity: {highest / 1e5:.0f} bar exceeds the limit of {limit / 1e5:.0f} bar of the "
-            f"{law.capitalize()} law",
+            f"viscosity: a chamber has {highest / 1e5:.0f} bar, but the {law.capitalize()} law is "
+            f"valid up to {limit / 1e5:.0f} bar",
         )
 
 
@@ -399,6 +406,6 @@ def _temperatures(
         if viscosity < fluid.LEAST_VISCOSITY:
             yield (
                 "oil_viscosity",
-                f"{case}: {1e6 * viscosity:.2g} mm^2/s is below the "
+                f"{case}: the viscosity, {1e6 * viscosity:.2g} mm^2/s, is below the "
                 f"lower limit of ASTM D341, {1e6 * fluid.LEAST_VISCOSITY:.0f} mm^2/s",
             )

@@ -1,8 +1,8 @@
 """Static strength of wall, rod, column, thread, retention, caps, pins and guides.
 
-Loads are the largest forces that the supply pressure p can cause: p A_A pushing (stall, column),
-p A_B pulling (rod tension), and the end-stop force through barrel and retention. A_A and A_B are
-the piston areas of the chambers.
+Loads are the largest forces that the supply pressure p can cause. The push is p A_A (stall,
+buckling), the pull is p A_B (rod tension), with piston areas A_A and A_B of the chambers. At an end
+stop, a force also acts through barrel and retention, the joint of caps and head.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from .state import LoadState, side_reactions
 from .values import Values
 
 HOLE = 2.0
-"""Factor by which a small central hole raises the stress in a plate [Timoshenko1959]."""
+"""Factor by which a small central hole increases the stress in a plate [Timoshenko1959]."""
 NO_RETENTION = "no retention stated: add retention"
 
 
@@ -111,9 +111,9 @@ def _pressure_factors(
     bursts: Mapping[str, Array],
     out: MetricArrays,
 ) -> None:
-    """Compute the strength of the barrel, with its thread, over working and proof pressure.
+    """Compute yield, first-ply and burst pressures of the barrel over working and proof pressure.
 
-    `yields` and `bursts` are the pressures at yield and burst by location.
+    `yields` and `bursts` are the yield and burst pressures by location, in barrel and joint.
     """
     proof = v["supply.proof_ratio"] * supply
     liner = {place: p / supply for place, p in wall.yield_pressure.items()}
@@ -137,7 +137,7 @@ def _pressure_factors(
 def _fitting_yield(
     v: Values, stock: MaterialValues, design: Design, section: RodSection, push: Array
 ) -> dict[str, Array]:
-    """Yield over working stress of the rod fittings."""
+    """Yield strength of the rod fittings divided by their stress under the push."""
     strength = stock.allowable(section.end_material, "yield_strength")
     if strength is None or design.rod.fitting is None:
         return {}
@@ -168,7 +168,7 @@ def _rod_end(
 
 
 def _retention(joint_strength: Strength | str, out: MetricArrays) -> None:
-    """Compute elastic limit and breaking load of the joint over the largest axial force."""
+    """Compute elastic limit and breaking load of the joint, divided by the largest axial force."""
     if isinstance(joint_strength, str):
         out.skip("retention_factor", joint_strength)
         out.skip("retention_burst_factor", joint_strength)
@@ -178,7 +178,7 @@ def _retention(joint_strength: Strength | str, out: MetricArrays) -> None:
 
 
 def joint_metrics(loaded_joint: LoadedJoint | None, out: MetricArrays) -> None:
-    """Compute the metrics of the joint; give a reason why those of other joints are missing."""
+    """Compute the metrics of the joint; metrics of other joint types are missing, with a reason."""
     metrics = {} if loaded_joint is None else loaded_joint.joint.own(loaded_joint.loaded)
     for joint in JOINTS.values():
         for name, absent in joint.metrics.items():
@@ -189,7 +189,7 @@ def joint_metrics(loaded_joint: LoadedJoint | None, out: MetricArrays) -> None:
 
 
 def _fittings(stock: MaterialValues, bond: Overlap | str, push: Array, out: MetricArrays) -> None:
-    """Compute the strength of the rod fittings' bonds under the push, which exceeds any pull."""
+    """Compute the strength of the rod fittings' bonds under the push, the larger of the forces."""
     if isinstance(bond, str):
         out.skip("fitting_factor", bond)
     else:
@@ -199,11 +199,11 @@ def _fittings(stock: MaterialValues, bond: Overlap | str, push: Array, out: Metr
 def _caps(
     stock: MaterialValues, design: Design, g: Geometry, supply: Array, out: MetricArrays
 ) -> None:
-    """Compute bending of the end plates; plate and plug of the head bend as one turned part.
+    """Compute the bending of the end plates; plate and plug of the head are one turned part.
 
-    While the piston is at the far end, the joint supports the cap. On a clevis, the neck carries
-    the push, and the pressure bends the plate around it. The neck also carries the pull, which
-    enters the plate at the skirt.
+    While the piston is at the head end, the joint supports the cap plate against the pressure. On a
+    clevis, the neck of the eye carries the push, and the pressure bends the plate around the neck.
+    The neck also carries the pull, which enters the plate at the skirt.
     """
     name = design.caps.material
     strength = stock.allowable(name, "yield_strength")
@@ -252,7 +252,7 @@ def _pins(v: Values, stock: MaterialValues, design: Design, push: Array, out: Me
 
 
 def _guided(grooves: Sequence[Groove], length: Array) -> Array:
-    """Length that carries side load: guide rings, else the part minus its grooves."""
+    """Length that carries side load: that of the guide rings, else the part without its grooves."""
     for groove in grooves:
         if groove.role == "guide":
             return groove.count * groove.width

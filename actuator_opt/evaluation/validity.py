@@ -1,4 +1,4 @@
-"""Validity of a result: exceeded ranges, unverified data, and the models behind the metrics."""
+"""Validity of a result: exceeded ranges, unverified data, and models from which metrics come."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def describe(function: Callable[..., object]) -> ModelDocumentation:
 
 @cache
 def function_of(name: str) -> Callable[..., object]:
-    """Model function that the table of metrics names, such as ``"forces.push_force"``."""
+    """Model function by the name in the table of metrics, such as ``"forces.push_force"``."""
     module, _, function = name.partition(".")
     model: Callable[..., object] = getattr(import_module(f"{formulas.__name__}.{module}"), function)
     return model
@@ -75,9 +75,9 @@ def function_of(name: str) -> Callable[..., object]:
 def model_of(
     metric: str, *, wall: str, criterion: str = "max_stress", place: str | None = None
 ) -> ModelDocumentation | None:
-    """Model of a metric at its governing location; None for plain geometry and inputs.
+    """Model of a metric at its governing location; None for inputs and plain geometry.
 
-    `wall` is the model of the barrel, `criterion` the failure criterion of its plies.
+    `wall` is the name of the barrel's wall model, `criterion` the failure criterion of its plies.
     """
     row = ROWS.get(metric)
     if row is None:  # a user metric
@@ -92,7 +92,7 @@ def model_of(
 
 
 FILM_ERROR = 0.02
-"""Relative error of a film surrogate above which a warning is given."""
+"""Relative interpolation error of an oil film above which a warning is given."""
 _SURROGATES = {
     "friction": "friction_running",
     "flow": "rod_leakage",
@@ -101,7 +101,7 @@ _SURROGATES = {
 
 
 def seal_warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) for every warning about the seals."""
+    """Yield (metric, sentence) for every warning about the seals."""
     for ring in run.rings:
         yield from _contact(subject, ring)
         yield from _limits(subject, run, ring, float(v["supply.pressure"]))
@@ -112,7 +112,7 @@ def seal_warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable
 
 
 def _contact(subject: PreparedDesign, ring: Ring) -> Iterable[tuple[str, str]]:
-    """Warn of contact laws out of range, a compound that the fluid attacks, and a lost contact."""
+    """Warn of contact laws outside their range, compounds that the fluid attacks, lost contact."""
     liquid, compound = subject.design.fluid.material, ring.element.compound
     if not ring.element.contact:
         for text in ring.element.seal_type.warnings(ring.sizes):
@@ -120,8 +120,8 @@ def _contact(subject: PreparedDesign, ring: Ring) -> Iterable[tuple[str, str]]:
     else:
         yield (
             "friction_running",
-            f"{ring.label}: the stated contact profiles are used as given; a loss of squeeze by "
-            "bore growth is ignored",
+            f"{ring.label}: the stated contact profiles are used as given; loss of squeeze by "
+            "bore growth does not change them",
         )
     if compatible(subject.materials[liquid], subject.materials[compound]) is False:
         yield "", f"{ring.label}: {compound} does not withstand {liquid}"
@@ -133,8 +133,8 @@ def _contact(subject: PreparedDesign, ring: Ring) -> Iterable[tuple[str, str]]:
     elif not np.all(np.real(seal_contact(ring).excess) > 0):
         yield (
             "friction_running",
-            f"{ring.label}: the sealed pressure would lift the ring off, because its contact load "
-            "is too small",
+            f"{ring.label}: the sealed pressure would lift the ring off its counterface, because "
+            "its contact load is too small",
         )
 
 
@@ -152,7 +152,7 @@ def _leak_at_rest(subject: PreparedDesign) -> Iterable[tuple[str, str]]:
 
 
 def _film(name: str, table: FilmTable) -> Iterable[tuple[str, str]]:
-    """Warn of a film surrogate with a large error, outside its range, or with unsolved points."""
+    """Warn of film tables with large errors or unsolved points, or that exclude the design."""
     for quantity, metric in _SURROGATES.items():
         if table.errors[quantity] > FILM_ERROR:
             error = 100 * table.errors[quantity]
@@ -170,7 +170,7 @@ def _film(name: str, table: FilmTable) -> Iterable[tuple[str, str]]:
         count = len(table.surrogate.failed)
         yield (
             "friction_running",
-            f"{name}: {count} of the computed oil films have no solution "
+            f"{name}: for {count} of the computed points, the oil film has no solution "
             f"({table.surrogate.failed[0]})",
         )
 
@@ -185,13 +185,13 @@ def _limits(
     if not ring.element.back_ups and supply > limits.get("pressure_max", np.inf):
         yield (
             "",
-            f"{ring.label}: {supply / 1e5:.0f} bar, but {compound.name} allows "
-            f"{limits['pressure_max'] / 1e5:.0f} bar without a back-up ring",
+            f"{ring.label}: the pressure is {supply / 1e5:.0f} bar, but {compound.name} allows "
+            f"only {limits['pressure_max'] / 1e5:.0f} bar without a back-up ring",
         )
     if fastest > limits.get("speed_max", np.inf):
         yield (
             "",
-            f"{ring.label}: {fastest:.2g} m/s, but {compound.name} allows "
+            f"{ring.label}: the speed is {fastest:.2g} m/s, but {compound.name} allows only "
             f"{limits['speed_max']:.2g} m/s",
         )
     end = extrusion_end(ring, subject.materials)
@@ -199,14 +199,14 @@ def _limits(
         yield (
             "extrusion_factor",
             f"{ring.label}: limits of the extrusion gap are known only up to {end / 1e5:.0f} bar "
-            "and assumed constant beyond; use a back-up ring",
+            "and are assumed to be constant above it; use a back-up ring",
         )
 
 
 def seal_models(
     rings: Iterable[Ring], subject: PreparedDesign, texts: Iterable[str]
 ) -> Iterable[ModelUse]:
-    """Models of all sealing rings; `texts` are the sentences of the warnings."""
+    """Yield the models of all sealing rings; `texts` are the sentences of the warnings."""
     texts = tuple(texts)
     for ring in rings:
         doubted = any(text.startswith(ring.label) for text in texts)
@@ -220,11 +220,15 @@ def seal_models(
             doubted=worst > FILM_ERROR,
         )
     if any("extrusion_gap_max" not in subject.materials[r.element.compound].numbers for r in rings):
-        yield _use(gland.extrusion_gap_limit, "gap limit by hardness and pressure", doubted=False)
+        yield _use(
+            gland.extrusion_gap_limit,
+            "limit of the extrusion gap by hardness and pressure",
+            doubted=False,
+        )
 
 
 def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:
-    """Contact model of a ring, with the name of its O-ring law if it has one."""
+    """Contact model of a ring; for an O-ring, the name of its contact law."""
     element = ring.element
     at = f"squeeze {100 * element.squeeze:.4g} %"
     if element.contact:
@@ -254,23 +258,23 @@ def _use(function: Callable[..., object], used_at: str, *, doubted: bool) -> Mod
 
 
 LONGEST_LIFE = 1e9
-"""Number of cycles up to which stress-life curves have data [Shigley2011]."""
+"""Number of cycles up to which there are data for stress-life curves [Shigley2011]."""
 
 
 def kind_of(subject: PreparedDesign) -> str:
-    """Wall model of a design."""
+    """Name of the wall model of a design."""
     return kind(subject.design, subject.materials)
 
 
 def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) for each model or value used outside its valid range."""
+    """Yield (metric, sentence) for each model or value that is used outside its valid range."""
     g = run.geometry
     thin = float(np.max(run.wall.thin_ratio))
     if kind_of(subject) == "thin_laminate" and thin > laminate.THIN_WALL_LIMIT:
         text = (
             f"thin-laminate barrel at t/r = {thin:.3f} (reliable to {laminate.THIN_WALL_LIMIT}): "
-            "the model gives 10 to 25 % too little bore growth, extrusion gap, squeeze loss and "
-            "compliance; its first-ply and burst pressures are conservative"
+            "computed bore growth, extrusion gap, squeeze loss and compliance are 10 to 25 % too "
+            "low; computed first-ply and burst pressures are conservative"
         )
         for metric in WALL_FED:
             yield metric, text
@@ -291,7 +295,7 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
         yield (
             "cycle_life",
             f"pressure-cycle life beyond {LONGEST_LIFE / 1e6:.0f} million cycles is extrapolated: "
-            "treat it as a lower bound that excludes adhesive and plies",
+            "treat it as a lower bound, for metals only, without adhesive and plies",
         )
     section = subject.design.fluid
     yield from state.warnings(section, subject.materials[section.material], v.cases, run.state)
@@ -309,14 +313,14 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
         yield (
             "",
             (
-                "side load pushes the piston against the bore, so on one side the extrusion gap "
+                "the side load pushes the piston against the bore; on one side the extrusion gap "
                 f"grows by the clearance of {1e6 * float(np.max(g.piston_clearance)):.0f} um"
             ),
         )
 
 
 def _measured(subject: PreparedDesign, v: Values) -> Iterable[tuple[str, str]]:
-    """Warn of values outside the bounds of the test record that they come from."""
+    """Warn of values outside the bounds that their test record gives."""
     for path, bounds in subject.design.measured.items():
         value = float(np.real(np.squeeze(v[path]))) if path in v else None
         if value is not None and not bounds.lower <= value <= bounds.upper:
@@ -347,8 +351,8 @@ def _wall_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str
         yield (
             "",
             (
-                "bending and buckling are computed as if single plies of the wall were balanced "
-                "pairs"
+                "bending and buckling are computed as if unbalanced plies of the wall were "
+                "balanced pairs"
             ),
         )
     autofrettage = run.wall.autofrettage
@@ -362,8 +366,8 @@ def _wall_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str
         elif float(np.min(np.real(autofrettage.axial_margin))) < 0:
             yield (
                 "reverse_yield_factor",
-                "autofrettage also yields the liner axially: the computed axial residual strain "
-                "is up to a third too low; hoop residual stresses are accurate",
+                "autofrettage makes the liner yield axially too: the computed axial residual "
+                "strain is up to a third too low; computed hoop residual stresses are accurate",
             )
 
 
@@ -375,7 +379,7 @@ def _rod_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str,
         if rod.expansion is None:
             name = next(layer.name for layer in rod.layers if layer.expansions is None)
             why = f"{name} has no thermal expansion"
-        yield "rod_factor", f"the rod's layers exclude cooling stresses: {why}"
+        yield "rod_factor", f"stresses in the rod's layers exclude cooling stresses: {why}"
     if rod.missing:
         yield "rod_factor", f"rod: {rod.missing[0]}"
     factors = run.computed.metrics["buckling_factor"][""]
@@ -383,13 +387,13 @@ def _rod_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str,
         for metric in ("yield_factor", "rod_factor", "local_buckling_factor"):
             yield (
                 metric,
-                f"the push exceeds {NEAR:.0%} of the buckling load; beyond that, the bending of "
-                "the rod is extrapolated",
+                f"the push exceeds {NEAR:.0%} of the buckling load; above this share, the bending "
+                "moment of the rod is extrapolated",
             )
 
 
 def _bond_warnings(run: ModelRun) -> Iterable[tuple[str, str]]:
-    """Warn of a bond whose shear from force and temperature together exceeds its strength."""
+    """Warn of a bond whose strength is exceeded by shear from force and temperature together."""
     metrics = run.computed.metrics
     sums = {}
     for place, metric in (("caps", "retention_factor"), ("rod fittings", "fitting_factor")):
@@ -404,8 +408,8 @@ def _bond_warnings(run: ModelRun) -> Iterable[tuple[str, str]]:
         yield (
             "",
             f"bond of the {place}: at the bond's edge, the elastic shear stresses due to force and "
-            f"temperature add up to {sums[place]:.2f} times the strength; each is checked alone, "
-            "because a ductile adhesive yields and relieves both",
+            f"temperature add up to {sums[place]:.2f} times the strength; each stress is checked "
+            "alone, because a ductile adhesive yields, which relieves both",
         )
 
 
@@ -416,11 +420,11 @@ def models(
     outside: set[str],
     texts: Iterable[str],
 ) -> Iterable[ModelUse]:
-    """All models behind the computed metrics, with the names of these metrics.
+    """Yield all models from which the computed metrics come, with the names of these metrics.
 
-    A model is extrapolated if it is used outside its own valid range. A metric that only inherits
-    an extrapolated value is marked at the metric, not at its model. `texts` are the sentences of
-    the warnings.
+    A model is extrapolated if it is used outside its own valid range. If only an input of a metric
+    is extrapolated, the metric is marked, but not its model. `texts` are the sentences of the
+    warnings.
     """
     texts = tuple(texts)
     wall, criterion = kind_of(subject), subject.design.barrel.criterion
@@ -458,7 +462,7 @@ def models(
 
 
 def unverified(subject: PreparedDesign, v: Values) -> Iterable[Unverified]:
-    """Library values of this design that nobody has checked against their source."""
+    """Yield the library values in this design that nobody has checked against their source."""
     for name, material in subject.materials.items():
         for key in material.unverified:
             if f"materials.{name}.{key}" in v.read or key == "kinematic_viscosity":

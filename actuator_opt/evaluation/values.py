@@ -1,8 +1,8 @@
 """Numerical values of an evaluated design: fixed values as floats, varied values as arrays.
 
 Varied values are arrays (designs,). Values of load cases are (cases, 1) or (cases, designs), so
-that all results broadcast to (cases, designs). Every PATH that is read is recorded, because a
-variable that no model reads is a fault of the design file.
+that all results broadcast to (cases, designs). The PATH of every value that is used is recorded,
+because a variable that no model uses is a fault of the design file.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Values:
         return self[path] if path in self else default  # noqa: SIM401 (self[path] records the read)
 
     def case(self, field: str, default: Array = None) -> Array:
-        """The value of a field in every load case, (cases, 1) or (cases, designs)."""
+        """The value of a key in every load case, (cases, 1) or (cases, designs)."""
         if field not in self._case_cache:
             self._case_cache[field] = stacked(
                 [self.get(f"load_cases[{name}].{field}", default) for name in self.cases]
@@ -55,7 +55,7 @@ class Values:
 
 
 def stacked(rows: Sequence[Array]) -> Array:
-    """Stack one float or array (designs,) per load case to (cases, 1) or (cases, designs)."""
+    """Stack the values of all load cases, floats or arrays (designs,), to (cases, 1 or designs)."""
     if all(isinstance(row, float) for row in rows):
         return np.array(rows)[:, None]
     if len(rows) == 1 and isinstance(rows[0], Symbol):
@@ -70,7 +70,7 @@ def of_case(value: Array, index: int) -> float:
 
 
 def plain(value: Any) -> Any:
-    """Convert data classes, arrays and sequences to JSON data; values not finite become None."""
+    """Convert data classes, arrays and sequences to JSON data; NaN and infinity become None."""
     if is_dataclass(value):
         return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, Mapping):

@@ -1,7 +1,7 @@
 """Alternatives to the barrel wall: other thicknesses, thin-wall theory, metal.
 
-The module also computes how bore growth decays beside the pressure step under the piston seal. All
-values are plain floats.
+The module also computes bore growth near the pressure step under the piston seal. All values are
+plain floats.
 """
 
 from __future__ import annotations
@@ -25,17 +25,16 @@ from .plies import Layer
 from .values import Values
 
 METALS = ("steel_e355", "al_7075_t6")
-"""Metals with which every wall is compared: those of the usual honed steel tube and of the usual
-light-alloy tube."""
+"""Metals with which every wall is compared: a common honed steel tube and a common light alloy."""
 FACTORS = (0.8, 1.25)
-"""Bore growths for which a thickness is computed, as multiples of the actual growth."""
+"""Bore growths for which a layer thickness is computed, as multiples of the actual growth."""
 LARGEST = 2.0
-"""Largest thickness that is tried, in bore radii."""
+"""Largest thickness of a layer in the search, as a multiple of the bore radius."""
 
 
 @dataclass(frozen=True, slots=True)
 class Thickness:
-    """Thickness [m] of a layer that changes the bore growth [m] by `factor`.
+    """Thickness [m] of a layer with which the bore growth [m] is `factor` times the actual growth.
 
     `mass_per_length` [kg/m] is the mass of the whole wall. Thickness and mass are None if no
     thickness gives this growth.
@@ -49,7 +48,7 @@ class Thickness:
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """A quantity of the wall (SI) by the exact tube and by the thin laminate; None if unlimited."""
+    """A quantity of the wall (SI) by the exact tube and by the thin laminate; None if infinite."""
 
     name: str
     exact: float | None
@@ -58,11 +57,12 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class Settling:
-    """Decay of bore growth beside the pressure step under the piston seal.
+    """Bore growth near the pressure step under the piston seal.
 
-    `decay_length` is 1/beta [m]. `radius_ratio` is mid-radius over thickness; shells are thin above
-    about 5. `at_seal` is the growth at the step as a share of the growth far from it, and `shares`
-    are those shares at several distances [m] into the pressurised length.
+    `decay_length` is the length 1/beta of shell theory [m]. `radius_ratio` is mid-radius divided by
+    thickness; thin-shell theory applies above about 5. `at_seal` is the growth at the step, as a
+    share of the growth far from it. `shares` are pairs of a distance from the step into the
+    pressurised length [m] and the growth there, also as a share.
     """
 
     decay_length: float
@@ -73,12 +73,12 @@ class Settling:
 
 @dataclass(frozen=True, slots=True)
 class MetalTube:
-    """A metal barrel for the design's bore and pressure, or the design's wall (no `material`).
+    """A metal barrel for the design's bore and pressure; or, without `material`, the design's wall.
 
     `for_growth` and `for_burst` are the wall thicknesses [m] that bore growth and burst pressure
-    require; None if no thickness suffices or none is required. `thickness` is the larger of both.
-    Growth [m] is at supply pressure without axial force. Burst and yield pressures [Pa] are for the
-    worse axial force. Mass is per length [kg/m].
+    require; None if no thickness suffices or if there is no requirement. `thickness` is the larger
+    of the two. `growth` [m] is that at supply pressure without axial force. Burst and yield
+    pressures [Pa] are for the load path with the lower pressure.
     """
 
     material: str
@@ -107,7 +107,7 @@ def least(pressures: Mapping[str, Array]) -> tuple[float | None, str]:
 
 
 def governing_force(wall: Wall) -> float:
-    """Axial force [N] with the largest bore growth: the force of a load case, or zero."""
+    """Axial force [N] for which bore growth is largest: that of a load case, or zero."""
     pushed = np.atleast_1d(np.squeeze(np.real(wall.swelling.growth_by_force * wall.path.cases)))
     worst = int(np.argmax(pushed))
     force = np.atleast_1d(np.squeeze(np.real(wall.path.cases)))
@@ -125,7 +125,7 @@ def mass_per_length(layers: Sequence[Layer], densities: Sequence[float], inner: 
 
 
 def main_layer(layers: Sequence[Layer], inner_radius: float) -> int:
-    """Index of the layer with the largest hoop force; plies take precedence over a liner."""
+    """Index of the layer that carries the largest hoop force; a liner counts only without plies."""
     tube = layered_tube(layers=[layer.as_tube() for layer in layers], inner_radius=inner_radius)
     carried = tube.wall[3] * (tube.outer - tube.inner)
     plies = [i for i, layer in enumerate(layers) if not layer.isotropic] or range(len(layers))
@@ -141,7 +141,7 @@ def thicknesses(
     force: float,
     index: int,
 ) -> tuple[Thickness, ...]:
-    """Thickness of layer `index` for each bore growth of `FACTORS`, by the exact tube."""
+    """Thickness of layer `index` for each bore growth in `FACTORS`, by the exact tube."""
     inner = float(g.inner_radius)
     wall = [layer.as_tube() for layer in layers]
     tube = layered_tube(layers=wall, inner_radius=inner)
@@ -180,7 +180,10 @@ def thicknesses(
 def differences(
     subject: PreparedDesign, v: Values, stock: MaterialValues, run: ModelRun, *, exact: bool
 ) -> tuple[Difference, ...]:
-    """Compare the wall by both laminate theories; `exact`: the design uses the exact tube."""
+    """Compare the results of both laminate theories for the wall.
+
+    `exact` states whether the design uses the exact tube.
+    """
     other = laminated.compute(v, subject.design, stock, run.geometry, run.state, exact=not exact)
     pair = (run.wall, other) if exact else (other, run.wall)
     growths = [float(np.max(np.real(wall.growth))) for wall in pair]
@@ -193,7 +196,7 @@ def differences(
 
 
 def settling(layers: Sequence[Layer], g: Geometry) -> Settling:
-    """Decay length of the wall as a thin shell, and its growth beside the pressure step."""
+    """Decay length of the wall as a thin shell, and bore growth near the pressure step."""
     stiffnesses = []
     for layer in layers:
         c = layer.constants
@@ -238,8 +241,8 @@ def metal_tubes(
     """The wall of the design, and the thinnest barrel for the same duty from each of `METALS`.
 
     The duty is the bore growth of the design's wall without axial force, and the required burst
-    pressure for every load path. The burst pressure of the design's wall replaces the required
-    pressure if it is lower, or if the burst check is waived.
+    pressure for every load path. If the design's wall has a lower burst pressure, or if the burst
+    check is waived, the burst pressure of the design's wall is the requirement.
     """
     wall, inner, pressure = run.wall, float(run.geometry.inner_radius), v["supply.pressure"]
     burst = least(wall.burst_pressure)[0]
@@ -275,7 +278,7 @@ def metal_tubes(
 
 
 def _stock_of(subject: PreparedDesign, name: str) -> MaterialValues:
-    """A library metal with the knock-downs of this design's temperatures."""
+    """A library metal with its strengths after knock-downs for this design's temperatures."""
     material = subject.materials.get(name) or load_library().get(name)
     numbers = {f"materials.{name}.{key}": value for key, value in material.numbers.items()}
     numbers |= {key: subject.numbers[key] for key in numbers if key in subject.numbers}
@@ -299,7 +302,7 @@ def metal_tube(
     burst_pressure: float | None,
     axial_forces_per_pressure: Sequence[float],
 ) -> MetalTube:
-    """The thinnest tube of a metal for a bore strain (without axial force) and a burst pressure."""
+    """The thinnest tube of a metal with a bore strain (without axial force) and burst pressure."""
     inner, density = inner_radius, stock.get(name, "density")
     elastic = {
         "youngs_modulus": stock.get(name, "youngs_modulus"),

@@ -3,7 +3,7 @@
 The study covers layers with their allowables, stresses at eleven points of every layer, strength
 ratios by every criterion, the failure sequence to burst, and alternative walls
 (`wall_alternatives`). Stresses are those of the exact tube, even if the design uses another model.
-It takes a single design; all values are plain floats.
+The study is of a single design; all values are plain floats.
 """
 
 from __future__ import annotations
@@ -51,14 +51,16 @@ from .wall_alternatives import (
 )
 
 YIELD = "yield"
-"""Name of the criterion for metal layers: yield by von Mises."""
+"""Name of the criterion for metal layers: yield by von Mises stress."""
 
 
 @dataclass(frozen=True, slots=True)
 class LayerRow:
-    """A layer; `strengths` are at the hottest after knock-downs, `factors` the share that remains.
+    """A layer of the wall with its allowables.
 
-    `angle` is measured from the tube axis [rad]. Lengths are in m, moduli and strengths in Pa.
+    `strengths` are those at the highest temperature after knock-downs; `factors` are the shares of
+    the strengths that remain after knock-downs. `angle` is measured from the tube axis [rad].
+    Lengths are in m, moduli and strengths in Pa.
     """
 
     material: str
@@ -77,9 +79,9 @@ class LayerRow:
 class WallProfile:
     """Stresses [Pa] through the wall under one load, each (layers, points), starting at the bore.
 
-    `used` is the utilisation 1/SR (SR: strength ratio) by the criterion of the design; for metals,
-    by yield. It includes the cure stress of the worst climate. It is NaN if unknown, and None for a
-    wall without pressure.
+    `used` is the utilisation 1/SR (SR: strength ratio). It follows from the criterion of the
+    design, for metals from yield, and includes the cure stress of the worse climate. It is NaN if
+    unknown, and None for a load without pressure.
     """
 
     name: str
@@ -91,7 +93,10 @@ class WallProfile:
 
 @dataclass(frozen=True, slots=True)
 class Ratio:
-    """Least strength ratio of a layer by one criterion; None if unloaded."""
+    """Least strength ratio of a layer by one criterion, and where it occurs.
+
+    `ratio` is None if the layer has no load.
+    """
 
     layer: int
     criterion: str
@@ -105,10 +110,11 @@ class Ratio:
 
 @dataclass(frozen=True, slots=True)
 class Shares:
-    """Stress over strength through the wall, (layers, points), under each layer's most severe load.
+    """Stress divided by strength through the wall, (layers, points).
 
-    For plies, the ratios along the fibre, across it and in shear have a sign; for metals, the ratio
-    is von Mises stress over yield strength. Ratios that do not apply to a layer are NaN.
+    The load path and climate are those with the least strength ratio of the wall. For plies, the
+    ratios along the fibre, across it and in shear have a sign; for metals, the ratio is von Mises
+    stress divided by yield strength. Ratios that do not apply to a layer are NaN.
     """
 
     path: str
@@ -121,7 +127,7 @@ class Shares:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A failure before burst: layer (0 at the bore), failure mode, pressure [Pa]."""
+    """A failure on the way to burst: layer (0 is innermost), failure mode, pressure [Pa]."""
 
     layer: int
     mode: str
@@ -130,10 +136,10 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Ladder:
-    """Pressures [Pa] from working to burst, None if unknown; locations are named as in the metrics.
+    """Pressures [Pa] from working pressure to burst pressure; None if unknown.
 
-    `steps` are the failures on the load path with the lowest burst pressure, by the maximum-stress
-    criterion.
+    Locations have the same names as in the metrics. `path` is the load path with the lowest burst
+    pressure, and `steps` are the failures on it by the maximum-stress criterion.
     """
 
     working: float
@@ -150,14 +156,19 @@ class Ladder:
 
 @dataclass(frozen=True, slots=True)
 class WallStudy:
-    """The complete study; `radius` is (layers, points) [m], `criterion` the design's criterion."""
+    """The complete study of a wall.
+
+    `radius` are the radii of the points, (layers, points) [m]; `criterion` is the failure criterion
+    of the design.
+    """
 
     layers: tuple[LayerRow, ...]
     criterion: str
     radius: Array
     profiles: tuple[WallProfile, ...]
     rest: tuple[WallProfile, ...]
-    """Stresses without pressure, from cure and clamping, by climate; empty if there are none."""
+    """Stresses at zero pressure, for each climate, from cure, clamping and autofrettage; empty if
+    these are zero."""
     ratios: tuple[Ratio, ...]
     shares: Shares | None
     ladder: Ladder
@@ -168,7 +179,7 @@ class WallStudy:
     metals: tuple[MetalTube, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """The `wall` object of `evaluate --json` (SI); profiles are in the report only."""
+        """The object `wall` that `evaluate --json` writes (SI); profiles are only in the report."""
         return {
             "layers": plain(self.layers),
             "ratios": plain(self.ratios),
@@ -189,12 +200,15 @@ _STRENGTHS = {
     True: ("yield_strength", "ultimate_strength"),
     False: plies.STRENGTHS,
 }
-"""Properties in the table of layers, for isotropic layers and for plies."""
+"""Strengths in the table of layers, for isotropic layers (True) and plies (False)."""
 
 
 @dataclass(frozen=True, slots=True)
 class _StressField:
-    """Stresses (layers, points, loads): every load path, then every climate without pressure."""
+    """Stresses (layers, points, loads).
+
+    The loads are supply pressure on every load path, then every climate without pressure.
+    """
 
     paths: tuple[str, ...]
     climates: tuple[Climate, ...]
@@ -203,14 +217,14 @@ class _StressField:
     ply: tuple[Array, ...]
 
     def load(self, rows: Sequence[int]) -> Stress:
-        """Stress of layers `rows` by pressure and axial force, (points, layers, 1, paths, 1)."""
+        """Stress in layers `rows` by pressure and axial force, (points, layers, 1, paths, 1)."""
         return stress_of(
             part[rows, :, : len(self.paths)].transpose(1, 0, 2)[:, :, None, :, None]
             for part in self.ply
         )
 
     def rest(self, rows: Sequence[int]) -> Stress | None:
-        """Stress of layers `rows` without pressure, (points, layers, climates, 1, 1), if any."""
+        """Stress in layers `rows` at zero pressure, (points, layers, climates, 1, 1), if any."""
         stresses = [part[rows, :, len(self.paths) :] for part in self.ply]
         if not any(np.any(part) for part in stresses):
             return None
@@ -219,7 +233,10 @@ class _StressField:
 
 @dataclass(frozen=True, slots=True)
 class _Utilisation:
-    """Utilisation 1/SR of layers by one criterion, (modes, points, layers, climates, paths)."""
+    """Utilisation 1/SR (SR: strength ratio) of layers by one criterion.
+
+    `values` are (modes, points, layers, climates, paths).
+    """
 
     criterion: str
     layers: tuple[int, ...]
@@ -228,7 +245,7 @@ class _Utilisation:
 
 
 def study(subject: PreparedDesign, v: Values, run: ModelRun) -> WallStudy | None:
-    """Study the wall of an evaluated design; None with the published barrel model.
+    """Study the wall of an evaluated design; None if its wall model is `as_published`.
 
     Parameters
     ----------
@@ -300,7 +317,7 @@ def _layer_rows(
 
 
 def _sublayers(layers: Sequence[Layer]) -> list[TubeLayer]:
-    """Split every layer into equal sublayers, which does not change the tube."""
+    """Split every layer into equal sublayers; the tube as a whole is unchanged."""
     whole = [layer.as_tube() for layer in layers for _ in range(PARTS)]
     return [replace(part, thickness=part.thickness / PARTS) for part in whole]
 
@@ -314,7 +331,7 @@ def _points(values: Array) -> Array:
 def _stress_field(
     layers: Sequence[Layer], climates: tuple[Climate, ...], pressure: float, g: Geometry, wall: Wall
 ) -> _StressField:
-    """Stresses under all loads at all points; all climates have the same stress of autofrettage."""
+    """Stresses under all loads at all points; autofrettage adds the same stress in each climate."""
     tube = layered_tube(layers=_sublayers(layers), inner_radius=float(g.inner_radius))
     pulls = [pressure * single(area) for area in wall.path.per_pressure.values()]
     clamp = single(wall.path.held)
@@ -344,7 +361,8 @@ def _residual_stresses(
 ) -> list[Array]:
     """Residual stresses of autofrettage at all points, in tube axes z, t, r and ply axes.
 
-    The wrap is elastic under the pressure and the axial force from the liner. In the liner,
+    The wrap, all layers around the liner, stays elastic under the pressure and axial force from the
+    liner. In the liner,
     sigma_t - sigma_r is the yield strength Y up to the plastic radius c and Y c^2/r^2 beyond, minus
     an elastic part proportional to 1/r^2. sigma_r follows from equilibrium, and
     sigma_z - nu (sigma_r + sigma_t) is constant.
@@ -404,7 +422,7 @@ def _utilisations(layers: Sequence[Layer], field: _StressField) -> list[_Utilisa
 
 
 def _ratios(utilisation: _Utilisation, field: _StressField) -> list[Ratio]:
-    """For every layer, the strength ratio at its worst mode, point, climate and load path."""
+    """Least strength ratio of every layer, with its mode, point, climate and load path."""
     rows = []
     for k, layer in enumerate(utilisation.layers):
         values = utilisation.values[:, :, k]
@@ -428,7 +446,7 @@ def _ratios(utilisation: _Utilisation, field: _StressField) -> list[Ratio]:
 
 
 def _profiles(field: _StressField, utilisations: Sequence[_Utilisation]) -> tuple[WallProfile, ...]:
-    """Stresses under every load path, with their utilisation of the strength."""
+    """Stresses on every load path, with the utilisation."""
     profiles = []
     for p, path in enumerate(field.paths):
         share = np.full(field.radius.shape, np.nan)
@@ -440,7 +458,7 @@ def _profiles(field: _StressField, utilisations: Sequence[_Utilisation]) -> tupl
 
 
 def _at_rest(field: _StressField) -> tuple[WallProfile, ...]:
-    """Stresses in every climate without pressure."""
+    """Stresses at zero pressure in every climate; climates without stress are left out."""
     profiles = []
     noise = 1e-6 * max(np.max(np.abs(part[..., : len(field.paths)])) for part in field.tube)
     for s, climate in enumerate(field.climates, len(field.paths)):
@@ -451,7 +469,7 @@ def _at_rest(field: _StressField) -> tuple[WallProfile, ...]:
 
 
 def _shares(layers: Sequence[Layer], field: _StressField, ratios: Sequence[Ratio]) -> Shares | None:
-    """Stress over strength, for the load path and climate with the least strength ratio."""
+    """Stress over strength, on the load path and in the climate of the least strength ratio."""
     loaded = [row for row in ratios if row.ratio is not None]
     if not loaded:
         return None
@@ -486,7 +504,7 @@ def _ladder(
     *,
     exact: bool,
 ) -> Ladder:
-    """Pressures from working to burst, and the failure sequence on the weakest load path."""
+    """Pressures from working to burst pressure, and the failures on the weakest load path."""
     wall, g = run.wall, run.geometry
     yields, yield_place = least(wall.yield_pressure)
     first, first_place = least(wall.first_ply_pressure)

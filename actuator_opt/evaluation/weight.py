@@ -77,7 +77,9 @@ def _seals(v: Values, g: Geometry) -> Array:
 
 
 def _rod_ends(v: Values, design: Design, rod: RodSection) -> Array:
-    """Mass of a hollow rod's stud and plugs, each one thread diameter long, and bonded fittings.
+    """Mass of the rod's threaded stud, of the two plugs in its bore, and of its bonded fittings.
+
+    Stud and plugs are each one thread diameter long.
 
     A plug closes each end; a fitting is itself a plug, or a sleeve around a plug.
     """
@@ -101,7 +103,7 @@ def _rod_ends(v: Values, design: Design, rod: RodSection) -> Array:
 def parts(
     v: Values, design: Design, stock: MaterialValues, geometry: Geometry, rod: RodSection
 ) -> dict[str, Array]:
-    """Mass of every part without oil [kg]."""
+    """Mass of every part [kg]; the oil is not included."""
     g = geometry
     caps = v[f"materials.{design.caps.material}.density"]
     clevises: Array = 0.0
@@ -131,7 +133,7 @@ def parts(
 
 
 def oil(v: Values, design: Design, geometry: Geometry, position: Array = 0.0) -> Array:
-    """Mass of the oil in the chambers, with the piston at a distance from the cap end."""
+    """Mass of the oil in both chambers [kg]; `position` is the piston's travel from the cap end."""
     g = geometry
     volume = (
         v["cylinder.dead_volume_a"]

@@ -1,8 +1,8 @@
-"""Write the page of an explored sweep: one self-contained file with style, script and data.
+"""Write the interactive page of a sweep: one self-contained HTML file with style, script and data.
 
-Data (columns, limits, sections, texts) are in a JSON block; escaping keeps any text from closing
-it. The script inserts texts as text nodes, and the security policy of the page allows no other
-script.
+Data (columns, limits, drawings, texts) are in a JSON block. They are escaped, so no text in them
+can end the block. The script inserts texts as text nodes, and the security policy of the page
+allows no other script.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ AXES = 8
 REASONS = 3
 """Maximum number of failure reasons listed."""
 MOST = 1e30
-"""Stored margins are limited to this value, which single precision can represent."""
+"""Margins are clipped to +-this value, so that single precision can store them."""
 MM = 1000.0
 _WORDS = {"bore": "bore ⌀", "rod": "rod ⌀", "closed_length": "closed length"}
 
@@ -75,7 +75,7 @@ def _base64(values: Array, kind: str) -> str:
 
 
 def _column(name: str, label: str, unit: str, values: Array) -> dict[str, Any]:
-    """Return a column in its display unit; a single number if all rows are equal."""
+    """Return a column as JSON, in its display unit; as a single number if all rows are equal."""
     column: dict[str, Any] = {"name": name, "label": label, "unit": unit_text(unit)}
     if np.isfinite(values[0]) and (values == values[0]).all():
         return column | {"value": float(np.float32(values[0]))}
@@ -83,7 +83,7 @@ def _column(name: str, label: str, unit: str, values: Array) -> dict[str, Any]:
 
 
 def _columns(explored: Explored) -> list[dict[str, Any]]:
-    """Return the columns: varied inputs, least margin, and every metric that any design has.
+    """Return the columns: varied inputs, least margin, each metric that at least one design has.
 
     `better` is 1 if larger values are better, -1 if smaller values are, 0 if neither.
     """
@@ -107,7 +107,7 @@ def _columns(explored: Explored) -> list[dict[str, Any]]:
 
 
 def _texts(explored: Explored, path: str) -> dict[str, Any]:
-    """Return a column of texts: the different texts, and the index of each row's text."""
+    """Return a column of texts as JSON: the different texts, and each row's index among them."""
     texts = explored.kept.texts[path]
     number = [texts.index(variant[path]) for variant in explored.variants]
     codes = _base64(np.array(number)[explored.variant], "<u2")
@@ -115,7 +115,7 @@ def _texts(explored: Explored, path: str) -> dict[str, Any]:
 
 
 def _exact(explored: Explored) -> list[dict[str, Any]]:
-    """Return varied inputs in SI with all digits, for the command that the page shows."""
+    """Return varied inputs in SI, unrounded: the page writes them into the command it shows."""
     columns = []
     for path in explored.kept.texts:
         column = _texts(explored, path)
@@ -127,7 +127,10 @@ def _exact(explored: Explored) -> list[dict[str, Any]]:
 
 
 def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
-    """Return limits that exclude designs, the user's own first; and a sentence on other limits."""
+    """Return the limits to show, and a sentence on the others.
+
+    Shown are the limits that the user states, then the checks that some designs do not meet.
+    """
     study = explored.study
     base = prepare(study.design, plugins=study.plugins).values()
     quantities = with_own(study.plugins)
@@ -161,14 +164,18 @@ def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
 
 
 def _label(limit: MetricLimit, quantity: Quantity, plugins: Sequence[Plugin]) -> str:
-    """Name a limit by its quantity and its load case."""
+    """Return the displayed name of a limit: its quantity, and its load case if it has one."""
     own = any(plugin.name == limit.name for plugin in plugins)
     words = limit.name if own or limit.origin == "check" else quantity.label
     return f"{words} ({limit.case})" if limit.case else words
 
 
 def _start(explored: Explored, columns: list[dict[str, Any]]) -> dict[str, Any]:
-    """Choose the initial axes: objective and first selected metric, else the varied inputs."""
+    """Choose what the page plots at first: two axes and a colour, and the parallel axes.
+
+    The objective is plotted against a required metric or, without one, a varied input. Metrics that
+    the user has selected take precedence.
+    """
     place = {column["name"]: k for k, column in enumerate(columns)}
     study = explored.study
     margin = place["least_margin"]
@@ -204,7 +211,7 @@ def _summary(explored: Explored) -> str:
     if explored.thinned:
         words += (
             f"; {shown} are shown: one in {-(-evaluated // explored.most)}, evenly spread, "
-            f"and the {BEST} best feasible designs"
+            f"plus the {BEST} best feasible designs"
         )
     words += f". {feasible} of these meet every requirement and check."
     if explored.failed:
@@ -218,7 +225,10 @@ def _summary(explored: Explored) -> str:
 
 
 def _shapes(explored: Explored) -> dict[str, Any]:
-    """Return the section templates, the dimensions that change them, and each row's template."""
+    """Return templates of the section drawing, and each row's template and dimensions.
+
+    Dimensions that do not change a drawing are omitted.
+    """
     count = len(explored.numbers)
     template_of = np.full(count, -1)
     slots: list[Array] = []
@@ -248,7 +258,10 @@ def _shapes(explored: Explored) -> dict[str, Any]:
 
 
 def _template(template: Template, dimensions: list[int]) -> dict[str, Any]:
-    """Return a section template in mm: coordinates at zero dimensions, and slopes per dimension."""
+    """Return a template of a section drawing, whose coordinates [mm] are linear in the dimensions.
+
+    The JSON has each coordinate's value for zero dimensions, and its slopes by the dimensions.
+    """
     zero = template.numbers - template.slopes[:, dimensions] @ template.origin[dimensions]
     rows, places = np.nonzero(template.slopes[:, dimensions])
     return {
@@ -296,7 +309,7 @@ def page(explored: Explored, *, design: str, plugins: Sequence[str] = ()) -> str
     ----------
     explored : the sweep
     design : file name of the base design, in the folder of the page
-    plugins : files with user metrics, for the command
+    plugins : files with user metrics, which the command on the page loads
     """
     data = payload(explored, design=design, plugins=plugins)
     style = _text("page.css")
@@ -313,7 +326,7 @@ def page(explored: Explored, *, design: str, plugins: Sequence[str] = ()) -> str
 
 
 def design_beside(target: Path) -> Path:
-    """Return the file of the base design, in the folder of the page."""
+    """Return the path of the base design's file, which is in the same folder as the page."""
     return target.with_name(f"{target.stem}_base.yaml")
 
 
@@ -324,13 +337,13 @@ def write_explorer(
     plugins: Sequence[str] = (),
     remarks: Sequence[str] = (),
 ) -> list[ExplorerFile]:
-    """Write the page, and into its folder the base design that the page's command uses.
+    """Write the page, and next to it the base design, which the command on the page reads.
 
     Parameters
     ----------
     explored : the sweep
     target : file of the page
-    plugins : files with user metrics, for the command
+    plugins : files with user metrics, which the command on the page loads
     remarks : remarks on the rows, printed with the page
 
     Raises
@@ -366,6 +379,6 @@ def _hash(text: str) -> str:
 
 
 def _json(data: dict[str, Any]) -> str:
-    """Convert data to JSON without characters of markup."""
+    """Convert data to JSON in which the special characters of HTML are escaped."""
     text = encoded(data, ensure_ascii=False, separators=(",", ":"))
     return re.sub("[<>&\u2028\u2029]", lambda match: _ESCAPES[match[0]], text)

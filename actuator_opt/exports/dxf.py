@@ -1,8 +1,8 @@
 """Draw the longitudinal section as DXF in mm, hatched and dimensioned, one layer per part.
 
-Diameters are above the parts, lengths below, without overlaps. Dimensions are DIMENSION entities
-that measure the drawing (DIMLFAC 1): if a line is moved in CAD, its dimension follows. All lengths
-are in mm of the drawing at full scale; `DrawingSizes` has the sizes of letters and gaps.
+Diameters are dimensioned above the parts, lengths below them, without overlaps. Dimensions are
+DIMENSION entities that measure the drawing (DIMLFAC 1): if a line is moved in CAD, its dimension
+follows. The drawing is at full scale, in mm; `DrawingSizes` has the sizes of letters and gaps.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ LONGEST = 200
 
 
 def plain(words: str) -> str:
-    r"""One line without control and direction characters, at most 200 characters.
+    r"""The text as one line of at most 200 characters, without control characters.
 
     >>> plain("a\nb"), len(plain(300 * "c"))
     ('a b', 200)
@@ -41,7 +41,7 @@ def plain(words: str) -> str:
 
 
 LETTER = 0.95
-"""Upper estimate of character width divided by height, as fonts differ between programs."""
+"""Character width divided by height: an upper estimate, because fonts differ between programs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +82,7 @@ class Length:
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """A length with the number of its row, counted outwards, and the centre of its text."""
+    """A length with its row of dimensions, counted outwards, and the centre of its text."""
 
     length: Length
     row: int
@@ -95,7 +95,10 @@ def _clear(middle: float, half: float, lines: Sequence[float]) -> bool:
 
 
 def _middle(length: Length, paper: DrawingSizes, lines: Sequence[float]) -> tuple[float, bool]:
-    """Centre of a text: on its own dimension line if it fits, else beside it and off all lines."""
+    """Centre of a dimension text, and whether the text is beside its dimension line.
+
+    A text that does not fit on its dimension line is placed beside it, clear of all `lines`.
+    """
     half, pad = paper.width(length.text) / 2, 0.5 * paper.letter
     centre = (length.start + length.end) / 2
     inner = [x for x in lines if length.start < x < length.end]
@@ -115,10 +118,10 @@ def _middle(length: Length, paper: DrawingSizes, lines: Sequence[float]) -> tupl
 
 
 def rows(lengths: Sequence[Length], paper: DrawingSizes) -> list[Placed]:
-    """Assign each length to a row: short lengths near the parts, long lengths further out.
+    """Assign each length to a row of dimensions: short ones near the parts, long ones further out.
 
-    Extension lines of a length cross all rows between it and the parts. A text must therefore not
-    overlap the ends of lengths in its own row or further out.
+    The extension lines of a length cross all rows between it and the parts. A text must therefore
+    not overlap the extension lines of lengths in its own row or further out.
     """
     ordered = sorted(set(lengths), key=lambda x: (round(x.end - x.start, 6), x.start))
     ends = sorted({x for length in ordered for x in (length.start, length.end)})
@@ -145,10 +148,10 @@ def rows(lengths: Sequence[Length], paper: DrawingSizes) -> list[Placed]:
 LAYER = "dimensions"
 STYLE = "TRUE"
 _COLOUR, _BY_LAYER, _BLACK_OR_WHITE = 153, 256, 7
-"""Colour numbers of DXF: dimension lines (readable on black and white), colour of the layer, and
-black or white in contrast to the background."""
+"""DXF colour numbers: of dimension lines (readable on black and on white), "same as the layer", and
+"black or white, whichever contrasts with the background"."""
 _SMALLEST = 1e-6
-"""Shorter lengths (mm) are not dimensioned."""
+"""Lengths below this value (mm) are not dimensioned."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,7 +181,7 @@ def number(value: float) -> str:
 
 
 def set_up(document: Any, paper: DrawingSizes) -> None:
-    """Add the layer and the dimension style: true lengths, ISO arrows."""
+    """Add the layer and the style of the dimensions: true lengths, ISO arrows."""
     document.layers.add(LAYER, color=_COLOUR, lineweight=18)
     style = document.dimstyles.new(STYLE)
     style.set_arrows(blk="", blk1="", blk2="")
@@ -240,9 +243,9 @@ def lengths_below(
 
     Parameters
     ----------
-    space : model space
-    evaluated : `lengths` of the evaluation
-    skirts : start and end of the skirt to dimension, mm, if any
+    space : model space of the DXF document
+    evaluated : lengths of the evaluated design by name [m]
+    skirts : start and end of the cap's skirt over the barrel [mm]; empty if there is none
     profiles : half-sections of all parts
     paper : sizes of letters and gaps
 
@@ -279,7 +282,7 @@ def lengths_below(
 
 
 def _diameters(evaluated: Mapping[str, float]) -> list[_Diameter]:
-    """Diameters of rod, bore and barrel at the chamber, and of the plate."""
+    """Diameters of rod, bore and barrel, along the stroke; of the end plate, and of the pin."""
     spans = _stations(evaluated)
     low, high = spans["stroke"]
     names = {
@@ -344,11 +347,12 @@ _POLYMER = ((15.0, 1.2),)
 """Hatches (angle, spacing in mm of paper), assigned to materials in order of appearance."""
 
 _COLOURS = (7, 23, 142, 94, 6, 42, 134, 200, 54, 213, 233, 74)
-"""Colours of the layers, by part: each is visible on black and white (7 adapts itself)."""
+"""Colours of the layers, in order of the parts: each is visible on black and on white (7
+adapts)."""
 
 _Corner: TypeAlias = tuple[float, float, float]
-"""Corner of a polyline: x, y and bulge (tangent of a quarter of the arc's angle to the next
-corner)."""
+"""Corner of a polyline: x, y and bulge. The bulge is the tangent of a quarter of the angle of the
+arc to the next corner."""
 
 
 def paper_for(length: float) -> DrawingSizes:
@@ -382,7 +386,10 @@ def _halves(profile: Profile) -> list[list[_Corner]]:
 
 
 def _eye(centre: float, pin: float, side: int) -> list[list[_Corner]]:
-    """Outlines of an eye (of `mass.eye_volume`) seen along its pin: lug with neck, and the hole."""
+    """Outlines of an eye seen along its pin: the lug with its neck, and the hole.
+
+    The shape is that of `mass.eye_volume`.
+    """
     foot, half = centre + side * sqrt(0.75) * pin, pin / 2
     arc = -side * tan(radians(300 / 4))
     end = centre + side * 2 * pin
@@ -423,7 +430,10 @@ def _hatch(
     *,
     nested: bool,
 ) -> None:
-    """Hatch closed outlines, jointly if nested; fill them if no hatch style is given."""
+    """Hatch closed outlines, or fill them if no hatch style is given.
+
+    Nested outlines get a single hatch, which leaves the inner outlines open.
+    """
     for group in [lines] if nested else [[line] for line in lines]:
         hatch = space.add_hatch(dxfattribs={**attributes, "hatch_style": 0})
         if style is None:
@@ -473,7 +483,7 @@ def _words(
     space: Any, evaluation: Evaluation, outlines: Sequence[Outline], paper: DrawingSizes,
     corner: tuple[float, float], origin: str,
 ) -> None:  # fmt: skip
-    """Draw title and parts list, line by line below the dimensions."""
+    """Write title and parts list, line by line, below the dimensions."""
     space.doc.layers.add("text", color=7, lineweight=18)
     scale = paper.scale
     size = f"1:{scale:g}" if scale >= 1 else f"{1 / scale:g}:1"
@@ -485,7 +495,7 @@ def _words(
         *(f"{title(outline.part)}: {outline.material}" for outline in outlines),
         "",
         "Not drawn, as the models do not describe their shape: threads, ports, fillets, chamfers.",
-        "Rings are drawn as rectangles in their grooves, without their true sections.",
+        "Rings are drawn as rectangles in their grooves, not with their true sections.",
     ]
     lines += notes(evaluation.design, evaluation.lengths)
     x, y = corner
@@ -499,7 +509,7 @@ def _words(
 
 @contextmanager
 def _repeatable(ezdxf: Any) -> Iterator[None]:
-    """Make the output reproducible: no time, no random identifiers."""
+    """Make the output of ezdxf reproducible: without times and random identifiers."""
     before = ezdxf.options.write_fixed_meta_data_for_testing
     ezdxf.options.write_fixed_meta_data_for_testing = True
     try:
@@ -518,7 +528,7 @@ def _ordered_classes(document: Any) -> None:
 
 
 def _skirts(outlines: Sequence[Outline], start: float) -> list[tuple[float, float]]:
-    """Start and end of the skirt at the cap end, if any."""
+    """Start and end of the cap's skirt over the barrel at the cap end; empty if there is none."""
     caps = [
         profile for outline in outlines if outline.part == "caps" for profile in _profiles(outline)
     ]

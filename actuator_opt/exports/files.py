@@ -1,4 +1,4 @@
-"""Write an evaluation as files for other programs: all of them completely, or none."""
+"""Write an evaluation as files for other programs; if one of them fails, none is written."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..base.files import write_all
 from ..evaluation.result import Evaluation
 
 FORMATS = ("step", "dxf", "xlsx")
-"""Formats, which are also the file suffixes."""
+"""Names of the formats, which are also the file suffixes."""
 
 _NEEDS = {"dxf": "ezdxf", "xlsx": "openpyxl"}
 

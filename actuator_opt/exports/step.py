@@ -1,8 +1,8 @@
 """STEP (ISO 10303-214): turned parts as closed solids of planes, cylinders and cones.
 
-The half-section of a body is followed anticlockwise. It gives a face for each edge and a circle for
-each corner. The circle separates two faces, which use it in opposite directions. Faces around the
-axis are closed by a seam.
+The half-section of a body is followed anticlockwise. Each of its edges sweeps a face, and each of
+its corners a circle. The circle separates two faces, which use it in opposite directions. Faces
+around the axis are closed by a seam.
 """
 
 from __future__ import annotations
@@ -21,12 +21,13 @@ Profile: TypeAlias = tuple[Point, ...]
 """Corners (axial position, radius) in mm, anticlockwise, without collinear points."""
 _Edge: TypeAlias = tuple[Point, Point]
 _DIGITS = 9
-"""Decimals of a millimetre in files: a thousandth of a nanometre."""
+"""Number of decimals of a length in mm, in files: the last is a thousandth of a nanometre."""
 _NAMES = {
     "caps": ("cap, cap end", "cap, rod end"),
     "rod.fitting": ("rod.fitting, piston end", "rod.fitting, rod end"),
 }
-"""Names of a part's bodies, starting at the cap end; bodies of other parts have the part's name."""
+"""Names of the bodies of parts that have two, starting at the cap end; other bodies have the name
+of their part."""
 _RINGS = tuple(
     f"{place} {ring}"
     for place in ("piston", "rod")
@@ -41,8 +42,8 @@ NOT_TURNED = ("oil", *_RINGS, *EYES)
 class SolidBody:
     """A body of revolution about the x axis; lengths in mm.
 
-    `profile` starts at the first face of the body; `places` are the positions of its origin in the
-    assembly, one per copy.
+    `profile` is the half-section, with x = 0 at the body's first end; `places` are the positions of
+    that origin in the assembly, one per copy of the body.
     """
 
     name: str
@@ -53,7 +54,9 @@ class SolidBody:
 
 
 def title(part: str) -> str:
-    """Name of an outline's part in files: its PATH, if it has one.
+    """Name, for exported files, of the part that an outline shows.
+
+    It is the part's PATH in the design, or else a plain name.
 
     >>> title("layup[1]"), title("glands"), title("rod.layup[0]")
     ('barrel.layup[1]', 'head', 'rod.layup[0]')
@@ -62,7 +65,7 @@ def title(part: str) -> str:
 
 
 def millimetres(polygon: Iterable[Point]) -> Profile:
-    """Corners of an outline (m) in mm."""
+    """Convert the corners of an outline from m to mm."""
     return tuple((round(1000 * x, _DIGITS), round(1000 * r, _DIGITS)) for x, r in polygon)
 
 
@@ -112,7 +115,7 @@ def _pieces(edge: _Edge, corners: Iterable[Point]) -> Iterator[_Edge]:
 
 
 def _joined(profile: Profile, other: Profile) -> Profile | None:
-    """Merge two polygons that share one run of edges; None if they share no run, or several."""
+    """Merge two polygons that touch along one run of edges; None if along none or several."""
     corners = (*profile, *other)
     pieces = [
         piece for edge in (*edges(profile), *edges(other)) for piece in _pieces(edge, corners)
@@ -161,7 +164,8 @@ def _crosses(first: _Edge, second: _Edge) -> bool:
 def bounds_solid(profile: Profile) -> bool:
     """Whether a polygon bounds a solid of revolution: nonzero area, no crossing.
 
-    It may touch the axis along a single edge: a point would pinch it, two edges enclose a void.
+    It may touch the axis along one edge. If it touched it at a point, the solid would be pinched
+    there; if along two edges, it would enclose a void.
     """
     sides = edges(profile)
     if len(sides) < 3 or area(profile) <= 0 or min(r for _, r in profile) < 0:
@@ -176,7 +180,7 @@ def bounds_solid(profile: Profile) -> bool:
 
 def _fault(part: str) -> InputError:
     remedy = (
-        "enlarge the part to fit its grooves and walls: see the geometry_... metrics of evaluate"
+        "enlarge the part until its grooves and walls fit: see the geometry_... metrics of evaluate"
     )
     return InputError(
         Diagnostic(
@@ -186,7 +190,10 @@ def _fault(part: str) -> InputError:
 
 
 def _bars(outline: Outline) -> SolidBody:
-    """Bodies of round bars, evenly spaced around the axis; the first is in the section plane."""
+    """The round bars of an outline: one body, and its places evenly spaced around the axis.
+
+    The first bar is in the section plane.
+    """
     profile = tidy(millimetres(outline.polygons[0]))
     first, low = profile[0]
     last, high = max(profile)
@@ -234,11 +241,11 @@ def bodies(evaluation: Evaluation) -> list[SolidBody]:
 SCHEMA = "AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }"
 
 _UNCERTAINTY = 1e-6
-"""Distance (mm) below which points coincide, as stated in the file."""
+"""Distance (mm) below which two points count as one; the file states it."""
 
 
 def text(words: str) -> str:
-    r"""A string of ISO 10303-21: quotes doubled, non-ASCII characters as codes.
+    r"""A string as ISO 10303-21 writes it: quotes doubled, non-ASCII characters as codes.
 
     >>> print(text("5' \u00f6"))
     '5'' \X2\00F6\X0\'
@@ -258,7 +265,7 @@ def text(words: str) -> str:
 
 
 def real(value: float) -> str:
-    """A real number of ISO 10303-21, always with a decimal point.
+    """A real number as ISO 10303-21 writes it, always with a decimal point.
 
     >>> real(12.0), real(0.1), real(1e-06), real(-0.0)
     ('12.', '0.1', '1.E-06', '0.')
@@ -295,12 +302,12 @@ class Records:
         return self.shared(f"DIRECTION('',({real(x)},{real(y)},{real(z)}))")
 
     def frame(self, origin: str, along: float = 1.0) -> str:
-        """Add a coordinate system with its main axis along +x or -x; angles count from y."""
+        """Add a coordinate system with its main axis along +x or -x; angles are measured from y."""
         axis, zero = self.direction(along, 0.0), self.direction(0.0, 1.0)
         return self.shared(f"AXIS2_PLACEMENT_3D('',{origin},{axis},{zero})")
 
     def place(self, at: tuple[float, float, float]) -> str:
-        """Add a coordinate system, moved but not rotated; all CAD readers interpret it alike."""
+        """Add a coordinate system that is only shifted: all CAD programs read that alike."""
         axis, zero = self.direction(0.0, 0.0, 1.0), self.direction(1.0, 0.0)
         return self.shared(f"AXIS2_PLACEMENT_3D('',{self.point(*at)},{axis},{zero})")
 
@@ -341,7 +348,7 @@ class _Skin:
         return r.add(f"EDGE_LOOP('',{listed(sides)})")
 
     def face(self, start: Point, end: Point) -> str:
-        """Add the face that an edge of the section sweeps; material is to the left of the edge."""
+        """Add the face that an edge of the section sweeps; material lies left of the edge."""
         r = self.records
         rims = [(self.circles[c], c is end, c[1]) for c in (start, end) if c in self.circles]
         if start[0] == end[0]:  # the larger rim is the face's outer boundary
@@ -364,7 +371,7 @@ class _Skin:
         return r.add(f"ADVANCED_FACE('',({bound}),{self._round(start, end)},.{same}.)")
 
     def _round(self, start: Point, end: Point) -> str:
-        """Add the cylinder or cone of an edge; the axis of a cone points to its wide end."""
+        """Add the cylinder or cone that an edge sweeps; a cone's axis points to its wide end."""
         r = self.records
         (x, radius), (far, wide) = sorted((start, end), key=lambda corner: corner[1])
         if radius == wide:
@@ -440,7 +447,7 @@ class _Contexts:
 def _placed(
     records: Records, whole: _Product, part: _Product, name: str, home: str, place: str
 ) -> None:
-    """Add a part to the assembly; its own coordinate system `home` is mapped to `place`."""
+    """Add a part to the assembly, so that its coordinate system `home` comes to lie at `place`."""
     r = records
     use = r.add(
         f"NEXT_ASSEMBLY_USAGE_OCCURRENCE({text(name)},{text(name)},'',"

@@ -1,8 +1,8 @@
-"""Write an evaluation as a workbook: limits with margins, section, variables, masses.
+"""Write an evaluation as a workbook: limits with margins, section drawing, variables and masses.
 
-Margins and verdicts are formulas, so they follow if the user changes a limit.
-Numbers are in display units; where a formula needs SI, the conversion factor is in a cell beside
-it. Excel and LibreOffice compute the formulas when they open the file.
+Margins and verdicts are formulas, so they follow if the user changes a limit. Numbers are in
+display units. Where a formula needs SI, a cell in the same row has the conversion factor. Excel and
+LibreOffice compute the formulas when they open the file.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ from ..rendering.paper import images
 from .dxf import plain
 
 TOLERANCE = "0.000001"
-"""Largest violation of a limit that still counts as met, as text for formulas."""
+"""Violation up to which a limit still counts as met, as text for formulas."""
 _TIGHT = "yes, no reserve"
-"""Verdict on a limit that is met without reserve (`evaluation.result.NO_RESERVE`)."""
+"""Verdict on a limit that is met with hardly any margin (`evaluation.result.NO_RESERVE`)."""
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 """Earliest time that a zip archive allows; a fixed time makes equal input give equal files."""
@@ -40,7 +40,7 @@ _LIMITS = (
     "unit",
     "limit [unit of its row]",
     "result [unit of its row]",
-    "margin [fraction of the limit; SI where that is 0]",
+    "margin [fraction of the limit; SI unit if the limit is 0]",
     "met",
     "SI per unit",
     "governing case",
@@ -51,7 +51,7 @@ _FONT = {"name": "Calibri", "size": 11}
 _LINE = 15.0
 """Height of a line of text, points."""
 _PIXELS = 96 / 25.4
-"""Pixels of a sheet per millimetre."""
+"""Pixels per millimetre of a sheet."""
 _WIDEST = 110.0
 """Largest column width in characters."""
 _FIRST = 5
@@ -93,9 +93,9 @@ def _format(value: float | None) -> str:
 
 
 class _Sheet:
-    """A sheet that is filled row by row; programs never read its texts as formulas.
+    """A sheet that is filled row by row; no program takes its texts for formulas.
 
-    Columns have the stated width, or a larger one if texts below the head need it.
+    Columns have the stated width, or a larger one if texts below the heading need it.
     """
 
     def __init__(self, book: Any, title: str, widths: Sequence[float]) -> None:
@@ -301,10 +301,14 @@ def _about(book: Any, evaluation: Evaluation, program: str, date: str | None) ->
         ("written by", program),
         ("date", date or ""),
         ("hash of the input", evaluation.spec_hash),
-        ("margin", "(result - limit)/|limit| for min, negated for max; met from -1e-6 on"),
+        (
+            "margin",
+            "(result - limit)/|limit| for min, (limit - result)/|limit| for max; "
+            "a limit counts as met if its margin is at least -1e-6",
+        ),
         (
             "blue cells",
-            "if you change a limit, its margin and verdict follow; the results do not change",
+            "limits that you can change: margin and verdict follow, results stay as they are",
         ),
         *(("warning", words) for words in evaluation.warnings),
     ]

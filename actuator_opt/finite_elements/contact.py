@@ -12,7 +12,8 @@ from .result import MountedContact, contact_end, stress_field
 from .section import Assembly
 
 HOLDING = 0.05
-"""Share by which contact pressure may fall below the fluid pressure while a node still seals."""
+"""Share by which the contact pressure at a sealing node may fall below the fluid pressure before
+the node opens."""
 
 
 def boundary_nodes(section: Assembly, body: int) -> Integers:
@@ -43,7 +44,7 @@ def level_pair(section: Assembly, nodes: int, middle: float) -> tuple[int, int]:
 
 
 def wall_pressing(section: Assembly, state: ElementState) -> Floats:
-    """Force on every node by the walls above and below."""
+    """Force that the walls above and below exert on every node, positive as pressing."""
     force = state.reaction.reshape(-1, 2)[:, 1]
     lower = state.at_lower.reshape(-1, 2)[:, 1]
     return np.asarray(np.where(lower, force, -force))
@@ -52,14 +53,14 @@ def wall_pressing(section: Assembly, state: ElementState) -> Floats:
 def barriers(
     section: Assembly, state: ElementState, places: Floats, pressing: Floats, pressure: float
 ) -> Floats:
-    """Contact pressure at every node, from the contact force and the fluid pressure."""
+    """Contact pressure at every node: contact force per length, plus the fluid pressure if wet."""
     length = np.abs(equilibrium.shares(section, places)[:, 0]) * section.radii(places)
     total = pressing / np.maximum(length, 1e-12) + state.wet * pressure
     return np.asarray(np.where(pressing != 0, total, 0.0))
 
 
 def both_ways(boundary: Integers, start: int) -> tuple[Integers, Integers]:
-    """A closed boundary as two chains from one of its nodes: anticlockwise and clockwise."""
+    """The nodes of a closed boundary, from a given node: anticlockwise, and clockwise."""
     return np.roll(boundary, -start), np.roll(boundary[::-1], start + 1)
 
 
@@ -68,10 +69,10 @@ def wetted(
 ) -> tuple[Integers, int | None]:
     """Which nodes of a chain the fluid reaches, and the index of the first node at the outer wall.
 
-    The fluid advances to the first node whose contact pressure exceeds the fluid pressure. This
+    The fluid advances to the first node whose contact pressure exceeds the fluid pressure. That
     node seals until its contact pressure is below the fluid pressure by the share `HOLDING`. The
-    mesh resolves the fluid front only to one node; without this hysteresis, two states may
-    alternate.
+    mesh resolves the fluid front only to one node. Without this hysteresis, the iteration could
+    therefore alternate between two states.
 
     Parameters
     ----------
@@ -101,8 +102,8 @@ def profile_on_face(
 
     Parameters
     ----------
-    section, state, places : the solution
-    boundary : boundary nodes of the sliding body in order, anticlockwise: rising x on the face
+    section, state, places : bodies, solution, and current positions of the nodes
+    boundary : boundary nodes of the sliding body, anticlockwise, so that x increases on the face
     touching : whether a node is in contact with the sliding face
     pressure : pressure of the fluid
     force : force of the sliding face on every node
@@ -143,15 +144,15 @@ def mounted_contact(
     *,
     wall: float = 0.0,
 ) -> MountedContact:
-    """Contact on the sliding face, converted from units of length and modulus to SI.
+    """Contact on the sliding face, converted from a dimensionless solution to SI.
 
     Parameters
     ----------
-    section, state : the solution, in units of length and modulus
+    section, state : bodies and solution, made dimensionless by `length` and `modulus`
     boundary : boundary nodes of the sliding body in order, anticlockwise
-    pressure : sealed pressure in units of the modulus
-    length, modulus : the units [m], [Pa]
-    wall : position of the outer groove wall in units of length
+    pressure : sealed pressure divided by the modulus
+    length, modulus : reference length [m] and modulus [Pa] of the dimensionless solution
+    wall : position of the outer groove wall divided by the length
     """
     force = state.reaction.reshape(-1, 2)
     start, positions, contact_pressure, line_load = profile_on_face(

@@ -1,13 +1,13 @@
 """Equilibrium of bodies in contact with walls, with each other and with a fluid: Newton's method.
 
-A wall is a bound on displacements, so contact needs no penalty stiffness. A wall parallel to an
-axis bounds one displacement component of every boundary node. A node at its bound stays there as
-long as the wall pushes it. The contact force is the reaction of the wall.
+A wall is an upper or lower bound on displacements, so contact needs no penalty stiffness. As walls
+are parallel to the axes, each bounds one displacement component of every boundary node. A node at
+its bound stays there as long as the wall pushes it. The contact force is the reaction of the wall.
 
 The fluid reaches all boundary nodes from the sealed side up to the first node whose contact
-pressure exceeds the fluid pressure. Its pressure is a follower load. Simpson's rule on every
-three-node edge is exact for a uniform pressure: the resultant on an arc is the pressure times the
-distance between the ends of the arc.
+pressure exceeds the fluid pressure. Its pressure is a follower load, integrated by Simpson's rule
+over every three-node edge. For a uniform pressure this is exact: the resultant on an arc is the
+pressure times the distance between the ends of the arc.
 
 Contact of two bodies has no friction: nodes of the upper body rest on the surface of the lower
 body. The gap is measured along direction 2, g = y_node - y_surface(x_node); the force is normal to
@@ -33,18 +33,19 @@ from .result import MountedContact, SealSolution
 from .section import Assembly
 
 SLOPES = np.array([[-1.5, 2.0, -0.5], [-0.5, 0.0, 0.5], [0.5, -2.0, 1.5]])
-"""Matrix from positions of an edge's three nodes to d(position)/d(xi) there, xi from -1 to 1."""
+"""Matrix that converts the positions of an edge's three nodes to d(position)/d(xi) at these nodes;
+xi runs from -1 to 1 along the edge."""
 
 SIMPSON = np.array([1.0, 4.0, 1.0]) / 3
 
 
 def tangents(edges: Integers, places: Floats) -> Floats:
-    """Tangent vectors of the boundary edges, weighted for each node, edges x 3 nodes x 2 [m]."""
+    """Tangent vectors at the boundary nodes times Simpson's weights, (edges, 3 nodes, 2) [m]."""
     return np.asarray(SIMPSON[:, None] * (SLOPES @ places[edges]))
 
 
 def shares(section: Assembly, places: Floats) -> Floats:
-    """Tangent vector of the part of the boundary that belongs to each node, nodes x 2 [m]."""
+    """Tangent vector of the part of the boundary that belongs to each node, (nodes, 2) [m]."""
     total = np.zeros_like(places)
     for edges in section.edges:
         np.add.at(total, edges, tangents(edges, places))
@@ -52,7 +53,7 @@ def shares(section: Assembly, places: Floats) -> Floats:
 
 
 def load(section: Assembly, places: Floats, pressure: Floats) -> tuple[Floats, Floats]:
-    """Nodal forces of a fluid, and their negative derivative for every edge.
+    """Nodal forces of the fluid pressure, and their contribution to the stiffness matrix.
 
     Parameters
     ----------
@@ -62,7 +63,7 @@ def load(section: Assembly, places: Floats, pressure: Floats) -> tuple[Floats, F
 
     Returns
     -------
-    forces on all unknowns [N/m], 6 x 6 blocks for `Section.stiffness`
+    forces on all unknowns [N/m], and a 6 x 6 block per edge for `Assembly.stiffness`
     """
     chain = np.concatenate(section.edges)
     along = tangents(chain, places)
@@ -93,9 +94,10 @@ class PairContribution:
 
     Parameters
     ----------
-    gaps : derivative by all unknowns of the gaps at the touching nodes
-    directions : forces on all unknowns by a unit contact force at each touching node
-    stiffness : derivative of the contact forces by all unknowns, for their current size
+    gaps : derivatives of the gaps at the touching nodes with respect to all unknowns
+    directions : forces on all unknowns due to a unit contact force at each touching node
+    stiffness : contribution to the stiffness matrix: change of the nodal forces with the unknowns
+        at constant contact forces
     """
 
     gaps: csc_matrix
@@ -105,7 +107,10 @@ class PairContribution:
 
 @dataclass(frozen=True, slots=True)
 class _SurfacePoints:
-    """Point of the lower surface under every upper node: three nodes, shape functions, slope."""
+    """The points of the lower surface that are under the upper nodes.
+
+    Each is given by the three nodes of its edge, their shape functions, and the slope.
+    """
 
     nodes: Integers
     inside: Booleans
@@ -130,7 +135,10 @@ class ContactPair:
         self.upper, self.edges = upper, edges
 
     def _locate(self, places: Floats) -> tuple[Integers, Floats, Booleans]:
-        """Edge under every upper node, local coordinate (-1 to 1), and whether there is an edge."""
+        """For every upper node: the edge under it, coordinate on the edge, whether there is one.
+
+        The coordinate runs from -1 to 1.
+        """
         x = places[self.upper, 0]
         ends = places[self.edges, 0]
         low, high = ends[:, 2], ends[:, 0]
@@ -160,7 +168,7 @@ class ContactPair:
         )
 
     def gap(self, places: Floats) -> Floats:
-        """Distance of every upper node above the surface; infinite beside it [m]."""
+        """Height of every upper node above the lower surface; infinite for nodes beside it [m]."""
         under = self._surface_points(places)
         above = places[self.upper, 1] - under.place[:, 1]
         return np.asarray(np.where(under.inside, above, np.inf))
@@ -174,7 +182,7 @@ class ContactPair:
         return touches, np.where(touches, force, 0.0)
 
     def _surface_slopes(self, places: Floats, unknowns: int) -> tuple[Floats, csr_matrix]:
-        """Slope of the surface at its nodes, averaged at corners; and its derivative."""
+        """Slope of the lower surface at its nodes, averaged at corners; and its derivative."""
         ends = SLOPES @ places[self.edges]
         slope = ends[..., 1] / ends[..., 0]
         weight = np.ones_like(slope)
@@ -237,23 +245,24 @@ class ContactPair:
 
 
 TOLERANCE = 1e-9
-"""Largest unbalanced force, relative to modulus times section."""
+"""Largest unbalanced force of a converged solution, divided by modulus times section."""
 SMALLEST_MOVE = 1e-7
-"""Largest step of a converged iteration, relative to the section."""
+"""Newton's iteration has converged if its last step is below this share of the section."""
 FREE = "the bodies can move freely"
 MOST_ITERATIONS = 40
 PATIENCE, STICKING = 15, 5e-4
-"""After `PATIENCE` iterations, a node with a tension below `STICKING` may stay in contact. If the
-contact ends between two nodes, neither holding nor releasing the last node may be right."""
+"""After `PATIENCE` iterations, a node may stay in contact although it is in tension, if the tension
+is below `STICKING`. Where the contact ends between two nodes, the last node can satisfy neither
+condition exactly: held it is in tension, released it penetrates."""
 LONGEST_MOVE = 0.1
-"""Largest displacement of an iteration; the section is 1."""
+"""Largest displacement within one iteration, divided by the section."""
 FLATTEST = 0.2
-"""Smallest volume ratio J after an iteration, relative to the previous J."""
+"""Smallest permissible volume ratio J after an iteration, divided by J before it."""
 
 
 @dataclass(slots=True)
 class DisplacementBounds:
-    """Bounds of all displacements; equal bounds fix a node."""
+    """Lower and upper bounds of all displacements; equal bounds fix a displacement."""
 
     lower: Floats
     upper: Floats
@@ -267,17 +276,18 @@ class DisplacementBounds:
 
 @dataclass(slots=True)
 class ElementState:
-    """Unknowns, contacts and wet nodes: a complete state from which a solution can continue.
+    """Unknowns, contacts and wet nodes: a complete state, from which a solution can continue.
 
     Parameters
     ----------
     values : displacements and multipliers
-    at_lower, at_upper : which displacements are at their bound
-    touching : which nodes of the pair's upper body are in contact
-    pair_force : force of the pair at each of these nodes
-    wet : share of the fluid pressure at every node, 0 to 1
+    at_lower, at_upper : which displacements are at their lower and upper bounds
+    touching : which nodes of the contact pair's upper body touch the lower body
+    pair_force : contact force at each of these nodes
+    wet : share of the fluid pressure that acts at every node, 0 to 1
     reaction : wall force on every displacement
-    level_force : force that keeps the level pair level, due to mesh asymmetry only
+    level_force : force that prevents the round section from rolling; only the asymmetry of the mesh
+        causes it
     """
 
     values: Floats
@@ -304,23 +314,25 @@ class ElementState:
 
 
 WetPart = Callable[["ElementState", Floats, float], Floats]
-"""Function for the share of the pressure at every node, from state, node positions and pressure."""
+"""Function of state, node positions and pressure that returns the share of the fluid pressure
+acting at every node."""
 FIRST_STEP, SHORTEST_STEP, GROWTH = 0.1, 1e-3, 1.5
-"""Load steps, as pressure over modulus: initial, smallest; and growth factor after a success."""
+"""Initial and smallest pressure step, divided by the modulus; and the factor by which the step
+grows after a success."""
 
 
 @dataclass(slots=True)
 class ElementProblem:
-    """Bodies, a pair in contact, and the region of the fluid.
+    """A contact problem: bodies, walls, two surfaces that may touch, and the fluid.
 
     Parameters
     ----------
     section : bodies
     bounds : walls
     pair : two surfaces that may touch; None with a single body
-    wet_part : returns the nodes that the fluid reaches
-    level : two nodes kept level, because a round section between frictionless walls could roll
-        without effect; None if nothing can roll
+    wet_part : function that returns the share of the fluid pressure at every node
+    level : two nodes that are kept at equal height, because a round section between frictionless
+        walls could roll freely; None if nothing can roll
     """
 
     section: Assembly
@@ -352,7 +364,7 @@ class NotConverged(Exception):
 
 
 def _update_walls(problem: ElementProblem, state: ElementState, force: Floats, pull: float) -> bool:
-    """Hold nodes that pass a bound, release nodes under tension; return whether any changed."""
+    """Hold nodes that pass a bound, release nodes that a wall pulls; return whether any changed."""
     bounds, displacements = problem.bounds, state.values[: problem.section.displacements]
     fixed = bounds.lower == bounds.upper
     slack = 1e-10
@@ -365,7 +377,7 @@ def _update_walls(problem: ElementProblem, state: ElementState, force: Floats, p
 
 @dataclass(slots=True)
 class _Links:
-    """Constraints, each with a force: touching nodes of the contact pair, then the level pair."""
+    """Constraints, each with its force: first of touching nodes, then of the two level nodes."""
 
     gap: Floats
     rows: csc_matrix
@@ -403,7 +415,7 @@ def _step(
     stiffness: csc_matrix,
     links: _Links,
 ) -> tuple[Floats, Floats, float]:
-    """Newton step of unknowns and constraint forces, and the largest error before the step."""
+    """Newton step of unknowns and of constraint forces; and the largest residual before it."""
     section, bounds = problem.section, problem.bounds
     fixed = np.zeros(section.unknowns, dtype=bool)
     fixed[: section.displacements] = state.at_lower | state.at_upper
@@ -433,7 +445,7 @@ def _step(
 
 
 def _damped(problem: ElementProblem, state: ElementState, move: Floats) -> float:
-    """Share of a step that respects the largest displacement and inverts no element."""
+    """Share of a step that keeps within the largest displacement and inverts no element."""
     section = problem.section
     longest = float(np.max(np.abs(move[: section.displacements])))
     share = min(1.0, LONGEST_MOVE / max(longest, 1e-300))
@@ -452,7 +464,7 @@ def solve(problem: ElementProblem, start: ElementState, pressure: float) -> Elem
     Raises
     ------
     NotConverged
-        With the reason in words.
+        there is no equilibrium, or the iteration does not reach it; the text states the reason
     """
     section, state = problem.section, start.copy()
     size = section.displacements
@@ -501,7 +513,7 @@ def raise_pressure(
     Raises
     ------
     NotConverged
-        With the reached pressure and the reason.
+        the target is not reached; the text states the reached pressure and the reason
     """
     step = min(FIRST_STEP, target - current)
     while current < target:
@@ -511,7 +523,7 @@ def raise_pressure(
         try:
             next_state = solve(problem, state, trial)
             if np.sum(next_state.touching & ~np.roll(next_state.touching, 1)) > 1:
-                raise NotConverged("the contact between the rings opens in its interior")
+                raise NotConverged("a gap opens within the contact between the rings")
         except NotConverged as reason:
             step /= 2
             if step < SHORTEST_STEP:
@@ -525,7 +537,7 @@ def raise_pressure(
 
 
 SQUEEZE_STEP = 0.04
-"""Squeeze per load step."""
+"""Largest increase of the squeeze in one load step."""
 MOST_SQUEEZE = 0.4
 """Largest squeeze: beyond it, elements at the contact edge invert."""
 
@@ -542,8 +554,8 @@ def check_inputs(
 
     Parameters
     ----------
-    section, squeeze, rubber, pressures, elements_around : as for the seals
-    further : further checks: condition of the fault, message, remedy
+    section, squeeze, rubber, pressures, elements_around : as in `o_ring.squeezed_ring`
+    further : further checks: whether the input is wrong, message, remedy
     """
     rising = all(b > a for a, b in zip((0.0, *pressures), pressures, strict=False))
     checks = (
@@ -559,13 +571,13 @@ def check_inputs(
         ),
         (
             not (rubber.c10 >= 0 and rubber.c01 >= 0 and rubber.c10 + rubber.c01 > 0),
-            "the constants of Mooney and Rivlin are not positive",
+            "the Mooney-Rivlin constants are not positive",
             "give a modulus",
         ),
         (not rising, "sealed pressures must be positive and increasing", "sort them"),
         (
             elements_around < 16 or elements_around % 4 != 0,
-            f"{elements_around} elements around the section",
+            f"the number of elements around the section is {elements_around}",
             "give a multiple of 4, at least 16",
         ),
         *further,
@@ -576,12 +588,12 @@ def check_inputs(
 
 
 class ElementSeal(Protocol):
-    """Interface of a seal that can be mounted, moved to the outer groove wall, and evaluated."""
+    """Interface of a seal: mount it, move it to the outer groove wall, evaluate its contact."""
 
     problem: ElementProblem
 
     def mount(self, squeeze: float, groove_width: float) -> ElementState:
-        """Find the equilibrium in the groove without pressure."""
+        """Find the equilibrium of the seal squeezed in its groove, without pressure."""
 
     def release(self, state: ElementState) -> ElementState:
         """Move the seal against the outer side wall, and remove all other constraints."""
@@ -589,7 +601,7 @@ class ElementSeal(Protocol):
     def contact(
         self, state: ElementState, pressure: float, length: float, modulus: float
     ) -> MountedContact:
-        """Contact on the sliding face, with dimensions."""
+        """Contact on the sliding face, in SI; `length` and `modulus` are the reference values."""
 
 
 def follow(
@@ -600,15 +612,15 @@ def follow(
     length: float,
     modulus: float,
 ) -> SealSolution:
-    """Mount a seal and raise its pressure.
+    """Mount a seal and raise its pressure; return the contacts.
 
     Parameters
     ----------
-    seal : seal in units of length and modulus
-    squeeze : squeeze over the section of the rubber ring [-]
-    groove_width : width of the groove in units of length
+    seal : seal, made dimensionless by `length` and `modulus`
+    squeeze : radial compression of the rubber ring divided by its free section [-]
+    groove_width : width of the groove divided by the length
     pressures : increasing pressures [Pa]
-    length, modulus : the units [m], [Pa]
+    length, modulus : reference length [m] and modulus [Pa]
     """
     contacts: list[MountedContact] = []
     failure, current = None, 0.0

@@ -26,13 +26,14 @@ _COLUMNS = np.array([j for _, j in COMPONENTS])
 class MooneyRivlin:
     """Strain energy c10 (I1 - 3) + c01 (I2 - 3) - 2 (c10 + 2 c01) ln J + q (J - 1) - q^2/(2 L).
 
-    I1 and I2 are the invariants of the deformation, and J is the volume ratio. The multiplier q
-    enforces the volume. L is the stiffness against volume change (Lame's first constant at small
-    strain), infinite for an incompressible body.
+    I1 and I2 are the first two invariants of the right Cauchy-Green tensor, and J is the volume
+    ratio. The Lagrange multiplier q is an independent field that enforces J = 1 + q/L. L is the
+    stiffness against volume change (Lame's first constant at small strain), infinite for an
+    incompressible body.
 
     Parameters
     ----------
-    c10, c01 : constants of Mooney and Rivlin [Pa]; shear modulus 2 (c10 + c01)
+    c10, c01 : Mooney-Rivlin constants [Pa]; the shear modulus is 2 (c10 + c01)
     volume_stiffness : Lame's first constant L [Pa]
     """
 
@@ -44,12 +45,12 @@ class MooneyRivlin:
     def of_modulus(
         cls, youngs_modulus: float, *, second_share: float = 0.0, poissons_ratio: float = 0.5
     ) -> MooneyRivlin:
-        """A body with this Young's modulus at small strain.
+        """The material with a given Young's modulus at small strain.
 
         Parameters
         ----------
         youngs_modulus : at small strain [Pa]
-        second_share : c01/(c10 + c01) [-]; 0 is a neo-Hookean body
+        second_share : c01/(c10 + c01) [-]; 0 gives a neo-Hookean material
         poissons_ratio : at small strain [-]; 0.5 is incompressible
         """
         shear = youngs_modulus / (2 * (1 + poissons_ratio))
@@ -69,7 +70,7 @@ class MooneyRivlin:
         return shear * (3 * self.volume_stiffness + 2 * shear) / (self.volume_stiffness + shear)
 
     def over(self, stress: float) -> MooneyRivlin:
-        """The same material, with its constants in units of a stress [Pa]."""
+        """The same material, with its constants divided by a stress [Pa]."""
         return MooneyRivlin(self.c10 / stress, self.c01 / stress, self.volume_stiffness / stress)
 
 
@@ -89,13 +90,15 @@ def inverse_transpose(gradient: Floats) -> tuple[Floats, Floats]:
 
 
 def stress(gradient: Floats, multiplier: Floats, c10: Floats, c01: Floats) -> Floats:
-    """First Piola-Kirchhoff stress, five components, c10 F 2 + 2 c01 (I1 F - F C) + ... [Pa].
+    """First Piola-Kirchhoff stress, five components [Pa].
+
+    It is 2 c10 F + 2 c01 (I1 F - F C) + [q J - 2 (c10 + 2 c01)] F^-T with C = F^T F.
 
     Parameters
     ----------
-    gradient : deformation gradient F, five components on the last axis [-]
+    gradient : deformation gradient F, its five components on the last axis [-]
     multiplier : multiplier q [Pa]
-    c10, c01 : constants, broadcast against the multiplier [Pa]
+    c10, c01 : constants of `MooneyRivlin`, in a shape that broadcasts with the multiplier [Pa]
     """
     inverse, volume = inverse_transpose(gradient)
     tensor = full(gradient)
@@ -111,7 +114,7 @@ def stress(gradient: Floats, multiplier: Floats, c10: Floats, c01: Floats) -> Fl
 
 
 def tangent(gradient: Floats, multiplier: Floats, c10: Floats, c01: Floats) -> Floats:
-    """Derivative of `stress` by F at fixed multiplier, 5 x 5 on the last axes [Pa]."""
+    """Derivative of `stress` with respect to F at fixed multiplier; last two axes 5 x 5 [Pa]."""
     inverse, volume = inverse_transpose(gradient)
     tensor, inverse_tensor = full(gradient), full(inverse)
     i, j = _ROWS[:, None], _COLUMNS[:, None]
@@ -139,7 +142,7 @@ def tangent(gradient: Floats, multiplier: Floats, c10: Floats, c01: Floats) -> F
 
 
 def von_mises(gradient: Floats, multiplier: Floats, c10: Floats, c01: Floats) -> Floats:
-    """Von Mises value of the true stress P F^T/J [Pa]."""
+    """Von Mises value of the true stress P F^T/J, with the stress P of `stress` [Pa]."""
     _, volume = inverse_transpose(gradient)
     nominal = full(stress(gradient, multiplier, c10, c01))
     true = nominal @ np.swapaxes(full(gradient), -1, -2) / volume[..., None, None]
@@ -154,7 +157,7 @@ def finite_element_library() -> Any:
     Raises
     ------
     ActuatorError
-        When scikit-fem is missing.
+        scikit-fem is not installed
     """
     try:
         import skfem

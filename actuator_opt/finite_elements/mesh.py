@@ -1,4 +1,4 @@
-"""Meshes of six-node triangles: a round section, and a slide ring with edge and taper.
+"""Meshes of six-node triangles for a round section and for a slide ring with chamfer and relief.
 
 Direction 1 runs along the cylinder from the sealed side to the outer side, direction 2 outward
 from the sliding face.
@@ -27,7 +27,8 @@ class Mesh:
     ----------
     nodes : positions, n x 2 [m]
     triangles : the six nodes of every element
-    corners : the three multiplier unknowns of every element, 0 to `corner_count` - 1
+    corners : numbers of the multiplier unknowns at the three corners of every element, from 0 to
+        `corner_count` - 1
     corner_count : number of corner nodes, which carry the multiplier
     edges : boundary edges in order, anticlockwise: corner, middle, corner
     gradients : derivatives of the six shape functions, elements x points x 6 x 2 [1/m]
@@ -73,7 +74,8 @@ def meshed(points: Floats, triangles: Integers, radius: float | None = None) -> 
     ----------
     points : corner positions, n x 2 [m]
     triangles : three corners each, in either orientation
-    radius : radius of a round section about the origin [m]: its boundary midside nodes lie on it
+    radius : radius of a round section about the origin [m], onto which the midside nodes of the
+        boundary are moved; None for straight edges
     """
     library = finite_element_library()
     a, b, c = (points[triangles[:, k]] for k in range(3))
@@ -112,7 +114,7 @@ def disc(*, diameter: float, around: int) -> Mesh:
     Parameters
     ----------
     diameter : diameter of the section [m]
-    around : number of elements around it, a multiple of 4
+    around : number of elements along its circumference, a multiple of 4
     """
     from scipy.spatial import Delaunay
 
@@ -138,9 +140,9 @@ class SlideRing:
     ----------
     width : axial width [m]
     thickness : thickness from land to back [m]
-    land_width : flat part of the sliding face [m]
+    land_width : axial width of the land, the flat part of the sliding face [m]
     chamfer_width, chamfer_height : chamfer on the sealed side of the land [m]
-    relief_angle : angle of the face behind the land [rad]
+    relief_angle : angle between rod and the ring's face on the outer side of the land [rad]
     edge_radius : radius at both ends of the land [m]
     """
 
@@ -153,18 +155,18 @@ class SlideRing:
     edge_radius: float
 
     def over(self, length: float) -> SlideRing:
-        """The same section in units of a length [m]."""
+        """The same section, with all dimensions divided by a length [m]."""
         sizes = {name: getattr(self, name) / length for name in self.__slots__}
         return SlideRing(**{**sizes, "relief_angle": self.relief_angle})
 
     @property
     def land(self) -> tuple[float, float]:
-        """Ends of the land, relative to the outer end of the ring, negative [m]."""
+        """Positions of the land's ends, from the outer end of the ring; both negative [m]."""
         first = self.chamfer_width - self.width
         return first, first + self.land_width
 
     def face(self, x: Floats) -> Floats:
-        """Height of the undeformed sliding face above the rod at x, x = 0 at the outer end [m]."""
+        """Height of the undeformed sliding face above the rod; x = 0 is the outer end [m]."""
         first, last = self.land
         before = math.atan2(self.chamfer_height, self.chamfer_width)
         return np.asarray(
@@ -174,7 +176,7 @@ class SlideRing:
 
 
 def _rounded(distance: Floats, angle: float, radius: float) -> Floats:
-    """Height above a flat face that bends up by an angle at distance 0, through a tangent arc."""
+    """Height of a face that is flat up to distance 0, then rises at an angle; the bend is round."""
     reach = radius * math.tan(angle / 2)
     arc = radius - np.sqrt(np.maximum(radius**2 - np.clip(distance + reach, 0, radius) ** 2, 0))
     along = math.tan(angle) * distance
@@ -183,7 +185,7 @@ def _rounded(distance: Floats, angle: float, radius: float) -> Floats:
 
 
 def _graded(start: float, end: float, fine: float, coarse: float, growth: float) -> Floats:
-    """Positions from start to end; the spacing grows from fine to at most coarse."""
+    """Positions from start to end, with a spacing that grows from `fine` to at most `coarse`."""
     places, step, length = [0.0], fine, abs(end - start)
     while places[-1] < length:
         places.append(places[-1] + step)

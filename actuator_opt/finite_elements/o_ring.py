@@ -33,16 +33,17 @@ from .result import MountedContact, SealSolution
 from .section import Assembly, MeshedBody
 
 MOST_FILL = 0.98
-"""Largest fill of the groove by an incompressible section, whose corners stay open."""
+"""Largest share of the groove that an incompressible section may fill; the groove's corners always
+stay open."""
 
 
 class RoundRing:
-    """A round ring as a finite-element problem, in units of its section and modulus.
+    """A round ring as a finite-element problem, made dimensionless by its section and modulus.
 
     Parameters
     ----------
-    rubber : strain energy, modulus 1
-    around : elements around the section
+    rubber : strain energy, scaled to Young's modulus 1
+    around : number of elements along the circumference of the section
     sliding_radius, outward : as in `Assembly`
     """
 
@@ -63,7 +64,10 @@ class RoundRing:
         bounds.lower[2 * self.boundary + 1] = -self.section.nodes[self.boundary, 1]
 
     def wet_part(self, state: ElementState, places: Floats, pressure: float) -> Floats:
-        """The fluid comes from the left and advances along both sides of the ring."""
+        """Share of the fluid pressure at every node.
+
+        The fluid comes from the left and advances along the ring's upper and lower side.
+        """
         pressing = wall_pressing(self.section, state)
         barrier = barriers(self.section, state, places, pressing, pressure)
         start = int(np.argmin(places[self.boundary, 0]))
@@ -112,7 +116,7 @@ class RoundRing:
     def contact(
         self, state: ElementState, pressure: float, length: float, modulus: float
     ) -> MountedContact:
-        """Contact on the sliding face, with dimensions."""
+        """Contact on the sliding face, in SI; `length` and `modulus` are the reference values."""
         return mounted_contact(
             self.section, state, self.boundary, pressure, length, modulus, wall=self.wall
         )
@@ -131,23 +135,23 @@ def squeezed_ring(
 ) -> SealSolution:
     """Mount a round rubber ring in a groove and raise the sealed pressure on one side.
 
-    Walls are rigid and frictionless, groove corners closed. The ring rests against the outer side
-    wall. The fluid acts on every part of the boundary that it reaches.
+    Walls are rigid and frictionless, and there is no extrusion gap. The ring rests against the
+    outer side wall. The fluid acts on every part of the boundary that it reaches.
 
     Parameters
     ----------
     section : free section W [m]
-    squeeze : squeeze over free section [-]
+    squeeze : radial compression of the ring divided by its free section [-]
     groove_width : axial width of the groove [m]
-    rubber : strain energy, which defines the modulus at small strain [Pa]
+    rubber : strain energy of the rubber
     pressures : sealed pressures above the outer pressure, increasing [Pa]
-    sliding_radius : radius of rod or bore [m]; None: plane strain
+    sliding_radius : radius of rod or bore [m]; None for plane strain
     on_rod : whether the sliding face is a rod (groove outside) or a bore
-    elements_around : elements around the section, a multiple of 4
+    elements_around : number of elements along the circumference of the section, a multiple of 4
 
     Returns
     -------
-    contacts of the mounted ring and at every reached pressure; reason for a missing pressure
+    contacts of the mounted ring and at every pressure that was reached; the reason if one was not
 
     Notes
     -----
@@ -157,7 +161,8 @@ def squeezed_ring(
 
     References
     ----------
-    [derived] total Lagrangian Taylor-Hood elements, contact as bounds on displacements
+    [derived] total Lagrangian formulation with Taylor-Hood elements; contact as bounds on
+    displacements
 
     Examples
     --------
@@ -176,7 +181,7 @@ def squeezed_ring(
         elements_around,
         (
             not area <= MOST_FILL * room,
-            f"the section, {area:.3g} m^2, fills its groove, {room:.3g} m^2",
+            f"the section of {area:.3g} m^2 fills its groove of {room:.3g} m^2",
             "widen the groove",
         ),
     )

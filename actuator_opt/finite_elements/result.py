@@ -17,9 +17,9 @@ class StressField:
 
     Parameters
     ----------
-    nodes : positions of the corners, n x 2: axial, and away from the sliding face [m]
+    nodes : positions of the element corners, n x 2: axial, and outward from the sliding face [m]
     triangles : three corners of every element
-    von_mises : mean of every element [Pa]
+    von_mises : mean von Mises stress of every element [Pa]
     body : index of the body that every element belongs to; 0 is the rubber ring
     """
 
@@ -37,14 +37,16 @@ class MountedContact:
     ----------
     pressure : sealed pressure above that of the outer side [Pa]
     positions : distances from the sealed end of the contact, from 0 to `width` [m]
-    contact_pressure : contact pressure [Pa]; first the sealed pressure, last 0
+    contact_pressure : contact pressure at these positions [Pa]; the first value is the sealed
+        pressure, the last is 0
     width : axial width of the contact [m]
     line_load : force on the sliding face per length of its circumference [N/m]
     peak_pressure : highest contact pressure [Pa]
     opposite_load : contact force on the groove bottom per length of circumference [N/m]
-    side_load : same for the outer side wall of the groove [N/m]; for a mounted step ring the axial
-        holding force
-    start : position of the sealed end of the contact from the outer groove wall, negative [m]
+    side_load : contact force on the outer side wall of the groove, likewise [N/m]; for a step ring
+        that is only mounted, the axial holding force
+    start : position of the sealed end of the contact, measured from the outer groove wall; negative
+        [m]
     field : deformed mesh with stress
     """
 
@@ -69,7 +71,7 @@ class SealSolution:
     contacts : first that of the mounted seal, then one per pressure that was reached
     failure : reason for a pressure that was not reached; None if all were reached
     steps, iterations : load steps, and Newton iterations of all of them
-    residual : largest unbalanced force, relative to modulus times section
+    residual : largest unbalanced force, divided by modulus times section
     """
 
     contacts: tuple[MountedContact, ...]
@@ -80,7 +82,7 @@ class SealSolution:
 
 
 def stress_field(section: Assembly, values: Floats, length: float, modulus: float) -> StressField:
-    """Deformed mesh and stress [SI] from a solution in units of a length and a modulus."""
+    """Deformed mesh and stress in SI, from a solution scaled by `length` and `modulus`."""
     gradient, multiplier = section.gradient(values)
     stress = material.von_mises(gradient, multiplier, section.c10, section.c01)
     mean = np.sum(stress * section.weights, axis=1) / np.sum(section.weights, axis=1)
@@ -95,9 +97,9 @@ def stress_field(section: Assembly, values: Floats, length: float, modulus: floa
 
 
 def contact_end(held: float, gaps: Floats, places: Floats) -> float:
-    """Position of a contact's end, between its last closed and its first open node.
+    """Position where a contact ends, between its last closed and its first open node.
 
-    Beside a smooth contact, the gap grows as distance^(3/2). The gaps at the first two open nodes
+    Next to a smooth contact, the gap grows as distance^(3/2). The gaps at the first two open nodes
     therefore determine where the contact ends.
 
     Parameters

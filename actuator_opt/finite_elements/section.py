@@ -19,8 +19,8 @@ class MeshedBody:
 
     Parameters
     ----------
-    mesh : its nodes and elements
-    rubber : its strain energy
+    mesh : nodes and elements
+    rubber : strain energy of the material
     place : position of the mesh origin [m]
     """
 
@@ -30,14 +30,16 @@ class MeshedBody:
 
 
 class Assembly:
-    """All bodies with one vector of unknowns.
+    """All bodies, with a common vector of unknowns.
 
-    Unknowns 2 i and 2 i + 1 are the displacements of node i; the multipliers q follow.
+    Unknowns 2 i and 2 i + 1 are the axial and the radial displacement of node i. The Lagrange
+    multipliers q of the volume constraint follow.
 
     Parameters
     ----------
     bodies : meshes with their materials
-    sliding_radius : radius of the sliding face, where direction 2 is zero [m]; None: plane strain
+    sliding_radius : radius of the sliding face, where coordinate 2 is zero [m]; None for plane
+        strain
     outward : 1 if direction 2 points away from the axis (rod), -1 towards it (bore)
     """
 
@@ -79,7 +81,10 @@ class Assembly:
         self._pattern()
 
     def _shape(self, bodies: Sequence[MeshedBody]) -> None:
-        """Derivative of the five components by the twelve displacements; integration weights."""
+        """Set the derivatives of F's five components by an element's twelve displacements.
+
+        Also set the integration weights.
+        """
         gradients = np.concatenate([b.mesh.gradients for b in bodies])
         self.weights: Floats = np.concatenate([b.mesh.weights for b in bodies])
         values = bodies[0].mesh.values
@@ -97,7 +102,7 @@ class Assembly:
         self.flat_shape: Floats = self.shape.reshape(count, points * 5, 12)
 
     def _pattern(self) -> None:
-        """Positions of the element and edge entries in the sparse stiffness matrix."""
+        """Set where the entries of elements and edges go in the sparse stiffness matrix."""
         displacement_dofs = (2 * self.triangles[:, :, None] + np.arange(2)).reshape(
             len(self.triangles), 12
         )
@@ -129,7 +134,7 @@ class Assembly:
         return float(np.min(material.inverse_transpose(gradient)[1]))
 
     def internal(self, state: Floats) -> Floats:
-        """Residual vector: internal forces, then volume errors for the multipliers."""
+        """Residual vector: internal forces at the nodes, then volume errors at the multipliers."""
         gradient, multiplier = self.gradient(state)
         nominal = material.stress(gradient, multiplier, self.c10, self.c01)
         _, volume = material.inverse_transpose(gradient)
@@ -142,7 +147,7 @@ class Assembly:
         return np.asarray(total)
 
     def stiffness(self, state: Floats, edge_blocks: Floats) -> csc_matrix:
-        """Derivative of the internal forces, plus the 6 x 6 block of the fluid for every edge."""
+        """Derivative of `internal`, to which the fluid's 6 x 6 block is added for every edge."""
         gradient, multiplier = self.gradient(state)
         count, points = self.weights.shape
         slope = material.tangent(gradient, multiplier, self.c10, self.c01)
@@ -167,7 +172,7 @@ class Assembly:
         )
 
     def radii(self, places: Floats) -> Floats:
-        """Ratio of circumference at every node to that of the sliding face; 1 in plane strain."""
+        """Circumference at every node divided by that of the sliding face; 1 in plane strain."""
         if self.sliding_radius is None:
             return np.ones(len(places))
         return np.asarray(1 + self.outward * places[:, 1] / self.sliding_radius)

@@ -36,20 +36,21 @@ from .section import Assembly, MeshedBody
 COARSE = 0.12
 """Largest element size of the slide ring, relative to the section of the rubber ring."""
 RAMP = 0.03
-"""Length over which the pressure on the back of the slide ring falls at the fluid front, relative
-to the rubber's section. It equals the spacing of the nodes there."""
+"""The fluid pressure on the back of the slide ring does not drop abruptly where the fluid ends, but
+linearly, from this distance before it to this distance beyond it. The distance is a share of the
+rubber's section and equals the spacing of the nodes there."""
 SHIFT_STEP = 0.05
-"""Axial displacement of the rubber ring per load step, relative to its section."""
+"""Axial displacement of the rubber ring per load step, as a share of its section."""
 
 
 class StepRing:
-    """Both rings as a finite-element problem, in units of the rubber's section and modulus.
+    """Both rings as a finite-element problem, scaled by the rubber's section and modulus.
 
     Parameters
     ----------
-    rubber, plastic : strain energies; the modulus of the rubber is 1
+    rubber, plastic : strain energies, scaled so that the rubber's Young's modulus is 1
     shape : dimensions of the slide ring
-    around : elements around the rubber's section
+    around : number of elements along the circumference of the rubber's section
     fine : element size at the ends of the land
     sliding_radius, outward : as in `Assembly`
     """
@@ -97,7 +98,10 @@ class StepRing:
         self.back_wet: Floats = np.zeros(len(nodes))
 
     def wet_part(self, state: ElementState, places: Floats, pressure: float) -> Floats:
-        """The fluid comes from the left of both rings and goes between them up to their contact."""
+        """Share of the fluid pressure at every node.
+
+        The fluid comes from the left and also enters between the rings, up to their contact.
+        """
         pressing = wall_pressing(self.section, state)
         pressing[self.round] += state.pair_force
         barrier = barriers(self.section, state, places, pressing, pressure)
@@ -122,10 +126,10 @@ class StepRing:
         return np.minimum(wet, 1.0)
 
     def _wet_back(self, places: Floats, front: float) -> Floats:
-        """Share of the pressure on the back of the slide ring, up to the front between the rings.
+        """Share of the fluid pressure on the back of the slide ring, up to where the fluid ends.
 
-        The share is kept while the front stays at the same node. If it followed the motion of the
-        nodes, a tilting ring would oscillate.
+        The result is used until the fluid between the rings reaches another node. If it followed
+        every motion of the nodes, the iteration for a tilting ring would oscillate.
         """
         _, back = both_ways(self.flat, self.sealed_end)
         x = places[back, 0]
@@ -141,7 +145,7 @@ class StepRing:
         self.problem.bounds.lower[unknown] = self.problem.bounds.upper[unknown] = value
 
     def mount(self, squeeze: float, groove_width: float) -> ElementState:
-        """Lower the groove bottom onto the rubber ring at the middle of the slide ring."""
+        """Lower the groove bottom onto the rubber ring, which lies on the slide ring's middle."""
         self.groove_width = groove_width
         nodes, bounds, problem = self.section.nodes, self.problem.bounds, self.problem
         state = problem.start()
@@ -155,7 +159,7 @@ class StepRing:
         return state
 
     def release(self, state: ElementState) -> ElementState:
-        """Move the rubber ring to the outer side wall, where both rings rest unconstrained."""
+        """Move the rubber ring to the outer side wall, then free both rings axially."""
         nodes, bounds, problem = self.section.nodes, self.problem.bounds, self.problem
         distance = -float(np.max(self.section.places(state.values)[self.round, 0]))
         for part in np.linspace(0, distance, math.ceil(abs(distance) / SHIFT_STEP) + 1)[1:]:
@@ -177,7 +181,7 @@ class StepRing:
     def contact(
         self, state: ElementState, pressure: float, length: float, modulus: float
     ) -> MountedContact:
-        """Contact on the rod, converted from units of length and modulus to SI."""
+        """Contact on the rod, in SI; `length` and `modulus` are the reference values."""
         return mounted_contact(self.section, state, self.flat, pressure, length, modulus)
 
 
@@ -197,37 +201,39 @@ def squeezed_step_ring(
 ) -> SealSolution:
     """Mount a slide ring with its rubber ring in a groove and raise the sealed pressure.
 
-    Walls, rod and the contact between the rings are frictionless, groove corners closed.
+    Walls, rod and the contact between the rings are frictionless, and there is no extrusion gap.
     Both rings rest against the outer side wall. Plastic and rubber are elastic.
 
     Parameters
     ----------
     section : free section W of the rubber ring [m]
-    squeeze : squeeze of the rubber ring over its free section [-]
+    squeeze : radial compression of the rubber ring divided by its free section [-]
     groove_width : axial width of the groove [m]
-    rubber : strain energy of the rubber ring [Pa]
-    plastic : strain energy of the slide ring [Pa]
+    rubber : strain energy of the rubber ring
+    plastic : strain energy of the slide ring
     shape : section of the slide ring
     pressures : sealed pressures above the outer pressure, increasing [Pa]
-    sliding_radius : radius of rod or bore [m]; None: plane strain
+    sliding_radius : radius of rod or bore [m]; None for plane strain
     on_rod : whether the sliding face is a rod (groove outside) or a bore
-    elements_around : elements around the rubber ring, a multiple of 4
-    edge_elements : elements along the radius of the land's ends
+    elements_around : number of elements along the circumference of the rubber's section, a multiple
+        of 4
+    edge_elements : number of elements along the rounding at each end of the land
 
     Returns
     -------
-    contacts of the mounted seal and at every reached pressure; reason for a missing pressure
+    contacts of the mounted seal and at every pressure that was reached; the reason if one was not
 
     Notes
     -----
     Valid: no friction, no creep, no yielding of the plastic, closed groove corners.
 
-    Line load and width hardly depend on the mesh. The peak at an end of the land does, and needs
-    at least 8 `edge_elements`.
+    Line load and contact width hardly depend on the mesh. The peak pressure at an end of the land
+    does; it needs at least 8 `edge_elements`.
 
     References
     ----------
-    [derived] total Lagrangian Taylor-Hood elements, contact as bounds and as a pair
+    [derived] total Lagrangian formulation with Taylor-Hood elements; contact with walls as bounds
+    on displacements, contact of the rings as constraints between nodes and surface
 
     Examples
     --------
@@ -258,13 +264,13 @@ def squeezed_step_ring(
         ),
         (
             not shape.chamfer_width + shape.land_width < shape.width,
-            "chamfer and land leave no width of the slide ring",
+            "chamfer and land leave no width for the relief of the slide ring",
             "shorten them",
         ),
         (
             not 0 <= shape.relief_angle < 1,
             f"relief angle {shape.relief_angle:g} rad is outside 0 to 1",
-            "give the slope behind the land",
+            "give the slope of the face behind the land",
         ),
         (not plastic.youngs_modulus > 0, "the plastic has no stiffness", "give its modulus"),
         (not shape.edge_radius > 0, "the land has sharp ends", "give their edge_radius"),

@@ -61,14 +61,14 @@ class FrictionLaw:
     name : name in a design file
     help : meaning of the name
     compound : further properties of the compound that the law uses
-    coefficient : Coulomb friction coefficient of a contact [-]
-    breakaway : breakaway friction, from Coulomb friction [N]
-    level : friction without its viscous part, from Coulomb friction [N] and speed [m/s], which
-        broadcast
-    slope : derivative of `level` by speed [N s/m], of the same shape
-    film : function for friction on an oil film; its film argument is None if the film was not
-        solved. None: the law needs no film. A law with a film also states dry friction, for test
-        records and simulations
+    coefficient : function for the Coulomb friction coefficient of a contact [-]
+    breakaway : function for the breakaway friction [N], given the Coulomb friction [N]
+    level : function for the friction without its viscous part [N], given Coulomb friction [N] and
+        speed [m/s], which broadcast
+    slope : function for the derivative of `level` with respect to speed [N s/m], of the same shape
+    film : function for the friction on an oil film; its argument `film` is None if the film was not
+        solved. None for a law without film. A law with film must also state dry friction, which
+        test records and simulations use
     """
 
     name: str
@@ -83,13 +83,13 @@ class FrictionLaw:
     def friction(
         self, seal: SealSizes, contact: SealContact, load: Array, speed: Array
     ) -> Friction:
-        """Dry friction of seals in series: sliding in a moving load case, else Coulomb friction.
+        """Dry friction of seals in series: sliding friction, or Coulomb friction in a case at rest.
 
         Parameters
         ----------
         seal, contact : the pressure-loaded seal and its contact
-        load : line load of the whole row [N/m]
-        speed : [m/s]
+        load : line load of all seals of the series together [N/m]
+        speed : sliding speed of each load case [m/s]
         """
         coulomb = friction.seal_friction(
             line_load=load,

@@ -13,18 +13,19 @@ from ..studies.bench import Bench
 from .conditioning import ConditionedRecord, RecordSection
 
 RESTING, CREEP = 3.0, 2e-5
-"""Speeds below which the rod may be at rest: in standard deviations of the velocity noise, and in
-m/s (our choices: only 0.3 % of the samples at rest are faster; two steps of 10 um in a second). The
-larger speed is used."""
+"""Below a certain speed, the rod may be at rest. That speed is `RESTING` standard deviations of the
+velocity noise, or `CREEP` [m/s] if that is larger (our choices: noise makes only 0.3 % of the
+samples at rest look faster; two sensor steps of 10 um in a second)."""
 OPPOSED = 0.5
-"""Share of the friction's power that must oppose the motion; a smaller share indicates a wrong sign
-(our choice: a quarter of the power then drives the rod, more than noise and offsets explain)."""
+"""Smallest `opposing_share` of a plausible record; a smaller one indicates a wrong sign (our
+choice: a quarter of the friction's power then drives the rod, more than noise and offsets
+explain)."""
 SLIDES = 5e-4
-"""Travel from which a section counts as sliding [m] (our choice: ten breakaway travels of 50 um;
-below it the bristles return much of their energy)."""
+"""Smallest travel at which a section of a record counts as sliding [m] (our choice: ten breakaway
+travels of 50 um; within a shorter travel, the contact returns much of its energy like a spring)."""
 SURE = 0.8
-"""Share of the friction's power that must oppose the motion after a correction of the record, for
-the correction to be suggested (our choice: a tenth of the power then still drives the rod)."""
+"""A correction of the record is suggested only if the `opposing_share` of the corrected record is
+larger than this value (our choice: a tenth of the friction's power then still drives the rod)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,10 +112,11 @@ def _sliding(
 
 
 def opposing_share(slidings: Sequence[Sliding]) -> float:
-    """Share of the friction's power that opposes motion: 1 if all does, -1 if all drives the rod.
+    """Opposing minus driving power of the friction, divided by their sum.
 
-    A section that hardly slides counts by the power of its changes of friction, dF dx, because
-    friction then acts as a spring.
+    It is 1 if friction always opposes the motion, and -1 if it always drives the rod. In a section
+    of the record that hardly slides, friction acts as a spring; there, changes of the friction
+    replace the friction.
     """
     power = np.concatenate([_power(sliding) for sliding in slidings])
     total = float(np.sum(np.abs(power)))
@@ -140,9 +142,9 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
     Raises
     ------
     InputError
-        names the error that explains the record, if any does. If several do, the error that leaves
-        the least friction is named. A wrong sign of x is named last, as it does not change the size
-        of the friction
+        the text names the error that explains the record, if any does. If several do, it names the
+        one whose correction leaves the least friction. A wrong sign of x is named last, as it
+        does not change the size of the friction
     """
     share = opposing_share(slidings)
     slides = any(_slides(sliding) for sliding in slidings)
@@ -157,8 +159,8 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
         ):
             candidates.append((friction, rank, error))
     message = (
-        f"the computed friction drives the rod instead of opposing it (only {100 * share:.0f} % of "
-        "its power opposes motion)"
+        "the computed friction drives the rod instead of opposing it (opposing minus driving "
+        f"power is {100 * share:.0f} % of their sum)"
     )
     remedy = "check signs and zeros of all channels, bore and rod of the design, mass and load"
     if candidates:
@@ -171,7 +173,7 @@ _ERRORS = {
     "x": ("x seems to have the wrong sign", "x increases as the rod extends: reverse its sign"),
     "F_L": (
         "F_L seems to have the wrong sign",
-        "F_L is positive against extension: reverse its sign",
+        "F_L is positive if it opposes extension: reverse its sign",
     ),
     "p": ("p1 and p2 seem swapped", "swap them, e.g. with --column p1=... --column p2=..."),
 }

@@ -1,9 +1,9 @@
-"""Modulus from a bending test: slope of force over deflection in its straight part.
+"""Modulus from a bending test, by the slope of the straight part of force versus deflection.
 
 The straight part lies between the strains 0.0005 and 0.0025 of the outer fibre, as for the chord of
-[ISO178] and [ISO14125]. Strain counts from the point where the straight line meets zero force (toe
-compensation of [ASTM-D790], annex A1). [ASTM-D7264] uses 0.001 to 0.003. ASTM D790 does not fix the
-chord and prefers the steepest tangent, which noise makes too steep.
+[ISO178] and [ISO14125]. Strain is measured from the point where the straight line meets zero force
+(toe compensation of [ASTM-D790], annex A1). [ASTM-D7264] uses 0.001 to 0.003. ASTM D790 does not
+fix the chord and prefers the steepest tangent, which noise makes too steep.
 """
 
 from __future__ import annotations
@@ -37,16 +37,16 @@ class Specimen:
     ----------
     span : distance L between the supports [m]
     outer_diameter, inner_diameter : diameters of a round section [m]
-    second_moment : I about the neutral axis, in place of the diameters [m^4]; can be from
-        `equivalent_second_moment`
+    second_moment : I about the neutral axis [m^4], to be given in place of the diameters; for
+        example from `equivalent_second_moment`
     depth : height of the section given by `second_moment`, in the plane of bending [m]; strains are
         unknown without it
     shear_modulus : G of a round section [Pa]
     poissons_ratio : Poisson's ratio for the shear coefficient of a round section [-]
     shear_compliance : 1/(kappa G A) with the shear coefficient kappa and the area A, in place of
         `shear_modulus` [1/N]
-    local_compliance : C, deflection per force due to indentation, supports and frame [m/N]
-    expected_modulus : modulus of the material, for comparison [Pa]
+    local_compliance : C, deflection per force due to indentation, supports and test frame [m/N]
+    expected_modulus : modulus of the material, with which the result is compared [Pa]
     """
 
     span: float
@@ -75,7 +75,9 @@ class Specimen:
         outer = self.outer_diameter
         if (outer is None) == (self.second_moment is None):
             _refuse(
-                "the section is not known" if outer is None else "the section is stated twice",
+                "the cross-section is not known"
+                if outer is None
+                else "the cross-section is stated twice",
                 "state either outer_diameter and inner_diameter or second_moment",
             )
         if outer is not None and self.inner_diameter >= outer:
@@ -121,7 +123,7 @@ class Specimen:
 def specimen_of(subject: PreparedDesign, part: Part, span: float) -> Specimen:
     """A part of a design as a specimen.
 
-    The moduli are set if the part is of a single metal; its shear modulus is G = E/(2 (1 + nu)).
+    The moduli are known only if the part is of a single metal; then G = E/(2 (1 + nu)).
 
     Parameters
     ----------
@@ -163,29 +165,30 @@ def _refuse(message: str, remedy: str) -> None:
 STRAINS = (0.0005, 0.0025)
 """Strains between which the slope is determined [ISO178], [ISO14125]."""
 SHORT = 0.5
-"""Share of the strain range that a test must cover, for the strains to limit the straight part (our
-choice)."""
+"""Share of the range between these strains that a test must cover. If it covers less, the slope is
+determined between shares of its largest deflection instead (our choice)."""
 SLENDER = 16.0
 """Smallest ratio of span to depth [ISO178], [ASTM-D790]."""
 SHEARED = 0.1
-"""Ratio of shear deflection to bending deflection above which it is reported that the modulus
-depends on shear (our choice)."""
+"""Ratio of shear deflection to bending deflection above which a note says that the modulus depends
+strongly on the shear correction (our choice)."""
 APART = 0.05
 """Relative difference between the slopes of loading and unloading that indicates friction or creep
 (our choice)."""
 NOISY = 0.02
 """Scatter 1 - r^2 above which noise of the deflection lowers the slope noticeably (our choice)."""
 STATED = 0.2
-"""Relative difference from the material's modulus above which part, span and units are questioned
-(our choice: an error of the span enters threefold, an error of the diameter fourfold)."""
+"""Relative difference from the material's modulus above which a note asks the user to check part,
+span and units (our choice: an error of the span enters threefold, an error of the diameter
+fourfold)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BendingResult(Displayed):
     """Results of a bending test, SI.
 
-    The confidence intervals only cover the scatter of the record. The relative error of the span
-    enters threefold in addition, that of a solid bar's diameter fourfold.
+    The confidence intervals only cover the scatter of the record. In addition, the relative error
+    of the span enters threefold, and that of a solid bar's diameter fourfold.
 
     Parameters
     ----------
@@ -198,7 +201,7 @@ class BendingResult(Displayed):
         if unknown
     strains : strains of the outer fibre between which the slope is determined; None if the depth is
         unknown
-    deflections : deflections between which the slope is determined, from zero force [m]
+    deflections : deflections between which the slope is determined, counted from zero force [m]
     bent : change of the slope along the straight part, divided by the slope
     hysteresis : work lost, divided by the work done on loading, mean of the cycles; None if not
         available
@@ -289,10 +292,10 @@ def bending(record: Record, specimen: Specimen) -> BendingResult:
     doubts = _doubts_of_record(result, by_strain=by_strain, cut=straight_part.cut, noise=noise)
     if loop.both:
         way = (
-            "the specimen is bent both ways, so the slope is taken on the side that is bent "
-            "further, starting where"
+            "the specimen is bent in both directions, so the slope is taken in the direction of "
+            "the larger deflection, starting at"
         )
-        doubts.append(f"{way} the force is zero")
+        doubts.append(f"{way} zero force")
     return replace(result, doubts=(*_doubts_of_specimen(result), *doubts))
 
 
@@ -335,10 +338,10 @@ def _result(loop: Loop, specimen: Specimen, straight_part: Straight) -> BendingR
 
 
 def _range(loop: Loop, specimen: Specimen) -> tuple[list[float], float, float, bool]:
-    """Limits of the range of deflection in which the straight part is searched for.
+    """Range of deflection in which the straight part is searched for.
 
-    Returns the deflections at zero force of all branches, the limits relative to them, and whether
-    strains determine the limits.
+    Returns the deflection at zero force of each loading and unloading, both limits of the range
+    relative to it, and whether the limits follow from strains.
     """
     zeros = loop.begins()
     first, last = (specimen.deflection(strain) for strain in STRAINS)
@@ -356,7 +359,7 @@ def _range(loop: Loop, specimen: Specimen) -> tuple[list[float], float, float, b
 
 
 def _parameter(term: Term, unsure: float) -> Parameter:
-    """A slope with its confidence interval, widened by the change of slope along the part."""
+    """A slope with its confidence interval, widened by its change along the straight part."""
     error = float(np.sqrt(term.variance))
     half = quantile(term.freedom) * error + unsure * abs(term.value)
     identifiable = half <= WEAK * abs(term.value)
@@ -397,8 +400,8 @@ def _doubts_of_record(
     if strains is None:
         doubts.append(
             "the depth of the section is not known, so the slope is taken between "
-            f"{_percent(SHARES[0])} and {_percent(SHARES[1])} of the highest force, not between "
-            "strains"
+            f"{_percent(SHARES[0])} and {_percent(SHARES[1])} of the largest deflection, not "
+            "between strains"
         )
     elif not by_strain:
         doubts.append(
@@ -409,13 +412,14 @@ def _doubts_of_record(
     if cut:
         low, high = (1e3 * deflection for deflection in result.deflections)
         words = (
-            "force over deflection is not straight, so the slope is taken from its straight part"
+            "the curve of force versus deflection is not straight, so the slope is taken from its "
+            "straight part"
         )
         doubts.append(f"{words}, from {low:.3g} to {high:.3g} mm")
     if abs(result.bent) > BENT:
         doubts.append(
-            f"the slope changes by {_percent(result.bent)} along the part used: yielding, slip, or "
-            "supports that settle"
+            f"the slope changes by {_percent(result.bent)} along the part used, which indicates "
+            "yielding, slip or settling supports"
         )
     if result.unloading is None or result.loading is None:
         way = "loading" if result.unloading is None else "unloading"
@@ -427,8 +431,8 @@ def _doubts_of_record(
         share = (result.loading - result.unloading) / result.slope.value
         first, second = ways if share > 0 else reversed(ways)
         doubts.append(
-            f"the slope of {first} is {_percent(abs(share))} steeper than that of {second}, by "
-            "support friction, creep or damage; the mean is used"
+            f"the slope of {first} is {_percent(abs(share))} steeper than that of {second}, "
+            "because of support friction, creep or damage; the mean is used"
         )
     if result.hysteresis is None and result.unloading is not None and result.loading is not None:
         words = (
@@ -459,12 +463,12 @@ def _doubts_of_specimen(result: BendingResult) -> list[str]:
             "not corrected for shear, as no shear modulus is stated: the modulus is too low"
         )
     elif share > SHEARED:
-        words = f"shear deflection is {_percent(share)} of that by bending"
-        doubts.append(f"{words}, so the modulus depends strongly on its correction")
+        words = f"shear deflection is {_percent(share)} of the bending deflection"
+        doubts.append(f"{words}, so the modulus depends strongly on the shear correction")
     if height is not None and specimen.span < SLENDER * height:
         doubts.append(
-            f"the span is {specimen.span / height:.1f} depths, less than {SLENDER:g}: shear and "
-            "indentation are significant"
+            f"the span is {specimen.span / height:.1f} times the depth, less than {SLENDER:g} "
+            "times: shear and indentation are significant"
         )
     if specimen.local_compliance is None:
         doubts.append(

@@ -2,19 +2,19 @@
 
 There are few points of steady sliding, and often a single point determines a parameter: the slowest
 point determines F_S, the fastest sigma_2. Drawing points with replacement would lose such a point.
-Therefore the noise of the points is drawn [Wu1986], from their residuals. With r_i the residual of
-a point, h_i its leverage and s^2 the sum of squares divided by n - p, the variance is E[noise_i^2 |
-residuals] = r_i^2 + h_i s^2 for independent noise of unit weight [derived]. Where the fit follows a
-point closely, s^2 dominates, elsewhere the residual.
-The samples of a window around a reversal are correlated, so all residuals of a window are drawn
-together. To first order this equals a bootstrap of whole windows, but every draw contains both
-directions and the sharpest reversals.
+Therefore every draw keeps all points and gives them new random noise [Wu1986], whose size follows
+from their residuals. With r_i the residual of a point, h_i its leverage and s^2 the sum of squares
+divided by n - p, the variance is E[noise_i^2 | residuals] = r_i^2 + h_i s^2 for independent noise
+of unit weight [derived]. Where the fit follows a point closely, s^2 dominates, elsewhere the
+residual. The samples of a time window around a reversal are correlated, so all residuals of a
+window are multiplied by the same random number. To first order this equals drawing whole windows
+with replacement, but every draw contains both directions and the sharpest reversals.
 
 Each draw also scales the noise by sqrt(nu/chi^2_nu), because only nu degrees of freedom determine
-its size. For a linear model, the intervals are then those of Student's t. Every draw is fitted
-again within the search limits, by damped Gauss-Newton steps from the optimum with three initial
-values of v_s. The confidence limits are percentiles of these fits.
-Percentiles respect the search limits, follow skewed distributions, and do not depend on the
+its size. For a linear model, the intervals are then those of Student's t. A new fit is made to
+every draw, within the search limits, by damped Gauss-Newton steps that start from the optimum, for
+a Stribeck curve with three initial values of v_s. The confidence limits are percentiles of these
+fits. Percentiles respect the search limits, follow skewed distributions, and do not depend on the
 parametrisation. The BCa method would need fits that leave out one point at a time. Such a fit does
 not exist if that point alone determines a parameter.
 
@@ -40,24 +40,26 @@ from .stribeck_fit import EXPONENTS, SPEEDS, STATIC_MOST, Steady, StribeckFit
 from .windows import LAG, Windows, windows
 
 FEWEST = 80
-"""Smallest number of resamples: the confidence limits are then the second values from the ends, not
-the outermost."""
+"""Smallest number of resamples. With it, the confidence limits are the second smallest and second
+largest values, not the extremes."""
 STARTS = (1.0, 1 / 3, 3.0)
 """Initial Stribeck speeds of a new fit, relative to the optimum (our choice: half a decade both
 ways)."""
 STEPS, LUGRE_STEPS = 40, 8
-"""Number of steps of a Stribeck fit, and of a LuGre fit that keeps its slopes (our choice: more
-steps do not change the confidence limits for synthetic records)."""
+"""Number of Gauss-Newton steps for each draw: of a Stribeck fit, and of a LuGre fit, which keeps
+the derivatives of the optimum (our choice: more steps do not change the confidence limits for
+synthetic records)."""
 LEAST_WINDOWS = 3
 """Smallest number of windows to draw from (our choice: with two windows, a single difference would
 determine the noise)."""
 ROWS = 256
-"""Number of draws that are integrated at once (our choice: needs some 100 MB)."""
+"""Number of draws for which the LuGre model is integrated at once (our choice: needs some 100
+MB)."""
 RANK = 1e-10
-"""Smallest ratio of singular values of the slopes that counts for the leverage; smaller ratios are
-rounding."""
+"""Singular values of the residuals' derivatives below this share of the largest one are taken as
+rounding errors and do not enter the leverage."""
 LOGS = ("stribeck_speed", "bristle_stiffness")
-"""Parameters that are searched by logarithm. sigma_1 is not, because it may be 0."""
+"""Parameters whose logarithms are searched. That of sigma_1 is not, because sigma_1 may be 0."""
 PHYSICAL = ("static", "viscous", "bristle_damping")
 """Parameters with a physical lower limit: F_C for F_S, 0 for the others."""
 SIGNED = ("offset", "pressure_slope", "lag")
@@ -79,15 +81,16 @@ def resampled(
 ) -> tuple[StribeckFit | str, LuGreFit | str]:
     """Both friction models of a record, with confidence intervals by resampling.
 
-    The fitted values stay. Confidence limits, standard errors (half the interval, divided by
-    Student's t) and verdicts change. A parameter without limits in the linearised model remains
-    without. A parameter whose draws reach a search limit loses its limits.
+    The fitted values stay as they are. Confidence limits, standard errors (half the interval,
+    divided by Student's t) and verdicts are new. A parameter without confidence limits in the
+    linearised model remains without. A parameter whose draws reach a search limit loses its
+    confidence limits.
 
-    A parameter that is not identifiable keeps the wider of both intervals: its optimum lies in a
-    flat valley, and the draws show the scatter around the optimum, not the length of the valley.
-    The same applies to the LuGre model if F_C has no limits or no lag is fitted, because the
-    linearised interval then contains more than scatter. The covariance of the Stribeck curve stays
-    that of the linearised model.
+    A parameter that is not identifiable gets the wider of its linearised and its resampled
+    interval: its optimum lies in a flat valley, and the draws show the scatter around the optimum,
+    not the length of the valley. So do all parameters of the LuGre model if F_C has no confidence
+    limits or no lag is fitted, because the linearised intervals then contain more than scatter. The
+    covariance of the Stribeck curve stays that of the linearised model.
 
     Parameters
     ----------
@@ -257,7 +260,7 @@ class LuGreResiduals:
         self.search = _search(self.names, self.values, self.largest, ends)
 
     def misfit(self, rows: Array) -> Array:
-        """Weighted residuals (rows, residuals)."""
+        """Weighted residuals for every row of searched values, (rows, residuals)."""
         values = natural(self.names, rows, self.values)
         misfits = (self.windows.misfit(values) / self.spread).reshape(rows.shape[0], -1)
         if self.steady is None:
@@ -266,7 +269,7 @@ class LuGreResiduals:
         return np.concatenate([self.steady.residual(steady), misfits], axis=1)
 
     def slopes(self, best: Array) -> Array:
-        """Derivatives (residuals, searched) at the optimum, by central differences."""
+        """Derivatives of the residuals at the optimum, of shape (residuals, searched)."""
         steps = STEP * sizes(self.names, self.largest, self.steady)
         if "bristle_damping" in self.names:
             steps[self.names.index("bristle_damping")] *= 1e-2 * self.values["bristle_stiffness"]
@@ -302,7 +305,7 @@ def searched(names: Sequence[str], values: Mapping[str, float]) -> Array:
 
 
 def natural(names: Sequence[str], rows: Array, values: Mapping[str, float]) -> dict[str, Array]:
-    """Convert searched values (rows, searched) to parameters (rows,); other parameters stay."""
+    """Convert searched values, (rows, searched), to parameters, each (rows,); add the others."""
     searched_values = {
         name: np.exp(column) if name in LOGS else column
         for name, column in zip(names, rows.T, strict=True)
@@ -345,7 +348,7 @@ def _bounded(
 
     The limits are infinite if draws reach a search limit that has no physical meaning.
 
-    Parameters named in `wider` keep the wider of both intervals.
+    Parameters named in `wider` get the wider of their previous and their new interval.
     """
     count = rows.shape[0]
     samples = natural(search.names, rows, values)

@@ -26,19 +26,20 @@ FARTHER = 1.05
 """Ratio of the design's speed or pressure to that of the record above which extrapolation is
 reported (our choice)."""
 MISFIT = 0.1
-"""Error of the contact law at other pressures, as a share of F_C, above which it is reported (our
-choice: a third of the confidence interval that makes a parameter weakly identifiable)."""
+"""If measured friction deviates from the contact law at a pressure of the record by more than this
+share of F_C, a note says so (our choice: a third of the confidence interval that makes a parameter
+weakly identifiable)."""
 
 
 def of_curve(
     points: Sequence[FrictionPoint], stribeck: StribeckFit, level: Array, stated: Array
 ) -> Iterator[str]:
-    """Notes on effects that the design's friction omits: an offset, another pressure dependence."""
+    """Notes on measured effects that the design's friction law cannot show, such as an offset."""
     offset = stribeck.parameters.get("offset")
     if offset is not None and (offset.lower > 0 or offset.upper < 0):
         yield (
-            f"friction differs between both directions by an offset of {offset.value:.3g} N, which "
-            "the design ignores; its friction is the mean of both"
+            f"the measured friction has an offset of {offset.value:.3g} N, so it differs between "
+            "extension and retraction; the design gets the mean of both directions"
         )
     yield from _shape(points, stribeck)
     deviation = level - float(np.mean(level) / np.mean(stated)) * stated
@@ -46,14 +47,14 @@ def of_curve(
     share = float(deviation[worst] / np.mean(level))
     if abs(share) > MISFIT:
         yield (
-            f"the measured friction deviates from the contact law by {100 * share:+.0f} % of F_C "
-            f"at {points[worst].pressure / 1e5:.3g} bar: the factor is a mean over the "
+            f"at {points[worst].pressure / 1e5:.3g} bar, the measured friction deviates from the "
+            f"contact law by {100 * share:+.0f} % of F_C; the fitted factor is the mean over the "
             "record's pressures, and its confidence interval covers the factors at all of them"
         )
 
 
 def _shape(points: Sequence[FrictionPoint], stribeck: StribeckFit) -> Iterator[str]:
-    """Note on a Stribeck exponent unlike the design's, with the resulting friction error."""
+    """Note on a Stribeck exponent that differs from the design's, with the error of friction."""
     exponent = stribeck.parameters.get("exponent")
     if exponent is None or exponent.lower <= STRIBECK_EXPONENT <= exponent.upper:
         return
@@ -64,8 +65,8 @@ def _shape(points: Sequence[FrictionPoint], stribeck: StribeckFit) -> Iterator[s
     worst = float(np.max(np.abs(assumed / fitted - 1)))
     yield (
         f"the exponent of the Stribeck curve is {exponent.value:.2f} ({exponent.lower:.2f} to "
-        f"{exponent.upper:.2f}), but {STRIBECK_EXPONENT:g} in the design, which changes the "
-        f"friction by up to {100 * worst:.0f} % at the record's speeds"
+        f"{exponent.upper:.2f}) in the record, but {STRIBECK_EXPONENT:g} in the design; this "
+        f"changes the friction by up to {100 * worst:.0f} % at the record's speeds"
     )
 
 
@@ -94,8 +95,8 @@ KEYS = ("friction_coefficient", "breakaway_ratio", "stribeck_speed", "viscous_fr
 _FIT_NAMES = ("coulomb", "static", "stribeck_speed", "viscous")
 """Names of the same parameters in the fits."""
 RISEN = 0.05
-"""Share by which the design's friction at the record's speed exceeds its Coulomb part, above which
-this is reported (our choice: the error of a good record)."""
+"""At the record's speed, the design's friction exceeds its Coulomb part. A note is written if the
+excess is larger than this share of the Coulomb part (our choice: the error of a good record)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +108,7 @@ class SealParameter:
     name : key in the design: friction_coefficient, breakaway_ratio, stribeck_speed or
         viscous_friction
     known : value and confidence interval for the cylinder, SI; for friction_coefficient, the factor
-        on the values of the design
+        by which the design's values are multiplied
     shares : value of each seal divided by that of the cylinder, by PATH
     before : value in the design, stated or from the compound, by PATH
     source : name of the fit that gives the value
@@ -162,7 +163,7 @@ class Calibration:
     identification : result of the identification from the record
     learned : parameters that the record determines
     left : for every key whose value stays as in the design, the reason
-    coulomb, stated : Coulomb friction as measured and as in the design, mean over the points [N]
+    coulomb, stated : measured Coulomb friction, and that of the design; means over the points [N]
     doubts : reasons to doubt the numbers
     """
 
@@ -192,12 +193,12 @@ class Calibration:
 def calibration(identification: Identification) -> Calibration:
     """Determine the seal friction parameters of a design from a record of it.
 
-    The coefficients of all rings and wipers change by the same factor. With it, the design's
-    Coulomb friction at the pressures of the steady points equals the measured friction. A cylinder
-    record cannot separate the piston's friction from the rod's. F_S/F_C and v_s are the same for
-    every ring; sigma_2 is distributed by circumference. Each parameter comes from the fit with the
-    narrowest confidence interval; if no fit determines it, the design's value stays. A record of a
-    single speed gives only the factor.
+    The coefficients of all rings and wipers are multiplied by the same factor, because a record of
+    a whole cylinder cannot separate the piston's friction from the rod's. With this factor, the
+    mean Coulomb friction of the design at the pressures of the steady points equals the measured
+    one. F_S/F_C and v_s are the same for every ring; sigma_2 is distributed by circumference. Each
+    parameter comes from the fit with the narrowest confidence interval; if no fit determines it,
+    the design's value stays. A record of a single speed gives only the factor.
 
     Parameters
     ----------
@@ -244,8 +245,8 @@ def calibration(identification: Identification) -> Calibration:
     doubts += extrapolated(bench, points)
     if len(bench.rings) + len(bench.wipers) > 1:
         doubts.append(
-            "all rings and wipers get the same factor, as a cylinder record cannot separate "
-            "piston from rod"
+            "all rings and wipers get the same factor: a cylinder record cannot separate piston "
+            "and rod friction"
         )
     return Calibration(
         identification,
@@ -306,8 +307,8 @@ def _from_fits(
     """Parameters from both fits, reasons for missing parameters, and F_C at every point.
 
     The factor is the mean measured Coulomb friction divided by that of the design. Its confidence
-    interval also covers the ratio at every single point. A contact law with a wrong pressure
-    dependence thus widens it.
+    interval also covers this ratio at every single point, so a contact law with a wrong pressure
+    dependence widens the interval.
     """
     bench = identification.bench
     fits = {name: _best(identification, name) for name in _FIT_NAMES}
@@ -328,7 +329,7 @@ def _from_fits(
         parameters.append(_coefficient(factor_bounds, bench, coulomb[1]))
     static, speed, viscous = (fits[name] for name in _FIT_NAMES[1:])
     if static is None or speed is None or coulomb is None:
-        reason = "the record does not show how friction rises towards rest"
+        reason = "the record does not show how friction rises towards zero speed"
         reasons |= {"breakaway_ratio": reason, "stribeck_speed": reason}
     else:
         ratio = _ratio(static[0], coulomb[0])
@@ -344,12 +345,10 @@ def _from_fits(
 def _from_level(
     bench: Bench, points: Sequence[FrictionPoint]
 ) -> tuple[list[SealParameter], Array, list[str]]:
-    """The factor alone, from friction at a single speed.
+    """The factor alone, from a record whose friction was measured at a single speed only.
 
-    At other speeds the design's curve is kept.
-
-    If the design's Stribeck curve still rises towards rest at this speed, the upper limit is
-    computed as if it did not rise.
+    At other speeds the Stribeck curve of the design is kept. If that curve is above Coulomb
+    friction at the measured speed, the factor's upper limit is computed as if it were not.
     """
     speed = np.array([point.speed for point in points])
     measured = np.array([point.friction * np.sign(point.velocity) for point in points])
@@ -365,13 +364,13 @@ def _from_level(
     parameter = rated(value, value - half, rise * value + half, error)
     at = f"{1e3 * float(np.mean(speed)):.3g} mm/s"
     doubts = [
-        f"friction was measured at {at} only, so its viscous part at other speeds comes from the "
+        f"friction was measured at {at} only, so the viscous part at other speeds is that of the "
         "design"
     ]
     if rise > 1 + RISEN:
         doubts.append(
-            f"the design's breakaway ratio and Stribeck speed make friction at {at} {rise:.2f} "
-            "times its Coulomb part, so the factor depends on them"
+            f"at {at}, friction is {rise:.2f} times its Coulomb part because of the design's "
+            "breakaway ratio and Stribeck speed; the fitted factor depends on these two"
         )
     return [_coefficient(parameter, bench, f"friction at {at}")], value * coulomb, doubts
 

@@ -1,4 +1,4 @@
-"""Cleaning of a channel: removes spikes and clipped samples, estimates resolution and noise."""
+"""Cleaning of a channel: remove spikes and clipped samples, estimate resolution and noise."""
 
 from __future__ import annotations
 
@@ -9,14 +9,16 @@ import numpy as np
 from ..base.numeric import Array
 
 SPIKE, QUANTA, RANGE = 6.0, 3.0, 1e-3
-"""Smallest height of a spike above the median of its neighbours: in robust standard deviations, in
-sensor steps, and as a share of the channel's range (our choices: one normal sample in 5e8 lies as
-far out; rounding alone makes two steps; the usual noise of pressures reaches that share)."""
+"""Smallest height of a spike above the median of its neighbours: the largest of `SPIKE` robust
+standard deviations, `QUANTA` sensor steps, and the share `RANGE` of the channel's range (our
+choices: one sample of normal noise in 5e8 lies as far out; rounding alone makes two steps; the
+usual noise of pressures reaches that share)."""
 JUMP, BURST, FLANK = 0.7, 0.45, 0.3
-"""Smallest share of its height by which a spike rises within one sample. `BURST` is sufficient if
-the channel does not continue outside the spike with `FLANK` of the step at its edge (our choices).
-Three adjacent stray samples rise by half or more. The top of a triangle as wide as the median's
-window rises by a third, that of a half sine by 0.6."""
+"""A spike must rise by the share `JUMP` of its height within one sample; otherwise it is a true
+peak of the signal. The share `BURST` is sufficient if the signal just outside the spike does not
+move in the same direction by more than `FLANK` times the step at the spike's edge. All three are
+our choices. Three adjacent stray samples rise by half or more. The top of a triangle as wide as the
+median's window rises by a third, that of a half sine by 0.6."""
 WINDOW = 5e-3
 """Half the width of the neighbourhood of a sample [s] (our choice: a sixth of a 30 Hz period)."""
 SAMPLED = 100_000
@@ -26,21 +28,22 @@ LEVELS = 20_000
 """Number of samples from which the resolution of a sensor is estimated (our choice: several for
 each step of a fine sensor)."""
 CROWD, GARBAGE = 0.15, 0.5
-"""Shares of spikes in a window above which the other samples are doubtful (first share) or useless
-(second share; our choices). With 5 % random stray samples the second share is exceeded once in 1e10
-samples, with 10 % once in 1e6. Noise as high as the range gives three quarters of spikes."""
+"""Shares of spikes among the samples of a window. Above the first share the other samples are
+doubtful, above the second they are useless (our choices). With 5 % random stray samples the second
+share is exceeded once in 1e10 samples, with 10 % once in 1e6. If noise is as large as the range,
+three quarters of the samples are spikes."""
 HELD = 6
-"""Number of successive equal samples at an end of the channel's range that count as clipped (our
-choice: a fifth of a 30 Hz period at 1 kHz; the filter removes shorter runs)."""
+"""Smallest number of successive equal samples, at an end of the channel's range, that count as
+clipped (our choice: a fifth of a 30 Hz period at 1 kHz; the filter smooths shorter runs)."""
 FLICKER = 0.6
-"""Noise in sensor steps above which a constant level is no coincidence (our choice: on a true
-plateau two of five samples would then leave their step)."""
+"""With noise above this number of sensor steps, a constant level must be clipped (our choice: on a
+true plateau, two of five samples would then leave their step)."""
 LIVE = 0.2
-"""Smallest share of samples away from the ends of the range from which noise is estimated (our
-choice: four times as many as stray samples)."""
+"""Noise is estimated from the samples away from the ends of the range if they are at least this
+share of all samples (our choice: four times as many as stray samples)."""
 TURNS = 0.3
-"""Share of its steps at which a channel reverses, above which it counts as noisy (our choice: half
-of the 2/3 of white noise)."""
+"""A channel counts as noisy if it changes direction at more than this share of its steps (our
+choice: about half the share of white noise, 2/3)."""
 ROBUST = 1.4826
 """Standard deviation of a normal variable, divided by its median absolute deviation: 1/0.67449
 [derived]."""
@@ -55,7 +58,7 @@ class Quality(NamedTuple):
     resolution: float
     """Resolution of the sensor, SI; negligibly small if the samples show no steps."""
     noise: float
-    """Standard deviation of the noise of a sample, SI; the filter removes this noise."""
+    """Standard deviation of the noise of a single sample, SI: what the filter removes."""
 
     def told(self, name: str, samples: int) -> list[str]:
         """Notes on the samples that were removed from a channel."""
@@ -102,9 +105,9 @@ def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality
 def resolution(values: Array) -> float:
     """Resolution of a sensor: the smallest gap between levels that occur repeatedly.
 
-    Apply it to the running median, because stray samples add arbitrary levels. If levels seldom
-    recur, the resolution is the lowest hundredth of the gaps, or of the steps from sample to sample
-    if that is smaller.
+    Give it the running median of a channel, because stray samples add arbitrary levels. If levels
+    seldom recur, the resolution is the first percentile of the gaps between levels, or of the steps
+    from sample to sample if that is smaller.
     """
     # one random sample from each part, because equal intervals could alias
     count = min(LEVELS, values.size)
@@ -132,16 +135,16 @@ def _hundredth(values: Array) -> float:
 
 
 def _levels(values: Array) -> tuple[Array, Array]:
-    """Samples at which a channel changes its level, and how many samples the new level lasts."""
+    """Samples at which a channel changes its level, and for how many samples the level lasts."""
     first = np.concatenate([[0], np.flatnonzero(np.diff(values)) + 1])
     return first, np.diff(first, append=values.size)
 
 
 def _live(values: Array) -> Array:
-    """Flags for samples away from the ends of the channel's range, where noise may be cut off.
+    """Flags for samples away from the ends of the channel's range; there, noise may be cut off.
 
-    If only few samples lie away from the ends, all are flagged: the channel is then one level with
-    some stray samples.
+    If only few samples lie away from the ends, all samples are flagged: such a channel is a
+    constant level with some stray samples.
     """
     first, length = _levels(values)
     constant = length >= HELD
@@ -177,7 +180,7 @@ def _least(values: Array, middle: Array, quantum: float, live: Array) -> float:
 
 
 def _spikes(values: Array, middle: Array, least: float) -> Array:
-    """Flags for samples far from their neighbours' median that rise faster than a true peak."""
+    """Flags for spikes: far from their neighbours' median, and steeper than a true peak."""
     apart = np.abs(values - middle)
     out = apart > least
     at = np.flatnonzero(out)
@@ -219,8 +222,8 @@ def _strays(values: Array, spikes: Array, quantum: float, live: Array) -> Array:
 def _garbage(values: Array, spikes: Array, least: float, size: int) -> Array:
     """Flags for further unreliable samples, where spikes are dense.
 
-    In a short group of spikes, samples outside the range of the channel before and after the group
-    are flagged, provided that the channel is calm there. In a long group, all samples are flagged.
+    In a short group of spikes, a sample is flagged if it lies outside the channel's range next to
+    the group, provided that the channel is calm there. In a long group, all samples are flagged.
     """
     from scipy.ndimage import maximum_filter1d, uniform_filter1d  # slow import, rarely used
 
@@ -264,8 +267,8 @@ def _clipped(values: Array, spikes: Array, quantum: float, *, pressure: bool) ->
     """Flags for samples at the limit of a sensor's range.
 
     A channel counts as clipped if it stays at its highest or lowest level longer than at any other
-    level. In addition, its noise must rule out such a stay, or the channel must reach the level
-    without slowing down.
+    level, and one of two things shows that the stay is not real: its noise is too large for a
+    constant level, or the channel reaches the level without slowing down.
     """
     mask = np.zeros(values.shape, dtype=bool)
     first, length = _levels(values)
@@ -314,7 +317,8 @@ def _stay(noise: float, quantum: float) -> float:
 def _abrupt(values: Array, first: Array, length: Array, quantum: float) -> bool:
     """Whether a channel reaches or leaves a level without slowing down.
 
-    The level cuts the last step short. Of the two steps before, the later must not be smaller.
+    The limit cuts the last step before the level short, so the two steps before it are compared:
+    the channel does not slow down if the later one is not smaller.
     """
     arrivals = first[first >= 3]
     departures = (first + length - 1)[first + length + 3 <= values.size]

@@ -1,4 +1,4 @@
-"""The friction coefficient from a record, by the design's contact laws of the rings."""
+"""The friction coefficient from a record; contact laws of the design give the normal force."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ WINDOW = 0.1
 """Time over which friction and contact force are averaged [s] (our choice: six independent samples
 at 30 Hz)."""
 LEAST_SPEED = 1e-3
-"""Smallest mean speed of a usable window [m/s] (our choice: ten sensor steps of 10 um then show the
-direction)."""
+"""Smallest mean speed of a usable time window [m/s] (our choice: the rod then moves ten sensor
+steps of 10 um, which show the direction)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Coefficient:
-    """Friction coefficient mu = F_r/N: median over windows of sliding, SI.
+    """Friction coefficient mu = F_r/N: median over short time windows of sliding, SI.
 
     F_r is the friction force, N the normal force of all rings.
 
@@ -69,8 +69,8 @@ def coefficient(
     rows = np.concatenate([_windows(sliding, motion) for sliding in slidings])
     if rows.shape[0] < 2:
         return (
-            f"no sliding of {WINDOW:g} s above {1e3 * LEAST_SPEED:g} mm/s in one direction: "
-            "no friction coefficient"
+            f"the rod never slides for {WINDOW:g} s above {1e3 * LEAST_SPEED:g} mm/s in one "
+            "direction: no friction coefficient"
         )
     forces = bench.contact_forces(rows[:, 1], rows[:, 2])
     normal = sum(forces.values())
@@ -93,9 +93,9 @@ def coefficient(
 
 
 def _windows(sliding: Sliding, motion: ConditionedRecord) -> Array:
-    """Means over each window, as (windows, 4).
+    """Means over each time window, an array (windows, 4).
 
-    The columns are friction in the direction of motion, both pressures, and speed.
+    The columns are friction (positive against the motion), both pressures, and speed.
     """
     size = max(round(WINDOW / motion.sample_time), 1)
     piece = sliding.piece

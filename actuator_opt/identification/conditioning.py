@@ -1,4 +1,4 @@
-"""Conditioning of a raw record: even samples, filtered, without gaps, spikes and clipping.
+"""Conditioning of a raw record: cleaned, divided at gaps, evenly sampled and filtered.
 
 Every channel passes the same zero-phase filter once. The force balance therefore also holds for the
 filtered values and gives filtered friction. Velocity and acceleration are central differences of
@@ -25,26 +25,27 @@ SLOWEST = 3.0
 """Smallest number of samples per period of the cut-off (our choice: the cut-off is then 2/3 of the
 Nyquist frequency)."""
 SHORTEST = 6.0
-"""Smallest length of a section, in periods of the cut-off (our choice: a third of it remains
-without `EDGE` at each end)."""
+"""Smallest duration of a section of a record, in periods of the cut-off (our choice: a third of it
+remains if `EDGE` is taken off at each end)."""
 EDGE = 2.0
-"""Length at both ends of a section in which the filter is inaccurate, in periods of the cut-off
-(our choice: beyond it a step response is within 0.2 %)."""
+"""Time at each end of a section in which the filter is inaccurate, in periods of the cut-off (our
+choice: after it a step response is within 0.2 %)."""
 BRIDGE = 5
-"""Number of successive missing samples that are interpolated linearly. More are interpolated if
-they last less than a quarter of a period of the cut-off (our choices: 5 ms at 1 kHz; a chord of
-that length misses a sine at a tenth of the cut-off by 0.3 %)."""
+"""Largest number of successive missing samples that are interpolated linearly. A larger number is
+interpolated too if it lasts less than a quarter of a period of the cut-off (our choices: 5 ms at 1
+kHz; a chord of that length misses a sine at a tenth of the cut-off by 0.3 %)."""
 ORDERS = 10
 """Highest order of the filter in a pass (our choice: above it the filter rings for longer than
 `EDGE`)."""
 CROWDED = 3.0
-"""Largest ratio of mean to median time step (our choice: even steps then have three times the
-samples)."""
+"""Largest permitted ratio of mean to median time step (our choice: resampling at even steps then
+triples the number of samples)."""
 SAMPLED = 100_000
 """Number of samples of a section from which its noise is estimated (our choice: accurate to 0.3
 %)."""
 LATEST = 0.1
-"""Largest lag that is corrected [s] (our choice: twenty times that of a pressure sensor)."""
+"""Largest lag that is corrected [s] (our choice: twenty times the usual lag of a pressure
+sensor)."""
 NEEDED = ("p1", "p2", "x", "F_L")
 """Channels that divide a record into sections where their samples are missing."""
 
@@ -53,8 +54,8 @@ NEEDED = ("p1", "p2", "x", "F_L")
 class RecordSection:
     """An uninterrupted section of a record, evenly sampled, SI; arrays are (samples).
 
-    `channels` are filtered. `sound` selects the samples away from the ends, where the filter is
-    accurate.
+    `channels` are filtered. `sound` selects the samples where the filter is accurate, which are
+    those away from the ends.
     """
 
     time: Array
@@ -88,7 +89,8 @@ class ConditionedRecord:
     quality: dict[str, Quality]
     notes: tuple[str, ...]
     cleaned: dict[str, Array]
-    """Unfiltered channels without spikes and clipped samples (samples of the record)."""
+    """Channels without spikes and clipped samples, but not filtered, at the times of the raw
+    record."""
 
     @property
     def band(self) -> float:
@@ -127,11 +129,12 @@ def pass_cutoff(*, cutoff: float, order: int) -> float:
 
 
 def low_pass(*, cutoff: float, order: int, sample_time: float, compensated: bool) -> Array:
-    """Second-order sections of one pass of the filter; both passes together are exact at `cutoff`.
+    """Second-order sections of one of the filter's two passes.
 
-    The bilinear transform maps a frequency f to tan(pi f dt) with the sample time dt. The
-    compensated cut-off takes this into account. Far below the Nyquist frequency it is f_c/(sqrt 2 -
-    1)^(1/2n) for the cut-off f_c and the order n.
+    If `compensated`, both passes together have -3 dB at exactly `cutoff`. The bilinear transform
+    maps a frequency f to tan(pi f dt) with the sample time dt, and the cut-off of a single pass
+    takes this into account. Far below the Nyquist frequency it is f_c/(sqrt 2 - 1)^(1/2n) for the
+    cut-off f_c and the order n.
     """
     from scipy.signal import butter  # slow import, rarely used
 
@@ -169,7 +172,8 @@ def condition(
         passes
     compensated : whether both passes together have -3 dB at the cut-off; if not, they have -6 dB
     pressure_lag : time lag of the pressures to correct [s]
-    before : the same record with other settings, whose cleaned channels are used again
+    before : result for the same record with other settings, from which the cleaned channels are
+        taken
 
     Returns
     -------
@@ -178,7 +182,7 @@ def condition(
     Raises
     ------
     InputError
-        times that do not increase, too few samples, samples too far apart, or no uninterrupted
+        times do not increase, samples are too few or too far apart, or there is no uninterrupted
         section
     """
     _check_settings(record, cutoff, order, pressure_lag)
@@ -215,7 +219,7 @@ def condition(
         raise _no_section(record, quality, SHORTEST / cutoff)
     gaps = len(pieces) + len(dropped) - 1
     if gaps:
-        short = f", {sum(dropped):.3g} s too short to use" if dropped else ""
+        short = f"; sections too short to use last {sum(dropped):.3g} s in total" if dropped else ""
         notes.append(f"{gaps} gaps split the record; {len(pieces)} sections are used{short}")
     notes += _timing(steps, step, cutoff)
     quality = {
@@ -261,15 +265,15 @@ def _check_settings(record: Record, cutoff: float, order: int, lag: float) -> No
     """Reject invalid filter settings."""
     if not (math.isfinite(cutoff) and cutoff > 0):
         raise record.fault(
-            f"a cut-off of {cutoff:g} Hz", 'give a frequency above zero: --cutoff "30 Hz"'
+            f"the cut-off is {cutoff:g} Hz", 'give a frequency above zero: --cutoff "30 Hz"'
         )
     if not 1 <= order <= ORDERS or int(order) != order:
         raise record.fault(
-            f"a filter of order {order:g}", f"give a whole number from 1 to {ORDERS}"
+            f"the order of the filter is {order:g}", f"give a whole number from 1 to {ORDERS}"
         )
     if not abs(lag) <= LATEST:
         raise record.fault(
-            f"a lag of the pressures of {lag:g} s", f"give a lag from -{LATEST:g} to {LATEST:g} s"
+            f"the lag of the pressures is {lag:g} s", f"give a lag from -{LATEST:g} to {LATEST:g} s"
         )
 
 
@@ -389,7 +393,7 @@ def _piece(
 
 
 def _noise(time: Array, values: Array, name: str, pieces: Sequence[RecordSection]) -> float:
-    """Robust standard deviation of the samples from the filtered channel."""
+    """Robust standard deviation of the differences between samples and the filtered channel."""
     deviations = []
     for piece in pieces:
         if name in piece:
@@ -401,21 +405,21 @@ def _noise(time: Array, values: Array, name: str, pieces: Sequence[RecordSection
 
 
 CUTOFFS = (1 / 3, 1 / 8, 1 / 20)
-"""Lower cut-offs, as shares of the record's cut-off (our choice: down to 1.5 Hz, some ten times the
-frequency of a slow test, in steps of 2 to 3)."""
+"""Lower cut-offs that are tried, as shares of the record's cut-off (our choice: down to 1.5 Hz,
+some ten times the frequency of a slow test, in factors of 2 to 3)."""
 BENT = 1.5
-"""Largest mean square change of the position through a lower cut-off, divided by that of the
-sensor's errors (our choice: 1 if only errors are removed)."""
+"""A lower cut-off may change the position. This is the largest permitted mean square of the change,
+divided by the mean square error of the sensor (our choice: it is 1 if only errors are removed)."""
 PADDING = 1.5
-"""Length on either side of a section that affects the filter inside it, in periods of a lower
-cut-off (our choice: a step response is within 0.5 % there)."""
+"""Time before and after the samples of interest that is filtered with them, in periods of a lower
+cut-off (our choice: after it a step response is within 0.5 %)."""
 
 
 def velocities(piece: RecordSection, motion: ConditionedRecord, first: int, last: int) -> Array:
     """Velocity along a section, at the record's cut-off and at lower cut-offs.
 
-    A lower cut-off that changes the position by more than the sensor's errors is replaced by the
-    next higher cut-off.
+    Where a lower cut-off changes the position by more than the sensor's errors, the next higher
+    cut-off is used instead.
 
     Parameters
     ----------

@@ -12,19 +12,20 @@ from ..base.numeric import Array
 from .points import ALIKE, FrictionPoint
 
 REACH = 1.5
-"""Multiple of the Stribeck speed that a record must reach to separate F_C from sigma_2. There the
-Stribeck part has dropped to e^(-1.5^2) = 0.1 of its height, for exponent 2 (our choice)."""
+"""Multiple of the Stribeck speed that a record must reach to separate F_C from sigma_2 (our choice:
+at this speed, the Stribeck part has dropped to e^(-1.5^2) = 0.1 of its height, for exponent 2)."""
 SPREAD, APART = 0.2, 3.0
-"""Smallest pressure range that can show an effect of pressure: as a share of the highest pressure,
-and as a multiple of the pressure that overcomes friction alone (our choices: the effect then
-exceeds the scatter)."""
+"""Smallest pressure range that can show an effect of pressure: the share `SPREAD` of the highest
+pressure, or `APART` times the pressure that overcomes friction alone, whichever is larger (our
+choices: the effect then exceeds the scatter)."""
 UNEQUAL = 2e-3
 """Relative area error above which it is reported (our choice). A smaller error cannot be
 distinguished from seals whose pressure effect differs by a fifth between the directions."""
 MISSED, BEYOND = 0.3, 5.0
-"""Misfit of a curve above which it is reported: as a share of the friction and as a multiple of the
-errors (our choices). The share is that of an identifiable parameter, `WEAK`; errors that are too
-small by half do not explain the multiple."""
+"""A misfit of the curve is reported if it exceeds both the share `MISSED` of the friction and
+`BEYOND` times the standard errors (our choices). The share is `WEAK`, the widest interval of an
+identifiable parameter. The multiple is too large to be due to standard errors that are only half
+the true ones."""
 SIGNED = ("offset", "pressure_slope")
 """Parameters that may be 0."""
 INSEPARABLE = ("coulomb", "viscous", "stribeck_speed", "exponent")
@@ -32,7 +33,7 @@ INSEPARABLE = ("coulomb", "viscous", "stribeck_speed", "exponent")
 
 
 def unbounded(parameters: Mapping[str, Parameter], names: Iterable[str]) -> dict[str, Parameter]:
-    """The parameters; those named get infinite confidence limits."""
+    """The same parameters, but those named have infinite confidence limits."""
     unknown = set(names)
     return {
         name: Parameter(parameter.value, -np.inf, np.inf, np.inf, False)
@@ -45,7 +46,7 @@ def unbounded(parameters: Mapping[str, Parameter], names: Iterable[str]) -> dict
 def widened(
     parameters: Mapping[str, Parameter], errors: Mapping[str, float], quantile: float
 ) -> dict[str, Parameter]:
-    """The parameters, with an additional, independent standard error."""
+    """The same parameters, with confidence intervals widened by further independent errors."""
     result = dict(parameters)
     for name, extra in errors.items():
         parameter = result[name]
@@ -83,33 +84,34 @@ class Unequal(NamedTuple):
     sure: bool
 
     def says(self, area: float, plunger: bool) -> str:
-        """One-line note on the error, with the corrected diameter D' = D sqrt(1 - e).
+        """One-line note on the error, with the corrected diameter D sqrt(1 - e).
 
-        D is the diameter, e the area error.
+        D is the stated diameter, e the relative error of the area.
         """
         stated = 1e3 * np.sqrt(4 * area / np.pi)
         diameter = "plunger" if plunger else "bore"
         return (
-            "under pressure, friction differs between both directions by "
-            f"{100 * abs(self.share):.2g} % of its force: the {diameter} seems to be "
-            f"{stated * np.sqrt(1 - self.share):.4g} mm ({stated:.4g} stated), or a pressure or "
-            "force sensor has an error of this size; correct it first"
+            "friction differs between the two directions by a force that grows with the pressure: "
+            f"{100 * abs(self.share):.2g} % of the pressure force. The {diameter} seems to be "
+            f"{stated * np.sqrt(1 - self.share):.4g} mm ({stated:.4g} mm stated), or a pressure "
+            "or force sensor has an error of this size; correct this first"
         )
 
 
 def spread(points: Sequence[FrictionPoint], pressures: Sequence[float], area: float) -> float:
-    """Pressure range, divided by the smallest range that can show an effect."""
+    """Pressure range of the points, divided by the smallest range that can show its effect."""
     by_friction = APART * max(abs(point.friction) for point in points) / area
     return (max(pressures) - min(pressures)) / max(SPREAD * max(pressures), by_friction, 1.0)
 
 
 def unequal(points: Sequence[FrictionPoint], area: float) -> Unequal | None:
-    """Detect a share of the hydraulic force in the friction, due to wrong areas or sensors.
+    """Detect hydraulic force that counts as friction because an area or a sensor is wrong.
 
     Least squares of F = sgn v [f_k + s (p - p_0)] + F_0 + e A p_i. F is the friction, v the
-    velocity, f_k a free friction level for every speed, s the pressure slope at the pressure p
-    against the reference p_0, F_0 an offset, e the error, A the area, p_i the pressure of chamber
-    i. Friction is odd in the velocity; the effect of a wrong area or sensor gain is even [derived].
+    velocity, f_k a friction level fitted for every speed k, s the slope of friction over the
+    pressure p, p_0 a reference pressure, F_0 an offset, e the relative error, A the area, and p_i
+    the pressure of chamber i. Friction changes sign with the velocity; the effect of a wrong area
+    or sensor gain does not [derived].
 
     Parameters
     ----------
@@ -156,7 +158,7 @@ def unequal(points: Sequence[FrictionPoint], area: float) -> Unequal | None:
 
 
 def _groups(speed: Array) -> Array:
-    """Index of the group of similar speeds for every point."""
+    """For every point, the index of its group of points with similar speed."""
     order = np.argsort(speed)
     first, number = 0.0, -1
     groups = np.zeros(speed.size, dtype=int)
@@ -180,14 +182,16 @@ def hidden(parameters: Mapping[str, Parameter], fastest: float, falls: bool) -> 
     if speed is None:
         if falls and "viscous" in parameters:
             return (
-                f"friction falls up to {1e3 * fastest:.3g} mm/s, and the points do not resolve "
-                "its rise towards rest, so F_C and σ₂ are unknown; give more and faster speeds"
+                f"friction decreases with speed up to {1e3 * fastest:.3g} mm/s, the fastest point, "
+                "and the points do not show the shape of this decrease, so F_C and σ₂ are "
+                "unknown; record more and faster speeds"
             )
         return None
     if fastest < REACH * speed.value:
         return (
-            f"the record ends at {1e3 * fastest:.3g} mm/s, within the Stribeck rise (v_s "
-            f"{1e3 * speed.value:.3g} mm/s): F_C, σ₂ and v_s cannot be separated; move faster"
+            f"the fastest point, {1e3 * fastest:.3g} mm/s, is still on the falling part of the "
+            f"Stribeck curve (v_s {1e3 * speed.value:.3g} mm/s), so F_C, σ₂ and v_s cannot be "
+            "separated; record faster motion"
         )
     return None
 
@@ -200,7 +204,7 @@ def misled(
     Parameters
     ----------
     parameters : parameters of a Stribeck curve
-    friction, residuals, errors : of the curve at its points [N]
+    friction, residuals, errors : measured friction, residual and standard error of each point [N]
     """
     fitted = friction - residuals
     if "offset" in parameters:
@@ -208,15 +212,15 @@ def misled(
         least = float(np.min(np.abs(fitted - value)))
         if (lower > 0 or upper < 0) and abs(value) >= least:
             yield (
-                f"the offset is {value:.3g} N, but the least friction is {least:.3g} N: in one "
-                "direction, friction would drive the rod; check the bore and the zeros of the "
+                f"the offset of {value:.3g} N is not below the least friction, {least:.3g} N: in "
+                "one direction, friction would drive the rod; check the bore and the zeros of the "
                 "sensors"
             )
     missed = float(np.std(residuals))
     scatter = float(np.sqrt(np.mean((residuals / errors) ** 2)))
     if scatter > BEYOND and missed > MISSED * float(np.median(np.abs(fitted))):
         yield (
-            f"the curve misses the points by {missed:.3g} N, more than their errors of "
+            f"the curve misses the points by {missed:.3g} N, more than their standard errors of "
             f"{float(np.median(errors)):.2g} N, so friction depends on more than speed and "
             "pressure"
         )
@@ -225,20 +229,18 @@ def misled(
 def ways(parameters: Mapping[str, Parameter], error: Unequal | None) -> Iterator[str]:
     """Yield notes on a missing direction of motion, or on a difference between the directions."""
     if "offset" not in parameters:
-        yield (
-            "the rod slides in one direction only, so a zero error of a sensor counts as friction"
-        )
+        yield ("the rod slides in one direction only, so a sensor's zero error looks like friction")
         return
     offset = parameters["offset"]
     if (error is not None and error.sure) or offset.lower <= 0 <= offset.upper:
         return
     if error is None:
         yield (
-            "friction differs between both directions by an offset, caused by sensor zeros, "
-            "areas, or direction-dependent seals; the record cannot show by which"
+            "friction differs between the two directions by an offset; the record cannot show "
+            "whether sensor zeros, areas or direction-dependent seals cause it"
         )
     else:
         yield (
-            "friction differs between the directions by an offset independent of pressure, from "
-            "sensor zeros or direction-dependent seals, not from the areas"
+            "friction differs between the two directions by an offset that does not depend on "
+            "pressure; sensor zeros or direction-dependent seals cause it, not the areas"
         )

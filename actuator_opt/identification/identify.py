@@ -1,6 +1,7 @@
 """Identification of friction, damping and friction models from a test record.
 
-If the record shows a lag of the pressures, the lag is reported and, if possible, corrected.
+If the record shows that the pressures lag the position, the lag is reported and, if possible,
+corrected.
 """
 
 from __future__ import annotations
@@ -41,7 +42,8 @@ LEAST_LAG = 3e-4
 """Smallest lag of the pressures that is corrected [s]."""
 EARLIEST = 6e-3
 """Largest plausible time by which the pressures may be ahead of the position [s] (our choice). The
-filter of a position sensor also causes a lag, but bristles can look the same."""
+filter of a position sensor makes the position late, but damping of the LuGre bristles can look the
+same."""
 STATE = "state --pressure-lag if it is known"
 CANNOT = (
     "the record cannot show whether the pressures lag: raise --cutoff, reverse the rod more "
@@ -59,11 +61,12 @@ def lag_to_correct(parameter: Parameter | None) -> tuple[float, str]:
 
     A lag is corrected if its 95 % confidence interval lies above zero. A negative lag is not
     corrected, because damping of the bristles looks like early pressures: sigma_0 z + sigma_1 dz/dt
-    is about sigma_0 z advanced by sigma_1/sigma_0. The record only gives the difference of both.
+    is about sigma_0 z advanced by sigma_1/sigma_0. The record only gives the difference between the
+    lag and this time.
 
     Parameters
     ----------
-    parameter : lag fitted with sigma_1 fixed at 0
+    parameter : lag that was fitted with sigma_1 = 0
     """
     if parameter is None:
         return 0.0, ""
@@ -71,7 +74,7 @@ def lag_to_correct(parameter: Parameter | None) -> tuple[float, str]:
     if not isfinite(upper - lower):
         return 0.0, CANNOT
     if not -EARLIEST <= parameter.value <= 0.99 * LAG:
-        beyond = f"beyond {-1e3 * EARLIEST:g} to {1e3 * LAG:g} ms, which no sensor has"
+        beyond = f"outside {-1e3 * EARLIEST:g} to {1e3 * LAG:g} ms, which no sensor has"
         return 0.0, f"the reversals suggest a lag {beyond}, so none is corrected; {STATE}"
     bounds = f"{lower:.2f} to {upper:.2f}"
     if upper < 0:
@@ -89,15 +92,15 @@ def lag_to_correct(parameter: Parameter | None) -> tuple[float, str]:
 
 
 def rejected_correction(parameter: Parameter, remaining: Parameter | None) -> str:
-    """Reason why the correction of a lag is rejected: another lag remains.
+    """Reason to reject the correction of a lag, which is that another lag remains.
 
-    Empty if it is accepted.
+    The text is empty if the correction is accepted.
     """
     if remaining is None or remaining.lower <= 0 <= remaining.upper:
         return ""
     return (
         f"correcting the pressures by {1e3 * parameter.value:.2f} ms leaves a lag of "
-        f"{1e3 * remaining.value:.2f} ms: it imitates some other effect, so no lag is "
+        f"{1e3 * remaining.value:.2f} ms, so some other effect looks like a lag; no lag is "
         f"corrected; {STATE}"
     )
 
@@ -106,26 +109,26 @@ def with_uncertain_damping(lugre: LuGreFit | str) -> LuGreFit | str:
     """The LuGre model without confidence limits on sigma_1, for a record with an unknown lag."""
     if isinstance(lugre, str):
         return lugre
-    doubt = "σ₁ is valid only if no pressure lags; a lag τ would add σ₀ τ to it"
+    doubt = "σ₁ is valid only if the pressures do not lag; a lag τ would add σ₀ τ to it"
     parameters = unbounded(lugre.parameters, ("bristle_damping",))
     return replace(lugre, parameters=parameters, doubts=(*lugre.doubts, doubt))
 
 
 LAWS = {"power_law": fit_power_law, "double_exponential": fit_double_exponential}
-"""Laws of the secant damping as a function of speed, with the function that fits each."""
+"""Laws for the secant damping F/v as a function of speed, with the function that fits each."""
 LEAST_SPEEDS = 3
-"""Number of different speeds needed to fit a law of two parameters with a degree of freedom."""
+"""Number of different speeds needed to fit a law: its two parameters, and a degree of freedom."""
 WARMER = 10.0
-"""Temperature difference above which it is reported [K] (our choice: rubber then softens by a few
-per cent)."""
+"""Temperature difference between record and design above which it is reported [K] (our choice:
+rubber then softens by a few per cent)."""
 OUTSIDE = 0.02
-"""Share of the stroke by which a position may lie outside the stroke."""
+"""Share of the stroke by which a position may lie beyond the ends of the stroke."""
 STEPS, NOISES = 2.0, 10.0
-"""Largest apparent travel of a rod that counts as at rest: in sensor steps, and in standard
-deviations of the filtered position (our choice: 10 000 normal samples span 8 standard
-deviations)."""
+"""Largest measured travel at which the rod still counts as at rest: in sensor steps, and in
+standard deviations of the filtered position (our choice: 10 000 samples of normal noise span 8
+standard deviations)."""
 PACE = 0.05
-"""Relative difference that is permitted between a channel v and the slope of x (our choice)."""
+"""Permitted relative difference between the channel v and the time derivative of x (our choice)."""
 
 
 def identify(record: Record, bench: Bench, settings: Settings | None = None) -> Identification:
@@ -239,8 +242,8 @@ def _outside(slidings: Sequence[Sliding], bench: Bench) -> list[str]:
         return []
     return [
         f"x ranges from {1e3 * place.min():.1f} to {1e3 * place.max():.1f} mm, but the "
-        f"stroke is {1e3 * bench.stroke:.1f} mm: its zero is not at the cap end, and no "
-        "stiffness is computed outside the stroke"
+        f"stroke is {1e3 * bench.stroke:.1f} mm: the zero of x is not at the cap end, and "
+        "no stiffness is computed outside the stroke"
     ]
 
 
@@ -250,8 +253,8 @@ def _blurred(points: Sequence[FrictionPoint], motion: ConditionedRecord) -> list
     if points or shortest <= 2 * LASTING:
         return []
     return [
-        f"a cut-off of {motion.cutoff:.3g} Hz blurs plateaus shorter than {shortest:.2g} s: no "
-        "points of steady sliding"
+        f"a cut-off of {motion.cutoff:.3g} Hz blurs plateaus shorter than {shortest:.2g} s, so "
+        "there are no points of steady sliding"
     ]
 
 
@@ -264,16 +267,16 @@ def _warmth(record: Record, bench: Bench) -> list[str]:
         return []
     kelvin = 273.15
     return [
-        f"T is {mean - kelvin:.0f} degC, but {bench.temperature - kelvin:.0f} degC in the "
-        "design's first load case, which contact forces and stiffness use"
+        f"T is {mean - kelvin:.0f} degC, but contact forces and stiffness are computed for "
+        f"{bench.temperature - kelvin:.0f} degC, as in the design's first load case"
     ]
 
 
 def _pace(motion: ConditionedRecord) -> list[str]:
-    """A note if channel v is not the slope of x.
+    """A note if the channel v is not the time derivative x' of x.
 
-    The factor k in v = k dx/dt is k = sum v x'/sum x'^2 by least squares. The noise of x' is
-    subtracted from the sum in the denominator.
+    By least squares, the factor k in v = k x' is sum v x'/sum x'^2. The noise of x' is subtracted
+    from the sum in the denominator.
     """
     pairs = [
         (piece["v"][piece.sound], piece.velocity[piece.sound])
@@ -290,7 +293,9 @@ def _pace(motion: ConditionedRecord) -> list[str]:
     if abs(slope - 1) <= PACE:
         return []
     slope = round(slope, 2) + 0.0  # avoids -0.00
-    return [f"v is {slope:.2f} times the slope of x: v is ignored; check its unit and sign"]
+    return [
+        f"v is {slope:.2f} times the time derivative of x, so v is ignored; check its unit and sign"
+    ]
 
 
 def _models(
@@ -321,7 +326,7 @@ def _check_channels(record: Record, bench: Bench, settings: Settings) -> None:
             'name it with --column "p2=...", or write "count: 0" in seals.piston for a plunger',
         )
     if "F_L" in record and settings.load_force is not None:
-        message = "a load is stated, but the record contains its measured values in column F_L"
+        message = "a load is stated, but the record also contains the measured load in column F_L"
         raise record.fault(message, "leave out --load-force (load_force), or the column")
     if "F_L" not in record and settings.load_force is None:
         raise record.fault(
@@ -337,9 +342,9 @@ def _mass(record: Record, bench: Bench, settings: Settings) -> float:
     Reject invalid forces and masses.
     """
     if settings.mass is not None and not (np.isfinite(settings.mass) and settings.mass >= 0):
-        raise record.fault(f"a moving mass of {settings.mass:g} kg", "give 0 kg or more")
+        raise record.fault(f"the moving mass is {settings.mass:g} kg", "give 0 kg or more")
     if settings.load_force is not None and not np.isfinite(settings.load_force):
-        raise record.fault(f"a load of {settings.load_force:g} N", "give a number")
+        raise record.fault(f"the load is {settings.load_force:g} N", "give a number")
     if settings.mass is not None:
         return settings.mass
     return bench.mass + (0.0 if "F_L" in record else bench.load_mass)
@@ -353,7 +358,7 @@ def _conditioned(
     lag: float,
     before: ConditionedRecord | None,
 ) -> tuple[ConditionedRecord, list[Sliding]]:
-    """Condition the record, compute its friction; `before` is the record with another lag."""
+    """Condition the record, compute its friction; `before` is the result for another lag."""
     motion = condition(
         record,
         cutoff=settings.cutoff,
@@ -370,11 +375,10 @@ def _sizes(
 ) -> tuple[Mean, float, bool]:
     """Mean friction |F_r| in sliding, largest |F_r|, and whether the rod slides.
 
-    The interval of the mean follows from means of batches.
-
-    After a reversal or rest the rod is in pre-sliding until it has moved `BENDS` breakaway travels.
-    Pre-sliding only counts for the largest value. If the rod never slides, the mean is that of the
-    moving rod.
+    The confidence interval of the mean follows from the means of several batches of samples. After
+    a reversal or rest, the rod is in pre-sliding until it has moved `BENDS` breakaway travels.
+    Pre-sliding enters the largest value, but not the mean. If the rod never slides, the mean is
+    that of the moving rod.
     """
     distance = BENDS / SETTLING * settling
     moving = any(sliding.moving.any() for sliding in slidings)
@@ -396,12 +400,12 @@ def _sizes(
 
 
 def _fits(points: Sequence[FrictionPoint]) -> dict[str, LawFit | str]:
-    """Fits of the secant damping as a function of speed; relative errors are the weights."""
+    """Fits of the secant damping as a function of speed, weighted for least relative errors."""
     speeds = different([point.speed for point in points])
     if len(speeds) < LEAST_SPEEDS:
         reason = (
-            f"{len(speeds)} different speeds, but a model of damping over speed needs "
-            f"{LEAST_SPEEDS}"
+            f"the record has {len(speeds)} different speeds, but a law of damping versus speed "
+            f"needs {LEAST_SPEEDS}"
         )
         return dict.fromkeys(LAWS, reason)
     speed = np.array([point.speed for point in points])

@@ -1,8 +1,9 @@
 """Fit of a LuGre friction model to a record, from its reversals.
 
-Bristle stiffness, bristle damping and the lag of the pressures are fitted to sections ('windows')
-around the reversals. The Stribeck parameters are fitted at the same time, also to the points of
-steady sliding.
+In the LuGre model, elastic bristles represent the contact before it slides. Their stiffness, their
+damping and the lag of the pressures are fitted to short sections of the record ('windows') around
+the reversals. The Stribeck parameters are fitted at the same time, to the windows and to the points
+of steady sliding.
 """
 
 from __future__ import annotations
@@ -39,21 +40,24 @@ DAMPING_TIMES = (1e-6, 0.3)
 """Range in which sigma_1/sigma_0 is searched [s] (our choice: from no damping to the length of a
 window)."""
 USUAL = 5e-3
-"""Usual standard deviation of the pressure lag [s]. It is included in the confidence intervals if a
-record does not show the lag (our choice: sensors and lines of a test bench have up to 10 ms)."""
+"""Usual standard deviation of the pressure lag [s]. If a record does not show the lag, the
+confidence intervals allow for it (our choice: sensors and lines of a test bench lag by up to 10
+ms)."""
 STEP = 1e-4
 """Relative step of the central differences (our choice: gives an error of 1e-8)."""
 SYMBOLS = {"bristle_stiffness": "σ₀", "bristle_damping": "σ₁", "lag": "τ"}
-"""Parameters besides those of the Stribeck curve, with their symbols; units N/m, N s/m, s."""
+"""Parameters besides those of the Stribeck curve, with their symbols. Units are N/m, N s/m and
+s."""
 MODEL = 1e-3
-"""Smallest scatter of the windows, as a share of the largest friction (our choice, as for the
-points: below it the filtered motion limits the model, not the noise)."""
+"""Smallest scatter that is assumed for the windows, as a share of the largest friction (our choice,
+as for the points: below it the filtered motion limits the model, not the noise)."""
 BENDS = 3.0
 """Number of breakaway travels after which 95 % of the force is reached: 1 - e^-3. The record must
 resolve them in time."""
 LATE = 1.5
-"""Factor on the standard error of a lag (our choice, from records of known friction: with 25 kPa of
-noise and steps of 10 um, the true error is 1.3 to 1.9 standard errors)."""
+"""Factor by which the standard error of a lag is increased (our choice, from records of known
+friction: with 25 kPa of noise and position steps of 10 um, the true error is 1.3 to 1.9 standard
+errors)."""
 NOISY, MISSED = 2.0, 0.02
 """Largest acceptable misfit in the windows: a multiple of the noise plus a share of the largest
 friction (our choice, from records of known friction: position steps add up to 3 times the
@@ -62,10 +66,11 @@ DETERMINED = 3
 """Number of parameters that the windows determine: stiffness, lag or damping, and friction
 level."""
 RCOND = 1e-6
-"""Smallest ratio of singular values of the slopes (our choice: far above rounding)."""
+"""Singular values of the derivatives below this share of the largest one are ignored (our choice:
+far above rounding errors)."""
 ROUNDS = 2
-"""Number of searches; each weights the windows by their scatter in the previous search (our choice:
-the second search changes the weights by only a few per cent)."""
+"""Number of searches. Each weights the windows by their scatter about the result of the previous
+one (our choice: the second search changes the weights by only a few per cent)."""
 LOGARITHMIC = ("bristle_stiffness", "bristle_damping", "stribeck_speed")
 """Parameters whose logarithms are searched."""
 
@@ -78,8 +83,8 @@ class LuGreFit:
     ----------
     parameters : fitted parameters by name: those of the Stribeck curve, `bristle_stiffness`,
         `bristle_damping`, and the `lag` of the pressures
-    held : fixed parameters
-    count : number of windows
+    held : parameters with fixed values
+    count : number of windows around reversals
     misfit : standard deviation of measured friction from the model in the windows [N]
     doubts : unknown parameters, and other reasons to doubt the model
     """
@@ -111,7 +116,7 @@ def sizes(names: Sequence[str], largest: float, steady: Steady | None) -> Array:
 
 
 def _rise(static: float) -> dict[str, float]:
-    """Initial values for the search of a static friction above F_C."""
+    """Initial values of the Stribeck parameters, if F_S is searched above F_C."""
     speed = float(np.sqrt(SPEEDS[0] * SPEEDS[1]))
     return {"exponent": EXPONENT, "static": static, "stribeck_speed": speed}
 
@@ -130,8 +135,8 @@ class LugreProblem:
     ) -> None:
         """Set up the search; `fixed` are values of parameters that are not searched.
 
-        Without a Stribeck curve the friction level is constant, or falls from F_S to F_C if
-        `falling`.
+        Without a Stribeck curve, sliding friction is constant or, if `falling`, drops from F_S to
+        F_C as speed increases.
         """
         self.windows = reversals
         self.steady = None
@@ -171,7 +176,7 @@ class LugreProblem:
             self.begin |= _rise(max(self.largest, 1.01 * self.begin["coulomb"]))
 
     def values(self, rows: Array) -> dict[str, Array]:
-        """Convert searched values (rows, searched) to parameters (rows,)."""
+        """Convert searched values, (rows, searched), to parameters, each (rows,)."""
         searched = {}
         for name, column in zip(self.names, rows.T, strict=True):
             searched[name] = np.exp(column) if name in LOGARITHMIC else column
@@ -181,11 +186,11 @@ class LugreProblem:
         return held | searched
 
     def values_at(self, x: Array) -> dict[str, float]:
-        """Convert searched values (searched,) to parameters."""
+        """Convert one set of searched values, (searched,), to parameters."""
         return {name: float(column[0]) for name, column in self.values(x[None]).items()}
 
     def residuals(self, rows: Array) -> Array:
-        """Weighted residuals (rows, residuals) for searched values (rows, searched)."""
+        """Weighted residuals, (rows, residuals), for searched values, (rows, searched)."""
         values = self.values(rows)
         misfits = (self.windows.misfit(values) / self.spread).reshape(len(rows), -1)
         if self.steady is None:
@@ -194,7 +199,7 @@ class LugreProblem:
         return np.concatenate([self.steady.residual(steady), misfits], axis=1)
 
     def residuals_at(self, x: Array) -> Array:
-        """Weighted residuals (residuals,) for searched values (searched,)."""
+        """Weighted residuals, (residuals,), for one set of searched values, (searched,)."""
         return self.residuals(x[None])[0]
 
     def slopes(self, x: Array) -> Array:
@@ -271,13 +276,14 @@ class LugreProblem:
         return max(float(np.sqrt(square)), MODEL * self.largest)
 
     def whitened(self, residuals: Array, slopes: Array) -> Array:
-        """Slopes J' of an equivalent problem with independent unit residuals: J'^T J' = cov^-1.
+        """Derivatives J' with J'^T J' = cov^-1, the covariance of the parameters.
 
-        The covariance is cov = H^-1 J^T R J H^-1 with H = J^T J, the slopes J and the covariance R
-        of the residuals r. Points are independent. Within a window, residuals k samples apart have
-        the covariance c_k = sum r_t r_(t+k)/n of n samples, which is the same for all windows
-        [SeberWild1989]. With J = U S V^T, the result is J' = L^-1 S V^T, where L L^T = U^T R U
-        [derived].
+        They are those of an equivalent problem whose residuals are independent, of unit variance.
+        The covariance is cov = H^-1 J^T R J H^-1 with H = J^T J, the derivatives J (`slopes`) and
+        the covariance R of the residuals r. Points are independent. Within a window, residuals k
+        samples apart have the covariance c_k = sum r_t r_(t+k)/n of n samples, which is the same
+        for all windows [SeberWild1989]. With J = U S V^T, the result is J' = L^-1 S V^T, where L
+        L^T = U^T R U [derived].
         """
         from scipy.linalg import solve_triangular, toeplitz  # slow import, rarely used
 
@@ -300,11 +306,10 @@ class LugreProblem:
     def lane_errors(self, residuals: Array, slopes: Array) -> Array:
         """Standard errors from differences between windows; zeros if there are few windows.
 
-        The windows are independent; any correlation is allowed within a window.
-
-        cov = H^-1 sum (J_l^T r_l)(J_l^T r_l)^T H^-1 n/(n - 3) for n windows l [SeberWild1989], with
-        H, J and r as in `whitened`. It includes the steps of the position sensor, which shift a
-        whole reversal.
+        The windows are assumed to be independent; within a window, any correlation is allowed. The
+        covariance is H^-1 sum (J_l^T r_l)(J_l^T r_l)^T H^-1 n/(n - 3) for n windows l
+        [SeberWild1989], with H, J and r as in `whitened`. It includes the effect of the position
+        sensor's steps, which shift a whole reversal.
         """
         lanes, count = self.windows.judged.shape
         split = residuals.size - lanes * count
@@ -324,26 +329,26 @@ class LugreProblem:
 
     @property
     def missed(self) -> str | None:
-        """Reason why the windows are unusable: the model misses them by more than noise.
+        """Reason why the windows are unusable, if the model misses them by more than noise.
 
-        Else None.
+        None if they are usable.
         """
         if self.steady is None or self.spread <= NOISY * self.noise + MISSED * self.largest:
             return None
         return (
-            f"the model misses friction at reversals by {self.spread:.3g} N, but noise is "
-            f"{self.noise:.2g} N: the rod moves too fast there for the filter to show F_S, v_s "
-            "and σ₀"
+            f"at reversals, the model deviates from the measured friction by {self.spread:.3g} N, "
+            f"but noise is only {self.noise:.2g} N: the rod moves too fast there for the filter "
+            "to show F_S, v_s and σ₀"
         )
 
     def travel(self, x: Array) -> float:
-        """Deflection distance of the bristles [m]."""
+        """Travel after which 95 % of the bristles' force is reached [m]."""
         values = self.values_at(x)
         level = min(max(values["static"], values["coulomb"]), self.largest)
         return BENDS * level / values["bristle_stiffness"]
 
     def changes(self, x: Array, chain: Array, misfit: Array) -> dict[str, float]:
-        """Changes of the parameters if the windows had the given misfit [N]."""
+        """Sizes of the parameters' changes if the windows had the given misfit [N]."""
         before = self.residuals_at(x)
         weighted = (misfit / self.spread).reshape(-1)
         change = np.zeros_like(before)
@@ -396,10 +401,10 @@ class LugreProblem:
     def _lag_error(self, x: Array, chain: Array, scatter: float) -> float:
         """Standard error of the lag [s], from scatter, position, velocity and sampling.
 
-        The resolution of the position sensor shifts all reversals alike, its white noise each
-        reversal separately. A velocity with a lower cut-off than the pressures starts too early,
-        which looks like a lag. A fit with the velocity at the record's cut-off shows the
-        difference. Sampling adds dt/sqrt 12 with the time step dt, because a reversal can lie
+        The resolution of the position sensor shifts all reversals alike, its white noise shifts
+        each reversal separately. A velocity that is filtered at a lower cut-off than the pressures
+        starts too early, which looks like a lag; a fit with the velocity at the record's cut-off
+        shows how much. Sampling adds dt/sqrt 12 with the time step dt, because a reversal can lie
         anywhere between two samples.
         """
         values, windows = self.values(x[None]), self.windows
@@ -411,7 +416,7 @@ class LugreProblem:
         )
 
     def _early(self, x: Array) -> float:
-        """Change of the lag if the velocity at the record's cut-off is used [s]."""
+        """Size of the change of the lag if the velocity is filtered at the record's cut-off [s]."""
         windows = self.windows
         if np.array_equal(windows.velocity, windows.options[0]):
             return 0.0
@@ -422,7 +427,7 @@ class LugreProblem:
         return change
 
     def solve(self) -> LuGreFit:
-        """Search, weight the windows by their scatter, search again.
+        """Search, weight the windows by their scatter, and search again.
 
         Compute confidence intervals.
         """
@@ -452,7 +457,7 @@ class LugreProblem:
         ]
         if self.windows.quick:
             doubts.append(
-                "the rod starts too fast for the filter to show bristles: reverse it slowly"
+                "the rod starts too fast for the filter to show pre-sliding: reverse it slowly"
             )
         doubts += [doubt for doubt in (inseparable, missed) if doubt is not None]
         lanes = self.windows.velocity.shape[0]
@@ -460,23 +465,23 @@ class LugreProblem:
 
 
 BLUR = 40e-3
-"""Longest time for which a reversal may be hidden by the position resolution if a lag is fitted [s]
-(our choice: ten usual lags)."""
+"""A lag is fitted only if the resolution of the position hides reversals for no longer than this
+time [s] (our choice: ten usual lags)."""
 SURER = 10.0
-"""Gain in Akaike information for which a falling friction level is preferred to a constant level
-(our choice: very strong evidence)."""
+"""A friction level that falls with speed is preferred to a constant one if it improves Akaike's
+information by more than this (our choice: very strong evidence)."""
 SLID = 0.95
-"""Share of the friction level that friction must reach for the level to be identifiable (our
-choice)."""
+"""The friction level of sliding is identifiable only if the measured friction reaches this share of
+it (our choice)."""
 FAR = 3.0
-"""Multiple of the Stribeck speed that the rod must reach (our choice: at most 5 % of F_S - F_C then
-remain, for exponent 1)."""
+"""Multiple of the Stribeck speed that the rod must reach for F_C to be identifiable (our choice: at
+most 5 % of F_S - F_C then remain, for exponent 1)."""
 
 
 def settling_distance(lugre: LuGreFit | str) -> float:
     """Distance after a reversal beyond which sliding is steady [m].
 
-    It follows from the bristles if they are known.
+    It follows from the bristles' breakaway travel, if that is known.
     """
     if isinstance(lugre, str) or not lugre.parameters["bristle_stiffness"].identifiable:
         return SETTLED
@@ -498,8 +503,8 @@ def fit_lugre(
     Least squares over points of steady sliding and windows around reversals, each weighted by its
     scatter [AaltoThesis] eq. 27-31. Without a Stribeck curve, as in pre-sliding, F_C and the
     bristles are fitted to the windows alone. While the contact sticks, sigma_0 z + sigma_1 dz/dt is
-    about sigma_0 z advanced by sigma_1/sigma_0. This looks like early pressures, so only the lag or
-    only sigma_1 is fitted.
+    about sigma_0 z advanced by sigma_1/sigma_0. This looks as if the pressures were early, so
+    either the lag or sigma_1 is fitted, not both.
 
     Parameters
     ----------
@@ -542,7 +547,7 @@ def fit_lugre(
 
 
 def _from_windows(reversals: Windows, fixed: Mapping[str, float]) -> LuGreFit:
-    """Fit the windows alone, with a friction level that is constant or falls from F_S."""
+    """Fit the windows alone, with sliding friction that is constant or falls from F_S to F_C."""
     fit = LugreProblem(reversals, (), None, fixed).solve()
     slides = fit.misfit + reversals.largest > SLID * fit.values["coulomb"]
     if slides:
@@ -559,16 +564,16 @@ def _from_windows(reversals: Windows, fixed: Mapping[str, float]) -> LuGreFit:
         if reversals.fastest < FAR * fit.values["stribeck_speed"]:
             fit = replace(fit, parameters=unbounded(fit.parameters, INSEPARABLE))
         doubt = (
-            f"F_C is the whole friction level at {fastest:.3g} mm/s and includes viscous friction, "
-            "which a single speed cannot separate; give plateaus or sweeps of other speeds"
+            f"F_C is the total friction level at {fastest:.3g} mm/s and includes viscous friction, "
+            "which a single speed cannot separate; record plateaus or sweeps at other speeds"
         )
     elif slides:
         doubt = (
             f"F_C is the friction level up to {fastest:.3g} mm/s, which lies between the true F_C "
-            "and F_S; give plateaus or sweeps of other speeds"
+            "and F_S; record plateaus or sweeps at other speeds"
         )
     else:
-        doubt = "the rod hardly slides: the record shows bristles, but no friction level"
+        doubt = "the rod hardly slides, so the record shows bristles, but no sliding friction"
         fit = replace(fit, parameters=unbounded(fit.parameters, ("coulomb",)))
     return replace(fit, doubts=(*fit.doubts, doubt))
 
@@ -579,9 +584,10 @@ def _falling(reversals: Windows, fixed: Mapping[str, float]) -> LuGreFit:
 
 
 def _any_exponent(fit: LuGreFit, reversals: Windows, fixed: Mapping[str, float]) -> LuGreFit:
-    """A falling level, with confidence intervals that allow for other exponents than the fixed one.
+    """A fit with falling friction, whose confidence intervals allow for other exponents.
 
-    Each parameter gets the larger uncertainty of both fits, plus the difference between them.
+    Each parameter gets the larger uncertainty of the fits with either exponent, plus an uncertainty
+    for their difference.
     """
     other = _falling(reversals, {"exponent": OTHER, **fixed})
     errors = held_error(fit.parameters, other.values)
@@ -600,7 +606,7 @@ def _any_exponent(fit: LuGreFit, reversals: Windows, fixed: Mapping[str, float])
 def _consistent_with_points(
     fit: LuGreFit, stribeck: StribeckFit, points: Sequence[FrictionPoint]
 ) -> LuGreFit:
-    """Remove the confidence limits of parameters that contradict the points of steady sliding."""
+    """Remove the confidence limits of parameters that the points of steady sliding contradict."""
     level, speed = stribeck.parameters["coulomb"], fit.parameters.get("stribeck_speed")
     doubts = list(fit.doubts)
     parameters = dict(fit.parameters)
@@ -626,9 +632,9 @@ def _unseparated(
     reversals: Windows,
     fixed: Mapping[str, float],
 ) -> LuGreFit:
-    """Widen the intervals of F_S and sigma_0 to include sigma_2 = 0.
+    """Widen the intervals of F_S and sigma_0, so that they allow for sigma_2 = 0.
 
-    For a model whose F_C and sigma_2 cannot be separated.
+    This is for a model whose F_C and sigma_2 cannot be separated.
     """
     held = {"viscous": 0.0, "exponent": EXPONENT, **fixed}
     other = LugreProblem(reversals, points, stribeck, held).solve()

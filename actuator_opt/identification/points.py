@@ -1,4 +1,4 @@
-"""Points of steady sliding: friction by speed and pressure, from plateaus or sweeps of speed."""
+"""Points of steady sliding, from plateaus or sweeps of speed: friction at a speed and pressure."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ from .balance import Sliding
 from .conditioning import ConditionedRecord, velocities
 
 STEADY, FLOOR = 0.04, 2e-5
-"""Change of speed that is permitted in a plateau, relative and in m/s (our choices: viscous
-friction then changes by at most that share; two sensor steps of 10 um in a second)."""
+"""Permitted change of speed in a plateau, as a share and in m/s (our choices: viscous friction then
+changes by at most that share; two sensor steps of 10 um in a second)."""
 LASTING = 0.15
-"""Shortest plateau [s]. Its first and last fifth are excluded. Samples before the settling distance
-are excluded too if enough others remain (our choices: five independent samples remain at 30 Hz; the
-adjacent ramps reach into the fifths)."""
+"""Shortest plateau [s]. The first and last fifth of a plateau are excluded. Samples before the
+settling distance are excluded too, if enough others remain (our choices: five independent samples
+remain at 30 Hz; the filter blurs the adjacent ramps into the excluded fifths)."""
 ALIKE = 0.06
 """Relative difference of speed within which plateaus are merged into one point (our choice: more
 than `STEADY`, less than the steps between the speeds of a test)."""
 PER_DECADE = 8
 """Number of points per decade of speed in a sweep (our choice: speeds differ by a third, so that
-several points show a Stribeck part that falls within a decade)."""
+several points show a Stribeck part that drops within a decade)."""
 BLURRED = 1.0
-"""Length at both ends of a plateau that the filter mixes with the adjacent ramps, in periods of the
-cut-off (our choice: beyond it a step response is within 2 %)."""
+"""Time at each end of a plateau in which the filter mixes it with the adjacent ramp, in periods of
+the cut-off (our choice: after it a step response is within 2 %)."""
 SETTLED = 5e-4
 """Distance after a reversal beyond which sliding is steady [m] (our choice: ten breakaway travels
-of 50 um). If the bristles are known, it is `SETTLING` times their breakaway travel, if that is
-more."""
+of 50 um). If the breakaway travel of the record is known, the distance is `SETTLING` times that
+travel, but at least this value."""
 SLIDES = 2e-4
 """Smallest travel of a plateau [m] (our choice: four breakaway travels of 50 um; a smaller travel
-may be deflection of bristles)."""
+may be elastic deflection of the contact)."""
 SETTLING = 8.0
 """Number of breakaway travels F_S/sigma_0 after which sliding is steady (our choice: 2 e^-8 is
 below 0.1 %)."""
@@ -41,8 +41,8 @@ LEVELS = 0.1
 """Range within which pressures count as equal, as a share of the highest pressure (our choice: less
 than the steps between the loads of a test, more than friction itself changes them)."""
 PRIOR = 8
-"""Number of independent samples with which the record's usual scatter enters the scatter of a point
-(our choice: some points only have four)."""
+"""The scatter of a point is averaged with the usual scatter of the record, which counts as this
+number of independent samples (our choice: some points only have four of their own)."""
 
 Kind = Literal["plateau", "sweep"]
 
@@ -52,7 +52,8 @@ class FrictionPoint(NamedTuple):
 
     `error` is the standard error of the friction, `weight` the duration [s], `pressure` the higher
     chamber pressure (gauge). `spread` is the standard deviation of the velocities in a point of a
-    sweep: where the curve bends, the mean friction is not the friction at the mean velocity.
+    sweep. It is needed because, where the curve bends, the mean friction is not the friction at the
+    mean velocity.
     """
 
     velocity: float
@@ -120,10 +121,11 @@ def independent(count: float, motion: ConditionedRecord) -> float:
 
 
 def _moderated(points: Sequence[FrictionPoint], motion: ConditionedRecord) -> list[FrictionPoint]:
-    """Points with their scatter moved towards the median, as that of few samples is unreliable.
+    """The points, with their scatter moved towards the median scatter of all points.
 
-    The variance is s^2 = (n_0 s_0^2 + n s_i^2)/(n_0 + n) with s_i^2 of the point, n its samples,
-    s_0^2 the median, n_0 = `PRIOR` [Smyth2004].
+    The scatter of few samples is unreliable. The variance of a point becomes s^2 = (n_0 s_0^2 + n
+    s_i^2)/(n_0 + n), with its own variance s_i^2 and number of samples n, the median variance
+    s_0^2, and n_0 = `PRIOR` [Smyth2004].
     """
     if not points:
         return []
@@ -137,7 +139,7 @@ def _moderated(points: Sequence[FrictionPoint], motion: ConditionedRecord) -> li
 def _plateaus(
     sliding: Sliding, motion: ConditionedRecord, settling: float
 ) -> Iterator[tuple[FrictionPoint, float]]:
-    """Points from plateaus of constant velocity, each with its error due to bristles [N]."""
+    """Points from plateaus of constant velocity, each with its error due to pre-sliding [N]."""
     from scipy.signal import savgol_filter
 
     step = motion.sample_time
@@ -173,19 +175,17 @@ def _plateaus(
 
 
 def _unsettled(friction: float, distance: Array, settling: float) -> float:
-    """Possible error of a mean friction F due to bristles that still reverse [N].
+    """Possible error of a mean friction F if bristles are still reversing at the start [N].
 
-    It is 2 F times the mean of e^(-8 d/settling).
-
-    After a reversal friction is F (1 - 2 e^(-d sigma_0/F)) [derived from dz/dt = v (1 - sigma_0
-    z/F)], where d is the distance from the start of the plateau. The settling distance is
-    `SETTLING` times F/sigma_0.
+    It is 2 F times the mean of e^(-8 d/settling), where d is the distance from the start of the
+    plateau. After a reversal friction is F (1 - 2 e^(-d sigma_0/F)) [derived from dz/dt = v (1 -
+    sigma_0 z/F)], and the settling distance is `SETTLING` = 8 times F/sigma_0.
     """
     return float(2 * abs(friction) * np.mean(np.exp(-SETTLING * np.abs(distance) / settling)))
 
 
 def _point(sliding: Sliding, motion: ConditionedRecord, at: Array, kind: Kind) -> FrictionPoint:
-    """Mean over samples; its standard error allows for the correlation due to the filter."""
+    """Mean of some samples; its standard error allows for correlation caused by the filter."""
     piece = sliding.piece
     friction = sliding.friction[at]
     if kind == "plateau":
@@ -223,7 +223,7 @@ def _merged(points: Sequence[FrictionPoint]) -> list[FrictionPoint]:
 
 
 def _mean(group: Sequence[FrictionPoint]) -> FrictionPoint:
-    """Mean of several points of similar velocity and pressure; its error includes their scatter."""
+    """Mean of points of similar velocity and pressure; its error includes their scatter."""
     if len(group) == 1:
         return group[0]
     weights = np.array([point.weight for point in group])
@@ -245,8 +245,8 @@ def _swept(
     """Means over ranges of velocity and pressure, with rising and falling speed weighted equally.
 
     A range of velocity that occurs only with rising or only with falling speed is left out, because
-    a lag would count as friction there. The velocity is that at the lowest cut-off that the
-    position allows, because the resolution of the position would blur slow ranges.
+    there a lag would look like friction. The velocity is filtered at the lowest cut-off that does
+    not change the motion, because the resolution of the position would otherwise blur slow ranges.
     """
     parts = [settled(sliding, settling) for sliding in slidings]
     if not any(at.size for at in parts):
@@ -299,7 +299,7 @@ def _swept(
 
 
 def _common_speeds(at: Array, speed: Array, rising: Array) -> tuple[Array, Array] | None:
-    """Samples of rising and of falling speed, limited to the speeds that both contain."""
+    """Samples of rising and of falling speed, limited to the range of speed that both cover."""
     if rising.all() or not rising.any():
         return None
     low = max(float(speed[rising].min()), float(speed[~rising].min()))
@@ -311,7 +311,8 @@ def _common_speeds(at: Array, speed: Array, rising: Array) -> tuple[Array, Array
 def _balanced(halves: Sequence[FrictionPoint]) -> FrictionPoint:
     """Mean of the points of rising and falling speed with equal weights, so that a lag cancels.
 
-    A lag cancels to first order only, so a quarter of the difference counts as error (our choice).
+    A lag cancels to first order only, so a quarter of the difference between rising and falling
+    speed counts as a further error (our choice).
     """
     numbers = np.mean([point[:5] for point in halves], axis=0)
     by_lag = (halves[0].friction - halves[1].friction) / 4
@@ -324,7 +325,7 @@ def _balanced(halves: Sequence[FrictionPoint]) -> FrictionPoint:
 
 
 def settled(sliding: Sliding, settling: float = SETTLED) -> Array:
-    """Flags for samples beyond a distance [m] of sliding since the last reversal or rest."""
+    """Flags for samples more than `settling` [m] after the last reversal or rest."""
     piece, moving = sliding.piece, sliding.moving
     way = np.where(moving, np.sign(piece.velocity), 0.0)
     begins = np.flatnonzero(np.diff(way, prepend=0.0) != 0)

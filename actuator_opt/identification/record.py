@@ -1,4 +1,4 @@
-"""Test records: files of a test bench with named columns and units, converted to SI."""
+"""Test records: read files of a test bench that name columns and units; convert them to SI."""
 
 from __future__ import annotations
 
@@ -21,12 +21,13 @@ from .column_units import NONE, ColumnUnits
 ABSENT = {"", "-", "--", "na", "n/a", "nan", "-nan", "null", "none", "#n/a", "inf", "-inf", "+inf"}
 """Texts of a cell that mark a missing sample, in lower case."""
 _BATCH = 50_000
-"""Number of lines that are read at once (our choice: a record of an hour then fits in memory)."""
+"""Number of lines that are converted at once (our choice: a record of an hour then fits in
+memory)."""
 _BINARY = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
 _ZIP = b"PK\x03\x04"
 _COMMENT = re.compile(r"\s*#(?!n/a)", re.IGNORECASE)
 _MISREAD = (("Âµ", "µ"), ("Î¼", "µ"), ("Â°", "°"), ("Â²", "²"), ("Â·", "·"))
-"""UTF-8 characters as they appear if a program read them as Latin-1, each with its correction."""
+"""UTF-8 characters as they look if a program has read them as Latin-1, each with its correction."""
 
 
 def decode_record(data: bytes, name: str, *, most: int | None = None) -> str:
@@ -69,7 +70,7 @@ class Sheet:
     units : units by column from a separate line below the heading; None if there is no such line
     separator : character that separates the columns
     lines, first : lines of the file, and the index of the first line of samples
-    width : number of columns, including those without a heading
+    width : number of columns, including those without a name
     """
 
     name: str
@@ -127,7 +128,7 @@ def is_number(cell: str) -> bool:
 
 
 def numbers(sheet: Sheet, places: Sequence[int]) -> tuple[Array, Array]:
-    """Some columns of a sheet as numbers (samples, columns), NaN where a sample is missing.
+    """Some columns of a sheet as numbers, (samples, columns), NaN where a sample is missing.
 
     Returns
     -------
@@ -184,7 +185,7 @@ def _flat(sheet: Sheet, lines: Sequence[str], at: Array) -> tuple[list[str], int
 
 
 def _even(sheet: Sheet, lines: Sequence[str], at: Array) -> Iterator[str]:
-    """Cells of lines with different numbers of cells, cut or filled to the number of columns."""
+    """Cells of lines that differ in length, cut or filled to the number of columns."""
     named = len(sheet.header)
     for line, number in zip(lines, at.tolist(), strict=True):
         cells = _cells(line, sheet.separator)
@@ -210,7 +211,7 @@ def _number(cell: str, name: str, line: int) -> float:
     message, remedy = f'"{shown(cell)}" is not a number', "write a number, or leave the cell empty"
     if re.match(r"\d+[:/-]\d+", cell):
         message = f'"{shown(cell)}" is a clock time or a date'
-        remedy = "write the time as a number from the start of the record, e.g. in s"
+        remedy = "write the time as a number, counted from the start of the record, e.g. in s"
     raise InputError(Diagnostic(message, remedy, file=name, line=line))
 
 
@@ -228,7 +229,10 @@ def _next(lines: Sequence[str], first: int) -> int:
 
 
 def _commented(lines: Sequence[str], at: int, name: str) -> tuple[int, str, int]:
-    """A heading in the last comment above the samples: its line number, text, and the next line."""
+    """Read the heading from the last comment above the samples.
+
+    Returns its line number, its text, and the index of the next line.
+    """
     above = [k for k in range(at) if lines[k].strip()]
     if above:
         header = lines[above[-1]].strip().lstrip("#").strip()
@@ -242,7 +246,7 @@ def _commented(lines: Sequence[str], at: int, name: str) -> tuple[int, str, int]
 
 
 def _separator(header: str, following: str) -> str:
-    """The column separator: it splits the heading and the next line into equally many cells."""
+    """The separator of columns, which splits heading and next line into equally many cells."""
     candidates = [sign for sign in "\t;," if sign in header]
     for sign in candidates:
         if len(_cells(header, sign)) == len(_cells(following, sign)):
@@ -275,7 +279,7 @@ def _units_row(line: str, separator: str, count: int) -> list[str] | None:
 
 
 class Channel(NamedTuple):
-    """A quantity of a record: dimension, usual unit, label and alternative names."""
+    """A quantity that a record can have: dimension, usual unit, label and alternative names."""
 
     dimension: str
     unit: str
@@ -302,7 +306,7 @@ CHANNELS = {
     "F_L": Channel(
         "force",
         "N",
-        "force of the load on the rod, against extension",
+        "force of the load on the rod, positive if it opposes extension",
         ("fl", "f", "force", "load", "loadforce", "loadcell"),
     ),
     "T": Channel(
@@ -316,9 +320,11 @@ _HEADER = re.compile(
     r"(?P<name>.*?)\s*(?:\[(?P<square>[^\[\]]*)\]|\((?P<round>(?:[^()]|\([^()]*\))*)\))\s*"
 )
 _LONGEST = 200
-"""Longest cell that is searched for a unit, in letters (our choice: longer text is no heading)."""
+"""Largest number of characters of a cell that is searched for a unit (our choice: a longer text is
+no heading)."""
 _OPTIONAL = ("v", "T")
-"""Channels that are ignored if their unit does not fit: a column "Speed [rpm]" is not the rod's."""
+"""Channels that are ignored if their unit does not fit, because, for example, a column "Speed
+[rpm]" is not the speed of the rod."""
 _ABSOLUTE = re.compile(
     r"(?i)(?P<unit>(?:[mkh]?pa|m?bar|psi))[\s_]*\(?(?P<kind>a|abs|absolute|g|gauge)\)?\.?"
 )
@@ -335,8 +341,8 @@ class Record:
 
     Parameters
     ----------
-    time : (samples) [s]
-    channels : arrays (samples) by name, as in `CHANNELS` but without `t`
+    time : times of the samples [s]
+    channels : values of the samples by name of the channel, as in `CHANNELS` but without `t`
     name : name of the file
     notes : notes on columns that are ignored and on units that are assumed
     first_line : line number of the first sample in the file; None for a record without a file
@@ -387,15 +393,15 @@ def parse_record(
     The first line that is not a comment names the columns with their units: ``p1 [bar]``, ``p1
     (bar)`` or ``p1 / bar``. The units may also be in a separate line below. Columns are separated
     by commas, semicolons or tabs; with semicolons or tabs, decimal commas are accepted. Absolute
-    pressures (``bara``, ``psi abs``) are converted to gauge pressures by the standard atmosphere,
-    with a note.
+    pressures (``bara``, ``psi abs``) are converted to gauge pressures with the standard atmosphere,
+    and a note says so.
 
     Parameters
     ----------
     text : text of the file
     name : name of the file, for messages
-    columns : heading by channel, for headings that are not known names; ``"Channel 3 [bar]"`` also
-        states the unit of a column ``Channel 3`` that has none
+    columns : for a channel whose column has no known name, the column's heading.
+        ``"Channel 3 [bar]"`` also states the unit of a column ``Channel 3`` that has none
     channels : channels to read, including ``t``
     units : units of columns whose heading states none
     needed : channels that must have a unit, besides ``t`` and those of `columns`. Other channels
@@ -403,7 +409,7 @@ def parse_record(
 
     Returns
     -------
-    the record; its notes list the columns that are no channels or have no unit
+    the record; its notes list the columns that are not channels or have no unit
 
     Raises
     ------
@@ -424,7 +430,7 @@ def parse_record(
         for k, (channel, column) in enumerate(by_channel.items())
     }
     notes += [
-        f"{channel} is an absolute pressure and was converted to gauge with the standard "
+        f"{channel} is an absolute pressure; it was converted to gauge with the standard "
         "atmosphere of 1.01325 bar"
         for channel, column in by_channel.items()
         if column.absolute
@@ -519,7 +525,7 @@ def _channel(name: str, unit: str, channels: Mapping[str, Channel]) -> str | Non
 
 
 def column_of(sheet: Sheet, cells: list[tuple[str, str]], header: str) -> tuple[int, str]:
-    """Index of the column that the caller named by its heading, and the unit stated with the name.
+    """Index of the column that the caller named by its heading, and the unit stated with this name.
 
     Raises
     ------
@@ -549,7 +555,7 @@ def _columns(
     given: ColumnUnits,
     needed: Collection[str],
 ) -> tuple[dict[str, RecordColumn], list[str]]:
-    """Column and unit of every channel, and notes on columns ignored or with units from `given`."""
+    """Column and unit of every channel; notes on ignored columns, and on units from `given`."""
     faults: list[Diagnostic] = []
 
     def fault(message: str, remedy: str, file: str = sheet.name) -> None:
@@ -620,7 +626,7 @@ def _place_by_header(
             doubled.add(channel)
             first, second = sheet.header[places[channel]], sheet.header[i]
             fault(
-                f'columns "{shown(first)}" and "{shown(second)}" are both {channel}',
+                f'columns "{shown(first)}" and "{shown(second)}" both name the channel {channel}',
                 "rename or delete one"
                 if first == second
                 else f'choose a column with --column "{channel}=NAME", or rename one',
@@ -638,7 +644,7 @@ def _place_by_header(
 def _column_notes(
     sheet: Sheet, channels: Collection[str], used: set[int], unitless: Sequence[str]
 ) -> list[str]:
-    """Notes on columns that are no channels or have no unit."""
+    """Notes on columns that are not channels or have no unit."""
     unused = [cell for k, cell in enumerate(sheet.header) if cell and k not in used]
     notes = []
     if unused:
@@ -647,7 +653,7 @@ def _column_notes(
             f"columns ignored, as they are not channels: {_list(unused)}; channels are {known}"
         )
     if unitless:
-        notes.append(f"columns without a unit, left out: {_list(unitless)}")
+        notes.append(f"columns left out because they have no unit: {_list(unitless)}")
     return notes
 
 
@@ -700,7 +706,7 @@ def _stated_places(
 
 
 def _list(names: Sequence[str]) -> str:
-    """Names in quotes, as many as fit in a line."""
+    """The names in quotes, joined to a text; only as many as fit in a line."""
     return shown(", ".join(f'"{name}"' for name in names))
 
 
@@ -711,9 +717,7 @@ FEWEST = 2
 def parse_column(
     text: str, header: str, dimension: str, *, name: str, units: ColumnUnits = NONE
 ) -> tuple[Array, Array]:
-    """Time [s] and values [SI] of a column, chosen by its heading with or without the unit.
-
-    Missing samples are NaN.
+    """Time [s] and values [SI] of the column with a given heading; missing samples are NaN.
 
     Parameters
     ----------

@@ -30,9 +30,9 @@ class Settings:
 
     Parameters
     ----------
-    cutoff, order, compensated : settings of the zero-phase filter, as for `condition`
-    mass : moving mass on the actuator's side of the force sensor [kg]; default: rod, piston and
-        fastening, and also the load if there is no force channel
+    cutoff, order, compensated : settings of the zero-phase filter, as for `conditioning.condition`
+    mass : moving mass on the actuator's side of the force sensor [kg]. By default, it is that of
+        rod, piston and fastening and, if no channel measures the force, of the load
     load_force : force of the load on the rod, if no channel measures it [N]
     pressure_lag : lag of the pressures [s]; None to fit it to the record
     bootstrap : number of resamples for the confidence intervals; 0 for intervals of the linearised
@@ -66,19 +66,18 @@ class Identification(Displayed):
     Parameters
     ----------
     record, bench, settings : inputs of the identification
-    motion, slidings : the conditioned record, and the friction along its sections
+    motion, slidings : the conditioned record, and the friction along each of its sections
     mass : moving mass that was used, on the actuator's side of the force sensor [kg]
     pressure_lag : lag by which the pressures were corrected [s]
     lag_seen : lag of the pressures as fitted before any correction [s]; None if not fitted. Its
         confidence limits are infinite if the record does not show the lag
-    spectrum : spectrum of the motion, which shows how much motion and noise the filter's cut-off
-        removes
-    mean, largest : mean |F_r| in sliding, without pre-sliding, and largest |F_r| of the record [N]
-    slides : whether the rod slides; if not, `mean` is the mean of the whole record
+    spectrum : frequencies that show how much motion and noise the filter's cut-off removes
+    mean, largest : mean |F_r| in sliding (not pre-sliding), and largest |F_r| of the record [N]
+    slides : whether the rod slides; if not, `mean` is the mean while it moves
     area : piston area of the cap end [m^2]
     points : points of steady sliding
     coefficient, stribeck, lugre : results, each replaced by a text with the reason if it is missing
-    fits : fits of the secant damping as a function of speed by name, or the reason why one is
+    fits : by name of the law, the fit of the secant damping versus speed, or the reason why it is
         missing
     notes : notes on samples that were left out, repaired or assumed
     """
@@ -104,7 +103,7 @@ class Identification(Displayed):
     notes: tuple[str, ...]
 
     def stiffness_along(self, sliding: Sliding) -> Array:
-        """Stiffness with closed ports at the pressures along a section; NaN outside the stroke."""
+        """Stiffness with closed ports, at the pressures along a section; NaN outside the stroke."""
         piece, bench = sliding.piece, self.bench
         inside = (piece["x"] >= 0) & (piece["x"] <= bench.stroke)
         return np.where(inside, bench.stiffness(piece["x"], *piece.pressures), np.nan)
@@ -141,7 +140,7 @@ class Identification(Displayed):
         return columns
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data for JSON, SI; a missing value is null, with its reason beside it."""
+        """Plain data for JSON, SI; a missing value is null, and another entry has the reason."""
         series = self.series()
         return {
             "record": self.record.name,

@@ -1,4 +1,4 @@
-"""Straight part of a loading test: sections of loading and unloading, and their slopes."""
+"""Straight part of force versus deflection in a bending test: loadings, unloadings and slopes."""
 
 from __future__ import annotations
 
@@ -16,43 +16,44 @@ from .conditioning import ConditionedRecord
 from .record import Record
 
 TERMS = 8
-"""Number of cosines from which the variance of correlated noise is estimated (our choice: few
-enough for noise that is correlated over an eighth of a branch; confidence intervals are 18 % wider
+"""Number of cosine terms from which the variance of correlated noise is estimated (our choice: few
+enough for noise that is correlated over an eighth of a loading; confidence intervals are 18 % wider
 than for known noise)."""
 PER_TERM = 4
-"""Smallest number of degrees of freedom per cosine (our choice: limits the length of correlation in
-short records)."""
+"""Smallest number of degrees of freedom per cosine term (our choice: limits the length of
+correlation that is allowed for in short records)."""
 MEMORY = 0.99
-"""Largest correlation of neighbouring residuals that is allowed for (our choice: above it the fit
-mistakes noise for a part of the slope)."""
+"""Largest correlation of neighbouring residuals that is taken into account (our choice: above it
+the fit mistakes noise for a part of the slope)."""
 FEWEST = 5
-"""Smallest number of samples in a branch for which a slope is fitted (our choice: three degrees of
-freedom)."""
+"""Smallest number of samples of a loading or unloading to which a slope is fitted (our choice:
+three degrees of freedom)."""
 OUTSTANDING, PART = 10.0, 0.02
 """Smallest height of a spike above the median of five neighbours: in robust standard deviations,
 and as a share of the range (our choices: far outside noise; smaller spikes do not change a
 slope)."""
 
 SHARES = (0.2, 0.8)
-"""Shares of the highest force between which the slope is fitted, if the test does not reach the
-strains or the depth is unknown (our choice: leaves out the toe and the reversal at the top)."""
+"""Shares of the largest deflection between which the slope is fitted if the test does not reach the
+strains of the standards or the depth is unknown (our choice: leaves out the toe and the reversal at
+the top)."""
 BENT = 0.02
 """Largest change of slope along the straight part (our choice: the chord is then within 1 % of the
 tangents at both ends)."""
 FOLLOWS = 0.3
-"""Smallest correlation of force and deflection (our choice: it is 0.46 if 90 % of the record is
-approach without force)."""
+"""Smallest permitted correlation of force and deflection (our choice: it is 0.46 if the press only
+approaches, without force, in 90 % of the record)."""
 TOP, BEGUN = 0.9, 0.05
 """Shares of the highest force. A loading ends at the last sample above the first share, because
-slip or failure follows; the search for zero force begins at the second share (our choices: both are
-beyond usual noise)."""
+what follows is slip or failure. The search for zero force begins at the second share (our choices:
+both differ from the highest force and from zero by more than usual noise)."""
 BACK = 0.25
-"""Share of the range by which the deflection must return to count as an unloading. A specimen
-counts as bent both ways if this share lies on either side of zero (our choices: both are far from
-noise and offsets)."""
+"""Share of its range by which the deflection must return to count as an unloading. A specimen
+counts as bent in both directions if at least this share of the range lies on each side of zero (our
+choices: more than noise and offsets)."""
 WON = 0.02
-"""Share of its work that a loop may gain through noise and coarse samples (our choice, as
-`BENT`)."""
+"""Noise and coarse samples may make a loop return more work than it takes. This is the largest
+permitted share of the work (our choice, as `BENT`)."""
 USUAL = (1e-12, 1e12)
 """Smallest and largest permitted range of force [N] and deflection [m] (our choice: far beyond any
 sensor and machine)."""
@@ -62,7 +63,7 @@ first; parts without the toe before parts without the top)."""
 
 
 class DeflectionBranch(NamedTuple):
-    """Samples between two reversals of the deflection."""
+    """Samples between two reversals of the deflection: a loading or an unloading."""
 
     samples: slice
     loading: bool
@@ -96,7 +97,7 @@ def despiked(values: Array) -> Array:
 
 
 def branches(deflection: Array, least: float) -> list[DeflectionBranch]:
-    """Sections between reversals at which the deflection returns by `least` or more."""
+    """Loadings and unloadings, divided where the deflection returns by `least` or more."""
     values = deflection.tolist()
     turns: list[int] = []
     low = high = way = 0
@@ -120,11 +121,12 @@ def branches(deflection: Array, least: float) -> list[DeflectionBranch]:
 def term(x: Array, y: Array, degree: int) -> Term:
     """Coefficient of x^degree in a least-squares polynomial, for correlated noise.
 
-    The variance is that of the products c e at frequency zero, where c is the column orthogonal to
-    lower powers, and e are the residuals. It is estimated from the first cosines of the samples in
-    order [Mueller2007], [Lazarus2018]. Each cosine is a degree of freedom of Student's t. The fit
-    itself removes some variance; this is compensated for noise with the correlation of the
-    residuals [derived]. The result is at least the variance for white noise.
+    The variance is that of the products c e at frequency zero, where c is the column x^degree made
+    orthogonal to lower powers, and e are the residuals. It is estimated by projecting the products
+    onto the first cosines along the samples [Mueller2007], [Lazarus2018]. Each cosine is a degree
+    of freedom of Student's t. The fit itself removes some variance; this is compensated for noise
+    with the correlation of the residuals [derived]. The result is at least the variance for white
+    noise.
     """
     scale = float(np.ptp(x)) / 2
     size = (x - np.mean(x)) / scale
@@ -149,7 +151,7 @@ def term(x: Array, y: Array, degree: int) -> Term:
 def _correlation(residuals: Array, degree: int) -> float:
     """Correlation of neighbouring residuals, corrected for the effect of fitting a polynomial.
 
-    For n samples with the correlation r, fitting a constant lowers it by (1 + 3 r)/n, fitting a
+    For n samples with the correlation r, fitting a constant lowers r by (1 + 3 r)/n, and fitting a
     line by (2 + 4 r)/n [MarriottPope1954]. Higher degrees continue this series.
     """
     size, power = residuals.size, float(np.sum(residuals**2))
@@ -168,7 +170,7 @@ def _correlated(rows: Array, memory: float) -> Array:
 
 
 def mean(terms: Sequence[Term]) -> Term:
-    """Mean of independent coefficients; its degrees of freedom are by Satterthwaite's formula."""
+    """Mean of independent coefficients, with degrees of freedom by Satterthwaite's formula."""
     variances = np.array([term.variance for term in terms]) / len(terms) ** 2
     variance = float(np.sum(variances))
     parts = float(np.sum(variances**2 / [term.freedom for term in terms]))
@@ -177,10 +179,10 @@ def mean(terms: Sequence[Term]) -> Term:
 
 
 def pooled(groups: Sequence[Sequence[Term]]) -> Term:
-    """Mean of the means of groups; its variance includes scatter of the members beyond noise.
+    """Mean of the means of several groups; members that scatter beyond noise increase its variance.
 
-    An F test at 95 % decides whether the members scatter by more than noise. Members with the same
-    index in their groups, such as loading and unloading of a cycle, count as correlated.
+    An F test at 95 % decides whether they do. Members with the same index in their groups, such
+    as loading and unloading of a cycle, count as correlated.
     """
     from scipy.special import fdtri  # slow import, rarely used
 
@@ -199,7 +201,7 @@ def pooled(groups: Sequence[Sequence[Term]]) -> Term:
 
 
 class Part(NamedTuple):
-    """The samples of one branch that lie in the straight part."""
+    """The samples of one loading or unloading that lie in the straight part."""
 
     deflection: Array
     force: Array
@@ -211,10 +213,10 @@ class Straight(NamedTuple):
 
     Parameters
     ----------
-    parts : samples of each branch
-    ends : deflections at both ends, from zero force [m]
+    parts : its samples from each loading and unloading
+    ends : deflections at both ends, counted from zero force [m]
     bent : change of slope along the part, divided by the slope
-    unsure : the share of `bent` that noise does not explain
+    unsure : part of `bent` that noise does not explain
     cut : whether a part of the range is left out
     """
 
@@ -226,7 +228,7 @@ class Straight(NamedTuple):
 
 
 class Loop:
-    """Force over deflection, divided into branches of loading and unloading."""
+    """Force versus deflection, divided into branches: loadings and unloadings."""
 
     def __init__(self, record: Record) -> None:
         self.record = record
@@ -246,7 +248,7 @@ class Loop:
         )
 
     def cut(self, low: float, high: float, zeros: Sequence[float]) -> list[Part]:
-        """Samples of every branch between two deflections, measured from its zero."""
+        """Samples of every branch between two deflections, which count from its zero force."""
         parts = []
         for zero, (samples, loading) in zip(zeros, self.branches, strict=True):
             w, force = self.deflection[samples], self.force[samples]
@@ -267,7 +269,7 @@ class Loop:
         """Deflection of every branch at which its straight line meets zero force."""
         slope = slopes(parts, 1, self.record).value
         if slope <= 0:
-            message = "F_L does not grow with w in the straight part"
+            message = "F_L does not increase with w in the straight part"
             raise self.record.fault(message, "check both columns, and their noise")
         return [
             float(np.mean(part.deflection) - (np.mean(part.force) - self.floor) / slope)
@@ -277,12 +279,12 @@ class Loop:
         ]
 
     def top(self, zeros: Sequence[float]) -> float:
-        """Largest deflection from zero: the median of the branches."""
+        """Largest deflection from zero force: the median of the branches' values."""
         tops = [float(np.max(self.deflection[branch.samples])) for branch in self.branches]
         return float(np.median([a - b for a, b in zip(tops, zeros, strict=True) if isfinite(b)]))
 
     def hysteresis(self) -> float | None:
-        """Work lost, divided by the work done on loading: mean of the loops; None if not available.
+        """Work lost divided by work done on loading, mean of all loops; None if not available.
 
         A loop is a loading with the next unloading, or else an unloading with the next loading,
         over the deflections that both cover. The work lost is the integral of F dw around the loop,
@@ -305,18 +307,18 @@ class Loop:
 
 
 def slopes(parts: Sequence[Part], degree: int, record: Record) -> Term:
-    """Coefficient of x^degree: mean of loading and unloading; each branch has its own offsets."""
+    """Coefficient of x^degree, fitted to each branch on its own: mean of loading and unloading."""
     groups = by_way(parts, degree)
     if not groups:
         most = max((part.deflection.size for part in parts), default=0)
-        message = f"{most} samples in the straight part of the longest loading"
+        message = f"only {most} samples in the straight part of the longest loading"
         remedy = "sample faster, load slower, or check noise and units of the channels"
         raise record.fault(f"{message}, {FEWEST} are needed", remedy)
     return pooled(list(groups.values()))
 
 
 def by_way(parts: Sequence[Part], degree: int) -> dict[bool, list[Term]]:
-    """Coefficients of the branches, separately for loading and unloading."""
+    """Coefficients of x^degree of all branches, separately for loading and unloading."""
     groups: dict[bool, list[Term]] = {}
     for part in parts:
         if part.deflection.size >= FEWEST and np.unique(part.deflection).size > degree + 1:
@@ -325,7 +327,7 @@ def by_way(parts: Sequence[Part], degree: int) -> dict[bool, list[Term]]:
 
 
 def scatter(parts: Sequence[Part]) -> float:
-    """Smallest scatter 1 - r^2 of force over deflection among the branches.
+    """Scatter 1 - r^2 of force versus deflection, of the branch that scatters least.
 
     It is the relative difference between the regressions of force on deflection and of deflection
     on force. If only the deflection is noisy, the noise lowers the slope by this share [derived].
@@ -340,7 +342,7 @@ def scatter(parts: Sequence[Part]) -> float:
 
 @np.errstate(over="ignore", invalid="ignore")  # an overflow is rejected as an unusual range
 def _channels(record: Record) -> tuple[Array, Array]:
-    """Deflection and force of the complete samples, with positive signs for bending."""
+    """Deflection and force of the samples that have both."""
     for name in ("F_L", "w"):
         if name not in record:
             message = f"no column {name}, the {'deflection' if name == 'w' else 'force'}"
@@ -358,12 +360,14 @@ def _channels(record: Record) -> tuple[Array, Array]:
             raise record.fault(message, "give a record of a loaded specimen")
         if not USUAL[0] <= reach <= USUAL[1]:
             message = f"{name} spans {reach:.3g} {'m' if name == 'w' else 'N'}"
-            raise record.fault(f"{message}, which no bending test reaches", "check its unit")
+            raise record.fault(
+                f"{message}, which is implausible for a bending test", "check its unit"
+            )
     most = int(np.argmax(np.abs(force - force[0]))) + 1  # only samples before a failure
     most = most if most >= 2 * FEWEST else w.size
     follows = float(np.corrcoef(w[:most], force[:most])[0, 1]) if np.ptp(w[:most]) else 0.0
     if follows <= -FOLLOWS:
-        remedy = "reverse the sign of F_L or w: both increase as the specimen is bent"
+        remedy = "reverse the sign of F_L or w: both must increase as the specimen is bent"
         raise record.fault("F_L decreases as w increases", remedy)
     if follows < FOLLOWS:
         message = f"F_L does not follow w (correlation {follows:.2f})"
@@ -374,11 +378,11 @@ def _channels(record: Record) -> tuple[Array, Array]:
 def _oriented(w: Array, force: Array) -> tuple[Array, Array, float, bool]:
     """Deflection and force, increasing with bending.
 
-    Also returns the force at rest and whether the specimen is bent both ways.
+    Also returns the force without load, and whether the specimen is bent in both directions.
 
-    Whatever the offsets, the specimen is at rest at the start of the record. The exception is a
-    single pass towards zero force (unloading). If bent both ways, it is at rest where both channels
-    are zero at the same time, or else at the start.
+    Whatever the offsets, the specimen is taken to be unloaded at the start of the record. The
+    exception is a record of a single unloading. A specimen bent in both directions is unloaded
+    where both channels are zero at the same time, or else at the start.
     """
 
     def inside(values: Array, value: float) -> bool:
@@ -403,7 +407,7 @@ def _oriented(w: Array, force: Array) -> tuple[Array, Array, float, bool]:
 
 
 def straight(loop: Loop, zeros: Sequence[float], low: float, high: float) -> Straight:
-    """The longest part of a range with a constant slope; if there is none, the whole range."""
+    """The longest part of a range in which the slope is constant, or else the whole range."""
     straights: list[Straight] = []
     for first, last in CUTS:
         ends = low + first * (high - low), low + last * (high - low)
@@ -429,8 +433,8 @@ def straight(loop: Loop, zeros: Sequence[float], low: float, high: float) -> Str
 
 
 SHARE = 0.999
-"""Share of the velocity's power that counts as motion (our choice: leaves out 3 % of the
-velocity)."""
+"""Share of the velocity's power that counts as motion (our choice: the rest is 3 % of the
+velocity's amplitude)."""
 ABOVE = 4.0
 """Multiple of the noise above which the spectrum of the velocity shows motion (our choice: white
 noise exceeds it in one of 55 lines of a single periodogram, but hardly ever in the mean of
@@ -443,8 +447,7 @@ class Spectrum(NamedTuple):
     Parameters
     ----------
     motion : frequency below which 99.9 % of the velocity's power lies
-    floor : frequency, above that of the motion, at which the position becomes noise; 0 if it does
-        not
+    floor : frequency above which the position is only noise; 0 if there is none
     kept : share of the velocity's power that passes the filter
     """
 
@@ -458,12 +461,12 @@ class Spectrum(NamedTuple):
             return "the position shows no motion above its noise"
         if self.motion > cutoff:
             return (
-                f"the motion reaches {self.motion:.3g} Hz, above the cut-off; raise --cutoff, as "
-                "fast motion is lost"
+                f"the motion reaches {self.motion:.3g} Hz, above the cut-off, so fast motion is "
+                "lost: raise --cutoff"
             )
         if 0 < self.floor < cutoff:
             return (
-                f"99.9 % of the motion lies below {self.motion:.3g} Hz, only noise above "
+                f"99.9 % of the motion lies below {self.motion:.3g} Hz, only noise lies above "
                 f"{self.floor:.3g} Hz; a cut-off between them reduces noise and loses no motion"
             )
         return f"99.9 % of the motion lies below {self.motion:.3g} Hz, within the cut-off"

@@ -16,8 +16,8 @@ from .doubtful import INSEPARABLE, hidden, misled, spread, unbounded, unequal, w
 from .points import FrictionPoint
 
 STATIC_MOST = 3.0
-"""Largest F_S, as a multiple of the largest measured friction (our choice: a higher F_S is a
-guess)."""
+"""Largest F_S that is searched, as a multiple of the largest measured friction (our choice: a
+higher F_S is a guess)."""
 SPEEDS, EXPONENTS = (2e-4, 5e-2), (0.5, 2.5)
 """Ranges in which the Stribeck speed [m/s] and its exponent are searched (our choices: a decade on
 either side of the few mm/s of seals; half a unit beyond the exponents 1 and 2 of the usual
@@ -25,20 +25,20 @@ laws)."""
 EXPONENT = 2.0
 """Exponent that is used if the points cannot determine it ([MECE5005], [Huang2017] Table 2)."""
 SHARED = 0.85
-"""Smallest scatter of a sweep's points about the curve, as a share of their errors (our choice,
-from records of known friction): the filter correlates neighbouring points, so they look too
-smooth."""
+"""Smallest scatter that is assumed for a sweep's points about the curve, as a share of their errors
+(our choice, from records of known friction). The filter correlates neighbouring points, so they
+look smoother than they are."""
 OTHER = 0.5
-"""Second exponent that the confidence intervals allow for if the exponent is fixed. Bo and
+"""If the exponent is fixed, the confidence intervals allow for this second exponent as well. Bo and
 Pavelescu use 0.5 to 1, Tustin uses 1, others use 2 [ArmstrongHelouvry1994]."""
 DIFFERENT = 0.05
 """Relative difference above which two speeds count as different (our choice: more than
 `points.STEADY`)."""
 MODEL = 1e-3
-"""Error of a point in addition to its scatter, as a share of the largest friction (our choice: no
-curve fits better)."""
+"""Error that every point gets in addition to its scatter, as a share of the largest friction (our
+choice: no curve fits better)."""
 _LEVELS = (("coulomb", "viscous"), ("static", "stribeck_speed"), ("exponent",))
-"""Fitted parameters, in groups that are added one after the other."""
+"""Fitted parameters, in groups: each further fit adds the next group."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,7 +51,7 @@ class StribeckFit:
     Parameters
     ----------
     parameters : fitted parameters by name
-    held : parameters that are not fitted: exponent 2, no Stribeck part, no offset
+    held : fixed values of the parameters that are not fitted, such as exponent 2 or offset 0
     covariance : covariance of the fitted parameters, in their order
     quantile : quantile of Student's t for the confidence intervals
     reference_pressure : p_0 [Pa]
@@ -133,8 +133,8 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
     F_C and sigma_2 are always fitted. With five different speeds or more, F_S and v_s are fitted if
     they improve the fit (corrected Akaike information). With seven speeds or more the exponent is
     then always fitted, because fitting it only if it improves the fit would bias it and F_S. An
-    offset is fitted if the rod moves both ways. A pressure effect is fitted if the pressure varies
-    by a fifth.
+    offset is fitted if the rod moves in both directions. A pressure effect is fitted if the
+    pressure varies by a fifth.
 
     Parameters
     ----------
@@ -149,8 +149,8 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
     if len(speeds) < 2:
         at = f"one speed, {1e3 * speeds[0]:.3g} mm/s" if speeds else "no steady sliding"
         return (
-            f"{at}, but a Stribeck curve needs plateaus or sweeps of 2 speeds, or of 5 to "
-            "give F_S and v_s"
+            f"{at}, but a Stribeck curve needs plateaus or sweeps at 2 speeds, and at 5 speeds "
+            "to give F_S and v_s"
         )
     further = _further(points, area)
     doubts: list[str] = []
@@ -176,11 +176,13 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
             f"{len(speeds)} speeds are too few to determine F_S and v_s; give five or more"
         )
     elif "static" not in best.parameters:
-        doubts.append("friction does not rise towards rest, so F_S and v_s cannot be determined")
+        doubts.append(
+            "friction does not rise towards zero speed, so F_S and v_s cannot be determined"
+        )
     elif "exponent" not in best.parameters:
         doubts.append(
-            f"the exponent is fixed at {EXPONENT:g}; the intervals allow for {OTHER:g} as well; "
-            "seven speeds would determine it"
+            f"the exponent is fixed at {EXPONENT:g}, but the confidence intervals allow for "
+            f"{OTHER:g} as well; seven speeds would determine it"
         )
     slowest, *_, fastest = sorted(points, key=lambda point: point.speed)
     falls = abs(fastest.friction) < abs(slowest.friction)
@@ -192,7 +194,7 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
 
 
 def _with_doubts(fit: StribeckFit, points: Sequence[FrictionPoint], area: float) -> StribeckFit:
-    """Add reasons to doubt the friction itself: wrong areas, wrong sensors, other influences."""
+    """Add reasons to doubt the measured friction: wrong areas, wrong sensors, other influences."""
     error = unequal(points, area)
     plunger = all(point.pressure_2 == 0 for point in points)
     faults = [] if error is None or not error.sure else [error.says(area, plunger)]
@@ -212,7 +214,7 @@ def _allowing_exponents(fit: StribeckFit, points: Sequence[FrictionPoint]) -> St
 
 
 def held_error(parameters: Mapping[str, Parameter], other: Mapping[str, float]) -> dict[str, float]:
-    """Standard errors due to a fixed exponent: d/sqrt 3 for a difference d between two fits."""
+    """Standard errors due to a fixed exponent: d/sqrt 3 if fits with two exponents differ by d."""
     return {
         name: abs(other[name] - parameter.value) / float(np.sqrt(3))
         for name, parameter in parameters.items()
@@ -230,7 +232,7 @@ def different(speeds: Sequence[float]) -> list[float]:
 
 
 def _further(points: Sequence[FrictionPoint], area: float) -> list[str]:
-    """Names of offset and pressure effect, if the points can show them."""
+    """Names of the further parameters, offset and pressure slope, that the points can show."""
     ways = {point.velocity > 0 for point in points}
     names = ["offset"] if len(ways) == 2 else []
     for way in ways:
@@ -241,9 +243,9 @@ def _further(points: Sequence[FrictionPoint], area: float) -> list[str]:
 
 
 class Steady:
-    """Points as arrays, with weights 1/error.
+    """Points of steady sliding as arrays, with weights 1/error.
 
-    The curve is averaged over the spread of speeds in each point.
+    For each point, the curve is averaged over the speeds that the point contains.
     """
 
     def __init__(self, points: Sequence[FrictionPoint], error: Array | None = None) -> None:
@@ -267,7 +269,7 @@ class Steady:
         return (self.predict(values) - self.friction) / self.error
 
     def slopes(self, values: Mapping[str, float], names: Sequence[str]) -> Array:
-        """Derivatives of the friction with respect to parameters (points, parameters)."""
+        """Derivatives of the friction with respect to the parameters, (points, parameters)."""
         velocities = (self.velocity - self.spread, self.velocity + self.spread)
         return sum(_slopes(velocity, self.change, values, names) for velocity in velocities) / 2
 
@@ -281,7 +283,7 @@ def _held(names: Sequence[str], coulomb: float, exponent: float) -> dict[str, fl
 
 
 def _fit(points: Sequence[FrictionPoint], names: tuple[str, ...], exponent: float) -> StribeckFit:
-    """Fit some parameters by least squares, from the best of a grid of speeds and exponents."""
+    """Fit some parameters by least squares, starting from the best value of `_search`."""
     data = Steady(points)
     start = _search(data, names, exponent)
     scale = _scales(data)
@@ -357,7 +359,10 @@ def _scales(data: Steady) -> dict[str, float]:
 
 
 def _search(data: Steady, names: Sequence[str], held: float) -> dict[str, float]:
-    """Initial values: a grid of Stribeck speeds and exponents, for which the rest is linear."""
+    """Initial values: the best of a grid of Stribeck speeds and exponents.
+
+    At each grid point, the other parameters follow from linear least squares.
+    """
     way, speed = np.sign(data.velocity), np.abs(data.velocity)
     columns = {"coulomb": way, "viscous": data.velocity}
     if "offset" in names:
@@ -395,7 +400,7 @@ def _search(data: Steady, names: Sequence[str], held: float) -> dict[str, float]
 def _slopes(
     velocity: Array, change: Array, values: Mapping[str, float], names: Sequence[str]
 ) -> Array:
-    """Derivatives of the curve with respect to parameters (..., parameters), by complex steps."""
+    """Derivatives of the curve with respect to the parameters, (..., parameters)."""
     columns = []
     for name in names:
         moved = {**values, name: values[name] + 1j * STEP}
@@ -406,7 +411,7 @@ def _slopes(
 
 
 def _information(fit: StribeckFit) -> float:
-    """Corrected Akaike information of the weighted residuals; less is better."""
+    """Corrected Akaike information criterion of the weighted residuals; smaller is better."""
     count, parameters = fit.residuals.size, len(fit.parameters) + 1
     spare = count - parameters - 1
     if spare <= 0:

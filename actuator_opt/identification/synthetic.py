@@ -74,9 +74,9 @@ def plateaus(
     rest: float = 0.1,
     longest: float = 3.0,
 ) -> PrescribedMotion:
-    """Strokes at constant speed out and back, with smooth ramps between them.
+    """Strokes out and back, each at constant speed, with smooth ramps between them.
 
-    A stroke covers `travel` or, if slow, lasts `longest` seconds.
+    A stroke covers `travel`, or less if it would take more than `longest` seconds.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def plateaus(
     travel : length of an outward stroke [m]
     begin : initial position [m]
     step : time step [s]
-    ramp : time from rest to full speed, half a cosine [s]
+    ramp : time from rest to full speed, along half a cosine wave [s]
     rest : time at rest between strokes [s]
     longest : longest time of a stroke at constant speed [s]
 
@@ -102,7 +102,7 @@ def plateaus(
 
 
 def course(velocity: Array, *, begin: float, step: float) -> PrescribedMotion:
-    """The motion with a given velocity from an initial position, SI."""
+    """The motion that a given velocity yields from the initial position `begin`, SI."""
     time = step * np.arange(velocity.size)
     distance = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2) * step])
     return PrescribedMotion(time, begin + distance, velocity, np.gradient(velocity, step))
@@ -142,10 +142,8 @@ def pressures(
 ) -> tuple[Array, Array]:
     """Chamber pressures that drive a mass against a force [Pa].
 
-    The lower pressure is `back_pressure`.
-
-    The higher pressure and the growth of the bore that it causes are solved together. In a plunger
-    cylinder only p1 pushes; the load returns the plunger.
+    The lower pressure is `back_pressure`. The higher pressure and the growth of the bore that it
+    causes are solved together. In a plunger cylinder only p1 pushes; the load returns the plunger.
     """
     needed = force + mass * course.acceleration
     if bench.plunger:
@@ -181,7 +179,7 @@ def record(
     bench : the actuator
     course : its motion
     friction_force : friction with the sign of the velocity (samples) [N]
-    load : load on the rod, against extension [N]
+    load : load on the rod, positive if it opposes extension [N]
     mass : moving mass on the actuator's side of the force sensor [kg]
     back_pressure : pressure of the chamber that is not driven [Pa]
     sensors : errors of the sensors; None for perfect sensors
@@ -205,7 +203,7 @@ def record(
 def _sensed(
     channels: Mapping[str, Array], time: Array, sensors: Sensors, rng: np.random.Generator
 ) -> dict[str, Array]:
-    """Channels as the sensors show them: with lag, offset, noise, steps and spikes."""
+    """The true channels as the sensors show them: with lag, offset, noise, steps and spikes."""
     readings = dict(channels)
     scatter = {
         "p1": sensors.pressure_noise * sensors.pressure_range,

@@ -1,6 +1,6 @@
 """Sections ('windows') of a record around reversals, and the LuGre friction along them.
 
-The LuGre model is integrated along each window. Its friction passes the same filter as the record.
+The LuGre model is integrated along each window. Its friction is then filtered like the record.
 """
 
 from __future__ import annotations
@@ -26,18 +26,19 @@ but only narrow the confidence intervals by 30 %)."""
 LAG = 20e-3
 """Largest pressure lag that is searched for [s] (our choice: five times that of a usual sensor)."""
 PER_PERIOD = 12
-"""Smallest number of integration steps per period of the cut-off (our choice: a second-order step
-then has an error of (2 pi/12)^2/12 = 2 % at the cut-off itself)."""
+"""Smallest number of integration steps per period of the cut-off (our choice: a method of second
+order then has an error of (2 pi/12)^2/12 = 2 % at the cut-off itself)."""
 SAMPLES, LEFT = 2.0, 0.05
-"""Number of independent samples that must lie within the deflection distance of the bristles, and
-share of that distance that still counts as rest (our choices)."""
+"""Number of independent samples that must lie within the travel in which the bristles deflect, and
+share of that travel that still counts as rest (our choices)."""
 LEAST = 4
-"""Smallest number of independent samples in a window (our choice: one more than its three unknowns
-stiffness, lag and friction level)."""
+"""Smallest number of independent samples in a window (our choice: one more than its three unknowns,
+which are stiffness, lag and friction level)."""
 GRAIN = 0.35
-"""Smallest share of the resolution's position error that is assumed to shift all reversals alike
-(our choice, from records of known friction). Divided by the breakaway travel, this error is the
-relative error of the bristle stiffness; divided by the speed there, it is the error of the lag."""
+"""The finite resolution of the position causes an error, of which at least this share is assumed to
+shift all reversals alike (our choice, from records of known friction). Divided by the breakaway
+travel, this error is the relative error of the bristle stiffness; divided by the speed there, it is
+the error of the lag."""
 LASTING = 0.05
 """Shortest motion in one direction that counts [s] (our choice: three independent samples at 30
 Hz)."""
@@ -47,11 +48,11 @@ Hz)."""
 class Windows:
     """Sections of a record around reversals and starts, SI.
 
-    Arrays have a row ('lane') for each window: (lanes, samples).
+    Arrays have the shape (lanes, samples): each window is a row, called a lane.
 
     Parameters
     ----------
-    velocity : velocity of the rod: for each window, one of the `options`
+    velocity : velocity of the rod, which for each window is one of the `options`
     options : velocities at the cut-off of the record and at lower cut-offs (cut-offs, lanes,
         samples)
     turn : index of the sample at which the rod reverses or starts
@@ -62,9 +63,9 @@ class Windows:
     step : time between samples [s]
     sections, reach : filter of the record, computed for this step
     kept : indices of the samples in use, which are independent and not at the ends
-    steady : 0 where points of steady sliding already give the same information, else 1 (lanes,
-        kept)
-    judged : weights of the samples in use: `steady`, but 0 in windows in which the rod is too fast
+    steady : weights (lanes, kept): 0 where points of steady sliding already give the same
+        information, else 1
+    judged : weights in use: as `steady`, but 0 in windows in which the rod is too fast
     blur : time for which the position resolution q hides a reversal with acceleration a: sqrt(2
         q/a) [s]
     grain : position error due to resolution that shifts all reversals alike [m]
@@ -103,10 +104,10 @@ class Windows:
         return float(np.max(np.abs(self.measured(np.zeros(1))[..., self.kept])))
 
     def resolved(self, travel: float) -> Windows:
-        """Ignore windows whose rod covers `travel` in under `SAMPLES` independent samples.
+        """Ignore windows in which the rod covers `travel` in fewer than `SAMPLES` samples.
 
-        The filter blurs such fast motion, which bends the bristles. If the rod is too fast
-        everywhere, every window is kept.
+        Only independent samples count. The filter blurs the deflection of the bristles in such fast
+        motion. If the rod is too fast in every window, all windows are kept.
         """
         place = np.cumsum(self.velocity, axis=-1) * self.step
         distance = np.abs(place - place[:, self.turn, None])[:, self.turn :]
@@ -117,18 +118,17 @@ class Windows:
         return replace(self, judged=judged if slow.any() else self.steady, quick=not slow.any())
 
     def short(self, distance: float) -> Windows:
-        """Add a distance [m] at the reversal or start that the position resolution may hide."""
+        """Add a distance [m] to the motion at the reversal: the resolution may have hidden it."""
         velocity = self.velocity.copy()
         way = np.sign(np.sum(velocity[:, self.turn :], axis=-1))
         velocity[:, self.turn] -= way * distance / self.step
         return replace(self, velocity=velocity)
 
     def measured(self, lag: Array) -> Array:
-        """Measured friction, with the hydraulic force taken `lag` later.
+        """Measured friction, with the hydraulic force taken from a time `lag` later.
 
-        Lags (rows,) give friction (rows, lanes, samples).
-
-        Values between samples are interpolated by cubics.
+        Lags, (rows,), give friction, (rows, lanes, samples). Values between samples are
+        interpolated by cubic polynomials.
         """
         count = self.velocity.shape[-1]
         rows = []
@@ -151,10 +151,10 @@ class Windows:
         return np.stack(rows) - self.resisting
 
     def misfit(self, values: Mapping[str, Array]) -> Array:
-        """Friction of the model minus measured friction at the samples in use (rows, lanes, kept).
+        """Friction of the model minus measured friction at the samples in use.
 
-        `values` are the parameters, each as (rows,). The model's friction passes the same filter as
-        the record.
+        The result has the shape (rows, lanes, kept); `values` are the parameters, each (rows,). The
+        model's friction is filtered like the record.
         """
         measured = self.measured(values["lag"])
         model = self._integrated({n: v[:, None, None] for n, v in values.items()}, measured)
@@ -165,8 +165,8 @@ class Windows:
         """Select for every window the velocity with which the model fits the friction best.
 
         In slow motion, the steps of the position sensor pass the filter and look like motion. A
-        lower cut-off removes them, but blurs the start of a motion. The friction shows which
-        cut-off is better.
+        lower cut-off removes them, but blurs the start of a motion. The misfit of the friction
+        shows which cut-off is better.
         """
         costs = [
             np.sum(replace(self, velocity=option).misfit(values)[0] ** 2, axis=-1)
@@ -215,9 +215,9 @@ def windows(
     slowest: float = np.inf,
     settling: float = SETTLED,
 ) -> Windows | None:
-    """Windows at which the rod reverses or starts.
+    """Windows around the times at which the rod reverses or starts.
 
-    If it never does, windows spread over the record.
+    If it never does, windows are spread over the record.
 
     Parameters
     ----------
@@ -285,9 +285,9 @@ def _independent_samples(motion: ConditionedRecord, step: float, count: int) -> 
 def no_windows(motion: ConditionedRecord) -> str:
     """Reason why a record has no windows.
 
-    A window of duration T has n = (T - 2/f) 2 f independent samples at the cut-off f: the filter
-    disturbs 1/f at each end, and 2 f samples per second are independent. The lowest usable cut-off
-    is thus f = (n + 4)/2T with n = `LEAST`.
+    A window of duration T has n = (T - 2/f) 2 f independent samples at the cut-off f, because the
+    filter disturbs a time 1/f at each end, and 2 f samples per second are independent. The lowest
+    usable cut-off is thus f = (n + 4)/2T with n = `LEAST`.
     """
     lowest = (LEAST + 4) / (2 * (BEFORE + AFTER))
     if motion.cutoff <= lowest:
@@ -295,12 +295,13 @@ def no_windows(motion: ConditionedRecord) -> str:
         if motion.sample_time * lowest * SLOWEST > 1:
             remedy = f"sample at {SLOWEST * lowest:.3g} Hz or faster, and {remedy}"
         return (
-            f"no reversal can be used at this cut-off: {motion.cutoff:.3g} Hz blur the half second "
-            f"about a reversal, in which the deflection of bristles shows; {remedy}"
+            f"no reversal can be used, because a cut-off of {motion.cutoff:.3g} Hz blurs the half "
+            "second around a reversal, in which the deflection of the bristles shows; "
+            f"{remedy}"
         )
     return (
-        "the record has no uninterrupted half second about a reversal, where the "
-        "deflection of bristles shows"
+        "the record has no uninterrupted half second around a reversal, in which the deflection "
+        "of the bristles would show"
     )
 
 
@@ -320,7 +321,7 @@ def _grain(places: Sequence[float], step: float) -> float:
 def _lanes(
     slidings: Sequence[Sliding], motion: ConditionedRecord, room: tuple[int, int]
 ) -> list[tuple[Sliding, int]]:
-    """Section and sample of each window: at reversals and starts, or spread over the record."""
+    """Section and central sample of each window, at reversals and starts or spread evenly."""
     places = [
         (sliding, at)
         for sliding in slidings
@@ -341,7 +342,7 @@ def _lanes(
 
 
 def _steady_above(sliding: Sliding, slowest: float, settling: float) -> Array:
-    """Flags for samples of steady sliding above a speed."""
+    """Flags for samples of steady sliding that are faster than `slowest`."""
     mask = np.zeros(sliding.piece.time.size, dtype=bool)
     mask[settled(sliding, settling)] = True
     return mask & (np.abs(sliding.piece.velocity) >= slowest)
@@ -355,7 +356,7 @@ def _fits(sliding: Sliding, at: int, room: tuple[int, int]) -> bool:
 
 
 def _starts_of_motion(sliding: Sliding, motion: ConditionedRecord) -> list[int]:
-    """Samples at which sliding begins that lasts, after a reversal or rest."""
+    """Samples at which a lasting motion begins, after a reversal or rest."""
     way = np.where(sliding.moving, np.sign(sliding.piece.velocity), 0.0)
     begins = np.flatnonzero((way != 0) & (np.diff(way, prepend=0.0) != 0))
     lasting = round(LASTING / motion.sample_time)

@@ -38,7 +38,7 @@ def _overlap(loaded: Loaded) -> Overlap | str:
     modulus = materials.get(end.cap, "youngs_modulus")
     adhesive = (materials.get(end.material, key) for key in ("bond_strength", "shear_modulus"))
     if any(value is None for value in (modulus, *adhesive)):
-        return "adhesive or caps lack bond strength or a modulus"
+        return "the adhesive has no bond strength or shear modulus, or the caps have no modulus"
     return Overlap(
         adhesive=end.material,
         diameter=2 * end.outer_radius,
@@ -62,7 +62,7 @@ def _strength(loaded: Loaded) -> Strength | str:
 
 
 def _envelope(loaded: Loaded, burst: Mapping[str, Array]) -> dict[str, Array]:
-    """Upper bounds of the bond factor from either wall alone; equal for equally stiff walls."""
+    """Upper bounds of the bond factor, one from each wall; equal if the walls are equally stiff."""
     overlap = _overlap(loaded)
     if isinstance(overlap, str):
         return {}

@@ -15,25 +15,26 @@ from ..base.numeric import Array
 from ..base.quantities import Quantity
 
 LEAST_METAL = 1e-3
-"""Least dimension of a turned part [m]. It applies to walls beside or under a groove or thread, the
-wall of a rod, the bore of a laminated rod, and the gap between rod and bore. Our choice for this
-size range."""
+"""Smallest permitted dimension of a turned part [m]. It applies to walls beside or under a groove
+or thread, the wall of a rod, the bore of a laminated rod, and the gap between rod and bore. Our
+choice for this size range."""
 
 NOT_BONDED = "the caps are not bonded"
 
 ROUNDING = 1e-5
-"""Relative tolerance within which an optimum on its limit still meets it."""
+"""Relative tolerance within which a value still meets its limit, as an optimum often lies on a
+limit."""
 
 
 class JointSizes(Protocol):
-    """Values of the block `retention` by key, such as `thread.pitch`, in SI."""
+    """Values of the design file's block `retention`, by key such as `thread.pitch`, in SI."""
 
     def __contains__(self, key: object) -> bool: ...
 
     def __getitem__(self, key: str) -> Array: ...
 
     def get(self, key: str, default: Array) -> Array:
-        """The number of a key, or `default` if the design does not state it."""
+        """The value of a key, or `default` if the design does not state it."""
         ...
 
 
@@ -49,12 +50,15 @@ class MaterialProperties(Protocol):
         ...
 
     def allowable(self, name: str, *properties: str, cold: bool = False) -> Array:
-        """A strength after knock-downs, at the hottest or (`cold`) coldest; None if not stated."""
+        """A strength after knock-downs, at the highest temperature or, if `cold`, at the lowest.
+
+        None if it is not stated.
+        """
         ...
 
 
 class StatedValues(Protocol):
-    """A design file during the check for faults: values by path in the file, None if unusable."""
+    """Values of a design file during its check, by path in the file; None if one is unusable."""
 
     def has(self, *loc: str | int) -> bool:
         """Whether the file states a value here."""
@@ -89,7 +93,7 @@ class JointField(NamedTuple):
     """A key of `retention` that a joint uses.
 
     For a required key, `missing` and `remedy` are the messages for a file without it; for an
-    optional key both are empty. A key that no other joint has states its `quantity` and `help`.
+    optional key both are empty. A key that only this joint has also needs `quantity` and `help`.
     """
 
     key: str
@@ -100,14 +104,14 @@ class JointField(NamedTuple):
 
 
 class FactorBasis(NamedTuple):
-    """Basis of a safety factor: which `measure` of strength is used, and `of` which parts."""
+    """Reference of a safety factor: which `measure` of strength, and `of` which parts."""
 
     measure: str
     of: str = ""
 
 
 class Usual(NamedTuple):
-    """A ratio with a usual range in sensible designs; `path` is the value to check."""
+    """A ratio that has a usual range in sensible designs; `path` is the input to check if not."""
 
     path: str
     meaning: str
@@ -142,15 +146,15 @@ class End:
     plate: Array
     """Thickness of the end plate."""
     cache: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
-    """Intermediate results that a joint uses again, by keys that it chooses."""
+    """Intermediate results that a joint stores here to use again, by keys of its own choice."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EndDimensions:
     """Dimensions of cap and barrel that the joint determines, for mass model and drawing.
 
-    A skirt has `length`, `wall` and an inner `radius`; a larger barrel is turned down to this
-    radius. `own` are further dimensions that the outline of the joint needs.
+    A skirt has `length`, `wall` thickness and an inner `radius`. A barrel with a larger outer
+    radius is turned down to this radius. `own` are further dimensions for the drawing of the joint.
     """
 
     plate_radius: Array
@@ -161,9 +165,10 @@ class EndDimensions:
 
 
 class EndSpan(NamedTuple):
-    """Position of an end in the drawing [m]: face of the barrel, direction into it (1 or -1).
+    """Axial positions at an end of the barrel in the drawing [m].
 
-    `outside` is the outer face of this end plate, `opposite` that of the plate at the other end.
+    `face` is the end face of the barrel, `inwards` the direction from it into the barrel (1 or -1),
+    `outside` the outer face of this end's plate, and `opposite` that of the plate at the other end.
     """
 
     face: float
@@ -172,7 +177,7 @@ class EndSpan(NamedTuple):
     opposite: float
 
     def over(self, length: float, low: float, high: float) -> Polygon:
-        """A rectangle over the last `length` of the barrel at this end, between two radii."""
+        """A rectangle between two radii, along the last `length` of the barrel at this end."""
         start, stop = sorted((self.face, self.face + self.inwards * length))
         return rectangle(start, stop, low, high)
 
@@ -182,12 +187,12 @@ Polygon: TypeAlias = tuple[tuple[float, float], ...]
 
 
 def rectangle(start: float, stop: float, low: float, high: float) -> Polygon:
-    """A rectangle of the half-section, along the axis and radially."""
+    """A rectangle in the half-section, from `start` to `stop` and from radius `low` to `high`."""
     return ((start, low), (stop, low), (stop, high), (start, high))
 
 
 class DrawnPart(NamedTuple):
-    """A part of the half-section; `bars` counts round bars about the axis, 0 is a turned part."""
+    """A part of the half-section; `bars` is the number of round bars, or 0 for a turned part."""
 
     part: str
     material: str
@@ -199,8 +204,8 @@ class DrawnPart(NamedTuple):
 class Clamp:
     """Parts that clamp the barrel between both ends, such as tie rods.
 
-    The values are total preload and largest total force at supply pressure [N], and the ratio of
-    preload to the part of it that proof pressure takes away.
+    `preload` is the total preload [N], `largest` the largest total force at supply pressure [N],
+    and `closed` the preload divided by the part of it that proof pressure takes away.
     """
 
     preload: Array
@@ -213,7 +218,7 @@ class Loaded:
     """An end of the barrel under load.
 
     `force` is the largest separating force [N]. `paths` are the axial forces in the barrel wall per
-    pressure [m^2], by load path. `line_stiffness` is the axial E t of the wall [N/m], and
+    unit pressure [m^2], by load path. `line_stiffness` is the axial E t of the wall [N/m], and
     `expansion` its axial thermal expansion [1/K], None if unknown.
     """
 
@@ -227,7 +232,7 @@ class Loaded:
 
 
 class Pulsed(NamedTuple):
-    """Stress of a metal under pulsating pressure: range and mean [Pa]."""
+    """Stress in a metal part under pulsating pressure: its range `span`, and its mean [Pa]."""
 
     place: str
     material: str
@@ -236,18 +241,22 @@ class Pulsed(NamedTuple):
 
 
 class Life(NamedTuple):
-    """Fatigue of a part: cycles to failure, and strength over stress amplitude."""
+    """Fatigue of a part: cycles to failure, and fatigue strength divided by stress amplitude."""
 
     cycles: Array
     factor: Array
 
 
 Thermal = Callable[[Array, bool], Array]
-"""Function for strength over load by a temperature change [K] alone; True: at the coldest."""
+"""Function that returns strength divided by the load that a temperature change [K] alone causes.
+The second argument is True for the strength at the lowest temperature."""
 
 
 class Fatigue(NamedTuple):
-    """Pulsating stresses, assessed by metal data, and locations with their own fatigue strength."""
+    """Fatigue at the joint: stresses to assess with fatigue data of metals, and assessed parts.
+
+    `pulsed` are the stresses, `lives` the parts whose fatigue the joint itself has assessed.
+    """
 
     pulsed: tuple[Pulsed, ...] = ()
     lives: Mapping[str, Life] = {}
@@ -262,10 +271,10 @@ class WallPressures(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Strength:
-    """Strength over load of an end, by location.
+    """Safety factors (strength divided by load) of an end, by location.
 
-    `working` are elastic limits and `burst` are breaking loads, both over the largest force.
-    `thermal` gives strength over load by temperature alone, or the reason why it is unknown.
+    `working` is the elastic limit and `burst` the breaking load, each divided by the largest force.
+    `thermal` is a function for the factor under temperature alone, or the reason why it is unknown.
     """
 
     working: Mapping[str, Array]
@@ -286,15 +295,17 @@ class Joint:
     noun: str
     """Noun for the joint in messages: `a bond`, or a plural such as `tie rods`."""
     fields: tuple[JointField, ...]
-    """Keys of `retention` that the joint uses; any other key is a fault."""
+    """Keys of the block `retention` that the joint uses; any other key in a design file is an
+    error."""
     kinds: tuple[str, ...]
-    """Allowed kinds of `retention.material`; empty: no material."""
+    """Allowed kinds of the material `retention.material`; empty if the joint has no material."""
     without: Mapping[str, tuple[str, str]]
-    """Fault and remedy for some keys that the joint does not use, in place of the general text."""
+    """For some keys that the joint does not use: message and remedy that replace the general
+    ones."""
     faults: Callable[[StatedValues], Iterable[Fault]]
-    """Function that yields faults among the values of a design file."""
+    """Function that yields errors in the values of a design file."""
     material_faults: Callable[[StatedValues, KnownMaterials], Iterable[Fault]]
-    """Function that yields faults that depend on the material library."""
+    """Function that yields errors in a design file that depend on material properties."""
     skirts: bool
     """Whether the caps have skirts over the outside of the barrel."""
     fit: Callable[[End], EndDimensions]
@@ -305,27 +316,30 @@ class Joint:
     outline: Callable[[End, EndDimensions, EndSpan], Iterable[DrawnPart]]
     """Parts of the joint in the half-section at one end."""
     notes: Callable[[End], Iterable[str]]
-    """Sentences on details that the drawing does not show."""
+    """Sentences for the drawing on details that it does not show."""
     strength: Callable[[Loaded], Strength | str]
     """Strength of an end, or the reason why it cannot be assessed."""
     yields: Callable[[Loaded], Mapping[str, Array]]
-    """Further elastic limits over working stress, by location."""
+    """Further safety factors against yielding (elastic limit divided by stress), by location."""
     wall: Callable[[Loaded], WallPressures]
     """Strength of the barrel itself at the joint."""
     fatigue: Callable[[Loaded], Fatigue]
     own: Callable[[Loaded], Mapping[str, Array]]
     """Values of the metrics that only this joint has; `metrics` lists their names."""
     envelope: Callable[[Loaded, Mapping[str, Array]], Mapping[str, Array]] | None
-    """Upper bound of `Strength.working`, from `burst`, if the working factor is not convex."""
+    """Function for upper bounds of `Strength.working`, given `Strength.burst`. They are needed to
+    prove bounds of an optimum if the working factor is not convex, otherwise None."""
     metrics: Mapping[str, str]
-    """Metrics that only this joint has, with the reason why other joints lack them."""
+    """Metrics that only this joint has, each with the text that says why other joints do not have
+    it."""
     judged: tuple[FactorBasis, FactorBasis]
-    """Bases of the working factor and of the burst factor."""
+    """References of the working factor and of the burst factor, for texts."""
     models: Mapping[tuple[str, str], str]
-    """Main model, such as `rod.section_area`, by metric and location."""
+    """Name of the main model, such as `rod.section_area`, by metric and location."""
     usual: tuple[Usual, ...]
     warnings: Callable[[Loaded, Mapping[str, Quantity]], Iterable[tuple[str, str]]]
-    """(metric, sentence) for each doubt; the second argument has the quantities of all metrics."""
+    """Function that yields a pair (metric, sentence) for each warning; its second argument has the
+    quantities of all metrics."""
 
     @property
     def plural(self) -> bool:
@@ -334,7 +348,7 @@ class Joint:
 
 
 def nothing(*_: object) -> Iterator[Any]:
-    """Do nothing: for functions that do not apply to a joint."""
+    """Yield nothing; replaces functions that do not apply to a joint."""
     return iter(())
 
 
@@ -344,7 +358,7 @@ def check(joints: Iterable[Joint]) -> None:
     Raises
     ------
     ValueError
-        two joints declare the same; the text names both
+        two joints declare the same thing; the text names both
     """
     seen: dict[object, str] = {}
     for joint in joints:
@@ -361,7 +375,10 @@ def chosen(stated: StatedValues, path: str) -> bool:
 
 
 def judged_later(stated: StatedValues, varied: Iterable[str]) -> bool:
-    """Whether choices vary all of these sizes (PATHs). The search then checks every combination."""
+    """Whether the search checks these sizes (PATHs) later, for every combination of choices.
+
+    It does so if one of them is a variable, and one of them or the type of joint has choices.
+    """
     paths = tuple(varied)
     free = any(stated.has("variables", path) for path in paths)
     return free and any(chosen(stated, path) for path in (*paths, "retention.type"))
@@ -378,7 +395,7 @@ def models_at(joints: Iterable[Joint], metric: str) -> dict[str, str]:
 
 
 def judged_on(joints: Iterable[Joint], index: int) -> str:
-    """Basis of the working factor (index 0) or burst factor (1) for all joints, in words."""
+    """Words for the reference of the working factor (index 0) or burst factor (1) of all joints."""
     groups: dict[str, list[str]] = {}
     for joint in joints:
         judged = joint.judged[index]
@@ -390,7 +407,7 @@ def judged_on(joints: Iterable[Joint], index: int) -> str:
 
 
 def _alternatives(parts: Sequence[str]) -> str:
-    """Join parts with "or"; a comma precedes it if a part is itself a list.
+    """Join parts with "or"; put a comma before it if a part is itself a list.
 
     >>> _alternatives(["threads", "tie rods"]), _alternatives(["threads and skirt", "tie rods"])
     ('threads or tie rods', 'threads and skirt, or of tie rods')

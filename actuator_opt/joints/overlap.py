@@ -1,8 +1,8 @@
 """Bonded overlaps of caps on the barrel and of metal fittings in a laminated rod; skirts of caps.
 
-Shear at both edges of the overlap is calculated under force alone, and by temperature alone at
-the coldest and the hottest. The two are not added: their elastic sum is too high for an adhesive
-that yields before it breaks. Bonded and screwed joints share the code of the skirts.
+Shear at both edges of the overlap is calculated under force alone, and under temperature alone at
+the lowest and the highest temperature. The two are not added: their elastic sum is too high for an
+adhesive that yields before it breaks. Bonded and screwed joints share the code for skirts.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class Overlap:
 
     `tube` and `metal` are the axial E t of both walls at the bond's diameter [N/m]. `mismatch` is
     the thermal expansion of the metal minus that of the tube [1/K], None if unknown. `names` are
-    the names of tube and metal part.
+    the words for tube and metal part in texts.
     """
 
     adhesive: str
@@ -36,7 +36,7 @@ class Overlap:
     names: tuple[str, str]
 
     def _adhesive(self, materials: MaterialProperties) -> dict[str, Array]:
-        """The overlap as input of the models."""
+        """The overlap as keyword arguments of the lap-joint models."""
         return {
             "length": self.length,
             "shear_modulus": materials.get(self.adhesive, "shear_modulus"),
@@ -44,7 +44,7 @@ class Overlap:
         }
 
     def edge_factors(self, materials: MaterialProperties, force: Array) -> dict[str, Array]:
-        """Strength over elastic shear at both edges under a force."""
+        """Bond strength divided by the elastic peak shear stress under a force, at both edges."""
         strength = materials.allowable(self.adhesive, "bond_strength")
         tube, metal = self.names
         factors = {}
@@ -69,12 +69,12 @@ class Overlap:
         )
 
     def mean_factor(self, materials: MaterialProperties, force: Array) -> Array:
-        """Strength over mean shear under a force."""
+        """Bond strength divided by mean shear stress under a force."""
         strength = materials.allowable(self.adhesive, "bond_strength")
         return strength * (pi * self.diameter * self.length) / force
 
     def thermal_factor(self, materials: MaterialProperties, warming: Array, cold: bool) -> Array:
-        """Strength over edge shear without load, after a change from the joining temperature."""
+        """Bond strength divided by the edge shear after a change from the joining temperature."""
         stress = lap_joint.bond_thermal_shear(
             strain_difference=self.mismatch * warming,
             membrane_stiffness_1=self.tube,
@@ -120,7 +120,7 @@ def outline(end: End, fit: EndDimensions, span: EndSpan) -> Iterator[DrawnPart]:
 
 
 def yields(loaded: Loaded) -> dict[str, Array]:
-    """Yield over stress of the skirt under the separating force."""
+    """Yield strength of the skirt divided by its stress under the separating force."""
     end = loaded.end
     strength = loaded.materials.allowable(end.cap, "yield_strength")
     if strength is None:

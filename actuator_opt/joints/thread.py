@@ -1,9 +1,10 @@
 """Skirts of the caps screwed over the barrel: threads of barrel and skirts, and their walls.
 
-The thread is cut into the outermost layer of the barrel. If `thread.diameter` is smaller than this
-layer, the layer is turned down to it. This layer is assumed to carry the whole axial force. Oil
-pressure acts on it up to the ends of the barrel, and inner layers are assumed to carry no pressure.
-A thread must be cut into metal and leave metal under it; otherwise the design file is refused.
+The thread is cut into the outermost layer of the barrel. If `thread.diameter` is smaller than the
+outer diameter of this layer, the layer is turned down to it. This layer is assumed to carry the
+whole axial force. Oil pressure acts on it up to the ends of the barrel, as inner layers are assumed
+to carry no pressure. The thread must be cut into metal and leave metal under it; otherwise the
+design file is refused.
 """
 
 from __future__ import annotations
@@ -52,12 +53,13 @@ CREST = "geometry_thread_crest"
 """Names of the metrics for the metal left under both thread roots, and for the flank overlap."""
 
 HARD = 830e6
-"""Tensile strength from which a metal counts as hard [Pa]. Our choice, to separate the grades of
+"""Tensile strength from which on a metal counts as hard [Pa]. Our choice, to separate the grades of
 [Shigley2011] table 8-16."""
 
 CUT, CUT_HARD = 3.0, 3.8
-"""Fatigue notch factors of a cut thread root, below `HARD` and above. [Shigley2011] table 8-16 has
-2.8 for soft steel and 3.8 for hard steel. Metals outside the table also have 3 below `HARD`."""
+"""Fatigue notch factors of a cut thread root, for metals below `HARD` and from `HARD` on.
+[Shigley2011] table 8-16 has 2.8 for soft steel and 3.8 for hard steel. Here, every metal below
+`HARD` has 3, even if it is not in the table."""
 
 
 # --- faults of the file ---------------------------------------------------------------------
@@ -65,7 +67,11 @@ CUT, CUT_HARD = 3.0, 3.8
 
 @dataclass(frozen=True, slots=True)
 class _Stated:
-    """Stated sizes [m]: outside of the barrel, thickness of its outermost layer, thread, skirt."""
+    """Sizes as stated in the design file [m].
+
+    They are the outer diameter of the barrel, the thickness of its outermost layer, diameter and
+    pitch of the thread, and the wall thickness of the skirt.
+    """
 
     outside: float
     layer: float
@@ -84,7 +90,7 @@ def _layer(view: StatedValues) -> tuple[str, str, int]:
 
 
 def _stated(view: StatedValues) -> _Stated | None:
-    """Read the sizes of the joint; None if a size is missing or faulty."""
+    """Read the sizes of the joint; None if a size is missing or wrong."""
     count = len(view.items("barrel", "layup"))
     layers = [view.number("barrel", "layup", index, "thickness") for index in range(count)]
     thicknesses = [layer for layer in layers if layer is not None]
@@ -98,7 +104,7 @@ def _stated(view: StatedValues) -> _Stated | None:
 
 
 def _faults(view: StatedValues) -> Iterator[Fault]:
-    """Faults of a thread that does not fit the barrel, or whose turns do not engage."""
+    """Report a thread that does not fit the barrel, or has less than one engaged turn."""
     pitch, length = view.number("retention", "thread", "pitch"), view.number("retention", "length")
     if pitch is not None and length is not None and length < (1 + thread.RUN_OUT) * pitch:
         yield Fault(
@@ -120,14 +126,14 @@ def _faults(view: StatedValues) -> Iterator[Fault]:
         text = _text(sizes.outside)
         yield Fault(
             ("retention", "thread", "diameter"),
-            f"{_text(sizes.diameter)}: larger than the outside of the barrel ({text}), which "
-            "has the thread",
-            f"write at most {text}, or remove it to use the outside",
+            f"{_text(sizes.diameter)}: larger than the outer diameter of the barrel ({text}), into "
+            "which the thread is cut",
+            f"write at most {text}, or remove the line to use the outer diameter",
         )
 
 
 def _material_faults(view: StatedValues, materials: KnownMaterials) -> Iterator[Fault]:
-    """Faults of threads that are not in a metal of known strength, or leave too little of it."""
+    """Report a thread that is not in a metal of known strength, or leaves too little metal."""
     sizes, layer = _stated(view), _layer(view)
     caps = "caps" if view.has("caps") else "piston"  # the default material of the caps
     if _metal(view, materials, (*layer, "material")) and sizes is not None:
@@ -152,14 +158,14 @@ def _metal(view: StatedValues, materials: KnownMaterials, loc: tuple[str | int, 
 def _cut_faults(
     view: StatedValues, materials: KnownMaterials, loc: tuple[str | int, ...], part: str, path: str
 ) -> Iterator[Fault]:
-    """Faults of a thread in a material (at `path`) that is no metal or has no strengths."""
+    """Report a thread in a material (at `path`) that is not a metal or has no strengths."""
     name = view.text(*loc)
     kind = None if name is None else materials.kind(name)
     if name is None or kind is None:
         return
     if kind != "metal":
         description = (
-            "of plies, with fibres that the thread cuts" if kind == "ply" else f"of a {kind}"
+            "of plies, whose fibres the thread would cut" if kind == "ply" else f"of a {kind}"
         )
         yield Fault(
             loc,
@@ -178,7 +184,7 @@ def _cut_faults(
 
 
 def _layer_faults(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
-    """Faults of a layer with too little metal under its thread."""
+    """Report a barrel layer with too little metal under its thread."""
     root = thread.root_diameter(diameter=min(sizes.diameter, sizes.outside), pitch=sizes.pitch)
     remaining = sizes.layer - (sizes.outside - root) / 2
     layer = _layer(view)
@@ -195,7 +201,7 @@ def _layer_faults(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
 
 
 def _skirt_wall_faults(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
-    """Faults of skirts with too little metal around their thread."""
+    """Report skirts with too little metal around their thread."""
     if sizes.wall < LEAST_METAL * (1 - ROUNDING) and not judged_later(view, ["retention.wall"]):
         yield Fault(
             ("retention", "wall"),
@@ -205,7 +211,7 @@ def _skirt_wall_faults(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
 
 
 def _size_paths(view: StatedValues) -> Iterator[str]:
-    """PATHs of the sizes that determine the wall under the thread and its crests."""
+    """PATHs of the sizes that determine the thread's crests and the wall under the thread."""
     outermost = _layer(view)[-1]
     yield "retention.thread.pitch"
     yield f"barrel.layup[{outermost}].thickness"
@@ -271,7 +277,7 @@ class EndThread:
     layer_radius: Array
     """Inner radius of the threaded layer."""
     overlap: Array
-    """Flank overlap of the thread, as a share of that with full crests."""
+    """Flank overlap of the thread, as a share of the overlap with full crests."""
     bore_radius: Array
 
 
@@ -319,7 +325,7 @@ def _strengths(materials: MaterialProperties, name: str) -> tuple[Array, Array]:
 
 
 def _assessed(loaded: Loaded) -> EndThread | str:
-    """The thread of an end, or the reason why it has no safety factor; cached."""
+    """The thread of an end, or the reason why it has no safety factor; the result is cached."""
     cache = loaded.end.cache
     if "assessed" not in cache:
         cache["assessed"] = _assessment(loaded)
@@ -355,7 +361,7 @@ def _yields(loaded: Loaded) -> dict[str, Array]:
 
 
 def _lands(loaded: Loaded) -> dict[str, Array]:
-    """Metal left under either root, and flank overlap: every optimisation keeps their limits."""
+    """Metal left under both thread roots, and flank overlap; every optimisation limits these."""
     end_thread = derive(loaded.end)
     walls = (end_thread.root_diameter / 2 - end_thread.layer_radius, end_thread.skirt_wall)
     return dict(zip(LANDS, walls, strict=True)) | {CREST: end_thread.overlap}
@@ -364,7 +370,7 @@ def _lands(loaded: Loaded) -> dict[str, Array]:
 def _working(
     materials: MaterialProperties, end_thread: EndThread, force: Array
 ) -> dict[str, Array]:
-    """Elastic limit over stress, for shear of both threads and for flank pressure."""
+    """Elastic limit divided by stress, for shear of both threads and for flank pressure."""
     male, female = (_strengths(materials, name)[0] for name in (end_thread.male, end_thread.female))
     return {
         "barrel thread": male / sqrt(3) * end_thread.male_area / force,
@@ -374,7 +380,7 @@ def _working(
 
 
 def _burst(materials: MaterialProperties, end_thread: EndThread, force: Array) -> dict[str, Array]:
-    """Breaking load over force, for both threads and for the skirt, which they pull and spread."""
+    """Breaking load divided by force, for both threads and for the skirt (tension, spreading)."""
     male, female = (_strengths(materials, name)[1] for name in (end_thread.male, end_thread.female))
     ratio = female * end_thread.female_area / (male * end_thread.male_area)
     of_male, of_female = thread.stripping_reductions(strength_ratio=ratio)
@@ -392,13 +398,13 @@ def _burst(materials: MaterialProperties, end_thread: EndThread, force: Array) -
 def _wall(loaded: Loaded) -> WallPressures:
     """Pressures at which the barrel yields and bursts under its thread, by load path.
 
-    The threaded layer carries the axial forces alone. The pressure at its inner radius r_l is
-    p r_i/r_l, with bore radius r_i: inner layers without hoop stress would transmit this pressure.
+    The threaded layer alone carries the axial forces. The pressure at its inner radius r_l is p
+    r_i/r_l, with oil pressure p and bore radius r_i, as if the inner layers had no hoop stress.
 
-    Yield ignores the skirt. At burst, layer and skirt are both plastic, and the skirt adds its own
-    burst pressure p_s. The turns of the thread carry no hoop stress. By balance of forces, they
-    transmit p_s to the layer as p_s d/d_3, with outer diameter d and root diameter d_3. The skirt
-    is assumed to be free of axial force, which would lower p_s.
+    The pressure at yield ignores the skirt. At burst, layer and skirt are both plastic, and the
+    skirt adds its own burst pressure p_s. The turns of the thread carry no hoop stress. By balance
+    of forces, they transmit p_s to the layer as p_s d/d_3, with outer diameter d and root diameter
+    d_3. The skirt is assumed to be free of axial force, which would lower p_s.
     """
     end_thread, materials = _assessed(loaded), loaded.materials
     if isinstance(end_thread, str):
@@ -433,7 +439,7 @@ def _wall(loaded: Loaded) -> WallPressures:
 
 
 def _fatigue(loaded: Loaded) -> Fatigue:
-    """Axial stress at either root under pulsating force; the notch raises only its range."""
+    """Axial stress at both thread roots under pulsating force; the notch raises only its range."""
     end_thread = _assessed(loaded)
     if isinstance(end_thread, str):
         return Fatigue()
@@ -449,7 +455,7 @@ def _fatigue(loaded: Loaded) -> Fatigue:
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
-    """Warn of a thread that leaves too little metal; an optimisation may not end there."""
+    """Warn of a thread that leaves too little metal; an optimisation never ends with one."""
     lands = _lands(loaded)
     for name in LANDS:
         least = float(np.min(np.real(lands[name])))
@@ -458,7 +464,7 @@ def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tu
             yield (
                 "retention_factor",
                 f"{label.label}: {label.text(least)}, but {label.text(LEAST_METAL)} is needed: "
-                "such a thread cannot be cut, and its safety factors mean nothing",
+                "such a thread cannot be cut, so its safety factors have no meaning",
             )
 
 
@@ -518,8 +524,8 @@ JOINT = Joint(
             "turns of the thread",
             5.0,
             60.0,
-            "our choice; two turns are lost at start and run-out, and the first turns carry most "
-            "of the load",
+            "our choice: two turns at start and run-out carry nothing, and the first turns carry "
+            "most of the load",
             lambda end: end.sizes["length"] / end.sizes["thread.pitch"],
         ),
     ),

@@ -32,18 +32,18 @@ from .joint import (
 
 
 def _fit(end: End) -> EndDimensions:
-    """Dimensions of the end plates, which are wider than the barrel by two rod diameters."""
+    """Dimensions of the end plates, which exceed the barrel by two tie-rod diameters all round."""
     radius = end.outer_radius
     return EndDimensions(plate_radius=radius + 2 * end.sizes["thread.diameter"], radius=radius)
 
 
 def _length(end: End) -> Array:
-    """Length of the rods from plate to plate."""
+    """Length of the tie rods between the outer faces of the plates."""
     return end.barrel_length + 2 * end.plate
 
 
 def _stiffness(end: End, materials: MaterialProperties) -> Array:
-    """Axial stiffness of all n rods of diameter d and length L: n E (pi d^2/4)/L."""
+    """Axial stiffness of all n tie rods of diameter d and length L: n E (pi d^2/4)/L."""
     assert end.material is not None
     modulus = materials.get(end.material, "youngs_modulus")
     diameter = end.sizes["thread.diameter"]
@@ -51,7 +51,7 @@ def _stiffness(end: End, materials: MaterialProperties) -> Array:
 
 
 def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
-    """Mass of half of the rods, counted at each end."""
+    """Mass of half of the tie rods, which is counted at each of both ends."""
     assert end.material is not None
     rods = mass.tie_rod_mass(
         density=materials.get(end.material, "density"),
@@ -63,7 +63,7 @@ def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
 
 
 def _outline(end: End, fit: EndDimensions, span: EndSpan) -> Iterator[DrawnPart]:
-    """Outline of one rod in the plane of the section, between the outer faces of both plates."""
+    """Outline of one tie rod in the section plane, between the outer faces of both plates."""
     if span.inwards < 0 or end.material is None:
         return
     low, size = float(fit.radius), (float(fit.plate_radius) - float(fit.radius)) / 2
@@ -76,7 +76,7 @@ def _notes(end: End) -> Iterator[str]:
 
 
 def _stress(end: End, force: Array) -> Array:
-    """Tensile stress in the threads under the total force of all rods."""
+    """Tensile stress in the tie-rod threads, given the total force of all tie rods."""
     return retention.tie_rod_stress(
         force=force,
         count=end.sizes["count"],
@@ -102,7 +102,7 @@ def _strength(loaded: Loaded) -> Strength | str:
 
 
 def _fatigue(loaded: Loaded) -> Fatigue:
-    """Fatigue of the rod threads under pulsating pressure."""
+    """Fatigue of the tie-rod threads under pulsating pressure."""
     end, clamp = loaded.end, _clamp(loaded)
     diameter = end.sizes["thread.diameter"]
     amplitude = _stress(end, (clamp.largest - clamp.preload) / 2)
@@ -122,7 +122,7 @@ def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tu
         force = float(np.max(np.real(_clamp(loaded).preload)))
         yield (
             "joint_factor",
-            f"no tie-rod preload stated: assumed {force / 1e3:.1f} kN, which keeps the joint "
+            f"no tie-rod preload is stated; {force / 1e3:.1f} kN is assumed, which keeps the joint "
             "closed at proof pressure",
         )
 

@@ -1,6 +1,7 @@
 """Elastohydrodynamic lubrication of reciprocating seals: oil films, tandem seals, back-up rings.
 
-NumPy only. Pressures are absolute; forces are per circumference unless stated otherwise.
+This package needs NumPy only. Pressures are absolute. Forces are per unit length of circumference
+unless stated otherwise.
 """
 
 from .film import Film, sensitivities, solve_film

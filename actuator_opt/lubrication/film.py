@@ -1,8 +1,8 @@
 """The oil film under a seal: solution at a speed, with drag, flow, profiles and derivatives.
 
 The static contact pressure of the seal is an input. At speed 0, the film is that of a leaking seal
-at rest: motion drags no oil along, and all friction is at the asperities. `sensitivities` gives
-exact derivatives by the inputs, from the implicit-function theorem.
+at rest: no oil is dragged along, and all friction is at the asperities. `sensitivities` gives exact
+derivatives with respect to the inputs, from the implicit-function theorem.
 """
 
 from __future__ import annotations
@@ -37,15 +37,17 @@ from .reynolds import Contact, ReynoldsProblem, Vector, fault, flux
 LEAST_CONTACT = 1e-12
 """Ratio of static pressure to asperity stiffness below which surfaces count as barely touching."""
 SLOWEST = 1e-4
-"""First speed of a continuation to the wanted speed, if no start from rest converges [m/s]."""
+"""If Newton's method does not converge directly, the speed is raised in steps from this first speed
+[m/s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Film:
     """A solved film, or the reason for a failure.
 
-    Forces are per circumference. `flow` is the mass flow divided by the density at zero pressure,
-    positive towards the outer side. The values of a film that did not converge are meaningless.
+    Forces and flow are per unit length of circumference. `flow` is the mass flow divided by the
+    density at zero pressure, positive towards the outer side. The values of a film that did not
+    converge are meaningless.
     """
 
     contact: Contact
@@ -91,20 +93,20 @@ class Film:
     def rigid_shift(self) -> float:
         """Rigid shift C of the seal [m].
 
-        The film equation is h = h_s + C - (1 - nu^2)/(pi E) int d ln (x - s)^2 ds, with the static
-        gap h_s and the change d of the total pressure against the static contact.
+        The film equation is h = h_s + C - (1 - nu^2)/(pi E) int d ln (x - s)^2 ds. Here h_s is the
+        static gap, and d the difference between the total pressure and the static contact pressure.
         """
         return float(self.contact.surface.roughness * self.state.shift)
 
 
 def pressure_scale(contact: Contact) -> float:
-    """Largest absolute contact pressure above the cavitation pressure [Pa]."""
+    """Scale of all pressures: the largest absolute pressure minus the cavitation pressure [Pa]."""
     pressures = (contact.sealed_pressure, contact.outer_pressure, *contact.static_pressure)
     return max(float(real(p)) for p in pressures) - float(real(contact.cavitation_pressure))
 
 
 def scaled(contact: Contact, scales: Contact | None = None) -> tuple[ReynoldsProblem, Bed]:
-    """Scaled equations of a contact; `scales` keeps given scales, as complex steps need."""
+    """Scaled equations of a contact; `scales` is a contact whose scales are used instead."""
     base = scales or contact
     pressure = pressure_scale(base)
     film = float(base.surface.roughness)
@@ -146,7 +148,7 @@ def _bed(contact: Contact, pressure: float, film: float, ratio: Array) -> Bed:
 
 
 def outputs(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> tuple[Array, Array, Array, Array]:
-    """Viscous drag and contact load [N/m], flow [m^2/s] and mean film [m] of a state."""
+    """Viscous drag and asperity load [N/m], flow [m^2/s] and mean film thickness [m] of a state."""
     couette_factor, poiseuille_factor = 1.0, 1.0
     if flow.rod_share is not None:
         ratio = state.film / flow.roughness_ratio
@@ -165,7 +167,7 @@ def outputs(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> tuple[Array, A
 
 
 def _slope(values: Vector) -> Vector:
-    """Central differences over a unit width, one-sided at the ends."""
+    """Derivative by central differences, one-sided at the ends; the nodes span a unit width."""
     rise = np.diff(values)
     inner = (rise[1:] + rise[:-1]) / 2
     return (len(values) - 1) * np.concatenate([rise[:1], inner, rise[-1:]])
@@ -184,7 +186,7 @@ def _at_rest(contact: Contact, bed: Bed) -> FilmState:
 
 
 def _starved(cavitation: Vector, contact: Contact) -> Vector:
-    """Set the cavitated fractions at both ends to those of the contact."""
+    """The cavitated fractions, but at both ends with the values that the contact states."""
     ends = [contact.sealed_cavitation], [contact.outer_cavitation]
     return np.concatenate([ends[0], cavitation[1:-1], ends[1]])
 
@@ -203,7 +205,7 @@ def _solved(contact: Contact, state: FilmState) -> NewtonResult:
 
 
 def _cold(contact: Contact) -> NewtonResult:
-    """Solve a film without initial state: directly from rest, or else by continuation in speed."""
+    """Solve a film without initial state: directly, or else by raising the speed in steps."""
     _, bed = scaled(contact)
     rest = _at_rest(contact, bed)
     outcome = _solved(contact, rest)
@@ -226,11 +228,12 @@ def solve_film(contact: Contact, start: Film | None = None) -> Film:
     Parameters
     ----------
     contact : seal, surfaces, oil and operating point
-    start : converged film of a nearby point as initial state; same number of nodes
+    start : converged film of a nearby operating point, from which to start; it must have the same
+        number of nodes
 
     Returns
     -------
-    film; with `converged` False and a reason if no equilibrium exists or was reached
+    film; with `converged` False and a reason if there is no equilibrium or it was not reached
     """
     reason = fault(contact)
     if reason:
@@ -267,20 +270,20 @@ def _film(contact: Contact, outcome: NewtonResult) -> Film:
 
 
 def sensitivities(film: Film, stepped: Sequence[Contact]) -> Vector:
-    """Derivatives of viscous drag, contact load, flow and mean film, one row per direction.
+    """Derivatives of viscous drag, asperity load, flow and mean film with respect to the inputs.
 
-    Each direction is the contact of the film with a complex step on any number, such as
-    ``width * (1 + 1j * STEP)``. The state changes by -J^-1 times the change of the residual at the
-    solved state, with the Jacobian J. One factorisation serves all directions.
+    Each direction of differentiation is the contact of the film with a complex step added to any of
+    its numbers, such as ``width * (1 + 1j * STEP)``. The state changes by -J^-1 times the change of
+    the residual at the solved state, with the Jacobian J. One factorisation serves all directions.
 
     Parameters
     ----------
     film : a converged film
-    stepped : its contact with a complex step of size `numeric.STEP`, per direction
+    stepped : for each direction, the contact of the film with a complex step of size `numeric.STEP`
 
     Returns
     -------
-    (directions, 4): derivatives of the four outputs along each step [SI]
+    array (directions, 4): derivatives of the four outputs along each direction, SI
 
     Raises
     ------
@@ -288,7 +291,7 @@ def sensitivities(film: Film, stepped: Sequence[Contact]) -> Vector:
         The film did not converge.
     """
     if not film.converged:
-        raise ValueError(f"no slopes for a film that did not converge: {film.reason}")
+        raise ValueError(f"no derivatives for a film that did not converge: {film.reason}")
     problems = [scaled(contact, film.contact) for contact in stepped]
     steps = [_imaginary(residual(flow, bed, film.state)) for flow, bed in problems]
     changes = LinearSystem(*scaled(film.contact), film.state).solve(steps)
@@ -300,7 +303,7 @@ def sensitivities(film: Film, stepped: Sequence[Contact]) -> Vector:
 
 
 def _imaginary(newton_residual: NewtonResidual) -> NewtonResidual:
-    """Derivatives of the residuals along a complex step."""
+    """Derivatives of the residuals along a complex step: imaginary parts divided by the step."""
     flow, complementarity, film = (
         np.imag(part) / STEP
         for part in (newton_residual.flow, newton_residual.complementarity, newton_residual.film)
@@ -315,7 +318,7 @@ def _imaginary(newton_residual: NewtonResidual) -> NewtonResidual:
 
 
 def _moved(state: FilmState, change: FilmState) -> FilmState:
-    """Add the change of a state as a complex step."""
+    """The state with the change of a state added as a complex step."""
     return FilmState(
         state.pressure + 1j * STEP * change.pressure,
         state.cavitation + 1j * STEP * change.cavitation,

@@ -1,7 +1,7 @@
-"""Newton's method for a film, with pressure, cavitated fraction, film and rigid shift at once.
+"""Newton's method for a film: pressure, cavitated fraction, thickness and rigid shift at once.
 
-The unknowns are pressure p, cavitated fraction theta and film h per node, and the rigid shift C of
-the seal. In scaled form the equations are
+The unknowns are pressure p, cavitated fraction theta and film thickness h at every node, and the
+rigid shift C of the seal. In scaled form the equations are
 
     flux out - flux in = 0 at the inner nodes, p given at the ends,
     p + theta - sqrt(p^2 + theta^2) = 0 (p >= 0, theta >= 0, p theta = 0),
@@ -9,8 +9,8 @@ the seal. In scaled form the equations are
     sum of weights times d = 0.
 
 Here h_s is the static gap, p_c the contact pressure of the asperities, p_sc the static contact
-pressure, and K the compliance matrix of the seal. The linear step is solved for the change g of d:
-then dh = dC + K g and dp = g - p_c' dh, and theta follows locally where the film is full. This
+pressure, and K the compliance matrix of the seal. The linear step is solved for the change g of d.
+Then dh = dC + K g and dp = g - p_c' dh, and theta follows node by node where the film is full. This
 leaves a dense system with about one equation per node, and one more per cavitated node.
 """
 
@@ -32,19 +32,20 @@ TOLERANCE = 1e-9
 """Largest scaled residual of a converged film."""
 MOST_ITERATIONS = 60
 _GROWTH, _LEAST_GROWTH = 8.0, 1.02
-"""Initial and smallest factor between successive values of a continuation."""
+"""Initial and smallest factor between successive values, when `follow` raises a value in steps."""
 _CLOSED, _PRESSURE_STEP = 0.5, 0.6
-"""Largest relative decrease of the film, and largest change of a scaled pressure, in one step."""
+"""Largest relative decrease of the film thickness, and largest change of a scaled pressure, in one
+Newton step."""
 
 
 @dataclass(frozen=True, slots=True)
 class Bed:
     """Elastic seal and asperities, which support the film, in scaled form.
 
-    Oil and asperities must balance the static pressure. `compliance` is
-    (1 - nu^2) L p_scale/(pi E film_scale), with contact width L. `stiffness` is the asperity
-    stiffness over the pressure scale (0 for smooth surfaces). `roughness_ratio` is the roughness
-    sigma over the film scale.
+    Oil and asperities together must balance the static pressure. `compliance` is (1 - nu^2) L
+    p_scale/(pi E film_scale), with contact width L. `stiffness` is the asperity stiffness divided
+    by the pressure scale (0 for smooth surfaces). `roughness_ratio` is the roughness sigma divided
+    by the film scale.
     """
 
     rest_film: Vector
@@ -59,7 +60,7 @@ class Bed:
 
 @dataclass(frozen=True, slots=True)
 class FilmState:
-    """Scaled pressure, cavitated fraction, film and rigid shift."""
+    """Scaled pressure, cavitated fraction and film thickness of all nodes, and rigid shift."""
 
     pressure: Vector
     cavitation: Vector
@@ -91,10 +92,10 @@ class NewtonResult:
 
 @lru_cache(maxsize=16)
 def kernel(nodes: int) -> Vector:
-    """Film per unit pressure on a node: -int ln(x - s)^2 ds over its cell, for unit width.
+    """Change of the film thickness per unit pressure on a node's cell: -int ln(x - s)^2 ds.
 
-    Another width only adds a constant times the integral of the pressure change d, which the load
-    balance sets to zero.
+    It is for a contact of unit width. Another width only adds a constant times the integral of the
+    pressure change d, and the load balance makes this integral zero.
     """
     places = np.linspace(0, 1, nodes)
     edges = np.concatenate([[0.0], (places[1:] + places[:-1]) / 2, [1.0]])
@@ -108,7 +109,7 @@ def kernel(nodes: int) -> Vector:
 
 @lru_cache(maxsize=16)
 def weights(nodes: int) -> Vector:
-    """Weights of the trapezium rule on a unit width."""
+    """Weights of the trapezium rule for integrals over a unit width."""
     result = np.full(nodes, 1 / (nodes - 1))
     result[[0, -1]] /= 2
     result.setflags(write=False)
@@ -123,7 +124,7 @@ def contact_pressure(bed: Bed, film: Vector) -> Vector:
 
 
 def residual(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResidual:
-    """Residuals of a state, real or under a complex step."""
+    """Residuals of a state, which may be real or have a complex step added."""
     pressure, theta = state.pressure, state.cavitation
     excess = pressure + contact_pressure(bed, state.film) - bed.static_pressure
     deflection = bed.compliance * (kernel(flow.nodes) @ excess)
@@ -269,7 +270,7 @@ def _allowed(state: FilmState, change: FilmState) -> float:
 def _measures(
     flow: ReynoldsProblem, bed: Bed, state: FilmState, newton_residual: NewtonResidual
 ) -> tuple[float, float, float]:
-    """Relative spread of the flux, load residual, and the largest of the other scaled residuals."""
+    """Relative spread of the flux along the film, load residual, largest of all other residuals."""
     fluxes = flux(flow, state.pressure, state.cavitation, state.film)
     drag_flow = abs(flow.drive) * np.min(flow.gap(state.film)[1])
     spread = np.ptp(fluxes) / (abs(np.mean(fluxes)) + drag_flow + 1e-300)
@@ -280,7 +281,7 @@ def _measures(
 
 
 def newton(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResult:
-    """Solve the film from a starting state; if this fails, the result has a reason."""
+    """Solve the film from an initial state; if this fails, the result states the reason."""
     with np.errstate(all="ignore"):
         return _newton(flow, bed, state)
 
@@ -305,7 +306,9 @@ def _newton(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResult:
         try:
             (change,) = LinearSystem(flow, bed, state).solve([current])
         except np.linalg.LinAlgError:
-            return NewtonResult(state, "the linearised film is singular", iteration, spread, load)
+            return NewtonResult(
+                state, "the linearised equations of the film are singular", iteration, spread, load
+            )
         part = _allowed(state, change)
         state = FilmState(
             state.pressure + part * change.pressure,
@@ -321,13 +324,14 @@ def _newton(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResult:
 def follow(
     solve: Callable[[float, FilmState], NewtonResult], state: FilmState, first: float, last: float
 ) -> NewtonResult:
-    """Solve a film for positive values from first to last, each from the previous state.
+    """Solve a film for several values of an input from first to last, each from the state before.
 
     Parameters
     ----------
-    solve : function that returns the outcome at a value, from an initial state
+    solve : function of a value and an initial state that solves the film at this value
     state : initial state at the first value
-    first, last : first and last value, such as speeds; the factor between values is adaptive
+    first, last : first and last value, such as speeds, both positive; the factor between successive
+        values is adapted
     """
     outcome = solve(first, state)
     iterations, value, growth = outcome.iterations, first, _GROWTH

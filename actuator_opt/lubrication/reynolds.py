@@ -1,18 +1,18 @@
 """Reynolds equation of a film along a seal: flux between nodes, and its derivatives.
 
-Finite volumes on uniform nodes. The flux of a face is
+The method is finite volumes on uniform nodes. The mass flux through a face between two nodes is
 
     m = -M dp/dx + (U/2) mean(r T) (1 - theta of the upwind node),
 
-with M = r phi_x h^3/(12 eta) and T = h_T + sigma phi_s. Here U is the speed, h the film, h_T its
-mean gap height, sigma the roughness, eta the viscosity, r the density over that at zero pressure,
-phi_x and phi_s the flow factors, and theta the cavitated fraction. The oil in a ruptured film moves
-with the rod, so mass is conserved where the film ruptures and where it forms again. Everything is
-scaled: pressure above the cavitation pressure by `pressure_scale`, film by `film_scale`, length by
-the width.
+with M = r phi_x h^3/(12 eta) and T = h_T + sigma phi_s. Here U is the speed, h the film thickness,
+h_T the mean gap height, sigma the roughness, eta the viscosity, r the density divided by that at
+zero pressure, phi_x and phi_s the flow factors, and theta the cavitated fraction. The oil in a
+ruptured film moves with the rod, so mass is conserved where the film ruptures and where it forms
+again. Everything is scaled: pressure above the cavitation pressure by `pressure_scale`, film by
+`film_scale`, length by the width.
 
 The inputs of a lubricated contact are oil, two rough surfaces, an elastic seal and operating
-conditions. Every number is a Python float; only `sensitivities` adds complex steps to them.
+conditions. Every number of them is a Python float; only `film.sensitivities` adds complex steps.
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ class Lubricant:
     ----------
     dynamic_viscosity : dynamic viscosity at zero pressure [Pa s]
     pressure_law : viscosity law, a name of `oil_laws.VISCOSITY_LAWS`
-    pressure_coefficient : coefficient of the law at zero pressure [1/Pa]
-    density_c_a, density_c_b : rho = rho_0 [1 + c_a p/(1 + c_b p)] ([Huang2017] eq. 3) [1/Pa];
-        both 0 for an incompressible oil
+    pressure_coefficient : pressure coefficient of the law at zero pressure [1/Pa]
+    density_c_a, density_c_b : c_a and c_b in rho = rho_0 [1 + c_a p/(1 + c_b p)] ([Huang2017] eq.
+        3) [1/Pa]; both 0 for an incompressible oil
     """
 
     dynamic_viscosity: Array
@@ -72,14 +72,15 @@ class Lubricant:
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """Roughness of the contact.
+    """Roughness of both surfaces in the contact.
 
     Parameters
     ----------
-    roughness : composite root-mean-square roughness of seal and rod [m]
+    roughness : composite root-mean-square roughness sigma of seal and rod [m]
     asperity_density : summits per area [1/m^2]
     asperity_radius : radius of the summits [m]
-    rod_share : (sigma_rod/sigma)^2 [-]; 0 for a rough seal on a smooth rod
+    rod_share : (sigma_rod/sigma)^2, with the roughness sigma_rod of the rod alone [-]; 0 for a
+        rough seal on a smooth rod
     """
 
     roughness: Array
@@ -94,8 +95,8 @@ class Elastic:
 
     Parameters
     ----------
-    youngs_modulus : [Pa]
-    poissons_ratio : [-]
+    youngs_modulus : Young's modulus [Pa]
+    poissons_ratio : Poisson's ratio [-]
     """
 
     youngs_modulus: Array
@@ -103,7 +104,7 @@ class Elastic:
 
     @property
     def compliance(self) -> Array:
-        """Compliance (1 - nu^2)/(pi E) under a line load [1/Pa]."""
+        """Compliance (1 - nu^2)/(pi E) of the seal's surface under a line load [1/Pa]."""
         return (1 - self.poissons_ratio**2) / (math.pi * self.youngs_modulus)
 
 
@@ -113,14 +114,14 @@ class Contact:
 
     Parameters
     ----------
-    width : contact width [m]; x = 0 at the sealed side
+    width : contact width [m]; the coordinate x is 0 at the sealed side
     static_pressure : static contact pressure at uniform nodes from x = 0 to the width [Pa]
     elastic, surface, lubricant : seal, roughness and oil
-    speed : rod speed [m/s]; positive outstroke, from the sealed to the outer side
+    speed : rod speed [m/s], positive in the outstroke, from the sealed to the outer side
     sealed_pressure, outer_pressure : pressures at the ends [Pa]
     cavitation_pressure : pressure below which the oil film ruptures [Pa]
-    sealed_cavitation, outer_cavitation : share of the gap without oil at a starved end, whose
-        pressure is the cavitation pressure [-]; floats
+    sealed_cavitation, outer_cavitation : share of the gap at each end that contains no oil [-]; 0
+        for a flooded end. The pressure at a starved end must be the cavitation pressure
     """
 
     width: Array
@@ -137,7 +138,7 @@ class Contact:
 
     @property
     def asperity_stiffness(self) -> Array:
-        """Ratio of the asperities' contact pressure to F_3/2 [Pa]."""
+        """Contact pressure of the asperities divided by the integral F_3/2 [Pa]."""
         return asperity_stiffness(
             youngs_modulus=self.elastic.youngs_modulus,
             poissons_ratio=self.elastic.poissons_ratio,
@@ -156,7 +157,7 @@ def fault(contact: Contact) -> str:
         )
     nodes = np.shape(contact.static_pressure)
     if len(nodes) != 1 or nodes[0] < 5:
-        return f"static pressure of shape {nodes}: give five or more values along the width"
+        return f"static pressure has the shape {nodes}: give five or more values along the width"
     groups = (contact, contact.elastic, contact.surface, contact.lubricant)
     for group in groups:
         for field in fields(group):
@@ -182,15 +183,15 @@ def _range_fault(contact: Contact) -> str:
             return f"{name} {value:g}: must be above zero"
     if np.min(contact.static_pressure) < -1e-9 * np.max(contact.static_pressure):
         return (
-            f"static pressure {np.min(contact.static_pressure):g} Pa: must be absolute, not "
-            "negative"
+            f"static pressure {np.min(contact.static_pressure):g} Pa: it must be absolute, so it "
+            "cannot be negative"
         )
     flat = np.max(contact.static_pressure) / contact.asperity_stiffness
     if flat > FLAT:
         return (
             f"static pressure {np.max(contact.static_pressure):g} Pa presses the asperities flat: "
-            f"they carry {FLAT * contact.asperity_stiffness:g} Pa when the mean planes meet; "
-            "use more, sharper or stiffer asperities"
+            f"they carry only {FLAT * contact.asperity_stiffness:g} Pa when the mean planes of "
+            "both surfaces meet; use more, sharper or stiffer asperities"
         )
     for name in ("sealed_cavitation", "outer_cavitation"):
         if not 0 <= getattr(contact, name) < 1:
@@ -219,9 +220,9 @@ Vector = Any
 class ReynoldsProblem:
     """A scaled Reynolds problem on uniform nodes.
 
-    `conductance` = film_scale^3 pressure_scale/(12 eta_0 L) and `drive` = U film_scale/2, with
-    viscosity eta_0 at zero pressure, width L and speed U. Both are divided by `flow_scale` [m^2/s].
-    `rod_share` is None for smooth surfaces.
+    `conductance` is film_scale^3 pressure_scale/(12 eta_0 L) and `drive` is U film_scale/2, both
+    divided by `flow_scale` [m^2/s]. Here eta_0 is the viscosity at zero pressure, L the width and U
+    the speed. `rod_share` is None for smooth surfaces.
     """
 
     nodes: int
@@ -259,7 +260,7 @@ class ReynoldsProblem:
 
 @dataclass(frozen=True, slots=True)
 class FaceFlux:
-    """Flux through the faces, and its derivatives by the states of both neighbouring nodes."""
+    """Flux through the faces between nodes, and its derivatives by the states of both nodes."""
 
     flux: Vector
     pressure: tuple[Vector, Vector]
@@ -279,7 +280,7 @@ def flux(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vect
 
 
 def faces(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vector) -> FaceFlux:
-    """Flux and its derivatives for a real state; a complex step differentiates local laws."""
+    """Flux and its derivatives for a real state; complex steps differentiate oil and gap laws."""
     density, fluidity = flow.oil(pressure + 1j * STEP)
     opening, carried = flow.gap(film + 1j * STEP)
     density_slope, fluidity_slope = density.imag / STEP, fluidity.imag / STEP
@@ -312,5 +313,9 @@ def faces(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vec
 
 
 def banded(before: Vector, after: Vector) -> tuple[Vector, Vector, Vector]:
-    """Lower, middle and upper band of d(flux out - flux in)/d(node) at the inner nodes."""
+    """Bands of a tridiagonal matrix: derivatives of flux out minus flux in at the inner nodes.
+
+    The bands (lower, middle, upper) are by the states of the node before, the node itself and the
+    node after.
+    """
     return -before[:-1], before[1:] - after[:-1], after[1:]

@@ -1,4 +1,4 @@
-"""Films between smooth surfaces: gap of given shape, slider, elastic back-up ring on a rod."""
+"""Films between smooth surfaces: fixed gap, loaded slider, or elastic back-up ring on a rod."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ from .newton import Bed, FilmState, NewtonResult, follow, kernel, newton, weight
 from .reynolds import Elastic, Lubricant, ReynoldsProblem, Vector
 
 _NARROWEST = 0.04
-"""Square of the smallest relative half width of the initial pressure."""
+"""The initial pressure acts on part of the width. Half of that part, divided by the width and
+squared, is at least this value."""
 _FASTER = (1.0, 30.0)
-"""Multiples of the speed for the initial guess of a loaded film; a larger multiple gives a
-thicker film."""
+"""Multiples of the speed at which the solution of a loaded film starts, tried in turn; a larger
+multiple gives a thicker initial film."""
 
 
 @dataclass(frozen=True, slots=True)
 class SmoothFilm:
     """A solved film between smooth surfaces, or the reason for a failure.
 
-    Forces are per circumference.
+    Forces are per unit length of circumference.
     """
 
     converged: bool
@@ -47,14 +48,14 @@ class Gap:
     Parameters
     ----------
     width : width of the face [m]
-    profile : height of the unloaded face above the rod at uniform nodes [m]; a constant added to
-        it matters only for a fixed gap
+    profile : height of the unloaded face above the rod at uniform nodes [m]; unless the gap is
+        fixed, a constant that is added to all heights has no effect
     lubricant : oil
-    speed : rod speed [m/s], positive outstroke
+    speed : rod speed [m/s], positive in the outstroke
     sealed_pressure, outer_pressure : pressures at the ends [Pa]
-    line_load : load on the film, int p dx [N/m]; None: fixed gap
-    elastic : elasticity of the ring; None: rigid
-    cavitation_pressure : [Pa]
+    line_load : load on the film, int p dx [N/m]; None for a fixed gap
+    elastic : elasticity of the ring; None for a rigid ring
+    cavitation_pressure : pressure below which the oil film ruptures [Pa]
     """
 
     width: float
@@ -84,8 +85,8 @@ def fault(gap: Gap) -> str:
     static = gap.width * (gap.sealed_pressure + gap.outer_pressure) / 2
     if gap.line_load <= static:
         return (
-            f"line load {gap.line_load:g} N/m: the pressures at its ends alone already carry "
-            f"{static:g} N/m, so the ring lifts off"
+            f"line load {gap.line_load:g} N/m: the pressures at both ends of the gap alone already "
+            f"carry {static:g} N/m, so the ring lifts off"
         )
     if gap.elastic is not None and np.ptp(gap.profile) == 0:
         return "a flat elastic face has no wedge to draw in oil: round the edges of its profile"
@@ -95,13 +96,13 @@ def fault(gap: Gap) -> str:
 def solve_gap(gap: Gap, nodes: int = 0) -> SmoothFilm:
     """Solve a smooth gap for film, drag and flow.
 
-    The film is h = h_0 + profile - (1 - nu^2)/(pi E) int p ln(x - s)^2 ds, h_0 from the line load
-    ([Huang2017] eq. 19 to 22, with local density and viscosity).
+    The film is h = h_0 + profile - (1 - nu^2)/(pi E) int p ln(x - s)^2 ds, where h_0 follows from
+    the line load ([Huang2017] eq. 19 to 22, with local density and viscosity).
 
     Parameters
     ----------
     gap : shape, oil, operating point
-    nodes : number of nodes; 0: as in the profile
+    nodes : number of nodes; 0 for as many as the profile has
 
     Returns
     -------
@@ -119,7 +120,7 @@ def solve_gap(gap: Gap, nodes: int = 0) -> SmoothFilm:
 
 
 def _scales(gap: Gap) -> float:
-    """Largest pressure known in advance [Pa]."""
+    """Scale of the pressures: the largest pressure that is known in advance [Pa]."""
     mean = (gap.line_load or 0.0) / gap.width
     highest = max(gap.sealed_pressure, gap.outer_pressure, mean) - gap.cavitation_pressure
     shear = gap.lubricant.dynamic_viscosity * abs(gap.speed) * gap.width
@@ -170,10 +171,10 @@ def _fixed_gap(gap: Gap) -> SmoothFilm:
 
 
 def _loaded_gap(gap: Gap) -> SmoothFilm:
-    """Solve a loaded gap, starting from dry contact plus its inlet film, else from a thick film.
+    """Solve a loaded gap, starting from dry contact with a thin film, or else from a thick film.
 
-    At the inlet, a pressure gradient w lets a film of h* = sqrt(8 eta U/(9 w)) pass, with viscosity
-    eta and speed U.
+    The thin film is that which the inlet lets pass: h* = sqrt(8 eta U/(9 w)), with the pressure
+    gradient w there, viscosity eta and speed U.
     """
     pressure = _scales(gap)
     rise = 4 * (gap.line_load or 0.0) / gap.width**2
@@ -199,7 +200,7 @@ def _loaded_gap(gap: Gap) -> SmoothFilm:
 
 
 def _dry(gap: Gap, flow: ReynoldsProblem, bed: Bed, least: float) -> FilmState:
-    """Elliptic pressure over the contact width of a cylinder, and the film under it."""
+    """Initial state: elliptic pressure, as of a cylinder in dry contact, and the film under it."""
     place = np.linspace(0, 1, flow.nodes)
     ends = bed.sealed + (bed.outer - bed.sealed) * place
     relief = float(np.mean(gap.profile[[0, -1]]) - np.min(gap.profile))

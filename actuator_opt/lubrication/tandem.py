@@ -1,4 +1,4 @@
-"""Two seals in series: find the pressure between them at which both have the same flow."""
+"""Two seals in series: find the pressure between them at which both pass the same flow."""
 
 from __future__ import annotations
 
@@ -10,22 +10,25 @@ from .film import Film, solve_film
 from .reynolds import Contact, Elastic, Lubricant, Surface, Vector
 
 HIGHEST = 1.5
-"""Default for the largest interseal pressure tried, as a multiple of the higher end pressure."""
+"""Default for the largest pressure between the seals that is tried, as a multiple of the higher of
+the two pressures outside."""
 MATCH = 1e-8
-"""Difference at which two flows count as equal, relative to the largest of both flows and the flow
-that the rod carries."""
+"""Two flows count as equal up to this difference, as a share of the largest of three flows: these
+two, and the flow that the rod drags along."""
 _MOST_TRIALS = 60
 _EMPTY = 0.9
-"""Initial share without oil of the space between the seals, when starved films are solved."""
+"""When starved films are solved, initial share of the space between the seals that has no oil."""
 _NO_LIMIT = (
-    "the inner seal still passes more than the outer seal at {:.4g} Pa: "
+    "with {:.4g} Pa between the seals, the inner seal still passes more oil than the outer seal: "
     "the pressure between them exceeds this value"
 )
 _JUMP = (
-    "with the space between the seals {:.3f} empty, the film jumps from starved to flooded, and "
+    "with {:.3f} of the space between the seals empty, the film jumps from starved to flooded, and "
     "the two flows differ by {:.1e} of the larger flow"
 )
-_NO_SUPPLY = "at {:.4g} Pa oil leaves the space between the seals on both sides: it runs dry"
+_NO_SUPPLY = (
+    "with {:.4g} Pa between the seals, oil leaves the space between them on both sides: it runs dry"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +37,8 @@ class TandemSeal:
 
     Parameters
     ----------
-    static : function of sealed and outer pressure that returns width [m] and static pressure at
-        uniform nodes [Pa]; all pressures are absolute
+    static : function of sealed and outer pressure that returns the contact width [m] and the static
+        contact pressure at uniform nodes [Pa]; all pressures are absolute
     elastic, surface : elasticity and roughness of the seal
     """
 
@@ -59,7 +62,7 @@ class Tandem:
 
 @dataclass(slots=True)
 class _Row:
-    """Both films at an interseal pressure, each starting from the previous solution."""
+    """Both seals in series; their films are solved from the previous solution."""
 
     inner: TandemSeal
     outer: TandemSeal
@@ -71,7 +74,11 @@ class _Row:
     films: tuple[Film | None, Film | None] = (None, None)
 
     def solve(self, pressure: float, cavitation: float = 0.0) -> tuple[Film, Film]:
-        """Solve both films; the seal that draws oil from the space between them may starve."""
+        """Solve both films; the seal that draws oil from the space between both may starve.
+
+        `cavitation` is the share of that space without oil. In an outstroke the outer seal draws
+        oil from it, in an instroke the inner seal.
+        """
         draws_out = self.speed > 0
         first = self._film(
             self.inner, self.sealed_pressure, pressure, self.films[0],
@@ -116,25 +123,26 @@ def solve_tandem(
     highest: float = HIGHEST,
     start: Tandem | None = None,
 ) -> Tandem:
-    """Find the pressure between two seals at which both have the same flow.
+    """Find the pressure between two seals at which both pass the same flow.
 
-    Secant steps search a bracket from the cavitation pressure to `highest` times the higher end
-    pressure. The surplus flow of the inner seal falls as the interseal pressure rises. If one seal
-    draws more than the other supplies even at the cavitation pressure, the space between them is
-    starved: it stays at the cavitation pressure, partly filled.
+    Secant steps search between the cavitation pressure and `highest` times the higher of the two
+    pressures outside. As the pressure between the seals rises, the inner seal passes less, compared
+    with the outer seal. If one seal draws more than the other supplies even at the cavitation
+    pressure, the space between them is starved: it stays at the cavitation pressure, partly filled.
 
     Parameters
     ----------
     inner, outer : seal on the pressure side, and seal on the outer side
     lubricant : oil of both seals
-    speed : rod speed [m/s], positive outstroke
+    speed : rod speed [m/s], positive in the outstroke
     sealed_pressure, outer_pressure, cavitation_pressure : absolute pressures [Pa]
-    highest : largest interseal pressure tried, as a multiple of the higher end pressure [-]
-    start : tandem of a nearby point, as initial state
+    highest : largest pressure between the seals that is tried, as a multiple of the higher of the
+        sealed and the outer pressure [-]
+    start : solution of a nearby operating point, from which to start
 
     Returns
     -------
-    tandem; with `converged` False and a reason if the flows cannot be matched
+    both films; with `converged` False and a reason if the flows cannot be made equal
     """
     row = _Row(inner, outer, lubricant, speed, sealed_pressure, outer_pressure, cavitation_pressure)
     guess = (sealed_pressure + outer_pressure) / 2
@@ -172,10 +180,10 @@ def _search(row: _Row, guess: float, low: float, high: float) -> Tandem:
 
 
 def _next(trials: list[tuple[float, float]], bottom: float, top: float) -> float:
-    """The next pressure: a secant through the last two trials, or the middle of the bracket.
+    """The next pressure to try, by a secant through the last two trials or by halving the range.
 
-    If all trials lie on the same side of the solution, the other end of the bracket is tried early.
-    Every fifth step halves the bracket.
+    `bottom` and `top` enclose the solution. If all trials lie on the same side of it, the other end
+    is tried early. Every fifth step halves the range.
     """
     middle = (bottom + top) / 2
     if len(trials) < 2:
@@ -196,8 +204,8 @@ def _next(trials: list[tuple[float, float]], bottom: float, top: float) -> float
 def _starved(row: _Row, first: Film, second: Film, pressure: float) -> Tandem:
     """Find the share of the space between the seals that has no oil, by regula falsi.
 
-    A flooded and a starved film may both exist for the same supply of oil. The starved film is
-    followed, starting from an almost empty space.
+    Sometimes a flooded and a starved film are both possible for the same supply of oil. The search
+    starts from an almost empty space, so that it follows the starved film.
     """
     outward = row.speed > 0
     given, drawn = (first, second) if outward else (second, first)
@@ -210,7 +218,7 @@ def _starved(row: _Row, first: Film, second: Film, pressure: float) -> Tandem:
         first, second = row.solve(pressure, cavitation)
         if not (first.converged and second.converged):
             reason = first.reason or second.reason
-            return _failure(f"space between the seals {cavitation:.3f} empty: {reason}")
+            return _failure(f"with {cavitation:.3f} of the space between the seals empty: {reason}")
         given, drawn = (first, second) if outward else (second, first)
         excess = sign * (drawn.flow - given.flow)
         mismatch = abs(excess / given.flow)

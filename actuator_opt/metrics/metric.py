@@ -12,22 +12,23 @@ from ..base.quantities import INFINITY, Quantity, Sense
 from ..base.units import BASE, unit
 
 Feed = Literal["wall", "oil", "own"]
-"""Source of a metric's validity warnings: the wall model of the barrel (by bore growth) or the bulk
-modulus of the oil. "own": a warning about the metric concerns the metric's own model."""
+"""Model from which a metric inherits validity warnings: "wall" is the wall model of the barrel (by
+bore growth), "oil" the bulk modulus of the oil. With "own", the warnings are those of the metric's
+own model."""
 
 Wall = Literal["layered", "thin_laminate"]
 """Wall models of a laminated barrel."""
 
 CRITERION = "criterion"
-"""Placeholder for the failure criterion that the design selects."""
+"""Placeholder for a model's name: that of the failure criterion that the design selects."""
 
 
 @dataclass(frozen=True, slots=True)
 class CheckLine:
-    """A line of the check list: number, title, limit (SI) and source of the limit.
+    """A line of the check list: its number, title, limit (SI) and source of the limit.
 
-    A line without `limit` is checked only if the design file sets a limit. Lines with `advice` are
-    shown and give warnings, but do not constrain the optimiser.
+    A line without `limit` is checked only if the design file sets a limit. A line with `advice` is
+    shown and gives warnings, but does not constrain the optimiser.
     """
 
     number: str
@@ -62,15 +63,16 @@ class MetricRow:
 
     Attributes
     ----------
-    name, symbol, dimension, unit, label, lower, upper : its quantity (`quantities.Quantity`)
-    worst : which value over load cases and places is the worst
+    name, symbol, dimension, unit, label, lower, upper : fields of its `quantities.Quantity`
+    worst : whether the smallest ("min") or the largest ("max") value of all load cases and places
+        is the worst
     model : ``"module.function"`` of `actuator_opt.models`; None for plain geometry
     feeds : where its validity warnings come from
     check : its line of the check list; None if it has no check
-    by_wall : replaces `model`, by wall model of a laminated barrel
-    at : replaces `model` at some locations; a key may be a pattern (``"* yield, *"``)
-    at_stops : whether it is also computed at both stops if their loads differ
-    least : smallest value for which a part can be made (`geometry_…` only)
+    by_wall : models that replace `model` for a laminated barrel, by its wall model
+    at : models that replace `model` at some locations; a key may be a pattern (``"* yield, *"``)
+    at_stops : whether it is also computed at both ends of the stroke if the loads there differ
+    least : smallest value for which a part can be made; only for metrics `geometry_…`
     short : shorter label for a tile of a report
     """
 
@@ -112,7 +114,7 @@ class MetricRow:
 
     @property
     def quantity(self) -> Quantity:
-        """Quantity for tables and texts."""
+        """Quantity of the metric, which formats it for tables and texts."""
         return Quantity(
             self.name,
             self.symbol,

@@ -1,4 +1,6 @@
-"""Pure models: SI in, SI out, arrays broadcast; formula, range and source in every docstring.
+"""Models as pure functions in SI units; arguments may be arrays, which broadcast.
+
+Every docstring states formula, range of validity and source.
 
 A number outside a model's domain gives NaN, and the other elements of an array keep their values.
 Impossible geometry gives NaN too: a negative length, area or volume, an outer radius not above the
@@ -15,11 +17,12 @@ source.
 Some functions are for scripts alone; no part of the program calls them:
 
 - `end_stop.cushion_mean_pressure`, `end_stop.cushion_open_area`: pressure and flow area of a
-  cushion that brakes evenly, to state as `stops.cushion` of a scenario
-- `valve.spool_edge_coefficient`: flow of a valve's edge from the geometry of its spool, with lap
+  cushion that brakes evenly, as input for `stops.cushion` of a scenario
+- `valve.spool_edge_coefficient`: flow coefficient of a valve's edge from the geometry of its
+  spool, overlap included
 - `elements.capacitance`, `elements.resonance_frequency`, `elements.sound_speed`,
   `lugre.lugre_steady_deflection`, `transmission_line.plugged_branch_impedance`,
   `stiffness_published.barrel_stiffness_as_published`,
-  `stiffness_published.line_stiffness_as_published`: equations of [AaltoThesis], named in the report
-  of its test cylinder
+  `stiffness_published.line_stiffness_as_published`: equations of [AaltoThesis] that the report
+  of its test cylinder names
 """

@@ -1,8 +1,8 @@
 """Gas-charged accumulators: gas volume, capacitance and usable volume.
 
-Pressures are gauge, as everywhere; the gas laws add the atmospheric pressure themselves. The
-branch of an accumulator on a line is `line_ends.accumulator_end`: inertance and resistance of
-its neck before this capacitance.
+Pressures are gauge, as everywhere; the gas laws add the atmospheric pressure themselves. An
+accumulator connected to a line is `line_ends.accumulator_end`: inertance and resistance of its neck
+in series with this capacitance.
 """
 
 from __future__ import annotations
@@ -65,7 +65,8 @@ def gas_capacitance(
 ) -> Array:
     """Capacitance of the gas for small vibrations, C = V/(n (p + p_a)).
 
-    Slow filling has compressed the gas to V (`filling_index`). Fast oscillations about V follow n.
+    First, slow filling compresses the gas to V with `filling_index`. Then the gas oscillates fast
+    about V with the polytropic index n.
 
     Parameters
     ----------
@@ -73,7 +74,7 @@ def gas_capacitance(
     precharge_pressure : gauge [Pa], at the temperature of use
     gas_volume : at the precharge pressure [m^3]
     polytropic_index : n of the vibration [-]: 1.4 above some tenths of a hertz
-    filling_index : index of the filling [-]: 1.0 slow
+    filling_index : polytropic index while the accumulator was filled [-]: 1.0 if slowly
     atmospheric_pressure : absolute [Pa]
 
     Returns
@@ -119,8 +120,8 @@ def usable_volume(
 ) -> Array:
     """Oil volume that an accumulator delivers between a high and a low pressure.
 
-    The gas is filled to V at the high pressure (`filling_index`). It then expands with n down to
-    the low pressure, or until it fills the shell:
+    Filling to the high pressure compresses the gas to V with `filling_index`. The gas then expands
+    with n down to the low pressure, or until it fills the shell:
     min(V ((p_high + p_a)/(p_low + p_a))^(1/n), V0) - V.
 
     Parameters
@@ -129,7 +130,7 @@ def usable_volume(
     precharge_pressure : gauge [Pa], at the temperature of use
     gas_volume : V0, at the precharge pressure [m^3]
     polytropic_index : n of the discharge [-]: 1.4 within seconds, 1.0 over minutes
-    filling_index : index of the filling [-]: 1.0 slow
+    filling_index : polytropic index while the accumulator was filled [-]: 1.0 if slowly
     atmospheric_pressure : absolute [Pa]
 
     Returns

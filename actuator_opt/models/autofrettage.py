@@ -3,23 +3,26 @@
 The liner between the radii a and b is isotropic, elastic and perfectly plastic. It yields by Tresca
 where the hoop minus the radial stress is Y, without axial plastic strain; the wrap stays elastic.
 Everywhere in the liner sigma_z = E e_z + nu (sigma_r + sigma_t) with e_z = eps_z - alpha dT, so
-equilibrium alone gives its axial force. The volume changes only elastically, so that in the elastic
-and in the plastic zone
+radial equilibrium alone gives the liner's axial force. The volume changes only elastically, so that
+in the elastic and in the plastic zone
 
     eps_t = (1 - nu^2) Y x b^2/(E r^2) + (1 + nu)(1 - 2 nu) sigma_r/E - nu e_z + alpha dT.
 
-x is the extent of yielding: (c/b)^2 where the plastic zone ends at the radius c. Below (a/b)^2 the
-whole liner is elastic, above 1 it is all plastic. q is the pressure on the wrap; the liner bears
-the remaining p - q:
+x measures how far the liner has yielded: x = (c/b)^2 if the plastic zone ends at the radius c.
+Where x is below (a/b)^2, the whole liner is elastic; where x is above 1, all of it is plastic. q is
+the pressure on the wrap. The liner bears the remaining pressure p - q, which is
 
-    elastic Y x (b^2/a^2 - 1)/2,    partly Y [ln(c/a) + (1 - x)/2],    through Y ln(b/a).
+    elastic: Y x (b^2/a^2 - 1)/2,   partly plastic: Y [ln(c/a) + (1 - x)/2],   plastic: Y ln(b/a).
 
-The wrap is linear: q = kappa Y x - mu p - tau. Both leave one equation for x, with y = ln x:
-y - m (e^y - 1) + s = 0, m = 1 - 2 kappa < 1, s = 2 (1 + mu)(p_full - p)/Y. Its left side rises and
-its curvature has one sign. Newton's method therefore converges in a few steps from a start that is
-exact at the double root (m = 1, s = 0: collapse of a bare liner); a complex step at the end makes
-every derivative exact. Unloading is elastic: the residual state is the state at p minus the elastic
-state at p.
+The wrap responds linearly: q = kappa Y x - mu p - tau. For a partly plastic liner, both conditions
+combine into one equation for y = ln x,
+
+    y - m (e^y - 1) + s = 0,    m = 1 - 2 kappa < 1,    s = 2 (1 + mu)(p_full - p)/Y.
+
+Its left side increases with y, and its curvature has one sign. Newton's method therefore converges
+in a few steps from a start that is exact at the double root (m = 1, s = 0: collapse of a bare
+liner); a complex step at the end makes every derivative exact. Unloading is elastic: the residual
+state is the state at p minus the elastic state at p.
 """
 
 from __future__ import annotations
@@ -49,7 +52,7 @@ from .strength_modes import Stress
 from .tube_elements import LayeredTube
 
 _STEPS = 6
-"""Newton steps that find the plastic zone to rounding, for b/a up to 20 and any wrap."""
+"""Newton steps that find the plastic zone to rounding error, for b/a up to 20 and any wrap."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +91,7 @@ class Autofrettage:
 
 
 class _Liner(NamedTuple):
-    """Elastic constants, radii squared, free strain alpha dT, axial force over 2 pi p."""
+    """Elastic constants, radii squared, free strain alpha dT, axial force divided by 2 pi p."""
 
     modulus: Array
     ratio: Array
@@ -101,8 +104,9 @@ class _Liner(NamedTuple):
 class _Contact(NamedTuple):
     """Linear response of liner and wrap to x, p and dT.
 
-    q = kappa Y x - mu p - tau; eps_z = strain (q, p, dT); `pull` is the axial force of the wrap per
-    q, over 2 pi.
+    q = kappa Y x - mu p - tau. The elements of `strain` give eps_z: the first times q, plus the
+    second times p, plus the third, which is thermal. `pull` is the axial force in the wrap per unit
+    of q, divided by 2 pi.
     """
 
     kappa: Array
@@ -131,7 +135,7 @@ def _liner(layer: TubeLayer, inner_radius: Array, change: Array, force: Array) -
 
 
 def _contact(liner: _Liner, wrap: LayeredTube | None, change: Array) -> _Contact:
-    """Compatibility of hoop strain and axial strain, and axial equilibrium, at the interface."""
+    """Solve for equal strains of liner and wrap at the interface, and for axial equilibrium."""
     e, nu, inner, outer, free, pull = liner
     area = e * (outer - inner) / 2
     own = pull - nu * inner
@@ -163,7 +167,7 @@ def _contact(liner: _Liner, wrap: LayeredTube | None, change: Array) -> _Contact
 
 
 def _spread(xp: Any, kappa: Array, depth: Array) -> Array:
-    """Root x of y - m (e^y - 1) + s = 0, y = ln x <= 0, for s = `depth` > 0."""
+    """Root x of y - m (e^y - 1) + s = 0, y = ln x <= 0, m = 1 - 2 `kappa`, s = `depth` > 0."""
     near, rest = 2 * real(kappa), real(depth)
     bend = 1 - near
     y = -2 * rest / (near + xp.sqrt(near * near + 2 * maximum(bend, 0 * bend) * rest))
@@ -175,7 +179,11 @@ def _spread(xp: Any, kappa: Array, depth: Array) -> Array:
 
 
 class _Yielding(NamedTuple):
-    """Pressures of first and full yield; x at the overpressure, x if elastic, x of p alone."""
+    """Pressures of first and of full yield, and three values of x at the overpressure.
+
+    `spread` is the actual x, `elastic` that of a liner which never yields, `spent` the latter
+    without thermal stress.
+    """
 
     first: Array
     full: Array
@@ -187,7 +195,7 @@ class _Yielding(NamedTuple):
 def _yielding(
     xp: Any, liner: _Liner, contact: _Contact, yield_strength: Array, pressure: Array
 ) -> _Yielding:
-    """Extent x of the yielding from p, in its three ranges."""
+    """Find the yield pressures, and x of an elastic, a partly plastic or a plastic liner."""
     kappa, square = contact.kappa, liner.outer / liner.inner
     half = xp.log(square) / 2
     start, through = (1 - 1 / square) / 2 + kappa / square, half + kappa
@@ -222,7 +230,8 @@ def autofrettage(
     """Residual state of a lined tube after one overpressure, and its new elastic limit.
 
     sigma_r = -p + Y ln(r/a) in the yielded zone a..c, sigma_t = sigma_r + Y;
-    p(c) = q + Y [ln(c/a) + (1 - c^2/b^2)/2], q from the wrap; derived in the module's docstring.
+    p(c) = q + Y [ln(c/a) + (1 - c^2/b^2)/2] with the pressure q on the wrap. The module's
+    docstring derives both.
 
     Parameters
     ----------
@@ -299,14 +308,14 @@ def autofrettage(
 
 
 def _share(value: Array) -> Array:
-    """Hoop less radial stress over yield, at most 1; NaN stays NaN."""
+    """Hoop minus radial stress, divided by the yield strength: at most 1; NaN stays NaN."""
     return minimum(1 + 0 * value, value)
 
 
 def _own_stresses(
     xp: Any, liner: _Liner, strain: Array, difference: tuple[Array, Array], press: Array
 ) -> Stress:
-    """Residual stresses z, t, r of the liner at both faces, from its hoop less radial stress."""
+    """Residual stresses z, t, r at both faces of the liner, from its hoop minus radial stress."""
     radial = (0 * difference[0], -press)
     hoop = (difference[0], difference[1] - press)
     pulled = liner.modulus * strain
@@ -332,7 +341,7 @@ def _all_stresses(
 def _loaded(
     liner: _Liner, contact: _Contact, found: _Yielding, yield_strength: Array, pressure: Array
 ) -> tuple[Array, Array]:
-    """Radial stress at the bore and E e_z at the overpressure, over yield."""
+    """Radial stress at the bore and E e_z, at the overpressure, divided by the yield strength."""
     by_press, by_pressure, by_heat = contact.strain
     press = contact.kappa * yield_strength * found.spread - contact.mu * pressure - contact.tau
     stretch = by_press * press + by_pressure * pressure + by_heat - liner.free
@@ -340,7 +349,10 @@ def _loaded(
 
 
 def _margin(ratio: Array, loaded: tuple[Array, Array], bore: Array, way: Array) -> Array:
-    """Distance of sigma_z to the nearer of sigma_r and sigma_t at both ends of the yielding."""
+    """Distance of sigma_z to the nearer of sigma_r and sigma_t, divided by Y.
+
+    The result is the smaller of the values at both edges of the yielded zone.
+    """
     radial, stretch = loaded
     margins = []
     for inward in (radial, radial + way):
@@ -352,7 +364,7 @@ def _margin(ratio: Array, loaded: tuple[Array, Array], bore: Array, way: Array) 
 def _reverse(
     liner: _Liner, contact: _Contact, found: _Yielding, yield_strength: Array, bore: Array
 ) -> Array:
-    """Tresca stress over yield at the bore after unloading."""
+    """Tresca stress at the unloaded bore, divided by the yield strength."""
     by_press, _, by_heat = contact.strain
     around = bore - found.spent * liner.outer / liner.inner
     press = contact.kappa * yield_strength * (found.spread - found.spent) - contact.tau

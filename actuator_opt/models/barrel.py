@@ -1,7 +1,8 @@
 """Isotropic barrel: bore growth, wall stress, burst, chamber compliance.
 
 The models are Lamé's thick cylinder under internal gauge pressure with any axial force, and the
-growth as published. The axial load path and the growth beside a pressure step are in `barrel_ends`.
+bore growth as [ElAsswad2018] published it. The axial load path and the growth beside a pressure
+step are in `barrel_ends`.
 """
 
 from __future__ import annotations
@@ -73,9 +74,10 @@ def bore_growth_as_published(
     youngs_modulus: Array,
     poissons_ratio: Array,
 ) -> Array:
-    """Radial growth of the bore as the source prints it: with the outer radius, open ends.
+    """Radial growth of the bore as the source prints it, with the outer radius and for open ends.
 
-    u = (r_o p/E) (lambda + nu). This is r_o/r_i times too large, as theory needs the inner radius.
+    u = (r_o p/E) (lambda + nu). The result is r_o/r_i times too large,
+    because theory requires the inner radius.
 
     Parameters
     ----------
@@ -227,7 +229,7 @@ def burst_pressure_thick(
 
 @geometry
 def chamber_compliance(*, inner_radius: Array, growth_per_pressure: Array, length: Array) -> Array:
-    """Volume a chamber's wall gives per pressure.
+    """Volume that a chamber gains per unit pressure because its wall swells.
 
     dV/dp = 2 pi r_i L (u/p), taken over the full bore perimeter in both chambers.
 
@@ -261,7 +263,7 @@ def chamber_compliance(*, inner_radius: Array, growth_per_pressure: Array, lengt
 
 @geometry
 def barrel_stiffness(*, area: Array, compliance: Array) -> Array:
-    """Axial stiffness that the wall's compliance leaves one chamber.
+    """Axial stiffness of one chamber if only its wall gave way.
 
     k = A^2/(dV/dp), with the effective area of the chamber.
 
@@ -293,7 +295,7 @@ def barrel_stiffness(*, area: Array, compliance: Array) -> Array:
 def wall_ratio_for_strain(
     *, strain: Array, pressure: Array, youngs_modulus: Array, poissons_ratio: Array, closed: bool
 ) -> Array:
-    """Wall ratio r_o/r_i that holds the bore's hoop strain to a value.
+    """Wall ratio r_o/r_i at which the bore's hoop strain has a given value.
 
     X = strain E/p; open ends k = sqrt((X - nu + 1)/(X - nu - 1)), closed ends
     k = sqrt((X + 1 - 2 nu)/(X - 1 - nu)).
@@ -313,7 +315,7 @@ def wall_ratio_for_strain(
     Raises
     ------
     ValueError
-        Where no wall, however thick, reaches the strain.
+        Where no wall, however thick, keeps the strain that small.
 
     Notes
     -----

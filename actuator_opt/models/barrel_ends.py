@@ -1,7 +1,8 @@
 """Axial effects in the barrel: axial force, tie rods, growth beside a pressure step.
 
 The barrel's axial force follows from how the cylinder is mounted, never from a fixed "open" or
-"closed" end; the wall's growth at the piston seal is the far-field growth times a step factor.
+"closed" end. At the piston seal, where the pressure steps, the wall grows by the far-field growth
+times `pressure_step_factor`.
 """
 
 from __future__ import annotations
@@ -130,7 +131,7 @@ def axial_force_cap_mounted(
 ) -> Array:
     """Axial force in the barrel wall of a cylinder held at its cap.
 
-    N = p_B A_B + F_stop: the pressure on the head, and the force of the piston that presses on it.
+    N = p_B A_B + F_stop: the pressure force on the head, and the force of a piston at its stop.
 
     Parameters
     ----------
@@ -162,7 +163,7 @@ def axial_force_cap_mounted(
 def axial_force_head_mounted(*, cap_side_pressure: Array, cap_side_area: Array) -> Array:
     """Axial force in the barrel wall of a cylinder held at its head.
 
-    N = p_A A_A: the pressure on the cap.
+    N = p_A A_A: the pressure force on the cap.
 
     Parameters
     ----------
@@ -216,7 +217,7 @@ def tie_rod_forces(
 
     Notes
     -----
-    Valid: joint closed (barrel force negative). Beyond, the rods alone carry N.
+    Valid: joint closed (barrel force negative). Once it opens, the rods alone carry N.
 
     References
     ----------

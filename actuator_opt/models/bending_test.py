@@ -1,4 +1,4 @@
-"""Three-point bending test: from the slope of force over deflection to a modulus, and back.
+"""Three-point bending test: from the force-deflection slope to a modulus, and back.
 
 The specimen lies on two supports a span L apart and is loaded in the middle. Bending, shear and the
 indentation at load and supports are springs in series.
@@ -22,12 +22,12 @@ def bending_modulus(
 ) -> Array:
     """Modulus from a bending test, with shear and local dents subtracted from the deflection.
 
-    E = L^3/(48 I)/(1/k0 - L/(4 S) - C), 1/S = `shear_compliance`. A stepped specimen takes the
-    second moment of `equivalent_second_moment`.
+    E = L^3/(48 I)/(1/k0 - L/(4 S) - C), 1/S = `shear_compliance`. For a stepped specimen,
+    pass the second moment from `equivalent_second_moment`.
 
     Parameters
     ----------
-    slope : k0, force over deflection of the middle [N/m]
+    slope : k0, force divided by deflection, both at mid-span [N/m]
     span : L between the supports [m]
     second_moment : I of the section, or the equivalent value [m^4]
     shear_compliance : 1/(kappa G A) [1/N]; for a stepped specimen its mean along the span
@@ -66,7 +66,7 @@ def bending_slope(
     shear_compliance: Array = 0.0,
     local_compliance: Array = 0.0,
 ) -> Array:
-    """Force over deflection that a bending test will show: the inverse of `bending_modulus`.
+    """Force-deflection slope that a bending test will show: the inverse of `bending_modulus`.
 
     1/k0 = L^3/(48 EI) + L/(4 S) + C, 1/S = `shear_compliance`.
 
@@ -111,8 +111,8 @@ def equivalent_second_moment(
 
     Parameters
     ----------
-    second_moments : I of each part from the support to the middle [m^4]; a part of another
-        material counts with E_j/E times its own
+    second_moments : I of each part from the support to the middle [m^4]; for a part of
+        another material, E_j/E times its I
     steps : distance of each change of section from the support, one fewer than parts [m]
     span : L between the supports [m]
 
@@ -122,7 +122,7 @@ def equivalent_second_moment(
 
     Notes
     -----
-    Valid: steps inside half the span; of an unequal pair of halves take the mean of both 1/I.
+    Valid: steps inside half the span; for unequal halves, take the mean of both 1/I.
 
     References
     ----------
@@ -148,7 +148,7 @@ def equivalent_second_moment(
 def indentation_compliance(
     *, force: Array, roller_radius: Array, specimen_radius: Array, contact_modulus: Array
 ) -> Array:
-    """Local deflection per force of three round rollers across a round specimen, after Hertz.
+    """Local deflection per force where three round rollers cross a round specimen, by Hertz.
 
     One contact: delta = (9 F^2/(16 R E*^2))^(1/3), R = sqrt(R1 R2), slope 2 delta/(3 F). The
     supports carry F/2 each: C = (2 delta/(3 F)) (1 + 2^(1/3)/2).

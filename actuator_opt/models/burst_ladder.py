@@ -1,9 +1,10 @@
-"""Burst by ply discount, for one design or many at once, with any wall mechanics.
+"""Burst pressure by ply discount, for one design or many at once, with any model of the wall.
 
 The load grows from zero. The mode with the largest utilisation by maximum stress fails first. A
-matrix or shear failure softens every ply of that material and |angle|; a fibre failure ends the
-ladder. Burst is the largest load of the ladder. An isotropic liner yields by von Mises and then
-keeps its stress at yield, while the fibres take the further load: yielding is no failure.
+matrix or shear failure softens every ply of that material and |angle|; a fibre failure is the last.
+The sequence of failures is called the ladder, and burst is its largest load. An isotropic liner
+yields by von Mises and then keeps its stress at yield, while the fibres take the further load:
+yielding is no failure.
 
 All designs of an array take the same fixed number of steps; masks exclude designs that have failed
 already. A complex step follows the branch of its design. `Mechanics` gives the stresses under a
@@ -34,7 +35,7 @@ MODES = (
     "shear",
     "yield",
 )
-"""Names of the failure modes by their code in a ladder."""
+"""Names of the failure modes, in the order of their codes."""
 
 _YIELD = 6
 _NONE = 1e-300
@@ -86,18 +87,18 @@ class LadderStep:
 
 @dataclass(frozen=True, slots=True)
 class BurstLadder:
-    """Pressures of first ply failure, liner yield and burst [Pa], with every step's record.
+    """Pressures of first ply failure, liner yield and burst [Pa], with a record of every step.
 
     Parameters
     ----------
     first_ply_pressure : first failure of a composite ply
     burst_pressure : largest load of the ladder
     liner_yield_pressure : first yield of a metal layer in the intact wall; infinite without one
-    record : for each step the code of its mode (a row of `intact`), its load, and whether the
-        design took it
-    order : index from the bore of each internal layer, metals first
-    intact : 1/p of every mode in the intact wall: rows of modes, faces and layers, then the yield
-        of metals
+    record : for each step the row of its mode in `intact`, its pressure, and whether the design
+        took this step
+    order : position from the bore of each layer in the internal order, which lists metals first
+    intact : 1/p for the pressure p at which each mode fails in the intact wall: rows over modes,
+        faces and layers, then over the yield of metals
     faces : number of stations through each layer
     """
 
@@ -117,7 +118,7 @@ class BurstLadder:
         return plies + [(self.order[i % metals], "yield") for i in range(metals * self.faces)]
 
     def steps(self, index: tuple[int, ...] = ()) -> tuple[LadderStep, ...]:
-        """List the ladder of the design at an index of the arrays; no index for a single design."""
+        """List the failures of the design at an index of the arrays; a single design has none."""
         named = self.modes()
         ladder = []
         for code, pressure, counted in self.record:
@@ -129,7 +130,7 @@ class BurstLadder:
 
 
 class Mechanics(Protocol):
-    """Stress response of a wall to unit pressure with some layers softened; metals come first."""
+    """Model of a wall: its stresses per pressure with some layers softened; metals come first."""
 
     @property
     def faces(self) -> int:
@@ -141,21 +142,27 @@ class Mechanics(Protocol):
 
     @property
     def order(self) -> tuple[int, ...]:
-        """Index from the bore of each layer, metals first."""
+        """Position from the bore of each layer in the internal order, which lists metals first."""
 
     @property
     def stressed(self) -> bool:
         """Whether the wall is stressed before any load, as by cooling from the cure."""
 
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
-        """Stresses 1, 2, 12, 3 at every face and layer: per pressure, and from yielded metals."""
+        """Stresses 1, 2, 12, 3 at every face and layer, per unit pressure and at zero pressure.
+
+        The second comes from yielded metals and other initial stress; None without either.
+        """
 
     def frozen(self, held: Any, yielded: Array, stress: Array) -> Any:
-        """Frozen state of the yielded metals; `stress` is their stress, (4, faces, metals, ...)."""
+        """State `held` of the yielded metals after the metals marked in `yielded` have joined them.
+
+        `stress` is the stress of all metals at this moment, (4, faces, metals, ...).
+        """
 
 
 def batch_zero(values: Sequence[Array]) -> Array:
-    """A zero with the joint shape and type of the arrays among the values."""
+    """Zeros in the common shape and type of the arrays among the values."""
     total: Array = 0.0
     for value in values:
         if not isinstance(value, (float, int, complex)):
@@ -188,7 +195,7 @@ def metals_first(layers: Sequence[WallLayer]) -> tuple[int, ...]:
 
 
 def stacked_rows(xp: Any, columns: Sequence[Sequence[Array]], dims: int) -> Array:
-    """Values of every layer as (values, layers, ...) with `dims` batch axes."""
+    """Stack the values of all layers as an array (values, layers, ...) with `dims` batch axes."""
     rows = list(zip(*columns, strict=True))
     zero = batch_zero([value for row in rows for value in row])
     ones = (1,) * dims
@@ -199,12 +206,12 @@ def stacked_rows(xp: Any, columns: Sequence[Sequence[Array]], dims: int) -> Arra
 
 
 def _above(value: Array) -> Array:
-    """`value`, at least a small positive number: the strength may be used up already."""
+    """Raise `value` to a small positive number, in case the strength is used up already."""
     return where(real(value) > _FLOOR, value, 0 * value + _FLOOR)
 
 
 def _yields(rate: Array, base: Array | None, inverse: Array) -> Array:
-    """1/p at which the metals yield."""
+    """1/p for the pressure p at which each metal yields."""
 
     def stress(values: Array) -> Stress:
         return values[0, ...], values[1, ...], values[3, ...], 0 * values[2, ...]
@@ -219,9 +226,9 @@ def _yields(rate: Array, base: Array | None, inverse: Array) -> Array:
 def _utilisations(
     xp: Any, metals: int, inverse: Array, rate: Array, base: Array | None, *, free: bool
 ) -> Array:
-    """1/p of every mode: rows of modes, faces, layers, then the metals' yield.
+    """1/p for the pressure p at which each mode fails: modes, faces, layers, then metals' yield.
 
-    `free`: the metals have no stress without pressure.
+    `free`: the metals have no stress at zero pressure.
     """
     modes = xp.concat([rate[:3, ...], -rate[:3, ...]]) * inverse[:6, ...]
     if base is not None:
@@ -273,7 +280,7 @@ def _together(xp: Any, walls: Sequence[WallLayer], dims: int) -> Array:
 
 @geometry
 def climb(xp: Any, mechanics: Mechanics, layers: Sequence[WallLayer], shape: Array) -> BurstLadder:
-    """The ladder of a wall; `shape` is a zero with the joint shape and type of the designs.
+    """Follow the failures of a wall to burst; `shape`: zeros in shape and type of the designs.
 
     References
     ----------
@@ -338,7 +345,7 @@ def _elastic(layer: WallLayer) -> tuple[Array, ...]:
 
 
 def _table(xp: Any, angle: Array, thickness: Array, moduli: tuple[Array, ...]) -> Array:
-    """Rows of the layers: stresses 1, 2, 12 per axial and per hoop strain, line stiffnesses."""
+    """Rows of values per layer: stresses 1, 2, 12 per axial and hoop strain, line stiffnesses."""
     double = 2 * angle
     along = (1 + xp.cos(double)) / 2
     across, shift = 1 - along, xp.sin(double)
@@ -383,7 +390,7 @@ class _Membrane:
         return xp.concat([plane, 0 * plane[:1, ...]])[:, None, ...]
 
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
-        """Stresses per pressure, and those from the line forces of yielded metals."""
+        """Stresses per unit pressure, and those that yielded metals cause at zero pressure."""
         xp = namespace(self.intact)
         table = self.intact if soft is None else where(soft, self.softened, self.intact)
         rate = self._stress(xp, table, self.axial_line, self.hoop_line)
@@ -392,7 +399,7 @@ class _Membrane:
         return rate, -self._stress(xp, table, held[0, ...], held[1, ...])
 
     def frozen(self, held: Any, yielded: Array, stress: Array) -> Any:
-        """Line forces of the metals that have yielded so far."""
+        """Line forces of all metals that have yielded so far."""
         xp = namespace(stress)
         more = xp.sum(where(yielded, stress[:2, 0, ...] * self.kept, 0.0), axis=1)
         return more if held is None else held + more
@@ -409,11 +416,11 @@ def burst_by_ply_discount(
 ) -> BurstLadder:
     """First ply failure and burst of a thin laminated wall.
 
-    The line forces are N_t = p R and N_z = N/(2 pi R); the critical mode follows from maximum
-    stress. A matrix or shear failure multiplies E2, G12, nu12 of all plies of that material and
-    |angle| by `residual` and removes their matrix limits. Burst is the largest load recorded until
-    a fibre mode governs. A metal layer that yields keeps `liner_share` of its stress at yield, and
-    afterwards `residual` of its stiffness.
+    The line forces are N_t = p R and N_z = N/(2 pi R); the maximum-stress criterion gives the
+    critical mode. A matrix or shear failure multiplies E2, G12, nu12 of all plies of that material
+    and |angle| by `residual` and removes their limits of matrix and shear stress. Burst is the
+    largest load recorded until a fibre mode governs. A metal layer that yields keeps `liner_share`
+    of its stress at yield, and afterwards `residual` of its stiffness.
 
     Parameters
     ----------

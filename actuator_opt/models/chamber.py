@@ -1,9 +1,10 @@
-"""Mass balance of a chamber: oil with entrained air over pressure; cavitation.
+"""Mass balance of a chamber filled with oil and entrained air, and cavitation.
 
-The state is the reference volume: the volume that the content would have at zero gauge pressure. It
-grows by the net inflow times the `density_ratio` at the pressure upstream of the flow. Pressures
-are gauge. The air stays undissolved and keeps its mass. With air the pressure of a chamber cannot
-fall to -p_a. In oil without air a cavity opens below atmospheric pressure and closes above it.
+The state of a chamber is its reference volume: the volume that its oil and air would have at zero
+gauge pressure. It grows by the net inflow times the `density_ratio` at the pressure upstream of the
+flow. Pressures are gauge. The air stays undissolved and keeps its mass. With air the pressure of a
+chamber cannot fall to -p_a. In oil without air a cavity opens below atmospheric pressure and closes
+above it.
 """
 
 from __future__ import annotations
@@ -23,16 +24,16 @@ def density_ratio(
     polytropic_index: Array = 1.4,
     atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
 ) -> Array:
-    """Density over the density at zero gauge pressure, (1 + alpha)/(f + alpha r).
+    """Density divided by the density at zero gauge pressure, (1 + alpha)/(f + alpha r).
 
-    f = e^(-p/K) of the oil, (1 + m p/K)^(-1/m) with a slope m; r = (p_a/(p_a + p))^(1/n).
+    Oil: f = e^(-p/K), or (1 + m p/K)^(-1/m) with a slope m. Air: r = (p_a/(p_a + p))^(1/n).
 
     Parameters
     ----------
     pressure : gauge [Pa]
     bulk_modulus : tangent value of the pure oil at zero gauge pressure, K [Pa]
     slope : m = dK/dp of the pure oil [-]
-    air_content : alpha, free air over oil volume at zero gauge pressure [-]
+    air_content : alpha, volume of free air / volume of oil at zero gauge pressure [-]
     polytropic_index : n [-]: 1.4 fast (adiabatic), 1.0 slow (isothermal)
     atmospheric_pressure : p_a, absolute [Pa]
 
@@ -69,18 +70,19 @@ def mixture_bulk_modulus(
     polytropic_index: Array = 1.4,
     atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
 ) -> Array:
-    """Tangent bulk modulus that keeps the mass, K_eff = (f + alpha r)/(f/K_p + alpha r/(n P)).
+    """Tangent bulk modulus by conservation of mass, K_eff = (f + alpha r)/(f/K_p + alpha r/(n P)).
 
-    P = p + p_a, K_p = K + m p, f and r as in `density_ratio`. The result is that of
-    `fluid.effective_bulk_modulus` with alpha/f, the ratio of air to oil volume at this pressure.
-    Unlike that formula it has no floor: it tends to n P as P falls to zero.
+    P = p + p_a, K_p = K + m p, f and r as in `density_ratio`. The result equals
+    `fluid.effective_bulk_modulus` with K_p and the air content alpha/f, because that function
+    relates the air to the oil volume at this pressure. Unlike that formula, which stops at
+    -0.9 p_a, it tends to n P as P falls to zero.
 
     Parameters
     ----------
     pressure : gauge [Pa]
     bulk_modulus : tangent value of the pure oil at zero gauge pressure, K [Pa]
     slope : m = dK/dp of the pure oil [-]
-    air_content : alpha, free air over oil volume at zero gauge pressure [-]
+    air_content : alpha, volume of free air / volume of oil at zero gauge pressure [-]
     polytropic_index : n [-]
     atmospheric_pressure : p_a, absolute [Pa]
 
@@ -111,7 +113,7 @@ def mixture_bulk_modulus(
 def pressure_rate(
     *, flow: Array, volume: Array, volume_rate: Array, bulk_modulus: Array, compliance: Array = 0.0
 ) -> Array:
-    """Pressure rise of a chamber, dp/dt = (q - dV/dt)/(V/K_eff + C_wall).
+    """Rate of the pressure in a chamber, dp/dt = (q - dV/dt)/(V/K_eff + C_wall).
 
     Parameters
     ----------
@@ -147,7 +149,8 @@ def _shares(
 ) -> tuple[Array, Array, Array]:
     """Change of the oil volume f - 1, gas volume alpha r, and -d(f + alpha r)/dp.
 
-    `total` is the absolute pressure; the gauge `pressure` keeps the digits that `total` loses.
+    `total` is the absolute pressure. If the gauge `pressure` is known too, pass it: its small
+    values have more digits.
     """
     modulus, slope, air, index, atmosphere = law
     strain = (total - atmosphere if pressure is None else pressure) / modulus
@@ -168,7 +171,7 @@ def cavity(
     polytropic_index: Array = 1.4,
     atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
 ) -> tuple[Array, Array, Array]:
-    """Volume of a cavity over the oil's at zero gauge pressure, -dG/dp, and the work to open it.
+    """Cavity volume G per oil volume at zero gauge pressure, its -dG/dp, and the work to open it.
 
     G = c (r - 1)^2 with r = (p_a/(p_a + p))^(1/n) below zero gauge pressure, and 0 above. Volume
     and slope are continuous, and the pressure never falls to a vacuum. The work to open the cavity
@@ -177,19 +180,19 @@ def cavity(
     Parameters
     ----------
     pressure : gauge pressure p [Pa], above -p_a
-    content : c, scale of the cavity's volume, which limits the tension [-] (a choice)
+    content : c, scale of G; it limits the tension in the oil [-] (a choice)
     polytropic_index : n of the gas in the cavity [-]
     atmospheric_pressure : p_a [Pa]
 
     Returns
     -------
-    volume G [-], -dG/dp [1/Pa], work over the oil's volume [J/m^3]; all zero from p = 0 up
+    volume G [-], -dG/dp [1/Pa], work per oil volume [J/m^3]; all zero from p = 0 up
 
     Notes
     -----
     Valid: any pressure above vacuum.
 
-    This is no law of cavitation: it limits the tension in the oil.
+    This formula is not a physical law of cavitation; it only limits the tension in the oil.
 
     References
     ----------

@@ -2,7 +2,7 @@
 
 The stepped column is in `stepped`; local buckling forces and moments are in `shell_buckling`. The
 beam carries its own weight, a side load and an off-centre push. The push amplifies the moment by a
-factor that is exact only for a load with the shape of the buckling mode. A side force F at the
+factor that is exact only if the moment has the shape of the buckling mode. A side force F at the
 rod's eye, which the guides carry, gives the moment F times overhang at the head.
 """
 
@@ -22,7 +22,8 @@ def euler_load(*, bending_stiffness: Array, effective_length: Array) -> Array:
     Parameters
     ----------
     bending_stiffness : EI [N m^2]
-    effective_length : K L [m]: L pinned-pinned, 2 L fixed-free, 0.699 L fixed-pinned, L/2 fixed
+    effective_length : K L [m]: L pinned-pinned, 2 L fixed-free, 0.699 L fixed-pinned, L/2
+        fixed-fixed
 
     Returns
     -------
@@ -161,7 +162,7 @@ def local_shell_stress(
     thickness : wall thickness [m]
     radius : mid-radius [m]
     poissons_ratio : Poisson's ratio; sqrt(nu_ztheta nu_thetaz) of a laminate [-]
-    knockdown : gamma [-]; None takes `local_shell_knockdown`, 1 the classical stress
+    knockdown : gamma [-]; None takes `local_shell_knockdown`, 1 gives the classical stress
 
     Returns
     -------
@@ -194,8 +195,9 @@ def self_weight_moments(
 ) -> tuple[Array, Array, Array]:
     """Bending moments of a horizontal cylinder, pinned at both eyes, under its own weight.
 
-    At the joint M = L1 L2 (w1 L1 + w2 L2)/(2 L); with the reaction R_i = M/L_i + w_i L_i/2 of
-    each pin, the largest of a segment is R_i^2/(2 w_i) where R_i < w_i L_i, else that at the joint.
+    Where the segments meet, M = L1 L2 (w1 L1 + w2 L2)/(2 L). With the reaction
+    R_i = M/L_i + w_i L_i/2 of its pin, the largest moment in segment i is R_i^2/(2 w_i) if
+    R_i < w_i L_i, and M otherwise.
 
     Parameters
     ----------
@@ -204,7 +206,7 @@ def self_weight_moments(
 
     Returns
     -------
-    at the joint, largest in segment 1, largest in segment 2 [N m]
+    moments: M where the segments meet, largest in segment 1, largest in segment 2 [N m]
 
     Notes
     -----
@@ -236,7 +238,7 @@ def self_weight_moments(
 def amplified_moment(
     *, bending_moment: Array, axial_force: Array, critical_load: Array, shape: Array = 0.0
 ) -> Array:
-    """Bending moment of a column that bends already without its axial push.
+    """Bending moment of a beam-column: the moment without axial push, amplified by the push.
 
     M (1 + psi P/P_cr)/(1 - P/P_cr). This is exact for a uniform column whose moment has the shape
     of its buckling mode. For a uniform pinned column at mid-span psi = 0.03 for a uniform load,
@@ -247,7 +249,7 @@ def amplified_moment(
     bending_moment : M, largest without the push [N m]
     axial_force : P, push positive [N]
     critical_load : P_cr of the same column [N]
-    shape : psi [-]
+    shape : psi, correction for the shape of the moment [-]
 
     Returns
     -------
@@ -287,7 +289,7 @@ def bending_axial_force(
     Parameters
     ----------
     bending_moment : M [N m]
-    radius : r, of the fibre, the outer radius for the largest [m]
+    radius : r of the fibre [m]; the outer radius has the largest strain
     axial_stiffness : EA of the section [N]
     bending_stiffness : EI of the section [N m^2]
 

@@ -1,10 +1,10 @@
 """Compact double-acting seals (DAS type): an elastomer block between guide parts, face outwards.
 
-The block of free radial height h and face width w is squeezed by C between groove floor and sliding
-surface, in plane strain along the circumference. Pressure from either side energises it, so that
-one face seals in both directions. Loads are per length of circumference; the pressure is the
-difference across the seal, >= 0. Without squeeze (C <= 0) there is no contact. The peak pressure is
-`contact_profile.land_peak`.
+The block has the free radial height h and the face width w. It is squeezed by the share C of h
+between groove floor and sliding surface, without strain along the circumference. Pressure from
+either side energises it, so that one face seals in both directions. Loads are per length of
+circumference; the pressure is the difference across the seal, >= 0. Without squeeze (C <= 0) there
+is no contact. The peak pressure is `contact_profile.land_peak`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ..base.numeric import Array, geometry, minimum, real, where
 
 
 def energised_share(*, poissons_ratio: Array) -> Array:
-    """Share of the pressure the block passes on to its face, k = nu/(1 - nu); 1 incompressible.
+    """Share of the pressure that the block passes on to its face, k = nu/(1 - nu).
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ def energised_share(*, poissons_ratio: Array) -> Array:
 
     Returns
     -------
-    share [-]
+    share [-]; 1 for an incompressible elastomer
 
     Notes
     -----
@@ -47,7 +47,7 @@ def contact_width(*, squeeze: Array, face_width: Array, groove_width: Array) -> 
 
     Parameters
     ----------
-    squeeze : C of the free radial height [-]
+    squeeze : C, as a share of the free radial height [-]
     face_width : free width w of the sliding face [m]
     groove_width : space between the guide parts [m]
 
@@ -89,7 +89,7 @@ def line_load(
 
     Parameters
     ----------
-    squeeze : C of the free radial height [-]
+    squeeze : C, as a share of the free radial height [-]
     face_width : free width w of the sliding face [m]
     youngs_modulus, poissons_ratio : of the elastomer [Pa], [-]
     pressure : difference across the seal [Pa]

@@ -1,13 +1,14 @@
-"""Static contact pressure over a seal's contact: closed forms over t = x/b, and their loads.
+"""Static contact pressure along a seal's contact width: closed forms in t = x/b, and line loads.
 
 There are profiles of O-rings (`o_ring_*`), lips (`lip_*`) and worn-in lands (`land_*`), and tables
 (`table_*`). t = 0 is the sealed side, t = 1 the outer side; at both ends the closed forms equal the
 pressure of that side. All pressures are on one scale, gauge or absolute.
 
-Each closed form has one free pressure, its excess. `*_mean` is the integral over t. `*_excess` is
-the excess with which a contact of width b carries a line load over the outer pressure,
-f = b (mean - p_a). A negative excess shows that the load is too small for this width: the sealed
-pressure would open the contact, and the profile must not be used. Without width the excess is NaN.
+Each closed form has one free parameter, a pressure called its excess. `*_mean` is the mean of the
+profile over t. `*_excess` is the excess at which a contact of width b carries the line load
+f = b (mean - p_a), which is counted from the outer pressure p_a. A negative excess shows that the
+load is too small for this width: the sealed pressure would open the contact, and the profile must
+not be used. Without width the excess is NaN.
 
 A land is the worn-in face of a step ring or a compact seal. PTFE and elastomer faces wear and creep
 until their pressure is even, so the land carries the falling oil pressure plus a flat excess. New
@@ -23,18 +24,18 @@ from itertools import pairwise
 from ..base.numeric import Array, clip, geometry, maximum, positive, real, sqrt, where
 
 LIP_PLACES, LIP_SHARE = (0.0, 0.2, 0.6, 1.0), 0.42
-"""Knots of the lip profile, and ratio of its pressure at the third knot to that at the
-second\n(*choice*, surrogate)."""
+"""Knots t of the lip profile; pressure above p_a at the third knot divided by the pressure at the
+second (*choice*, surrogate)."""
 O_RING_POWER = 10
-"""Power of the energised part, 1 - t^10. It is within 0.18 p of the finite-element profiles of this
-project at a squeeze of 0.10 to 0.20 and p up to E, and worst near the outer edge. Their mean is
-0.89 to 0.94 p."""
+"""Exponent of the part that the sealed pressure p adds, p (1 - t^10). It is within 0.18 p of this
+project's finite-element profiles at a squeeze of 0.10 to 0.20 and p up to E; the difference is
+largest near the outer edge. The mean of those profiles is 0.89 to 0.94 p."""
 
 
 def o_ring_profile(
     *, position: Array, sealed_pressure: Array, outer_pressure: Array, excess: Array
 ) -> Array:
-    """Contact pressure of an O-ring: the sealed pressure up to the outer edge, and the ellipse.
+    """Contact pressure of an O-ring: an ellipse, plus the sealed pressure almost to the outer edge.
 
     p = p_a + (p_s - p_a)(1 - t^10) + p_0 sqrt(1 - u^2), u = 2 t - 1.
 
@@ -111,7 +112,7 @@ def o_ring_excess(
 
     Parameters
     ----------
-    line_load : f over the outer pressure [N/m]
+    line_load : f, counted from the outer pressure [N/m]
     width : b [m]
     sealed_pressure, outer_pressure : p_s, p_a [Pa]
 
@@ -183,7 +184,7 @@ def lip_profile(
     ----------
     position : t = x/b, 0 to 1 [-]
     sealed_pressure, outer_pressure : p_s, p_a [Pa]
-    excess : p_k of the peak over the sealed pressure [Pa]
+    excess : p_k, height of the peak above the sealed pressure [Pa]
 
     Returns
     -------
@@ -260,11 +261,11 @@ def lip_excess(
     """Excess p_k with which the lip profile carries a line load.
 
     With y = p_a + f/b it is the greater of [y - 0.57933 p_s - 0.61667 p_a]/0.52933 and
-    [y - 0.58094 p_s - 0.61389 p_a]/0.50317, from the two forms of the slope at the sealed end.
+    [y - 0.58094 p_s - 0.61389 p_a]/0.50317, one for each form of the slope at the sealed end.
 
     Parameters
     ----------
-    line_load : f over the outer pressure [N/m]
+    line_load : f, counted from the outer pressure [N/m]
     width : b [m]
     sealed_pressure, outer_pressure : p_s, p_a [Pa]
 
@@ -298,13 +299,13 @@ def lip_excess(
 def table_profile(
     *, position: Array, positions: Sequence[Array], pressures: Sequence[Array]
 ) -> Array:
-    """Contact pressure of a table, linear between its points and constant outside them.
+    """Contact pressure from a table, linear between its points and constant outside them.
 
     Parameters
     ----------
     position : t = x/b, 0 to 1 [-]
-    positions : of the points, increasing from 0 to 1 [-]
-    pressures : at the points [Pa]
+    positions : t of the table's points, increasing from 0 to 1 [-]
+    pressures : contact pressures at these points [Pa]
 
     Returns
     -------
@@ -337,8 +338,8 @@ def table_mean(*, positions: Sequence[Array], pressures: Sequence[Array]) -> Arr
 
     Parameters
     ----------
-    positions : of the points, increasing from 0 to 1 [-]
-    pressures : at the points [Pa]
+    positions : t of the table's points, increasing from 0 to 1 [-]
+    pressures : contact pressures at these points [Pa]
 
     Returns
     -------
@@ -366,13 +367,13 @@ def table_mean(*, positions: Sequence[Array], pressures: Sequence[Array]) -> Arr
 
 
 LAND_POWER = 8
-"""Even power of the excess, 1 - u^8 (*choice*: flat within 5 % over the middle 69 %)."""
+"""Even exponent of the excess term, 1 - u^8 (*choice*: level within 5 % over the middle 69 %)."""
 
 
 def land_profile(
     *, position: Array, sealed_pressure: Array, outer_pressure: Array, excess: Array
 ) -> Array:
-    """Contact pressure of a worn-in land: the even fall of the oil pressure plus a flat excess.
+    """Contact pressure of a worn-in land: linear fall of the oil pressure plus a flat excess.
 
     p = p_a + (p_s - p_a)(1 - t) + p_e (1 - u^8), u = 2 t - 1.
 
@@ -413,7 +414,7 @@ def land_excess(
 
     Parameters
     ----------
-    line_load : f over the outer pressure [N/m]
+    line_load : f, counted from the outer pressure [N/m]
     width : b [m]
     sealed_pressure, outer_pressure : p_s, p_a [Pa]
 
@@ -450,7 +451,7 @@ def land_peak(
 
     Parameters
     ----------
-    line_load : f over the outer pressure [N/m]
+    line_load : f, counted from the outer pressure [N/m]
     width : b [m]
     sealed_pressure, outer_pressure : p_s, p_a [Pa]; p_s >= p_a
 

@@ -14,9 +14,9 @@ from ..base.numeric import Array, geometry, namespace, real, where
 
 @geometry
 def pipe_flow(*, dynamic_viscosity: Array, length: Array) -> Array:
-    """VDC of laminar pipe flow over a length, c = 8 pi eta L; free of the bore.
+    """VDC of laminar pipe flow over a length, c = 8 pi eta L, for any bore.
 
-    Its wall shear acts on the barrel, not on the rod.
+    The wall shear of this flow acts on the barrel, not on the rod.
 
     Parameters
     ----------

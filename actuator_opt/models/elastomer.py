@@ -1,7 +1,7 @@
 """Elastomers: modulus from hardness (`MODULUS_LAWS`), its bounds, its change with temperature.
 
-Hardness is a poor measure of the modulus: the two laws differ by 1.8 at 70 Shore A, and a batch
-scatters by 5 Shore A. An uncertainty study should include both.
+Hardness is a poor measure of the modulus: the two laws differ by a factor of 1.8 at 70 Shore A, and
+a batch scatters by 5 Shore A. An uncertainty study should include both.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from ..base.kinds import kinds
 from ..base.numeric import Array, maximum, minimum, namespace, real, where
 
 WLF_SLOPE, WLF_SPAN = 17.44, 51.6
-"""Universal constants of the time-temperature shift above the glass transition [Ferry1980]: decades
-and kelvin."""
+"""Universal constants of the time-temperature shift above the glass transition [Ferry1980]: the
+first in decades, the second in kelvin."""
 GLASS_OFFSET = 5.0
 """Stiffening temperature minus glass transition temperature [K] (*choice*: a few kelvin)."""
 ROUSE_EXPONENT = 0.5
@@ -24,7 +24,7 @@ ROUSE_EXPONENT = 0.5
 
 
 def modulus_gent(*, hardness: Array) -> Array:
-    """Young's modulus of rubber from hardness by Gent.
+    """Young's modulus of rubber from its hardness S by Gent's formula.
 
     E = 0.0981 (56 + 7.62336 S)/[0.137505 (254 - 2.54 S)] MPa.
 
@@ -40,7 +40,7 @@ def modulus_gent(*, hardness: Array) -> Array:
     -----
     Valid: 20 to 90 Shore A.
 
-    Ruess gives 1.8 times as much at 70 Shore A: treat the difference as an uncertainty.
+    Ruess's formula gives 1.8 times as much at 70 Shore A: treat the difference as an uncertainty.
 
     References
     ----------
@@ -58,7 +58,7 @@ def modulus_gent(*, hardness: Array) -> Array:
 
 
 def modulus_ruess(*, hardness: Array) -> Array:
-    """Young's modulus of rubber from hardness by Ruess, log10 E = 0.0235 S - 0.6403 (MPa).
+    """Young's modulus of rubber from its hardness S by Ruess, log10 E = 0.0235 S - 0.6403 (MPa).
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def modulus_ruess(*, hardness: Array) -> Array:
 
 
 class ModulusFunction(Protocol):
-    """Young's modulus (Pa) from Shore A hardness."""
+    """Function that gives Young's modulus (Pa) from Shore A hardness."""
 
     def __call__(self, *, hardness: Array) -> Array:
         """Evaluate at a hardness (Shore A)."""
@@ -108,7 +108,7 @@ MODULUS_LAWS = kinds(
     ModulusLaw("gent", "Gent's formula", modulus_gent, (20.0, 90.0), "[Gent1958]"),
     ModulusLaw(
         "ruess",
-        "Ruess's formula, 1.8 times as stiff at 70 Shore A",
+        "Ruess's formula, 1.8 times as stiff as Gent's at 70 Shore A",
         modulus_ruess,
         (20.0, 80.0),
         "[Larson2016]",
@@ -120,12 +120,12 @@ MODULUS_LAWS = kinds(
 def modulus_bounds(*, hardness: Array, hardness_scatter: Array) -> tuple[Array, Array]:
     """Lowest and highest modulus of the hardness laws over the scatter of the hardness.
 
-    min and max over Gent and Ruess of E(S - s) and E(S + s).
+    The result is the minimum and maximum of E(S - s) and E(S + s) by Gent and by Ruess.
 
     Parameters
     ----------
     hardness : S [Shore A]
-    hardness_scatter : s, both ways (a batch: 5) [Shore A]
+    hardness_scatter : s, half the width of the scatter (within a batch: 5) [Shore A]
 
     Returns
     -------
@@ -153,7 +153,10 @@ def modulus_bounds(*, hardness: Array, hardness_scatter: Array) -> tuple[Array, 
 
 
 def _stiffening(temperature: Array, stiffening_temperature: Array) -> Array:
-    """Modulus over its rubbery plateau: 10 at the stiffening temperature, near 1 far above it."""
+    """Modulus divided by its rubbery plateau.
+
+    The ratio is 10 at the stiffening temperature and tends to 1 far above it.
+    """
     glass = stiffening_temperature - GLASS_OFFSET
     above = maximum(temperature - glass, 0.0)
     decades = WLF_SLOPE * (GLASS_OFFSET / (WLF_SPAN + GLASS_OFFSET) - above / (WLF_SPAN + above))
@@ -168,16 +171,17 @@ def temperature_factor(
     softening: Array,
     stiffening_temperature: Array,
 ) -> Array:
-    """Modulus over its value at the reference temperature, E(T)/E(T_ref).
+    """Modulus divided by its value at the reference temperature, E(T)/E(T_ref).
 
-    e^(-b (T - T_ref)) s(T)/s(T_ref): the measured fall with heat, and the rise towards the glass
-    transition, s = 1 + 9 (a_T/a_T10)^(1/2), log10 a_T = -17.44 (T - T_g)/(51.6 + T - T_g),
-    T_g = T_10 - 5 K; below T_g the shift stays that at T_g, as the glass is frozen.
+    The factor is e^(-b (T - T_ref)) s(T)/s(T_ref). The exponential is the measured softening with
+    heat, and s is the stiffening towards the glass transition: s = 1 + 9 (a_T/a_T10)^(1/2),
+    log10 a_T = -17.44 (T - T_g)/(51.6 + T - T_g), T_g = T_10 - 5 K. Below T_g, a_T keeps its value
+    at T_g.
 
     Parameters
     ----------
     temperature : [K]
-    reference_temperature : where hardness or modulus was measured [K]
+    reference_temperature : at which hardness or modulus was measured [K]
     softening : b, relative fall per kelvin [1/K]; an unfilled ideal rubber stiffens, b = -1/T_ref
     stiffening_temperature : T_10, where the modulus is ten times its plateau (torsion test); TR10
         of a data sheet lies within a few kelvin [K]
@@ -190,10 +194,11 @@ def temperature_factor(
     -----
     Valid: from T_10 to the compound's upper limit, without ageing or swelling.
 
-    The rise of a polyurethane's modulus from 70 to -30 degC is met within 20 % [Texin250].
+    The formula reproduces the rise of a polyurethane's modulus from 70 to -30 degC within 20 %
+    [Texin250].
 
-    Filled PTFE: b = 0.0106 1/K from 20 to 100 degC [FilledPTFE], and a stiffening temperature far
-    below the range, so that only e^(-b (T - T_ref)) remains.
+    For filled PTFE, use b = 0.0106 1/K from 20 to 100 degC [FilledPTFE], and a stiffening
+    temperature far below the range, so that only e^(-b (T - T_ref)) remains.
 
     References
     ----------

@@ -130,8 +130,8 @@ def sound_speed(*, bulk_modulus: Array, density: Array) -> Array:
 def quarter_wave_frequency(*, length: Array, sound_speed: Array) -> Array:
     """First quarter-wave frequency of a plugged branch, f = a/(4 l).
 
-    At odd multiples the plugged end oscillates and the mouth takes flow without pressure; at even
-    multiples the branch takes no flow.
+    At odd multiples of f, pressure oscillates at the plugged end, and oil flows in and out of the
+    mouth without any pressure swing there. At even multiples, no oil flows through the mouth.
 
     Parameters
     ----------
@@ -159,9 +159,9 @@ def quarter_wave_frequency(*, length: Array, sound_speed: Array) -> Array:
 
 
 def resonance_frequency(*, inertance: Array, capacitance: Array) -> Array:
-    """Frequency of a lumped inertance on a capacitance, f = 1/(2 pi sqrt(L C)).
+    """Resonance of a lumped inertance with a capacitance, f = 1/(2 pi sqrt(L C)).
 
-    A Helmholtz resonator is the inertance of its neck on the capacitance of its volume.
+    In a Helmholtz resonator, the neck is the inertance and the volume the capacitance.
 
     Parameters
     ----------

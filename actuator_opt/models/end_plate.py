@@ -62,8 +62,8 @@ def hung_plate_stress(
 ) -> Array:
     """Largest bending stress of a cap under pressure, hung on a skirt wider than the bore.
 
-    Simply supported at a, p on r < c: M = (p c^2/4) [(1 + nu) ln(a/c) + 1 - (1 - nu) c^2/(4 a^2)]
-    at the centre, 6 M/t^2.
+    For a plate simply supported at radius a with pressure on r < c, the stress at the centre
+    is 6 M/t^2 with M = (p c^2/4) [(1 + nu) ln(a/c) + 1 - (1 - nu) c^2/(4 a^2)].
 
     Parameters
     ----------
@@ -109,9 +109,9 @@ def hub_plate_stress(
     thickness: Array,
     poissons_ratio: Array,
 ) -> Array:
-    """Radial bending stress at the hub of a plate held there: a cap on the neck of its clevis.
+    """Radial bending stress of a plate at the hub that holds it, such as the neck of a clevis.
 
-    Clamped at b, free at a, uniform p on the annulus and a ring force F at a:
+    Plate clamped at radius b and free at a, with pressure p in between and a ring force F at a:
     M = [F/(2 pi) + p a^2/2 - p b^2/2] L/C8 - p a^2 L17/C8, s = b/a,
     L = (1 + nu)/2 ln(a/b) + (1 - nu)/4 (1 - s^2), C8 = [1 + nu + (1 - nu) s^2]/2,
     L17 = {1 - (1 - nu)/4 (1 - s^4) - s^2 [1 + (1 + nu) ln(a/b)]}/4; 6 M/t^2.

@@ -15,7 +15,8 @@ from .orifice import TURBULENT_COEFFICIENT, orifice_pressure_drop
 STOP_TRAVEL = 0.2e-3
 """Compression of a stop under the force of the supply pressure, m [MECE5005]."""
 DAMPING_FACTOR = 0.5
-"""Ratio of a stop's damping to sqrt(K m), stiffness K, mass m: a quarter of critical [MECE5005]."""
+"""Ratio of a stop's damping to sqrt(K m) with stiffness K and mass m; 0.5 is a quarter of critical
+[MECE5005]."""
 
 
 @geometry
@@ -26,7 +27,7 @@ def stop_stiffness(*, area: Array, pressure: Array, travel: Array = STOP_TRAVEL)
     ----------
     area : piston area A_A [m^2]
     pressure : supply pressure p_P, gauge [Pa]
-    travel : travel over which the stop takes A_A p_P [m]
+    travel : compression at which the force of the stop is A_A p_P [m]
 
     Returns
     -------
@@ -80,7 +81,7 @@ def stop_damping(*, stiffness: Array, mass: Array, factor: Array = DAMPING_FACTO
 def contact_force(
     *, compression: Array, closing_speed: Array, stiffness: Array, damping: Array
 ) -> Array:
-    """Force of a stop while it is touched, max(K delta + b delta', 0).
+    """Force of a stop while the piston touches it, max(K delta + b delta', 0).
 
     Parameters
     ----------
@@ -127,7 +128,7 @@ def cushion_flow_area(
     remaining : y, travel left to the stop [m]
     length : L, of the cushion [m]
     open_area : flow area as the spear enters, and before [m^2]
-    end_area : flow area at the stop [m^2], > 0 for the mass to reach it
+    end_area : flow area at the stop [m^2]; the mass reaches the stop only if it is > 0
     exponent : k [-], > 0
 
     Returns
@@ -185,7 +186,7 @@ def cushion_pressure(
 
     Notes
     -----
-    Valid: stiff oil: the flow follows the speed; sharp edges.
+    Valid: stiff oil (the flow follows the speed at once); sharp edges.
 
     References
     ----------
@@ -208,10 +209,10 @@ def cushion_pressure(
 def cushion_mean_pressure(
     *, driving_force: Array, mass: Array, velocity: Array, length: Array, area: Array
 ) -> Array:
-    """Mean pressure of a cushion that stops a mass over its length, E/(A L).
+    """Mean pressure of a cushion that stops a mass within the cushion's length, E/(A L).
 
-    No cushion of this length can have a lower peak pressure. E is `endurance.end_stop_energy` over
-    the length.
+    No cushion of this length can have a lower peak pressure. E is
+    `endurance.end_stop_energy` with the length L as compression.
 
     Parameters
     ----------
@@ -255,9 +256,10 @@ def cushion_open_area(
     density: Array,
     turbulent_coefficient: Array = TURBULENT_COEFFICIENT,
 ) -> Array:
-    """Flow area of an evenly braking spear as it enters, A v/(C sqrt(2 p/rho)).
+    """Flow area past an evenly braking spear as the spear enters, A v/(C sqrt(2 p/rho)).
 
-    If the area closes as (y/L)^(1/2), the pressure stays constant, as v^2 then falls with y.
+    If the area then closes as (y/L)^(1/2) with the remaining travel y, the pressure stays constant,
+    because v^2 falls in proportion to y.
 
     Parameters
     ----------

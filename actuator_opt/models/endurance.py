@@ -1,4 +1,4 @@
-"""Fatigue life and impact: pressure cycles and the end of the stroke."""
+"""Fatigue life under pressure cycles, and impact at the end of the stroke."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ def cycles_to_failure(
     peak_stress : largest stress of the cycle, notch included [Pa]
     ultimate_strength : R_m [Pa]
     fatigue_limit : fully reversed amplitude endured for `limit_cycles`, with all reductions [Pa]
-    limit_cycles : cycles of that limit [-]
-    stress_ratio : R, smallest over largest stress [-]; 0 for a pressure that falls to zero
+    limit_cycles : number of cycles for which the fatigue limit is stated [-]
+    stress_ratio : R, smallest / largest stress [-]; 0 for a pressure that falls to zero
 
     Returns
     -------
@@ -68,7 +68,7 @@ def fatigue_factor(
     amplitude_strength: Array,
     stress_ratio: Array = 0.0,
 ) -> Array:
-    """Factor by which a pulsating stress may grow before its required life is lost.
+    """Factor by which a pulsating stress may grow before the part misses its required life.
 
     1/(s_a/S_f + s_m/R_m), where S_f is the fully reversed amplitude endured for the required
     cycles.
@@ -78,7 +78,7 @@ def fatigue_factor(
     peak_stress : largest stress of the cycle, notch included [Pa]
     ultimate_strength : R_m [Pa]
     amplitude_strength : S_f [Pa]
-    stress_ratio : R, smallest over largest stress [-]
+    stress_ratio : R, smallest / largest stress [-]
 
     Returns
     -------
@@ -170,7 +170,7 @@ def bolt_cycles(*, amplitude: Array, diameter: Array) -> Array:
 def end_stop_compression(
     *, driving_force: Array, stiffness: Array, mass: Array, velocity: Array
 ) -> Array:
-    """Travel into a linear end stop, or into oil trapped before it.
+    """Travel into a linear end stop, or into the oil trapped in front of it.
 
     delta = [F_d + sqrt(F_d^2 + k m v^2)]/k; trapped oil has k = K A^2/V.
 
@@ -206,7 +206,7 @@ def end_stop_compression(
 def end_stop_energy(
     *, driving_force: Array, compression: Array, mass: Array, velocity: Array
 ) -> Array:
-    """Energy an end stop takes.
+    """Energy that an end stop absorbs.
 
     E = m v^2/2 + F_d delta.
 

@@ -17,7 +17,7 @@ ATMOSPHERIC_PRESSURE = 101325.0
 LEAST_VISCOSITY = 2e-6
 """Kinematic viscosity down to which ASTM D341 holds in the form used here, m^2/s."""
 BARUS_PRESSURE, ROELANDS_PRESSURE, LINEAR_PRESSURE = 1e8, 1e9, 500e5
-"""Gauge pressures up to which the laws of viscosity and of a linear bulk modulus hold, Pa."""
+"""Gauge pressures up to which Barus's law, Roelands's law and the linear bulk modulus hold, Pa."""
 
 
 def viscosity_astm_d341(
@@ -47,8 +47,8 @@ def viscosity_astm_d341(
     -----
     Valid: 2 mm^2/s and above, near the given points.
 
-    For a fluid with viscosity improver two points do not reach to low temperatures: give three or
-    more.
+    For a fluid with a viscosity improver, two points do not extrapolate to low temperatures: give
+    three or more.
 
     References
     ----------
@@ -61,7 +61,7 @@ def viscosity_astm_d341(
     86.8 mm2/s
     """
     if len(points_temperature) != len(points_viscosity) or len(points_temperature) < 2:
-        raise ValueError("need two or more points, as many viscosities as temperatures")
+        raise ValueError("state two or more points, with one viscosity for each temperature")
     xp = namespace(temperature, *points_temperature, *points_viscosity)
     valid = real(temperature) > 0
     x = xp.log(where(valid, temperature, points_temperature[0]))
@@ -207,7 +207,7 @@ def vapour_pressure(
     12.33 kPa
     """
     if len(points_temperature) != len(points_pressure) or len(points_temperature) < 2:
-        raise ValueError("need two or more points, as many pressures as temperatures")
+        raise ValueError("state two or more points, with one pressure for each temperature")
     xp = namespace(temperature, *points_temperature, *points_pressure)
     valid = real(temperature) > 0
     x = 1 / where(valid, temperature, points_temperature[0])
@@ -298,8 +298,8 @@ def effective_bulk_modulus(
     Parameters
     ----------
     bulk_modulus : tangent value of the pure oil at this pressure [Pa]
-    pressure : gauge pressure [Pa]; below -0.9 p_a the value at -0.9 p_a (cavitation)
-    air_content : free air over oil volume at atmospheric pressure [-]
+    pressure : gauge pressure [Pa]; below -0.9 p_a, the value at -0.9 p_a is used
+    air_content : alpha, volume of free air / volume of oil at atmospheric pressure [-]
     polytropic_index : n [-]: 1.4 fast (adiabatic), 1.0 slow (isothermal)
     atmospheric_pressure : absolute [Pa]
 

@@ -1,4 +1,4 @@
-"""Areas, forces, flow and power of a cylinder, and its lever.
+"""Areas, forces, flow and power of a cylinder, and its lever arm on a joint.
 
 Chamber A is at the cap end, chamber B at the rod end; pressures are gauge, forces positive in
 the named direction.
@@ -168,7 +168,7 @@ def efficiency(*, force: Array, pressure: Array, area: Array) -> Array:
 
 @geometry
 def pressure_loss(*, friction: Array, area: Array) -> Array:
-    """Pressure that friction costs on an area, F/A.
+    """Pressure needed to overcome friction, F/A.
 
     Parameters
     ----------
@@ -197,7 +197,7 @@ def pressure_loss(*, friction: Array, area: Array) -> Array:
 
 @geometry
 def chamber_flow(*, area: Array, speed: Array) -> Array:
-    """Flow a moving piston takes, q = A v.
+    """Flow that a moving piston takes in or pushes out, q = A v.
 
     Parameters
     ----------
@@ -253,7 +253,7 @@ def power(*, force: Array, speed: Array) -> Array:
 
 
 def joint_force(*, torque: Array, lever_arm: Array) -> Array:
-    """Actuator force of a joint torque, F = M/a.
+    """Actuator force that gives a joint torque, F = M/a.
 
     Parameters
     ----------
@@ -281,7 +281,7 @@ def joint_force(*, torque: Array, lever_arm: Array) -> Array:
 
 
 class Crank(NamedTuple):
-    """An actuator between two pivots about a joint: its length and lever arm."""
+    """Length and lever arm of an actuator that connects two pivots across a joint."""
 
     length: Array
     lever_arm: Array
@@ -289,7 +289,7 @@ class Crank(NamedTuple):
 
 @geometry
 def crank(*, base_radius: Array, crank_radius: Array, joint_angle: Array) -> Crank:
-    """Pin-to-pin length and lever arm of an actuator over a joint with two pivots.
+    """Pin-to-pin length and lever arm of an actuator that connects two pivots across a joint.
 
     L^2 = a^2 + c^2 - 2 a c cos(phi), lever arm = dL/dphi = a c sin(phi)/L.
 

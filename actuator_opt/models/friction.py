@@ -1,4 +1,4 @@
-"""Seal friction: dry, Stribeck curve, and published parameters.
+"""Seal friction: dry friction, Stribeck curve, and published parameters.
 
 Friction has the sign of the speed; the magnitudes here are positive. The dynamic form, LuGre, is in
 `lugre`.
@@ -96,7 +96,7 @@ def breakaway(*, running: Array, ratio: Array) -> Array:
     Parameters
     ----------
     running : [N]
-    ratio : measured input [-] (1.5 to 3 for elastomers)
+    ratio : F_S/F_C, to be measured [-] (1.5 to 3 for elastomers)
 
     Returns
     -------
@@ -104,7 +104,7 @@ def breakaway(*, running: Array, ratio: Array) -> Array:
 
     Notes
     -----
-    Valid: the dwell time the ratio was measured after.
+    Valid: for the dwell time after which the ratio was measured.
 
     References
     ----------
@@ -126,7 +126,7 @@ def stribeck_level(
     Parameters
     ----------
     speed : [m/s]
-    coulomb, static : F_C, F_S [N]
+    coulomb, static : Coulomb and breakaway friction F_C, F_S [N]
     stribeck_speed : v_s [m/s]
     exponent : delta [-]
 
@@ -168,7 +168,7 @@ def stribeck(
     Parameters
     ----------
     speed : [m/s], signed
-    coulomb, static : [N]
+    coulomb, static : Coulomb and breakaway friction F_C, F_S [N]
     stribeck_speed : [m/s] (papers print mm/s)
     exponent : delta [-]
     viscous : sigma2 [N s/m]
@@ -227,7 +227,7 @@ def stribeck_slope(
     Parameters
     ----------
     speed : [m/s]
-    coulomb, static : [N]
+    coulomb, static : Coulomb and breakaway friction F_C, F_S [N]
     stribeck_speed : [m/s]
     exponent : delta [-]
     viscous : sigma2 [N s/m]

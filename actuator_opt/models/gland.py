@@ -1,8 +1,8 @@
-"""Gland of an O-ring: squeeze, stretch, fill, their range in use, and the extrusion gap.
+"""Gland of an O-ring: squeeze, stretch and fill, their extremes in use, and the extrusion gap.
 
-C is the squeeze as a share of the free section W. The range covers temperature and the tolerances
-of ring and groove. The largest extrusion gap follows from a table of the seal's maker, passed as an
-argument: a row per hardness, with points of pressure and gap.
+C is the squeeze as a share of the free section W. The extremes cover temperature and the
+tolerances of ring and groove. The largest extrusion gap follows from a table of the seal's maker,
+passed as an argument: a row per hardness, with points of pressure and gap.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def squeeze_after(*, squeeze: Array, section: Array, growth: Array, tolerance: A
 
     Parameters
     ----------
-    squeeze : at assembly, of the free section [-]
+    squeeze : at assembly, as a share of the free section [-]
     section : free section W [m]
     growth : radial bore growth at the seal [m]
     tolerance : radial gland tolerance to the loose side [m]
@@ -84,11 +84,11 @@ def stretched_section(*, section: Array, stretch: Array) -> Array:
 
 @geometry
 def gland_depth(*, squeeze: Array, section: Array) -> Array:
-    """Radial room of the ring, gland depth = W (1 - C).
+    """Radial space for the ring, gland depth = W (1 - C).
 
     Parameters
     ----------
-    squeeze : of the free section [-]
+    squeeze : as a share of the free section [-]
     section : free section W [m]
 
     Returns
@@ -113,7 +113,7 @@ def gland_depth(*, squeeze: Array, section: Array) -> Array:
 
 @geometry
 def gland_fill(*, section: Array, groove_width: Array, gland_depth: Array) -> Array:
-    """Share of the groove the ring fills, (pi W^2/4)/(width depth).
+    """Share of the groove that the ring fills, (pi W^2/4)/(width depth).
 
     Parameters
     ----------
@@ -233,9 +233,9 @@ def back_up_groove_width(*, groove_width: Array, thickness: Array, count: Array)
 
     Parameters
     ----------
-    groove_width : of the ring alone g [m]
-    thickness : axial, of one back-up ring with its play t [m]
-    count : number of back-up rings n [-]
+    groove_width : for the ring alone, g [m]
+    thickness : axial, of one back-up ring with its play, t [m]
+    count : number of back-up rings, n [-]
 
     Returns
     -------
@@ -264,15 +264,15 @@ def volume_ratio(
     housing_expansion: Array,
     temperature_change: Array,
 ) -> Array:
-    """Ring over groove volume, relative to assembly, (1 + a_V dT)/(1 + a dT)^3.
+    """Ratio of ring to groove volume, relative to assembly, (1 + a_V dT)/(1 + a dT)^3.
 
     The groove fill at temperature is the fill at assembly times this ratio.
 
     Parameters
     ----------
-    volume_expansion : of the rubber a_V [1/K]
-    housing_expansion : linear, of the metal around the ring a [1/K]
-    temperature_change : since assembly dT [K]
+    volume_expansion : of the rubber, a_V [1/K]
+    housing_expansion : linear, of the metal around the ring, a [1/K]
+    temperature_change : since assembly, dT [K]
 
     Returns
     -------
@@ -305,7 +305,7 @@ def squeeze_at_volume(*, squeeze: Array, volume_ratio: Array) -> Array:
 
     Parameters
     ----------
-    squeeze : at assembly C [-]
+    squeeze : at assembly, C [-]
     volume_ratio : r, ring volume / groove volume, relative to assembly (`volume_ratio`) [-], > 0
 
     Returns
@@ -346,11 +346,11 @@ def squeeze_extremes(
 
     Parameters
     ----------
-    squeeze : nominal C [-]
+    squeeze : nominal, C [-]
     section : free section W [m]
-    section_tolerance : half width t_W [m]
+    section_tolerance : half the tolerance width of the section, t_W [m]
     depth_tolerance : half the tolerance width of the radial space, t_d [m]
-    eccentricity : of rod or piston e, at most its radial clearance [m]
+    eccentricity : of rod or piston, e; at most its radial clearance [m]
 
     Returns
     -------
@@ -383,11 +383,11 @@ Points: TypeAlias = Sequence[tuple[Array, Array]]
 
 
 Table: TypeAlias = Sequence[tuple[Array, Points]]
-"""Rows of hardness [Shore A] and its points, hardness rising."""
+"""Rows, each a hardness [Shore A] with its points of pressure and gap, hardness rising."""
 
 
 ROUNDING = 1e-9
-"""Relative excess over a table's last pressure that counts as rounding."""
+"""Share by which a pressure may exceed a table's last pressure and still count as equal to it."""
 
 
 def gap_limit(*, pressure: Array, points: Points) -> Array:
@@ -404,7 +404,7 @@ def gap_limit(*, pressure: Array, points: Points) -> Array:
 
     Notes
     -----
-    Valid: up to the last point; below the first the held value is on the safe side.
+    Valid: up to the last point; below the first point, the constant value is on the safe side.
 
     `backed_gap_limit` chooses between the limits of a seal and of its back-up ring.
 
@@ -422,7 +422,7 @@ def gap_limit(*, pressure: Array, points: Points) -> Array:
 
 
 def extrusion_gap_limit(*, hardness: Array, pressure: Array, table: Table) -> Array:
-    """Largest gap at a hardness and a pressure, ln g linear in both, held beyond the table.
+    """Largest gap at a hardness and a pressure, ln g linear in both, constant beyond the table.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Valve that holds a load at rest: edges that supply the leakage, and small-signal flows there."""
+"""Valve that holds a load at rest: how far its edges open, and its small-signal flows."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from ..base.numeric import Array, maximum, minimum, real, where
 from .valve import edge_conductance, edge_flow
 
 LEAST = 1e-12
-"""Least ratio of flow to flow coefficient of an edge that can supply oil [sqrt(Pa)]: its value at a
-pressure drop of 1e-10 Pa."""
+"""Smallest flow per flow coefficient at which an edge counts as able to supply oil [sqrt(Pa)]; it
+belongs to a pressure drop of 1e-10 Pa."""
 
 
 class FeedingEdges(NamedTuple):
-    """Coefficients of the two edges of a chamber while the valve holds it [m^3/s/sqrt(Pa)]."""
+    """Flow coefficients of both edges of a chamber whose load the valve holds [m^3/s/sqrt(Pa)]."""
 
     supply: Array
     tank: Array
@@ -28,14 +28,16 @@ def feeding_edges(
     out: Array,
     lost: Array = 0.0,
 ) -> FeedingEdges:
-    """Edges of a chamber at rest: one leaks, the other opens until oil in and oil out balance.
+    """Flow coefficients of both edges of a chamber at rest, so that oil in and oil out balance.
 
-    Q_S = max(K0s sqrt(into), K0t sqrt(out) + q), Q_T = Q_S - q; K = Q/sqrt(dp), K10 at most.
+    One edge only leaks; the other opens as far as necessary:
+
+    Q_S = max(K0s sqrt(into), K0t sqrt(out) + q), Q_T = Q_S - q; K = Q/sqrt(dp), at most K10.
 
     Parameters
     ----------
     rated_coefficient : K10 [m^3/s/sqrt(Pa)]
-    leakage_supply, leakage_tank : K0 of the edges to both lines [m^3/s/sqrt(Pa)]
+    leakage_supply, leakage_tank : K0 of the edges to supply and to tank [m^3/s/sqrt(Pa)]
     into, out : pressure drops p_S - p and p - p_T [Pa]
     lost : flow q that leaves the chamber past the piston [m^3/s]
 
@@ -74,7 +76,10 @@ def feeding_edges(
 
 
 class ValveSlopes(NamedTuple):
-    """Flow slopes about a held load, one direction: dq_A = G_A du - C_A dp_A, out of B G_B du."""
+    """Small-signal flows about a held load, for one direction of the spool.
+
+    Into A, dq_A = G_A du - C_A dp_A; out of B, dq_B = G_B du + C_B dp_B.
+    """
 
     gain_a: Array
     """Flow into chamber A per signal [m^3/s/V]."""
@@ -102,14 +107,15 @@ def valve_slopes(
 
     K(U) = K0 + (K10 - K0)|U|/U_max on opening edges, so G = ((K10 - K0)/U_max) sqrt(dp) of the edge
     that opens: P-A and B-T extending, A-T and P-B retracting. The conductance of a chamber is that
-    of both its edges. If this direction supplies the leakage, it is taken with the spool at rest
-    there (`feeding_edges`); otherwise with the spool at the centre, where the load only drifts. A
-    held chamber has the larger conductance of both directions.
+    of both its edges. If opening in this direction makes up for the leakage, the conductance is
+    taken at the spool position that holds the load (`feeding_edges`). Otherwise it is taken at the
+    centre of the spool, where the load slowly drifts. A held chamber has the larger conductance of
+    both directions.
 
     Parameters
     ----------
     rated_coefficient, leakage_coefficient : K10 and K0 [m^3/s/sqrt(Pa)]
-    signal : U_max [V]
+    signal : U_max, at which the edge has the rated coefficient [V]
     supply_pressure, return_pressure, pressure_a, pressure_b : gauge [Pa]
     extending : True for U > 0 (P to A, B to T) [-]
     leakage_tank : K0 of A-T and B-T, if different [m^3/s/sqrt(Pa)]
@@ -149,7 +155,7 @@ def valve_slopes(
     past = piston_leakage * (pressure_a - pressure_b)
 
     def conductances(into: Array, out: Array, lost: Array) -> tuple[Array, Array]:
-        """Conductance of a chamber whose supply edge may open; the same for the tank edge."""
+        """Conductance of a chamber if its supply edge may open, and if its tank edge may open."""
         edges = feeding_edges(
             rated_coefficient=rated_coefficient,
             leakage_supply=leakage_coefficient,

@@ -1,7 +1,7 @@
 """Thin laminated wall: membrane stiffness, strains, growth, effective moduli.
 
-Classical lamination theory of an axisymmetric tube without twist: every entry is an isotropic layer
-or a balanced +-angle pair. The theory is the fast substitute for the exact layered tube. Its error
+Classical lamination theory of an axisymmetric tube without twist: every layer is isotropic or
+a balanced +-angle pair. The theory is the fast substitute for the exact layered tube. Its error
 is on the unsafe side at the bore and grows with t/r_i; above `THIN_WALL_LIMIT` the evaluation
 warns. Plies are in `ply`, the burst is in `burst_ladder`.
 """
@@ -166,7 +166,8 @@ def bore_growth_thin(
     -----
     Valid: t/r_i < 0.05; on the unsafe side beyond.
 
-    An all-hoop CFRP tube grows 1/0.89, 1/0.76, 1/0.53 times as much at k = 1.1, 1.2, 1.4.
+    By exact theory, an all-hoop CFRP tube grows 1/0.89, 1/0.76 and 1/0.53 times as much at the wall
+    ratios k = 1.1, 1.2 and 1.4.
 
     References
     ----------
@@ -224,7 +225,7 @@ def effective_moduli(*, membrane: Membrane, thickness: Array) -> tuple[Array, Ar
 
 @geometry
 def bending_stiffness(*, plies: Sequence[Sequence[Any]], thicknesses: Sequence[Array]) -> Array:
-    """Axial bending stiffness of a wall per circumference, about its own neutral surface.
+    """Axial bending stiffness of a wall per length of circumference, about its neutral surface.
 
     D = sum Qzz (t^3/12 + t (y - y_0)^2), y_0 = sum Qzz t y/sum Qzz t; no hoop curvature.
 

@@ -8,7 +8,7 @@ from ..base.numeric import Array, geometry, namespace, positive, sqrt
 
 
 def _edge_ratio(*, loaded: Array, free: Array, reach: Array) -> Array:
-    """Edge over mean shear; reach = G L^2/t_a, stiffness K of the loaded and of the free wall."""
+    """Ratio of edge to mean shear; `loaded` and `free` are the walls' K, reach = G L^2/t_a."""
     half = sqrt(positive(reach * (1 / loaded + 1 / free))) / 2
     wave = namespace(half).tanh(half)
     return half * ((1 / wave - wave) + 2 * free / (free + loaded) * wave)  # no term below zero
@@ -22,10 +22,10 @@ def least_bond_peak_ratio(
     length: Array,
     membrane_stiffness: Array,
 ) -> Array:
-    """Lower bound on the peak over mean shear of a bonded overlap, from one of its walls alone.
+    """Lower bound on the ratio of peak to mean shear in a bonded overlap, from one wall alone.
 
-    (w/2) coth(w/2), w^2 = 2 G L^2/(t_a K). This is the ratio of two walls that are both as stiff as
-    the softer wall; a stiffer second wall only raises the peak.
+    (w/2) coth(w/2), w^2 = 2 G L^2/(t_a K). This is the exact ratio for two walls of equal
+    stiffness K; a second wall of another stiffness only raises the peak.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def least_bond_peak_ratio(
 
     Notes
     -----
-    Valid: as `bond_edge_shear`; exact of equal walls.
+    Valid: as `bond_edge_shear`; exact for equal walls.
 
     At the edge where the softer wall ends, tau ~ (coth(w)/K_1 + csch(w)/K_2)/w with
     w^2 = (G L^2/t_a)(1/K_1 + 1/K_2), which falls as 1/K_2 rises: 2 sinh w <= w + sinh w cosh w and
@@ -72,7 +72,9 @@ def bond_edge_shear(
     membrane_stiffness_loaded: Array,
     membrane_stiffness_free: Array,
 ) -> Array:
-    """Shear stress at one edge of a bonded cap; smooth, unlike the larger of both edges.
+    """Shear stress at one edge of a bonded cap.
+
+    For one edge, the function is smooth; the larger stress of both edges would have a kink.
 
     tau = F/(pi D L) (w/2) [coth(w/2) + ((K_f - K_l)/(K_f + K_l)) tanh(w/2)],
     w^2 = (G L^2/t_a)(1/K_l + 1/K_f); K_l belongs to the wall that carries the whole force at this
@@ -84,7 +86,7 @@ def bond_edge_shear(
     diameter : diameter of the bond surface [m]
     length : overlap [m]
     shear_modulus, bond_thickness : G and thickness of the adhesive [Pa], [m]
-    membrane_stiffness_loaded, membrane_stiffness_free : axial E t of the two walls [N/m]
+    membrane_stiffness_loaded, membrane_stiffness_free : K_l and K_f, axial E t of the walls [N/m]
 
     Returns
     -------
@@ -130,7 +132,7 @@ def bond_thermal_shear(
 ) -> Array:
     """Shear stress at an edge of a bonded overlap whose walls change length unequally.
 
-    tau = (G L/t_a) (e_l - e_f) tanh(w/2)/w, w as in `bond_edge_shear`; opposite at the other edge.
+    tau = (G L/t_a) (e_l - e_f) tanh(w/2)/w, w as in `bond_edge_shear`; the other edge has -tau.
     It adds to the shear of a tensile force from `bond_edge_shear`; l is the wall that carries that
     force at this edge, f the wall that ends here.
 

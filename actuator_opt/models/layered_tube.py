@@ -1,9 +1,10 @@
 """Response of the exact layered tube to loads: strains and stresses at every face.
 
 Hoop strain and radial stress are carried through the layers of `tube_elements` once for each
-unknown (bore strain, axial strain, twist) and once for the loads; the outer face, the axial force
-and the torque then close a 2 x 2 or 3 x 3 system. Stresses are given at both faces of each layer;
-for a point inside a layer, split the layer there: identical sublayers act as one layer.
+unknown (bore strain, axial strain, twist) and once for the loads. The conditions on outer pressure,
+axial force and torque then give 2 or 3 equations for the unknowns. Stresses are given at both faces
+of each layer; for a point inside a layer, split the layer there: identical sublayers act as one
+layer.
 """
 
 from __future__ import annotations
@@ -40,7 +41,8 @@ class TubeState:
     radius : of both faces of each layer, (2, layers, ...) [m]
     hoop_strain, radial_strain, shear_strain : at those faces [-]
     radial_stress : at those faces [Pa]
-    held : stresses z, t, r, s (thermal, frozen) subtracted from those of the strains, or None [Pa]
+    held : thermal and frozen stresses z, t, r, s [Pa], which are subtracted from the stresses by
+        strain; None if there are none
     temperature_change : from the stress-free state [K]
     """
 
@@ -58,9 +60,9 @@ class TubeState:
 
 @dataclass(frozen=True, slots=True)
 class Faces:
-    """Hoop strain and radial stress at both faces of every layer, (2, layers, ...); the unknowns.
+    """Hoop strain and radial stress at both faces of every layer, (2, layers, ...), from `closed`.
 
-    The result of `closed`; `axial_strain` and `twist` belong to the whole tube.
+    `axial_strain` and `twist` belong to the whole tube.
     """
 
     hoop_strain: Array
@@ -79,11 +81,11 @@ def closed(
     axial_force: Array,
     torque: Array,
 ) -> Faces:
-    """Carry unit unknowns and the loads through all layers, and close the system.
+    """Solve for bore strain, axial strain and twist by a march through all layers.
 
-    One march carries these columns: unit bore hoop strain, unit axial strain, (unit twist,) and the
-    loads. `transfer` is that of a `LayeredTube`; `driven`, (outputs, layers, ...), is from
-    `forcing`, or None. All arrays have the same number of batch axes.
+    The march goes outwards and carries these columns together: unit bore hoop strain, unit axial
+    strain, (unit twist,) and the loads. `transfer` is that of a `LayeredTube`; `driven`, (outputs,
+    layers, ...), is from `forcing`, or None. All arrays have the same number of batch axes.
 
     References
     ----------
@@ -143,7 +145,7 @@ def _unknowns(
 
 
 def forcing(xp: Any, transfer: Array, inner: Array, outer: Array, held: tuple[Array, ...]) -> Array:
-    """Part of the held stresses z, t, r (and s) in the outputs of every layer.
+    """Effect of thermal and frozen stresses z, t, r (and s) on the outputs of every layer.
 
     References
     ----------
@@ -183,8 +185,8 @@ def tube_state(
 
     Returns
     -------
-    the state (see `TubeState` for units, [m], [Pa], [-]); loads may have axes before those of the
-    batch
+    the state (see `TubeState` for units, [m], [Pa], [-]); arrays of loads may have
+    additional axes in front of the batch axes
 
     Notes
     -----
@@ -223,7 +225,7 @@ def tube_state(
 
 
 def _polar(xp: Any, tube: LayeredTube) -> Array:
-    """Torsional stiffness per 2 pi of layers without coupling."""
+    """Torsional stiffness divided by 2 pi, of layers without coupling."""
     square_a, square_b = tube.inner * tube.inner, tube.outer * tube.outer
     return xp.sum(tube.wall[9] * (square_b * square_b - square_a * square_a) / 4, axis=0)
 
@@ -231,7 +233,7 @@ def _polar(xp: Any, tube: LayeredTube) -> Array:
 def _held(
     tube: LayeredTube, change: Array, frozen: tuple[Array, Array, Array] | None
 ) -> tuple[Array, ...] | None:
-    """Stresses z, t, r, s subtracted from those of the strains; None without any."""
+    """Thermal and frozen stresses z, t, r, s; None if there are none."""
     still = tube.hold is None or (isinstance(change, (float, int)) and change == 0.0)
     if still and frozen is None:
         return None
@@ -248,7 +250,7 @@ def _held(
 def _state(
     xp: Any, tube: LayeredTube, held: tuple[Array, ...] | None, faces: Faces, change: Array
 ) -> TubeState:
-    """The state from the unknowns, with the radial strain at the faces."""
+    """State of the tube from the solved unknowns; adds the radial strain at the faces."""
     radius = together([tube.inner, tube.outer])
     shear = radius * faces.twist
     _, _, zr, _, tr, rr, _, _, rs, _ = tube.wall
@@ -322,7 +324,7 @@ def ply_stresses_at_faces(
 ) -> tuple[Array, Array, Array, Array]:
     """Stresses of every ply in its own axes, at both faces of its layer.
 
-    The stress is the ply's stiffness times the difference of wall strains and free strains of the
+    The stress is the ply's stiffness times the strains of the wall minus the free strains of the
     ply. In a pair without torque both plies differ only in the sign of the shear.
 
     Parameters

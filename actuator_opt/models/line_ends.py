@@ -1,6 +1,7 @@
 """Terminations of a line: closed, conductance, accumulator, reducing valve, or several of them.
 
-A line end is a ratio of two polynomials in s, so it can be used directly in the linear model.
+Each line end is an admittance, a ratio of two polynomials in s, so it can be used directly in the
+linear model.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ CONSTANT_PRESSURE = LineEnd((1.0,), ())
 
 
 def parallel_ends(*ends: LineEnd) -> LineEnd:
-    """Combined line end of several on one node: their admittances add.
+    """Combine several line ends on one node: their admittances add.
 
     Parameters
     ----------
@@ -96,8 +97,9 @@ def reducing_valve_end(
 ) -> LineEnd:
     """Pressure reducing valve, Y = g + G omega^2/(s^2 + 2 zeta omega s + omega^2).
 
-    At low frequency the valve holds its pressure with G + g. It lags at every frequency, like an
-    inertance. Well above its natural frequency only g remains, the conductance of its opening.
+    At low frequency, the valve holds its pressure with the conductance G + g. It lags at every
+    frequency, like an inertance. Well above its natural frequency only g remains, the conductance
+    of its opening.
 
     Parameters
     ----------
@@ -116,7 +118,8 @@ def reducing_valve_end(
 
     References
     ----------
-    [AaltoThesis] section 5.2, the suspect of its 20 Hz peak; [derived] second-order spool
+    [AaltoThesis] section 5.2, where this valve is the suspected cause of a 20 Hz peak; [derived]
+    second-order spool
 
     Examples
     --------
@@ -173,7 +176,7 @@ def antiresonance_frequency(
     The valve lags: below this frequency it acts as an inertance that outweighs the compliance. At
     this frequency only Re(Y) remains, and the actuator's stiffness A^2 w/|Re(Y)| peaks if Re(Y) is
     small. The line is stable only if Re(Y) > 0 here, so the passive conductance must outweigh the
-    share of the valve. With k = G/(C w0),
+    negative share that the regulating valve contributes. With k = G/(C w0),
     w^2 = w0^2 [1 - 2 zeta^2 + sqrt(4 zeta^4 - 4 zeta^2 + 2 zeta k)], the upper root.
 
     Parameters

@@ -1,7 +1,7 @@
 """Linear model of the held actuator: load, piston, coupled chambers, lines and their ends.
 
-Every response is a ratio of polynomials in s whose coefficients carry the derivatives; `loop` finds
-modes, margins and bandwidth from their roots.
+Every response is a ratio of polynomials in s whose coefficients are differentiable by the design's
+numbers; `loop` finds modes, margins and bandwidth from their roots.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from .line_ends import CLOSED, LineEnd
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """One chamber with its line: oil and walls at the piston, R and L of the line, its far end."""
+    """One chamber with its line: compliance at the piston, the line, and the line's far end."""
 
     area: Array
     """Piston area [m^2]."""
@@ -33,15 +33,15 @@ class Side:
     """Compliance of the line's far half [m^3/Pa]."""
     end: LineEnd = CLOSED
     flow_gain: Array = 0.0
-    """Flow of the valve into the line's far end per spool signal [m^3/s/V]; A +, B -."""
+    """Flow of the valve into the line's far end per spool signal [m^3/s/V]; negative for B."""
 
 
 @dataclass(frozen=True, slots=True)
 class LinearActuator:
-    """N(s) x = M(s) F + T(s) o: polynomials of load position over load force and spool signal.
+    """Polynomials of N(s) x = M(s) F + T(s) o: load position x, load force F, spool signal o.
 
-    x/F = mobile/characteristic is the compliance under the load's force and
-    x/o = drive/characteristic the plant of the position loop.
+    N, M and T are `characteristic`, `mobile` and `drive`. x/F = M/N is the compliance under the
+    load's force, and x/o = T/N is the plant of the position loop.
     """
 
     characteristic: Polynomial
@@ -50,7 +50,10 @@ class LinearActuator:
 
 
 class _Eliminated(NamedTuple):
-    """A chamber after its far node is eliminated: e (q_v + A v) and m p = d G o."""
+    """Polynomials of a chamber without its line's far node: m p + e (A v + q) = d G o.
+
+    v is the piston's speed and q the flow that the other chamber's pressure causes.
+    """
 
     e: Polynomial
     m: Polynomial
@@ -58,7 +61,7 @@ class _Eliminated(NamedTuple):
 
 
 def _eliminated(side: Side, leakage: Array) -> _Eliminated:
-    """Far node (C s + Y) p_f = G o - q and line (R + 1/g + L s) q = p_f - p eliminated.
+    """Eliminate the far node, (C s + Y) p_f = G o - q, and the line, (R + 1/g + L s) q = p_f - p.
 
     Everything is multiplied by the line end's denominator and by the throttle's conductance, so
     that a closed throttle (g = 0) causes no division by zero. With a closed end and no oil at the
@@ -87,12 +90,12 @@ def linear_actuator(
     seal_stiffness: Array = 0.0,
     flexibility: Array = 0.0,
 ) -> LinearActuator:
-    """Polynomials of the held actuator, load at the rod's end behind rod and mount.
+    """Polynomials of the held actuator; rod and mount are a spring between piston and load.
 
-    Chambers: e_i (C_i s + g) p_i + m_i p_i + e_i (c s - g) p_j = d_i G_i o - e_i a_i s x_p with
-    a = (A_A, -A_B); piston: F = a^T p - (B s + k_s) x_p; load: m s^2 x = F + F_L and x_p = x + f F.
-    Elimination of p by Cramer's rule gives N x = M F_L + T o with N = m s^2 M + P, M = det + f P,
-    P = (B s + k_s) det + s a^T adj(.) e a.
+    Chambers: m_i p_i + e_i (c s - g) p_j = d_i G_i o - e_i a_i s x_p with a = (A_A, -A_B); m_i is
+    e_i (C_i s + g) plus a term for the flow into the line. Piston: F = a^T p - (B s + k_s) x_p.
+    Load: m s^2 x = F + F_L, and x_p = x + f F. Elimination of p by Cramer's rule gives
+    N x = M F_L + T o with N = m s^2 M + P, M = det + f P, P = (B s + k_s) det + s a^T adj(.) e a.
 
     Parameters
     ----------
@@ -148,7 +151,7 @@ def linear_actuator(
 
 
 def dynamic_stiffness(*, model: LinearActuator, frequency: Array) -> Parts:
-    """Dynamic stiffness F/x = N(i omega)/M(i omega) in its real and imaginary part.
+    """Dynamic stiffness F/x = N(i omega)/M(i omega) as real and imaginary part.
 
     Parameters
     ----------

@@ -15,10 +15,10 @@ from .strength import mises_product
 from .strength_modes import Stress
 
 _STEPS = 60
-"""Largest number of search steps: halving alone then reaches 1e-18 of the largest thickness."""
+"""Largest number of search steps; halving alone would reach 1e-18 of the largest thickness."""
 
 _SETTLED = 1e-9
-"""Relative step that ends the search: the Newton step after it doubles the digits."""
+"""Relative step that ends the search; one more Newton step then doubles the correct digits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,10 +46,10 @@ def liner_cycle(
     youngs_modulus: Array,
     residual: Stress = (0.0, 0.0, 0.0, 0.0),
 ) -> LinerCycle:
-    """Elastic strain range of an isotropic liner against yield, by von Mises.
+    """Elastic strain range of an isotropic liner and its utilisation of the yield strength.
 
-    range = s(sigma)/E, shakedown = s(sigma)/(2 Y), s(residual)/Y at rest, s(residual + sigma)/Y
-    at pressure.
+    With the von Mises stress s(.), range = s(sigma)/E, shakedown = s(sigma)/(2 Y), s(residual)/Y at
+    rest, s(residual + sigma)/Y at pressure.
 
     Parameters
     ----------
@@ -127,11 +127,11 @@ def layer_thickness_for_strain(
     Raises
     ------
     ValueError
-        Where no thickness up to the largest reaches the strain.
+        Where even the largest thickness leaves the strain above the limit.
 
     Notes
     -----
-    Valid: as `tube_state`; where the strain does not fall steadily, one of several answers.
+    Valid: as `tube_state`; where the strain does not fall steadily, one of several solutions.
 
     References
     ----------
@@ -152,7 +152,7 @@ def layer_thickness_for_strain(
     xp = namespace(*numbers, inner_radius, strain, pressure, axial_force_per_pressure)
 
     def trial(thickness: Array) -> tuple[Array, Array]:
-        """Bore strain and its slope."""
+        """Bore strain at a thickness, and its slope."""
         step = xp.asarray(thickness, dtype=xp.complex128) + 1j * STEP
         value = _bore_strain(_with(wall, index, step), *plain)
         return xp.real(value), xp.imag(value) / STEP
@@ -172,7 +172,7 @@ def layer_thickness_for_strain(
 
 
 def _plain(layer: TubeLayer) -> TubeLayer:
-    """The layer without imaginary steps."""
+    """The layer with only the real parts of its numbers."""
     c11, c12, c13, c22, c23, c33, c66 = (real(value) for value in layer.stiffness)
     return TubeLayer(
         stiffness=(c11, c12, c13, c22, c23, c33, c66),
@@ -183,7 +183,7 @@ def _plain(layer: TubeLayer) -> TubeLayer:
 
 
 def _with(layers: Sequence[TubeLayer], index: int, thickness: Array) -> list[TubeLayer]:
-    """The layers with another thickness of the layer `index`."""
+    """Copy the layers with another thickness of layer `index`."""
     changed = list(layers)
     changed[index] = replace(changed[index], thickness=thickness)
     return changed

@@ -1,11 +1,11 @@
 """Pipes, hoses and ports: compliance, volume, flow, pressure drop, friction of oscillating flow.
 
 Lines are round and full; a positive flow gives a positive pressure drop. Their lumped elements are
-in `elements`. The series impedance depends on the name of the friction:
+in `elements`. The series impedance depends on the friction model, chosen by name:
 
 `lossless`     none
 `steady`       the laminar resistance of steady flow, at every frequency
-`distributed`  laminar flow whose profile follows the frequency [DSouza1964]
+`distributed`  laminar flow whose velocity profile depends on the frequency [DSouza1964]
 """
 
 from __future__ import annotations
@@ -199,7 +199,8 @@ def line_pressure_drop(
 
     Laminar 128 eta l q/(pi d^4) up to Re 2300; Blasius f = 0.3164 Re^(-1/4) from Re 4000;
     between, the friction factors are blended by w^2 (3 - 2 w), w = (Re - 2300)/1700 (choice:
-    once differentiable). Both parts are (eta^2 l/(rho d^3)) Re times 32 and 0.1582 Re^(3/4).
+    once differentiable). In terms of Re, the drop is (eta^2 l/(rho d^3)) Re
+    times 32 if laminar and times 0.1582 Re^(3/4) if turbulent.
 
     Parameters
     ----------
@@ -242,15 +243,15 @@ FRICTION = ("lossless", "steady", "distributed")
 
 
 _LEVELS = 28
-"""Levels of the continued fraction; both forms then err by less than 1e-10 of the value."""
+"""Levels of the continued fraction; fraction and series are then exact to 1e-10 of the value."""
 
 
 _NEAR = 20.0
-"""Largest |r sqrt(i omega/nu)| of the continued fraction; the asymptotic series beyond."""
+"""Largest |r sqrt(i omega/nu)| for the continued fraction; beyond it, the asymptotic series."""
 
 
 _SERIES = (-1 / 2, -1 / 8, -1 / 8, -25 / 128, -13 / 32, -1073 / 1024, -103 / 32)
-"""I1(w)/I0(w) = 1 - 1/(2 w) - ... for large w."""
+"""Coefficients of I1(w)/I0(w) = 1 - 1/(2 w) - ... for large w."""
 
 
 @geometry
@@ -275,7 +276,7 @@ def series_impedance(
     inner_diameter : [m]
     density : [kg/m^3]
     dynamic_viscosity : [Pa s]; > 0 for `distributed`
-    friction : name of the friction [-]
+    friction : name of the friction model, `lossless`, `steady` or `distributed` [-]
 
     Returns
     -------
@@ -284,7 +285,7 @@ def series_impedance(
     Raises
     ------
     ValueError
-        An unknown friction.
+        An unknown friction model.
 
     Notes
     -----
@@ -317,7 +318,7 @@ def series_impedance(
 
 
 def _profile(xp: Any, square: Array) -> Array:
-    """w^2/(1 - 2 I1(w)/(w I0(w))) of w^2: 8 + 4 w^2/3 for small, w^2 + 2 w + ... for large w.
+    """w^2/(1 - 2 I1(w)/(w I0(w))) from w^2: 8 + 4 w^2/3 for small, w^2 + 2 w + ... for large w.
 
     With x_n = I_n/(w I_(n-1)) = 1/(2 n + w^2 x_(n+1)) the value is 1/(x_1 x_2).
     """

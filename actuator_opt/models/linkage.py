@@ -15,7 +15,7 @@ from .forces import crank, joint_force
 
 
 class LinkageGeometry(NamedTuple):
-    """Actuator length over the joint angle with its first and second derivative."""
+    """Actuator length with its first and second derivative by the joint angle."""
 
     length: Array
     lever_arm: Array
@@ -68,7 +68,7 @@ def linkage(
 def linkage_angle(
     *, length: Array, base_radius: Array, crank_radius: Array, angle_offset: Array = 0.0
 ) -> Array:
-    """Joint angle of an actuator length, between the dead points 0 < theta + theta_0 < pi.
+    """Joint angle at an actuator length, between the dead points 0 < theta + theta_0 < pi.
 
     tan^2((theta + theta_0)/2) = (l^2 - (a - r)^2)/((a + r)^2 - l^2).
 
@@ -114,7 +114,7 @@ def joint_torque(*, force: Array, lever_arm: Array) -> Array:
 
     Returns
     -------
-    torque, with the joint angle positive [N m]
+    torque [N m], positive in the direction of the joint angle
 
     Notes
     -----
@@ -140,7 +140,7 @@ def actuator_force(*, torque: Array, lever_arm: Array) -> Array:
 
     Parameters
     ----------
-    torque : with the joint angle positive [N m]
+    torque : positive in the direction of the joint angle [N m]
     lever_arm : dl/dtheta [m], with its sign
 
     Returns
@@ -166,7 +166,7 @@ def actuator_force(*, torque: Array, lever_arm: Array) -> Array:
 
 
 class ReflectedInertia(NamedTuple):
-    """A joint's inertia at the actuator, F = mass dv/dt + velocity_factor v^2."""
+    """A joint's inertia reflected to the actuator, F = mass dv/dt + velocity_factor v^2."""
 
     mass: Array
     velocity_factor: Array
@@ -213,5 +213,5 @@ def reflected_inertia(*, inertia: Array, lever_arm: Array, lever_slope: Array) -
 
 
 def _infinite(value: Array) -> Array:
-    """Infinity with the sign of a real value, 0 of zero."""
+    """Infinity with the sign of a real value; 0 if the value is zero."""
     return where(value > 0, math.inf, where(value < 0, -math.inf, 0.0 * value))

@@ -18,17 +18,18 @@ from ..base.numeric import Array, geometry, maximum, minimum, namespace, real, s
 from .contact_profile import lip_mean
 
 LYING_STEPS = 7
-"""Newton steps for the free span. They start above the root of a convex function, at the lesser of
-the roots of its two terms, so they never overshoot; the worst case is at rounding after six."""
+"""Number of Newton steps for the free span. They start above the root of a convex function, at the
+smaller of the roots of its two terms, so they never overshoot. After six steps, even the worst case
+is exact to rounding."""
 
 
 @geometry
 def lip_interference(*, section: Array, gland_depth: Array) -> Array:
-    """Interference of the sliding lip, delta = (W - depth)/2: both lips give way alike.
+    """Interference of the sliding lip, delta = (W - depth)/2: both lips deflect equally.
 
     Parameters
     ----------
-    section : free radial height over both lips W [m]
+    section : free radial height over both lips, W [m]
     gland_depth : radial space [m]
 
     Returns
@@ -37,7 +38,7 @@ def lip_interference(*, section: Array, gland_depth: Array) -> Array:
 
     Notes
     -----
-    Valid: two like lips, body free to settle radially; a clamped body: twice as much.
+    Valid: two like lips, body free to settle radially; with a clamped body, twice as much.
 
     References
     ----------
@@ -64,7 +65,7 @@ def lip_stiffness(
     lip_length: Array,
     lip_radius: Array,
 ) -> Array:
-    """Rim load over rim deflection of a lip: a clamped short tube under a radial edge load.
+    """Rim load divided by rim deflection of a lip: a clamped short tube with a radial edge load.
 
     k = 2 D beta^3 (cosh^2 u + cos^2 u)/(sinh u cosh u - sin u cos u), u = beta l,
     D = E t^3/[12 (1 - nu^2)], beta^4 = E t/(4 D r^2). A large radius gives the cantilever 3 D/l^3,
@@ -121,7 +122,7 @@ def lip_free_span(
     lip_thickness: Array,
     lip_length: Array,
 ) -> Array:
-    """Length of the lip that does not lie on the surface, root of p s^4/(72 D) + theta s/3 = g.
+    """Length s of the lip that does not lie on the surface: root of p s^4/(72 D) + theta s/3 = g.
 
     theta = (g + delta)/l is the slope of the free lip, g the clearance at its root; s = l while
     only the rim touches, so the lip lies down above p = 24 D (2 g - delta)/l^4.
@@ -182,11 +183,12 @@ def line_load(
     lip_length: Array,
     lip_radius: Array,
 ) -> Array:
-    """Line load of a lip: preload of the tube plus the share of the pressure the surface carries.
+    """Line load of a lip: its preload plus the share of the pressure that the surface carries.
 
-    While only the rim touches, f = k delta + 3 p l/8 (propped cantilever). Lying down with a free
-    span s, f = (k - 3 D/l^3) delta + p s/3 + 2 D theta/s^2 + p (l - s); the change is continuous. A
-    span shorter than the lip's thickness is no beam: its bending stays that at s = t.
+    While only the rim touches, f = k delta + 3 p l/8 (propped cantilever). Once the lip lies down
+    with a free span s, f = (k - 3 D/l^3) delta + p s/3 + 2 D theta/s^2 + p (l - s); the transition
+    is continuous. A span shorter than the lip's thickness is no beam; its bending term keeps its
+    value at s = t.
 
     Parameters
     ----------

@@ -1,9 +1,9 @@
 """Modes of the held actuator, its position loop, and controller tuning.
 
-Roots are found on real parts; the imaginary step of the coefficients is carried to each result by
-the implicit-function theorem, so every result has its exact derivative. Tuning rules start from the
-ultimate point, where the loop is at its limit of stability; the controller is u = K (e + (1/T_i)
-integral of e + T_d de/dt).
+Roots are found from the real parts of the coefficients. The implicit-function theorem carries the
+imaginary parts (complex steps) to each result, so every result has its exact derivative. Tuning
+rules start from the ultimate point, where the loop is at its limit of stability; the controller is
+u = K (e + (1/T_i) integral of e + T_d de/dt).
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Mode(NamedTuple):
 
 
 def _without_integrators(polynomial: Polynomial) -> Polynomial:
-    """Roots at zero (coefficients that are the number 0) divided out."""
+    """Divide out roots at zero: the lowest coefficients, if they are the plain number 0."""
     start = 0
     for coefficient in polynomial:
         if not (isinstance(coefficient, (int, float)) and coefficient == 0):
@@ -85,8 +85,8 @@ def load_mode(*, model: LinearActuator, near: Array) -> Mode:
     """Mode of the load on the oil: the pair of poles next to an expected frequency.
 
     omega^2 = lambda_1 lambda_2, zeta = -(lambda_1 + lambda_2)/(2 omega); above 1 the mode does not
-    oscillate. Of two real poles of unlike sign the growing pole counts: zeta = -lambda/omega with
-    omega^2 = -lambda_1 lambda_2.
+    oscillate. If two real poles have unlike signs, the growing pole counts: zeta = -lambda/omega
+    with omega^2 = -lambda_1 lambda_2.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def _least_at(values: Array) -> Array:
 
 
 def _load_pair(found: Parts, near: Array) -> tuple[Parts, Parts]:
-    """The pole next to a frequency with its conjugate, or with the next real pole."""
+    """The pole nearest to a frequency, with its conjugate or, if it is real, the next real pole."""
     size = np.hypot(found.real, found.imaginary)
     swings = np.abs(found.imaginary) > 1e-9 * size
     far = np.abs(np.log(size / (2 * pi * near[..., None])))
@@ -165,7 +165,7 @@ def _load_pair(found: Parts, near: Array) -> tuple[Parts, Parts]:
 
 @dataclass(frozen=True, slots=True)
 class PositionOpenLoop:
-    """Position over error at unit gain, L(s) = numerator/denominator [m/V]."""
+    """Open position loop, position / error at unit gain: L(s) = numerator/denominator [m/V]."""
 
     numerator: Polynomial
     denominator: Polynomial
@@ -174,7 +174,7 @@ class PositionOpenLoop:
 def open_loop(
     *, model: LinearActuator, natural_frequency: Array, damping_ratio: Array
 ) -> PositionOpenLoop:
-    """Position loop without its gain: spool of second order before the actuator.
+    """Open position loop at unit gain: a second-order spool in front of the actuator.
 
     L = omega_v^2/(s^2 + 2 zeta omega_v s + omega_v^2) T(s)/N(s).
 
@@ -217,7 +217,7 @@ def _crossings(polynomial: Polynomial) -> np.ndarray:
 
 
 def _value(polynomial: Polynomial, point: Array) -> Array:
-    """Value at a real point."""
+    """Value of a polynomial at a real point."""
     value: Array = 0.0
     for coefficient in reversed(polynomial):
         value = value * point + coefficient
@@ -225,12 +225,12 @@ def _value(polynomial: Polynomial, point: Array) -> Array:
 
 
 def _lifted(polynomial: Polynomial) -> Polynomial:
-    """Real parts of the coefficients with one axis more, for many points each."""
+    """Real parts of the coefficients with a new last axis, to evaluate each at many points."""
     return tuple(array_of(real(coefficient))[..., None] for coefficient in polynomial)
 
 
 def _chosen(crossings: np.ndarray, score: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The crossing of least score, or 1 without a crossing, and whether a crossing exists."""
+    """The crossing with the lowest score (1 without a crossing), and whether a crossing exists."""
     if not score.shape[-1]:
         return np.ones(score.shape[:-1]), np.zeros(score.shape[:-1], dtype=bool)
     best = _least_at(score)
@@ -243,7 +243,8 @@ class UltimateGain(NamedTuple):
     """Gain and frequency at which the loop begins to oscillate by itself."""
 
     gain: Array
-    """[V/m]; infinite if no gain makes the loop oscillate, 0 if every gain or the actuator does."""
+    """[V/m]; infinite if no gain makes the loop unstable, 0 if every gain does or the actuator is
+    unstable by itself."""
     frequency: Array
     """[Hz]; NaN without oscillation."""
 
@@ -338,10 +339,10 @@ class PositionLoopMargins(NamedTuple):
 
 
 def margins(*, loop: PositionOpenLoop, gain: Array) -> PositionLoopMargins:
-    """Phase margin, its crossover and the -3 dB bandwidth of the closed position loop.
+    """Phase margin, the crossover where it occurs and -3 dB bandwidth of the closed position loop.
 
     |K N|^2 = |D|^2 gives the crossovers, |D + K N|^2 = 2 |K N|^2 the bandwidth (its first root);
-    the phase margin is the smallest angle between K N/D and -1 of all crossovers.
+    the phase margin is the smallest angle between K N/D and -1 over all crossovers.
 
     Parameters
     ----------
@@ -403,11 +404,11 @@ that the linear loop leaves out)."""
 
 
 _ZIEGLER_NICHOLS = {"p": (0.5, None, 0.0), "pi": (0.45, 1 / 1.2, 0.0), "pid": (0.6, 1 / 2, 1 / 8)}
-"""K/K_u, T_i/T_u and T_d/T_u."""
+"""K/K_u, T_i/T_u and T_d/T_u of each controller."""
 
 
 class ControllerGains(NamedTuple):
-    """Gain and times of a controller."""
+    """Gain, integral time and derivative time of a controller."""
 
     proportional_gain: Array
     """K, in the unit of the ultimate gain."""
@@ -465,11 +466,12 @@ def margin_rules(
     velocity_gain: Array,
     gain_margin: Array = GAIN_MARGIN,
 ) -> ControllerGains:
-    """Calm position loop, K = K_u/margin and for PI T_i = 4/(K K_v).
+    """Controller gains of a calm position loop: K = K_u/margin, and for PI T_i = 4/(K K_v).
 
-    That integral time damps the slow pair of poles, s^2 + K K_v s + K K_v/T_i, critically; its zero
-    overshoots a step by e^-2. There is no PID: behind a lightly damped oil spring a derivative part
-    reduces the gain margin without any benefit.
+    That integral time damps the slow pair of poles, s^2 + K K_v s + K K_v/T_i, critically; after
+    a step, the position still overshoots by e^-2 because of the controller's zero. There is no PID:
+    behind a lightly damped oil spring a derivative part reduces the gain margin without any
+    benefit.
 
     Parameters
     ----------
@@ -497,7 +499,9 @@ def margin_rules(
     140 V/m, 0.220 s
     """
     if law not in ("p", "pi"):
-        raise ValueError(f"law: {law}; the margin rules support p or pi only; use ziegler_nichols")
+        raise ValueError(
+            f"law: {law}; the margin rules support p or pi only; for pid use ziegler_nichols"
+        )
     gain = ultimate_gain / positive(gain_margin)
     integral = math.inf if law == "p" else 4 / (gain * positive(velocity_gain))
     return ControllerGains(gain, integral, 0.0)

@@ -107,8 +107,9 @@ def lugre_steady_deflection(*, speed: Array, level: Array, bristle_stiffness: Ar
 def lugre_passive_speed(*, level: Array, bristle_damping: Array, viscous: Array) -> Array:
     """Largest speed at which the LuGre model cannot create energy, 4 g (s1 + s2)/s1^2.
 
-    With storage sigma0 z^2/2 the dissipation is a quadratic form in (z, dz/dt), non-negative
-    while |v| <= 4 g(v)(sigma1 + sigma2)/sigma1^2. Beyond, taper sigma1 (`lugre_tapered_damping`).
+    With the stored energy sigma0 z^2/2, the dissipation is a quadratic form in (z, dz/dt),
+    non-negative while |v| <= 4 g(v)(sigma1 + sigma2)/sigma1^2. Beyond that speed, taper sigma1
+    (`lugre_tapered_damping`).
 
     Parameters
     ----------
@@ -238,7 +239,7 @@ def lugre_rate(*, deflection: Array, speed: Array, level: Array, bristle_stiffne
 
     Notes
     -----
-    Valid: |z| <= F_S/sigma0, which it keeps.
+    Valid: |z| <= F_S/sigma0; this rate keeps z in the range.
 
     References
     ----------

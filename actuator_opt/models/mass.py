@@ -45,7 +45,7 @@ def tube_mass(
 
 @geometry
 def layer_area(*, inner_radius: Array, thickness: Array) -> Array:
-    """Section of a layer around a tube, pi t (2 r + t), without a difference of near numbers.
+    """Cross-section of a layer of a tube, pi t (2 r + t), exact to rounding for thin layers too.
 
     Parameters
     ----------
@@ -324,8 +324,8 @@ def ring_mass(*, density: Array, area: Array, centre_diameter: Array) -> Array:
     Parameters
     ----------
     density : [kg/m^3]
-    area : of the section A [m^2]
-    centre_diameter : diameter through the centroid of the section D_m [m]
+    area : of the section, A [m^2]
+    centre_diameter : diameter through the centroid of the section, D_m [m]
 
     Returns
     -------

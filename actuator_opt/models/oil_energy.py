@@ -1,4 +1,4 @@
-"""Elastic energy of the content of a chamber, for the energy balance of a simulation.
+"""Elastic energy of the oil and air in a chamber, for the energy balance of a simulation.
 
 Pressures are gauge: the work against the atmosphere is not counted.
 """
@@ -18,26 +18,26 @@ def oil_energy_density(
     polytropic_index: Array = 1.4,
     atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
 ) -> Array:
-    """Elastic energy of oil and air over their volume, e = (u_oil + alpha u_air)/(f + alpha r).
+    """Elastic energy of oil and air per total volume, e = (u_oil + alpha u_air)/(f + alpha r).
 
-    u = -integral of p dw from 0 to p, over the volume of the oil at zero gauge pressure:
+    u = -integral of p dw from 0 to p, with the volume w per volume of oil at zero gauge pressure:
     u_oil = K (f^(1-m) - 1)/(m - 1) - p f, f = (1 + m p/K)^(-1/m), or K (1 - f) - p f with
     f = e^(-p/K) at m = 0; u_air = (P r - p_a)/(n - 1) - p_a (1 - r), or p_a ln(P/p_a) - p_a (1 - r)
-    at n = 1, with P = p + p_a and r = (p_a/P)^(1/n). The code uses expm1 and log1p over their
-    arguments, so that m = 0, m = 1 and n = 1 need no branch.
+    at n = 1, with P = p + p_a and r = (p_a/P)^(1/n). The code uses expm1(x)/x and log1p(x)/x,
+    so that m = 0, m = 1 and n = 1 need no branch.
 
     Parameters
     ----------
     pressure : p, gauge [Pa]
     bulk_modulus : tangent value of the pure oil at zero gauge pressure, K [Pa]
     slope : m = dK/dp of the pure oil [-]
-    air_content : alpha, free air over oil volume at zero gauge pressure [-]
+    air_content : alpha, volume of free air / volume of oil at zero gauge pressure [-]
     polytropic_index : n [-]
     atmospheric_pressure : p_a, absolute [Pa]
 
     Returns
     -------
-    energy over volume [J/m^3], p^2/(2 K) for stiff oil; NaN with air at p <= -p_a
+    energy per volume [J/m^3], p^2/(2 K) for stiff oil; NaN with air at p <= -p_a
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""Oil over pressure and temperature: density, Tait equation, trapped oil, and laws by name.
+"""Oil under pressure and temperature: density, Tait equation, trapped oil, and laws by name.
 
 A design may name a law of bulk modulus or viscosity. A new law is an entry in `BULK_MODULUS_LAWS`
 or `VISCOSITY_LAWS` with its name, the properties it needs, its formula and its range. Pressures are
@@ -110,8 +110,8 @@ def thermal_pressure_slope(
 
     Parameters
     ----------
-    volume_expansion : of the oil [1/K]
-    wall_expansion_axial, wall_expansion_hoop : linear expansions of the wall [1/K]
+    volume_expansion : alpha_V of the oil [1/K]
+    wall_expansion_axial, wall_expansion_hoop : alpha_z, alpha_theta of the wall [1/K]
     bulk_modulus : tangent value with air [Pa]
     wall_compliance_per_volume : (dV/dp)/V of the wall [1/Pa]
 
@@ -139,7 +139,7 @@ def thermal_pressure_slope(
 
 
 TAIT_PRESSURE, TAIT_TEMPERATURES = 350e5, (273.15, 423.15)
-"""Largest gauge pressure (Pa) and temperature range (K) of the generic oil's constants."""
+"""Largest gauge pressure (Pa) and temperature range (K) for the generic oil's Tait constants."""
 
 
 def _zero_pressure_modulus(zero_modulus: Array, coefficient: Array, temperature: Array) -> Array:
@@ -169,7 +169,7 @@ def density_tait(
     pressure : gauge [Pa]
     reference_density : at T0 and zero gauge pressure [kg/m^3]
     volume_expansion : [1/K]
-    zero_modulus, temperature_coefficient : of K0, c [Pa], [1/K]
+    zero_modulus, temperature_coefficient : for K0 = zero_modulus exp(-c T) [Pa], [1/K]
     pressure_coefficient : B [-]
 
     Returns
@@ -212,7 +212,7 @@ def bulk_modulus_tait(
     ----------
     temperature : [K]
     pressure : gauge [Pa]
-    zero_modulus, temperature_coefficient : of K0, c [Pa], [1/K]
+    zero_modulus, temperature_coefficient : for K0 = zero_modulus exp(-c T) [Pa], [1/K]
     pressure_coefficient : B [-]
 
     Returns
@@ -238,16 +238,17 @@ def bulk_modulus_tait(
 
 
 Properties = Callable[[str], Any]
-"""A property of the oil by its name in the library [SI]; None if it is not stated."""
+"""Function that returns a property of the oil [SI] by its name in the material library; None if the
+library does not state it."""
 
 
 @dataclass(frozen=True, slots=True)
 class BulkModulusLaw:
-    """Law of the tangent bulk modulus and density of a liquid without air over pressure.
+    """Law by which tangent bulk modulus and density of an oil without air change with pressure.
 
     Attributes
     ----------
-    name, help : its word in a design, and the meaning of that word
+    name, help : word that selects the law in a design, and the meaning of this word
     needs : properties of the oil beyond bulk modulus and density
     modulus : tangent bulk modulus [Pa] by (properties, temperature [K], gauge pressure [Pa])
     density : density [kg/m^3] by (properties, density at zero pressure, temperature, pressure)
@@ -266,11 +267,11 @@ class BulkModulusLaw:
 
 @dataclass(frozen=True, slots=True)
 class ViscosityLaw:
-    """Law of the viscosity over pressure.
+    """Law by which viscosity changes with pressure.
 
     Attributes
     ----------
-    name, help : its word in a design, and the meaning of that word
+    name, help : word that selects the law in a design, and the meaning of this word
     needs : properties of the oil; the first is the coefficient of the law [1/Pa]
     model : dynamic viscosity by (viscosity, pressure, coefficient); None: independent of pressure
     largest_pressure : gauge pressure up to which the law holds [Pa]
@@ -292,7 +293,7 @@ class ViscosityLaw:
 
 
 def _warm(oil: Properties, temperature: Array, pressure: Array) -> Array:
-    """Bulk modulus at its stated pressure, corrected to a temperature."""
+    """Bulk modulus at the pressure for which it is stated, corrected to a temperature."""
     modulus, decay = oil("bulk_modulus"), oil("bulk_modulus_decay")
     if decay is None:
         return modulus
@@ -328,7 +329,7 @@ def _tait(oil: Properties, temperature: Array, pressure: Array) -> Array:
 def _compressed(
     modulus: Callable[[Properties, Array, Array], Array], *, sloped: bool
 ) -> Callable[[Properties, Array, Array, Array], Array]:
-    """Density of a law whose bulk modulus has a constant slope, or none."""
+    """Density for a bulk modulus that is linear in pressure (`sloped`) or constant."""
 
     def density_at(oil: Properties, rho: Array, temperature: Array, pressure: Array) -> Array:
         return density_compressed(

@@ -16,12 +16,12 @@ NEEDLE_AREA = 0.22e-4
 """Effective area of the fully open needle, m^2 [AaltoThesis] section 3.1."""
 CHECK_AREA = 0.64e-4
 """Effective area of free flow, m^2 [AaltoThesis] section 3.1; assumed to be
-that of the poppet only (our choice)."""
+that of the check valve's poppet alone (our choice)."""
 CRACKING_PRESSURE = 0.4e5
 """Pressure difference that opens the check valve, Pa [AaltoThesis] section 3.3.5."""
 OPENING_SPAN = 0.1e5
-"""Pressure rise from cracking to fully open, Pa. Our choice: after a share w of this rise, a
-share\nw^2 (3 - 2 w) of the area is open."""
+"""Pressure rise from cracking to fully open, Pa. Our choice: after a share w of this rise, the open
+share of the area is w^2 (3 - 2 w)."""
 _STEPS = 80
 _TOLERANCE = 1e-12
 
@@ -44,11 +44,11 @@ def one_way_flow(
 
     Parameters
     ----------
-    pressure_difference : chamber less line [Pa], either sign
+    pressure_difference : chamber minus line [Pa], either sign
     density : [kg/m^3]
     dynamic_viscosity : [Pa s]
-    opening : share of the needle's area, 0 to 1 [-]
-    needle_area, check_area : fully open [m^2]
+    opening : open share of the needle's area, 0 to 1 [-]
+    needle_area, check_area : when fully open [m^2]
     cracking_pressure, opening_span : [Pa]
 
     Returns
@@ -57,7 +57,7 @@ def one_way_flow(
 
     Notes
     -----
-    Valid: slower than the poppet, which answers within about 1 ms.
+    Valid: changes slower than the poppet, which responds within about 1 ms.
 
     References
     ----------
@@ -97,11 +97,11 @@ def one_way_conductance(
 
     Parameters
     ----------
-    pressure_difference : mean value, chamber less line [Pa], either sign
+    pressure_difference : mean value, chamber minus line [Pa], either sign
     density : [kg/m^3]
     dynamic_viscosity : [Pa s]
-    opening : share of the needle's area, 0 to 1 [-]
-    needle_area, check_area : fully open [m^2]
+    opening : open share of the needle's area, 0 to 1 [-]
+    needle_area, check_area : when fully open [m^2]
     cracking_pressure, opening_span : [Pa]
 
     Returns
@@ -148,26 +148,27 @@ def one_way_pressure_drop(
 ) -> Array:
     """Pressure drop of the valve at a flow: the needle's own law, or both paths together.
 
-    Outward flow passes only the needle. The drop of inward flow lies between zero and the larger
-    of two pressures: that of the fully open check valve, and the drop at the check valve alone.
-    Bracketed Newton steps solve the monotone flow balance; the last step carries the derivatives.
+    Outward flow passes only the needle. If inward flow opens the check valve, the drop lies
+    between the cracking pressure and the larger of two pressures: that at which the check valve is
+    fully open, and the drop if all the oil took the fully open check valve.
+    Bracketed Newton steps solve the monotone flow balance; the last step adds the derivatives.
 
     Parameters
     ----------
     flow : [m^3/s], positive out of the chamber (throttled)
     density : [kg/m^3]
     dynamic_viscosity : [Pa s]
-    opening : share of the needle's area, 0 to 1 [-]
-    needle_area, check_area : fully open [m^2]; check_area > 0
+    opening : open share of the needle's area, 0 to 1 [-]
+    needle_area, check_area : when fully open [m^2]; check_area > 0
     cracking_pressure, opening_span : [Pa]
 
     Returns
     -------
-    pressure difference, chamber less line [Pa]; infinite for flow out through a closed needle
+    pressure difference, chamber minus line [Pa]; infinite for flow out through a closed needle
 
     Notes
     -----
-    Valid: slower than the poppet, which answers within about 1 ms.
+    Valid: changes slower than the poppet, which responds within about 1 ms.
 
     References
     ----------
@@ -203,7 +204,7 @@ def one_way_pressure_drop(
 
 
 def _inward_drop(wanted: Array, valve: dict[str, Array]) -> Array:
-    """Pressure drop of inward flow with the check valve open, all real."""
+    """Pressure drop of inward flow with the check valve open, in real numbers."""
     low = valve["cracking_pressure"]
     high = orifice_pressure_drop(
         area=valve["check_area"],
@@ -227,6 +228,6 @@ def _inward_drop(wanted: Array, valve: dict[str, Array]) -> Array:
 def _opened(
     pressure_difference: Array, cracking_pressure: Array, opening_span: Array
 ) -> tuple[Array, Array]:
-    """Open share of the check valve, and its slope over the pressure difference."""
+    """Open share of the check valve, and its derivative by the pressure difference."""
     share = clip((-pressure_difference - cracking_pressure) / opening_span, 0.0, 1.0)
     return share * share * (3 - 2 * share), -6 * share * (1 - share) / opening_span

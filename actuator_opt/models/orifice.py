@@ -1,10 +1,10 @@
 """Orifices from creeping to turbulent flow: flow, pressure drop and their slopes.
 
 All functions use one law, the laminar and the turbulent pressure drop in series:
-dp = rho q |q|/(2 C^2 A^2) + eta q/(2 delta^2 d A). It is odd, once differentiable at zero, and
-explicit in flow and in pressure drop. Its coefficient C_q tends to delta sqrt(Re) and to C
-[Merritt1967]. The other common form changes from one law to the other at Re = (C/delta)^2, where it
-has a kink.
+dp = rho q |q|/(2 C^2 A^2) + eta q/(2 delta^2 d A). The law is odd, once differentiable at zero, and
+can be solved in closed form for flow and for pressure drop. Its discharge coefficient C_q
+tends to delta sqrt(Re) in creeping flow and to C in turbulent flow [Merritt1967]. The other common
+form switches from the laminar to the turbulent law at Re = (C/delta)^2, where it has a kink.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ import math
 from ..base.numeric import Array, absolute, geometry, namespace, real, sqrt, where
 
 TURBULENT_COEFFICIENT = 0.611
-"""C of a sharp edge, pi/(pi + 2) [AaltoThesis]."""
+"""Discharge coefficient C of a sharp edge, pi/(pi + 2) [AaltoThesis]."""
 LAMINAR_COEFFICIENT = 0.2
-"""delta of a round sharp-edged hole, 0.157 of a long slot [Merritt1967]."""
+"""Laminar coefficient delta of a round sharp-edged hole; a long slot has 0.157 [Merritt1967]."""
 
 
 def discharge_coefficient(
@@ -25,7 +25,7 @@ def discharge_coefficient(
     turbulent_coefficient: Array = TURBULENT_COEFFICIENT,
     laminar_coefficient: Array = LAMINAR_COEFFICIENT,
 ) -> Array:
-    """Discharge coefficient over the Reynolds number, 1/C_q^2 = 1/C^2 + 1/(delta^2 Re).
+    """Discharge coefficient at a Reynolds number, 1/C_q^2 = 1/C^2 + 1/(delta^2 Re).
 
     It tends to delta sqrt(Re) in creeping flow and to C in turbulent flow; at the transition,
     Re = (C/delta)^2 (about 9), it is C/sqrt(2).
@@ -101,17 +101,17 @@ def orifice_flow(
     turbulent_coefficient: Array = TURBULENT_COEFFICIENT,
     laminar_coefficient: Array = LAMINAR_COEFFICIENT,
 ) -> Array:
-    """Flow through an orifice, q = C_q A sqrt(2 |dp|/rho) sgn(dp) with C_q falling with Re.
+    """Flow through an orifice, q = C_q A sqrt(2 |dp|/rho) sgn(dp), where C_q drops at low Re.
 
     q = 2 A d dp/(e + sqrt(e^2 + 2 rho d^2 |dp|/C^2)), e = eta/(2 delta^2).
 
     Parameters
     ----------
-    area : [m^2]; 0 closed
+    area : [m^2]; 0 if closed
     pressure_difference : [Pa], either sign
     density : [kg/m^3]
     dynamic_viscosity : [Pa s]; 0 gives the plain square root
-    hydraulic_diameter : d [m]; of a round hole when left out
+    hydraulic_diameter : d [m]; if left out, that of a round hole
     turbulent_coefficient : C [-]
     laminar_coefficient : delta [-]
 
@@ -161,11 +161,11 @@ def orifice_conductance(
 
     Parameters
     ----------
-    area : [m^2]; 0 closed
+    area : [m^2]; 0 if closed
     pressure_difference : mean value [Pa], either sign
     density : [kg/m^3]
     dynamic_viscosity : [Pa s]
-    hydraulic_diameter : d [m]; of a round hole when left out
+    hydraulic_diameter : d [m]; if left out, that of a round hole
     turbulent_coefficient : C [-]
     laminar_coefficient : delta [-]
 
@@ -219,7 +219,7 @@ def orifice_pressure_drop(
     flow : [m^3/s], either sign
     density : [kg/m^3]
     dynamic_viscosity : [Pa s]
-    hydraulic_diameter : d [m]; of a round hole when left out
+    hydraulic_diameter : d [m]; if left out, that of a round hole
     turbulent_coefficient : C [-]
     laminar_coefficient : delta [-]
 
@@ -270,7 +270,7 @@ def orifice_resistance(
     flow : mean value [m^3/s], either sign
     density : [kg/m^3]
     dynamic_viscosity : [Pa s]
-    hydraulic_diameter : d [m]; of a round hole when left out
+    hydraulic_diameter : d [m]; if left out, that of a round hole
     turbulent_coefficient : C [-]
     laminar_coefficient : delta [-]
 

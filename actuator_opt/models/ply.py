@@ -1,7 +1,7 @@
-"""One ply in its wall: reduced stiffness, rotation from the tube axis, stresses, thermal terms.
+"""One ply in its wall: reduced stiffness, rotation into tube axes, stresses, thermal terms.
 
 The ply is in plane stress. Directions: 1 fibre, 2 across it; z tube axis, t hoop, s in-plane shear
-(engineering). The winding angle is measured from the tube axis; an entry is a balanced +-angle
+(engineering). The winding angle is measured from the tube axis; each layer is a balanced +-angle
 pair, so the laminate has no shear coupling. The stresses are those of the +angle ply.
 """
 

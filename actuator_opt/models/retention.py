@@ -16,7 +16,8 @@ from .rod import thread_stress
 def tie_rod_stress(*, force: Array, count: Array, diameter: Array, pitch: Array) -> Array:
     """Tensile stress in the threads of tie rods that share a force evenly.
 
-    sigma = F/(n A_s). The force is the rods' share with preload (`barrel_ends.tie_rod_forces`).
+    sigma = F/(n A_s). The force is what the rods carry, preload included
+    (`barrel_ends.tie_rod_forces`).
 
     Parameters
     ----------
@@ -85,7 +86,7 @@ def guide_forces(*, side_force: Array, overhang: Array, span: Array) -> tuple[Ar
     Parameters
     ----------
     side_force : F at the rod eye [N]
-    overhang : e, rod eye outside the head bearing [m]
+    overhang : e, distance of the rod eye beyond the head bearing [m]
     span : a, distance between head bearing and piston [m]
 
     Returns

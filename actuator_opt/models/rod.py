@@ -116,8 +116,8 @@ def axial_stiffness_as_published(
 ) -> Array:
     """Rod stiffness with the source's inputs: a solid section and a bending modulus.
 
-    k = E pi d^2/(4 L). The published 13 430 N/mm means E/L = 118.75 N/mm^3 for 12 mm: 13.1 GPa
-    with the table's stroke of 110 mm, 17.8 GPa with the 150 mm of the text.
+    k = E pi d^2/(4 L). The published 13 430 N/mm means E/L = 118.75 N/mm^3 for a 12 mm rod: 13.1
+    GPa with the table's stroke of 110 mm, 17.8 GPa with the 150 mm of the text.
 
     Parameters
     ----------
@@ -219,7 +219,7 @@ def free_modulus(*, wall: Sequence[Array]) -> Array:
 
     Parameters
     ----------
-    wall : zz, zt, zr, tt, tr, rr, ... in tube axes, from `solid_ply.solid_rotated` [Pa]
+    wall : stiffnesses zz, zt, zr, tt, tr, rr, ... in tube axes, from `solid_ply.solid_rotated` [Pa]
 
     Returns
     -------
@@ -255,7 +255,7 @@ def layered_section(
 
     Parameters
     ----------
-    walls : of each layer from the bore outwards: zz, zt, zr, tt, tr, rr, ..., ss in tube axes,
+    walls : stiffnesses zz, zt, zr, tt, tr, rr, ..., ss of each layer from the bore, in tube axes,
         from `solid_ply.solid_rotated` [Pa]
     thicknesses : thickness of each layer [m]
     inner_diameter : bore of the tube [m]
@@ -266,7 +266,7 @@ def layered_section(
 
     Notes
     -----
-    Valid: layers of balanced pairs; about 1 % low, as sum E_z A is beside the exact tube's EA.
+    Valid: layers of balanced pairs; about 1 % low, like sum E_z A against EA of the exact tube.
 
     References
     ----------

@@ -1,11 +1,11 @@
 """Rough surfaces: asperity contact, mean gap, and the effect of roughness on a flow.
 
-The film ratio is H = h/sigma: the distance of the mean planes over the composite roughness of a
-Gaussian surface. Flow and shear factors are those of isotropic surfaces (Patir and Cheng);
+The film ratio is H = h/sigma: the distance of the mean planes divided by the composite roughness
+of a Gaussian surface. Flow and shear factors are those of isotropic surfaces (Patir and Cheng);
 `rod_share` is V = (sigma_rod/sigma)^2, the part of the composite roughness on the moving rod: 0 for
 a smooth rod under a rough seal, 1 for a rough rod under a smooth seal. It sets the sign of the two
-factors of relative motion: with a smooth rod the flow is less, and the shear on the rod more, than
-in a smooth gap.
+factors for sliding: with a smooth rod, less oil flows than in a smooth gap, and the shear stress on
+the rod is higher.
 """
 
 from __future__ import annotations
@@ -18,9 +18,10 @@ from ..base.numeric import Array, geometry, magnitude, maximum, namespace, real,
 
 _STEP = 0.15
 _HEIGHTS = tuple((_STEP * i) ** 2 for i in range(29))
-"""Squares of the nodes of a trapezium sum: exact to 1e-11 for film ratios of -6 to 20."""
+"""Squares of the nodes s of the trapezium sum in `asperity_integral`; the sum is exact to 1e-11 for
+film ratios of -6 to 20."""
 _ORDERS = {"-1/2": 0, "1/2": 2, "3/2": 4, "5/2": 6}
-"""Even power 2n + 1 under the sum of an asperity integral, by its order n."""
+"""Power 2n + 1 of s in the integrand of an asperity integral, by its order n; always even."""
 _WEIGHTS = {
     order: tuple(
         2 * _STEP / math.sqrt(2 * math.pi) * (0.5 if s == 0 else 1) * s ** (power / 2)
@@ -28,11 +29,11 @@ _WEIGHTS = {
     )
     for order, power in _ORDERS.items()
 }
-"""Weights of the trapezium sum at each height, by order."""
+"""Weights of the trapezium sum at each height, by the order of the asperity integral."""
 _PLACES, _SHARES = (tuple(part.tolist()) for part in np.polynomial.legendre.leggauss(32))
 """Nodes and weights of Gauss and Legendre on -1 to 1."""
 _FLATTEST = 15.0
-"""F_3/2 at about H = -6, where the sum for the asperity integral ends."""
+"""F_3/2 at about H = -6, the lowest film ratio for which the asperity integral is exact."""
 _CERTAIN = 8.5
 """Film ratio beyond which the normal distribution is 0 or 1 to double precision."""
 
@@ -124,7 +125,7 @@ def asperity_stiffness(
     asperity_radius: Array,
     roughness: Array,
 ) -> Array:
-    """Factor of the asperity contact pressure, (4/3) E/(1 - nu^2) eta_a sqrt(R) sigma^1.5.
+    """Factor between F_3/2 and asperity pressure, (4/3) E/(1 - nu^2) eta_a sqrt(R) sigma^1.5.
 
     Parameters
     ----------
@@ -250,7 +251,7 @@ def film_ratio_under_contact(*, contact_pressure: Array, stiffness: Array) -> Ar
 
 
 def mean_gap_ratio(*, film_ratio: Array) -> Array:
-    """Mean gap of two rough surfaces over sigma, h_T/sigma = E max(H + z, 0), z normal.
+    """Mean gap of two rough surfaces, h_T/sigma: the mean of max(H + z, 0) for normal z.
 
     H (1 + erf(H/sqrt 2))/2 + exp(-H^2/2)/sqrt(2 pi); tends to H for thick films.
 
@@ -288,7 +289,7 @@ def mean_gap_ratio(*, film_ratio: Array) -> Array:
 
 
 def pressure_flow_factor(*, film_ratio: Array) -> Array:
-    """Flow under a pressure gradient over that of a smooth gap, phi_x = 1 - 0.90 e^(-0.56 H).
+    """Flow by a pressure gradient, relative to a smooth gap: phi_x = 1 - 0.90 e^(-0.56 H).
 
     Parameters
     ----------
@@ -296,7 +297,7 @@ def pressure_flow_factor(*, film_ratio: Array) -> Array:
 
     Returns
     -------
-    phi_x [-]; below H = 0 the value there
+    phi_x [-]; below H = 0, the value at H = 0
 
     Notes
     -----
@@ -316,7 +317,7 @@ def pressure_flow_factor(*, film_ratio: Array) -> Array:
 
 
 def shear_flow_factor(*, film_ratio: Array, rod_share: Array) -> Array:
-    """Flow carried by the roughness, phi_s = (2 V - 1) Phi_s, over (U/2) sigma.
+    """Flow carried by the roughness, divided by (U/2) sigma: phi_s = (2 V - 1) Phi_s.
 
     Phi_s = 1.899 H^0.98 e^(-0.92 H + 0.05 H^2) to H = 5, 1.126 e^(-0.25 H) beyond. The flow of
     the motion is (U/2)(h_T + sigma phi_s) for a rod of speed U.
@@ -354,7 +355,7 @@ def shear_flow_factor(*, film_ratio: Array, rod_share: Array) -> Array:
 
 
 def shear_stress_factor(*, film_ratio: Array) -> Array:
-    """Mean of h over the local gap, phi_f: sliding shear over that of a smooth gap.
+    """Mean of h/(local gap), phi_f: the shear stress by sliding, relative to a smooth gap.
 
     The heights have the polynomial density of Patir and Cheng, z = H/3; the gap is cut off at 1/300
     of its range.
@@ -400,10 +401,10 @@ def shear_stress_factor(*, film_ratio: Array) -> Array:
 
 
 def shear_stress_correction(*, film_ratio: Array, rod_share: Array) -> Array:
-    """Shear by the flow of the roughness, phi_fs = (2 V - 1) Phi_fs, subtracted from phi_f.
+    """Correction of phi_f for the oil that roughness carries along, phi_fs = (2 V - 1) Phi_fs.
 
     Phi_fs = 11.1 H^2.31 e^(-2.38 H + 0.11 H^2) to H = 7, 0 beyond. The sliding shear of the rod
-    is (eta U/h)(phi_f - phi_fs): a smooth rod has phi_f + Phi_fs.
+    is (eta U/h)(phi_f - phi_fs). A smooth rod has phi_f + Phi_fs.
 
     Parameters
     ----------
@@ -434,7 +435,7 @@ def shear_stress_correction(*, film_ratio: Array, rod_share: Array) -> Array:
 
 
 def pressure_stress_factor(*, film_ratio: Array) -> Array:
-    """Shear under a pressure gradient over that of a smooth gap, phi_fp = 1 - 1.40 e^(-0.66 H).
+    """Shear stress by a pressure gradient, relative to a smooth gap: phi_fp = 1 - 1.40 e^(-0.66 H).
 
     Parameters
     ----------

@@ -9,11 +9,11 @@ law.
 The default, `energised`, is a formula fitted to the finite elements of `finite_elements.o_ring`
 (`benchmarks/o_ring_law.py` computes the grid and fits): plane strain, incompressible neo-Hookean
 rubber, no friction, rigid walls, a groove 1.4 W wide with closed corners, squeeze 0.08 to 0.25, p/E
-0 to 1.5, 192 elements around the section (256 change force and width by up to 1.3 %). The width of
-the groove does not matter as long as the ring does not fill it. The curvature of a small ring does
-matter: on a rod of radius 3 W the dry force is 16 % greater, in a bore of radius 7 W it is 9 %
-less; from p = E on both differences are within 4 %. At p = 3 E force and width of the law are still
-within 5 % and 8 %.
+0 to 1.5, 192 elements around the section (256 elements change force and width by up to 1.3 %). The
+width of the groove does not matter as long as the ring does not fill it. The curvature of a small
+ring does matter: on a rod of radius 3 W the force without pressure is 16 % greater, in a bore of
+radius 7 W it is 9 % less; for p >= E, both differences are within 4 %. At p = 3 E, the law's force
+is still within 5 % and its width within 8 %.
 
 A new law needs three functions of (squeeze, section, youngs_modulus, pressure) and an entry in
 `LAWS`. The design format, help and schema read that entry, and the tests of all laws include it.
@@ -34,7 +34,7 @@ from .contact_profile import o_ring_mean
 def width_as_published(*, section: Array, gland_height: Array) -> Array:
     """Contact width as the chord of the *unsqueezed* circle, b = sqrt(4 R^2 - h^2).
 
-    38 % wider than plane-strain FEM at C = 0.10, 15 % at 0.20.
+    This is 38 % wider than plane-strain finite elements at C = 0.10, and 15 % wider at C = 0.20.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def width_as_published(*, section: Array, gland_height: Array) -> Array:
 
 
 class ContactFunction(Protocol):
-    """Function of one quantity of a law; every law takes all arguments, used or not."""
+    """Function for one quantity of a contact law; it takes all arguments, used or not."""
 
     def __call__(
         self, *, squeeze: Array, section: Array, youngs_modulus: Array, pressure: Array
@@ -81,12 +81,12 @@ class SealLaw:
     name : registry key, named in every result
     help : meaning of the name in a design file
     line_load : normal force per length of circumference, N/m
-    contact_width : m (limit it by `gland.limited_width`)
+    contact_width : width of the contact, m (limit it by `gland.limited_width`)
     peak_pressure : highest contact pressure, Pa gauge
-    squeeze_limits : squeezes a design may have with this law, -; outside, its width exceeds the
+    squeeze_limits : squeezes a design may have with this law, -; outside, the width exceeds the
         free section or its load is meaningless (compared with finite elements at 0.08 to 0.30)
     squeeze_range : squeezes at which the law was compared with data, -
-    pressure_range : pressures over Young's modulus at which it was compared with data, -
+    pressure_range : pressure / Young's modulus at which the law was compared with data, -
     reference : source
     """
 
@@ -101,7 +101,7 @@ class SealLaw:
     reference: str
 
     def in_range(self, *, squeeze: Array, youngs_modulus: Array, pressure: Array) -> Array:
-        """Whether squeeze and pressure are in the range compared with data (booleans)."""
+        """Whether the law was compared with data at this squeeze and pressure (booleans)."""
         c, p = real(squeeze), real(pressure) / real(youngs_modulus)
         low, high = self.squeeze_range
         return (
@@ -129,10 +129,10 @@ class EnergisedRing:
 
     Parameters
     ----------
-    dry_force : a, b [-]
-    narrowing : c, reduction of Hertz's width where the squeeze is not small [-]
-    growth : d, e: increase of (b/W)^2 at infinite pressure, d + e C [-]
-    half_pressure : h, pressure over E at half of that increase [-]
+    dry_force : a and b of the force without oil pressure [-]
+    narrowing : c, which reduces Hertz's width where the squeeze is not small [-]
+    growth : d and e; (b/W)^2 grows by d + e C at infinite pressure [-]
+    half_pressure : h, the p/E at which half of that growth is reached [-]
     """
 
     dry_force: tuple[float, float]
@@ -141,7 +141,7 @@ class EnergisedRing:
     half_pressure: float
 
     def _mounted(self, squeeze: Array) -> tuple[Array, Array]:
-        """Width over W and peak pressure over E without oil pressure, for a positive squeeze."""
+        """b_0/W and p_0/E, which hold without oil pressure, for a positive squeeze."""
         force = squeeze * (self.dry_force[0] + self.dry_force[1] * squeeze)
         narrow = 1 - self.narrowing * squeeze * squeeze
         return sqrt((6 / math.pi) * force) * narrow, 4 * sqrt(force / (6 * math.pi)) / narrow
@@ -150,7 +150,7 @@ class EnergisedRing:
     def contact_width(
         self, *, squeeze: Array, section: Array, youngs_modulus: Array, pressure: Array
     ) -> Array:
-        """Width b [m]."""
+        """Contact width b [m]."""
         touching = real(squeeze) > 0
         c = where(touching, squeeze, 1.0)
         mounted, _ = self._mounted(c)
@@ -162,7 +162,7 @@ class EnergisedRing:
     def line_load(
         self, *, squeeze: Array, section: Array, youngs_modulus: Array, pressure: Array
     ) -> Array:
-        """Normal force per length f [N/m]."""
+        """Normal force per length of circumference, f [N/m]."""
         width = self.contact_width(
             squeeze=squeeze, section=section, youngs_modulus=youngs_modulus, pressure=pressure
         )
@@ -181,8 +181,8 @@ class EnergisedRing:
 
 
 ENERGISED_RING = EnergisedRing((0.307, 2.294), 0.652, (0.307, 0.549), 0.618)
-"""Coefficients fitted to the finite elements of this project. On their grid force and width are
-within 2.1 %, the peak pressure within 6 % (a test compares them with the stored grid)."""
+"""Coefficients fitted to the finite elements of this project. At all points of the
+grid, force and width are within 2.1 % and the peak pressure within 6 % (a test compares them)."""
 
 
 @geometry
@@ -292,7 +292,7 @@ LAWS = kinds(
     # p_max = 4 f0/(pi b0) + p; k_p 0.72 to C 0.15, 0.80 from 0.20.
     SealLaw(
         "plane_strain",
-        "an older fit, with up to 38 % more force under pressure",
+        "an older fit; under pressure, up to 38 % more force than energised",
         _plane_strain_load,
         _plane_strain_width,
         _plane_strain_peak,
@@ -304,7 +304,7 @@ LAWS = kinds(
     # f = E W g + p b, b = W sqrt(6 g/pi), p_max = 4 E sqrt(g/(6 pi)) + p.
     SealLaw(
         "hertz_lindley",
-        "Hertz line contact under Lindley's force, equally wide at any pressure",
+        "Hertz line contact under Lindley's force, of the same width at any pressure",
         _hertz_load,
         _hertz_width,
         _hertz_peak,
@@ -316,7 +316,7 @@ LAWS = kinds(
     # b = W sqrt(1 - (1 - C)^2), f = p b: no preload, zero at zero pressure.
     SealLaw(
         "chord",
-        "formula printed in [ElAsswad2018], without force at zero pressure",
+        "formula printed in [ElAsswad2018], which gives no force at zero pressure",
         _chord_load,
         _chord_width,
         _uniform_peak,
@@ -328,7 +328,7 @@ LAWS = kinds(
     # b = (pi W/4)[1/(1 - C) - (1 - C)] by area conservation, f = p b (choice).
     SealLaw(
         "stadium",
-        "a flattened ring of the same cross-section, also without force at zero pressure",
+        "a flattened ring of unchanged cross-section area, also without force at zero pressure",
         _stadium_load,
         _stadium_width,
         _uniform_peak,

@@ -74,7 +74,7 @@ def local_shell_force(
     thickness : wall thickness [m]
     radius : mid-radius [m]
     poissons_ratio : Poisson's ratio; sqrt(nu_ztheta nu_thetaz) of a laminate [-]
-    knockdown : gamma [-]; None takes `column.local_shell_knockdown`, 1 the classical force
+    knockdown : gamma [-]; None takes `column.local_shell_knockdown`, 1 gives the classical force
 
     Returns
     -------
@@ -84,7 +84,7 @@ def local_shell_force(
     -----
     Valid: thin shells longer than about their radius.
 
-    With bending P/P_cr + M/M_cr <= 1, M_cr by `local_shell_moment`.
+    Combined with bending, P/P_cr + M/M_cr <= 1 must hold, with M_cr from `local_shell_moment`.
 
     References
     ----------
@@ -109,7 +109,7 @@ def local_shell_force(
 
 @geometry
 def bending_shell_knockdown(*, radius: Array, thickness: Array) -> Array:
-    """Knock-down of a bent thin shell's buckling stress: less than in compression.
+    """Knock-down factor of a bent thin shell's buckling stress, closer to 1 than in compression.
 
     gamma = 1 - 0.731 (1 - exp(-sqrt(R/t)/16)): only part of the wall sees the largest stress.
 
@@ -150,7 +150,7 @@ def local_shell_moment(
 ) -> Array:
     """Bending moment at which the wall of a tube buckles locally, or a long tube flattens.
 
-    The lower of pi R^2 t sigma = pi gamma E R t^2/sqrt(3 (1 - nu^2)) and Brazier's
+    The result is the lower of pi R^2 t sigma = pi gamma E R t^2/sqrt(3 (1 - nu^2)) and Brazier's
     (2 sqrt(2) pi/9) E R t^2/sqrt(1 - nu^2); the second governs up to R/t of about 240.
 
     Parameters
@@ -159,7 +159,7 @@ def local_shell_moment(
     thickness : wall thickness [m]
     radius : mid-radius [m]
     poissons_ratio : Poisson's ratio; sqrt(nu_ztheta nu_thetaz) of a laminate [-]
-    knockdown : gamma [-]; None takes `bending_shell_knockdown`, 1 the classical stress
+    knockdown : gamma [-]; None takes `bending_shell_knockdown`, 1 gives the classical stress
 
     Returns
     -------

@@ -1,8 +1,8 @@
 """One ply as a solid: 3-D stiffness, rotation into the wall of a tube, thermal terms, stresses.
 
 Directions: 1 fibre, 2 across it in the wall, 3 radial; z tube axis, t hoop, r radial, s shear in
-the wall (engineering). The winding angle is measured from the tube axis. A tube without
-transverse shear leaves tau_13 = tau_23 = 0, so only the in-plane shear stiffness enters.
+the wall (engineering). The winding angle is measured from the tube axis. In a tube without
+transverse shear, tau_13 = tau_23 = 0, so only the in-plane shear stiffness enters.
 """
 
 from __future__ import annotations
@@ -88,8 +88,8 @@ def solid_stiffness(
 def solid_rotated(*, stiffness: Solid, angle: Array) -> TubeStiffness:
     """Stiffness of a ply in tube axes.
 
-    The in-plane block rotates as in plane stress; Czr, Ctr = C13, C23 weighted by cos^2, sin^2 and
-    their exchange, Crs = (C13 - C23) sin cos.
+    The in-plane block rotates as in plane stress. Czr = C13 cos^2 + C23 sin^2,
+    Ctr = C13 sin^2 + C23 cos^2, Crs = (C13 - C23) sin cos.
 
     Parameters
     ----------

@@ -4,8 +4,8 @@ The ring is in radial balance. On its back act the line load of the energiser (a
 `seals.LAWS`) and, beside the energiser's foot on the pressure side, the pressure. On its front the
 pressure acts on the relief of the running face, on the pressure side of the land. The land carries
 the difference. Loads are per length of circumference; the pressure is the one-sided
-difference, >= 0. Without squeeze of the energiser there is no contact: load and width are zero. The
-peak pressure is that of the worn-in land, `contact_profile.land_peak`.
+difference, >= 0. If the energiser is not squeezed, there is no contact: load and width are zero.
+The peak pressure is that of the worn-in land, `contact_profile.land_peak`.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def line_load(
 
     Notes
     -----
-    Valid: ring not tilted; oil pressure inside the land is not taken off.
+    Valid: ring not tilted; the load that the oil under the land carries is not subtracted.
 
     The hoop tension of the ring is neglected, because creep relaxes it.
 

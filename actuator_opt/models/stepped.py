@@ -1,16 +1,17 @@
-"""Buckling of a column of two segments, elementwise, for every end fixity.
+"""Buckling of a column of two segments, for every end fixity and for arrays.
 
 With phi and psi the solutions of w'' = -(P/EI) w that start with unit value and unit slope, the
-buckling loads are the zeros of (all derived from w = free + M_0 (1 - phi)/P + Q (x - psi)/P):
+buckling loads are the zeros of the expressions below. They follow from
+w = free + M_0 (1 - phi)/P + Q (x - psi)/P, where `free` is due to motion of the first end.
 
     pinned-pinned  psi            fixed-free    phi           pinned-guided  psi'
     fixed-pinned   psi - L phi    fixed-guided  phi'          fixed-fixed    2 - phi - psi' + L phi'
 
-In x = sqrt(P) each expression is a sum of two sine or cosine waves of x, plus x times two more
-waves. As functions of P they are entire, of order 1/2, with real positive zeros only. For such
-functions Ostrowski's square-root iteration from below converges monotonically and cubically to the
-first zero, without bracket, scan or branch. A complex Newton step at the end makes every derivative
-exact.
+From here on, x is sqrt(P). In this x, each expression is a sum of two sine or cosine waves, plus x
+times two more waves. As functions of P they are entire, of order 1/2, with real positive zeros
+only. For such functions Ostrowski's square-root iteration from below converges monotonically and
+cubically to the first zero, without bracket, scan or branch. A complex Newton step at the end makes
+every derivative exact.
 """
 
 from __future__ import annotations
@@ -43,14 +44,17 @@ _UNIFORM = {
     ("fixed", "pinned"): (2.045748, 5),
     ("fixed", "fixed"): (4.0, 5),
 }
-"""P L^2/(pi^2 EI) of the uniform column, and the steps needed at a stiffness ratio of 1000."""
+"""P L^2/(pi^2 EI) of the uniform column, and the number of iteration steps for a stiffness ratio of
+1000."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Form:
-    """f(x) = constant + G(x) + x H(x), x = sqrt(P), growing from zero like x^order.
+    """Buckling condition f(x) = constant + G(x) + x H(x) = 0 with x = sqrt(P).
 
-    G = g_1 T(s x) + g_2 T(d x) with T = sin (`sine`) or cos; H the same with the other function.
+    G = g_1 T(s x) + g_2 T(d x), where T is sin if `sine`, else cos. H has the other function. The
+    pairs are `frequencies` (s, d) and the weights of G (`outer`) and of H (`inner`). For small x, f
+    grows like x^order.
     """
 
     sine: bool
@@ -62,7 +66,7 @@ class _Form:
 
 
 def _form(ends: tuple[str, str], flex: Pair, length: Pair) -> _Form:
-    """Weights and frequencies for flex = 1/sqrt(EI) of both segments."""
+    """Buckling condition for these ends, from flex = 1/sqrt(EI) of both segments."""
     b1, b2 = flex
     a1, a2 = b1 * length[0], b2 * length[1]
     frequencies = (a1 + a2, a1 - a2)
@@ -91,18 +95,18 @@ def _form(ends: tuple[str, str], flex: Pair, length: Pair) -> _Form:
 
 
 def _pair(weights: Pair, waves: Pair) -> Array:
-    """g_1 T(s x) + g_2 T(d x)."""
+    """Weighted sum of two waves, g_1 T(s x) + g_2 T(d x)."""
     return weights[0] * waves[0] + weights[1] * waves[1]
 
 
 def _times(first: Pair, second: Pair) -> Pair:
-    """Both products."""
+    """Products of the first and of the second elements."""
     return first[0] * second[0], first[1] * second[1]
 
 
 @dataclass(frozen=True, slots=True)
 class _Waves:
-    """The form with the weights of its derivatives: G, G', G'', H, H', H''."""
+    """A buckling condition with the weights of G, G', G'' (`outer`) and of H, H', H'' (`inner`)."""
 
     form: _Form
     outer: tuple[Pair, Pair, Pair]
@@ -110,7 +114,7 @@ class _Waves:
 
     @classmethod
     def of(cls, form: _Form) -> _Waves:
-        """Derive the weights: d sin = cos, d cos = -sin."""
+        """Derive the weights by the rules d sin = cos and d cos = -sin."""
         sign = 1 if form.sine else -1
         squares = _times(form.frequencies, form.frequencies)
         fall = (-squares[0], -squares[1])
@@ -146,7 +150,7 @@ def _ordered(ends: Ends, *pairs: Pair) -> tuple[tuple[str, str], list[Pair]]:
     if key in _MIRRORED:
         return key[::-1], [(second, first) for first, second in pairs]
     if key not in _UNIFORM:
-        message = f"ends {ends[0]}-{ends[1]} leave a mechanism or are unknown"
+        message = f"ends {ends[0]}-{ends[1]} leave a mechanism, or a name is unknown"
         raise ValueError(message)
     return key, list(pairs)
 
@@ -154,9 +158,9 @@ def _ordered(ends: Ends, *pairs: Pair) -> tuple[tuple[str, str], list[Pair]]:
 def _lower_bound(ends: tuple[str, str], stiffness: Pair, length: Pair) -> Array:
     """Lower bound on the critical load of a column of these segments.
 
-    It is the larger of two loads: that of the uniform column of the weaker segment, and Dunkerley's
-    sum of the loads of the columns with one flexible segment each, which Wirtinger's inequality
-    bounds.
+    The bound is the larger of two loads. The first is that of a uniform column with the weaker
+    stiffness. The second is Dunkerley's combination of the loads of two columns that each have only
+    one flexible segment; Wirtinger's inequality bounds these loads.
     """
     total = length[0] + length[1]
     weaker = minimum(*stiffness)
@@ -170,7 +174,10 @@ def _lower_bound(ends: tuple[str, str], stiffness: Pair, length: Pair) -> Array:
 
 
 def _first_zero(xp: Any, waves: _Waves, load: Array, steps: int) -> Array:
-    """Rise from a lower bound to the first zero: P + f/sqrt(f'^2 - f f'') in P, from f in x."""
+    """Rise from a lower bound `load` to the first zero by P + f/sqrt(f'^2 - f f'').
+
+    The derivatives by P are computed from those by x = sqrt(P).
+    """
     order = waves.form.order
     for _ in range(steps):
         x = xp.sqrt(load)
@@ -248,7 +255,7 @@ Wave: TypeAlias = tuple[Array, Array, Array]
 
 
 def _start(key: tuple[str, str], total: Array, near: Wave, far: Wave) -> Pair:
-    """Moment and its slope at the first end of the buckled column, to any scale.
+    """Moment and its slope at the first end of the buckled column, up to a common factor.
 
     A pin or a free end has M = 0; a fixed or guided end has w' = 0, so M' = Q: (M_L - M_0)/L if
     both ends are held sideways, 0 if an end can sway.
@@ -278,9 +285,9 @@ def mode_shear_stiffness(
 ) -> Array:
     """Shear stiffness of a stepped column in its buckling mode, for `column.engesser_load`.
 
-    1/S = (a_1/S_1 + a_2/S_2)/e: a_i = int (M'/P)^2 over segment i, e = int w'^2 over both, for the
-    buckling mode in bending. M'' = -k_i^2 M, so the a_i have closed forms. For a statically
-    determinate column S_1 = S_2 gives S = S_1.
+    1/S = (a_1/S_1 + a_2/S_2)/e: a_i = int (M'/P)^2 over segment i, e = int w'^2 over both, with the
+    moment M and the deflection w of the buckling mode in bending. M'' = -k_i^2 M, so the a_i have
+    closed forms. For a statically determinate column S_1 = S_2 gives S = S_1.
 
     Parameters
     ----------

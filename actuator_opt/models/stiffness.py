@@ -1,9 +1,10 @@
 """Axial stiffness of the closed cylinder, its pressures at rest, and a load step with trapped air.
 
-Each chamber has one compliance C = V/K + dV/dp of barrel, pipes and hoses; the two chambers act in
-parallel on the piston, in series with rod and mounting. Chamber A is at the cap end, and its length
-is the piston position x; chamber B is at the rod end, and its length is stroke - x. The forms that
-the sources print are in `stiffness_published`.
+Each chamber has one compliance, C = V/K + dV/dp: that of its oil plus those of barrel, pipes and
+hoses. The two chambers act on the piston as springs in parallel, which are in series with rod and
+mounting. Chamber A is at the cap end, and its length is the piston position x; chamber B is at the
+rod end, and its length is stroke - x. `stiffness_published` has the formulas as the sources print
+them.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from .fluid import ATMOSPHERIC_PRESSURE
 
 @geometry
 def chamber_compliance(*, volume: Array, bulk_modulus: Array, wall_compliance: Array) -> Array:
-    """Volume a closed chamber takes per pressure, C = V/K + (dV/dp)_walls.
+    """Volume that a closed chamber takes up per unit pressure, C = V/K + (dV/dp)_walls.
 
     Parameters
     ----------
@@ -35,7 +36,7 @@ def chamber_compliance(*, volume: Array, bulk_modulus: Array, wall_compliance: A
 
     References
     ----------
-    [derived] oil and walls see the same pressure
+    [derived] oil and walls are under the same pressure
 
     Examples
     --------
@@ -68,7 +69,8 @@ def chamber_stiffness(
 
     References
     ----------
-    [AaltoThesis] eq. 6, one term; [derived] walls give beside the oil
+    [AaltoThesis] eq. 6, one term; [derived] the walls' compliance adds to the oil's
+
 
     Examples
     --------
@@ -90,14 +92,15 @@ def hydraulic_stiffness(
 ) -> Array:
     """Stiffness of both closed chambers, k_h = a^T C^-1 a with a = (A_A, -A_B).
 
-    (A_A^2 C_B + A_B^2 C_A + 2 A_A A_B C_AB)/(C_A C_B - C_AB^2); A_A^2/C_A + A_B^2/C_B where neither
-    chamber's pressure changes the other's volume.
+    k_h = (A_A^2 C_B + A_B^2 C_A + 2 A_A A_B C_AB)/(C_A C_B - C_AB^2). Where neither chamber's
+    pressure changes the other's volume, k_h = A_A^2/C_A + A_B^2/C_B.
 
     Parameters
     ----------
     area_a, area_b : [m^2]
     compliance_a, compliance_b : of the chambers at the piston position [m^3/Pa]
-    compliance_ab : volume of one chamber per pressure of the other (axial stretch) [m^3/Pa]
+    compliance_ab : change of one chamber's volume per unit pressure in the other, caused by axial
+        stretch of the barrel [m^3/Pa]
 
     Returns
     -------
@@ -109,7 +112,8 @@ def hydraulic_stiffness(
 
     References
     ----------
-    [AaltoThesis] eq. 6; [derived] walls give beside the oil of each chamber, coupled by stretch
+    [AaltoThesis] eq. 6; [derived] the walls' compliance adds to the oil's in each chamber, and
+    axial stretch couples the chambers
 
     Examples
     --------
@@ -147,9 +151,10 @@ def weakest_position(
     ----------
     area_a, area_b : [m^2]
     compliance_a0, compliance_b0 : chamber compliance at zero chamber length [m^3/Pa]
-    compliance_a_per_length, compliance_b_per_length : growth with chamber length [m^2/Pa]
+    compliance_a_per_length, compliance_b_per_length : compliance per unit chamber length [m^2/Pa]
     stroke : [m]
-    compliance_ab0, compliance_ab_per_length : coupling at x = 0 [m^3/Pa], its growth [m^2/Pa]
+    compliance_ab0, compliance_ab_per_length : C_AB at x = 0 [m^3/Pa], its change per unit x
+        [m^2/Pa]
 
     Returns
     -------
@@ -157,7 +162,7 @@ def weakest_position(
 
     Notes
     -----
-    Valid: positive areas and compliances; k_h is convex in x, so the point is the minimum.
+    Valid: positive areas and compliances; k_h is convex in x, so its stationary point is a minimum.
 
     References
     ----------
@@ -201,7 +206,7 @@ def series(*stiffnesses: Array) -> Array:
 
     Notes
     -----
-    Valid: everywhere; never stiffer than the softest part.
+    Valid: everywhere; the result is never stiffer than the softest part.
 
     References
     ----------
@@ -219,7 +224,7 @@ def series(*stiffnesses: Array) -> Array:
 
 
 class HoldingPressures(NamedTuple):
-    """Chamber pressures of the holding state, gauge, Pa."""
+    """Gauge pressures of both chambers while the closed valve holds the load [Pa]."""
 
     pressure_a: Array
     pressure_b: Array
@@ -231,7 +236,7 @@ def holding_pressures(
 ) -> HoldingPressures:
     """Chamber pressures after a critical-centre servo valve has closed on a held load.
 
-    p_A = [F + (p_s + p_r) A_B]/(A_A + A_B), p_B = p_s + p_r - p_A, both within [p_r, p_s].
+    p_A = [F + (p_s + p_r) A_B]/(A_A + A_B), p_B = p_s + p_r - p_A, both limited to [p_r, p_s].
 
     Parameters
     ----------
@@ -245,7 +250,7 @@ def holding_pressures(
 
     Notes
     -----
-    Valid: matched symmetrical valve edges; beyond the stall force the limits hold.
+    Valid: matched symmetrical valve edges; beyond the stall force, pressures stay at their limits.
 
     References
     ----------
@@ -291,24 +296,25 @@ def trapped_air_load_step(
     """Secant response of a closed cylinder with a constant mass of air in each chamber.
 
     Solves dV_A(p_A) = A_A dx, dV_B(p_B) = -A_B dx and (p_A - p_A0) A_A - (p_B - p_B0) A_B = F,
-    where dV is that of liquid at constant K beside a polytropic gas of constant mass. Substitution
-    leaves one decreasing convex equation in p_A. Newton's method from its left end (either chamber
-    at -0.9 p_a) rises to the root without overshoot, in a fixed 40 steps.
+    where dV is the volume change of liquid of constant bulk modulus K plus that of a polytropic gas
+    of constant mass. Substitution leaves one equation in p_A, decreasing and convex. Newton's
+    method starts at the lowest p_A, where the gauge pressure in one chamber is -0.9 times the
+    atmospheric pressure p_a. It rises to the root without overshoot, in a fixed number of 40 steps.
 
     Parameters
     ----------
     force : step of the force the rod exerts, > 0 push (the rod gives way inwards) [N]
     area_a, area_b : [m^2]
     volume_a, volume_b : chamber volumes with lines [m^3]
-    air_volume_a, air_volume_b : at atmospheric pressure [m^3]
+    air_volume_a, air_volume_b : air in the chambers, as volumes at atmospheric pressure [m^3]
     initial_pressure_a, initial_pressure_b : gauge [Pa]
     bulk_modulus : secant value of the oil [Pa]
     polytropic_index, atmospheric_pressure : n [-] and absolute pressure [Pa]
 
     Returns
     -------
-    displacement, > 0 extends [m], both pressures [Pa], secant stiffness -F/dx [N/m]; all NaN where
-    no state above -0.9 p_a carries the load, the stiffness also at zero force
+    displacement, > 0 extends [m], both pressures [Pa], secant stiffness -F/dx [N/m]; all are NaN
+    where no pressures above -0.9 p_a carry the load; the stiffness is NaN at zero force too
 
     Notes
     -----
@@ -336,7 +342,7 @@ def trapped_air_load_step(
     lever = area_a / area_b
 
     def residual(absolute_a: Array) -> tuple[Array, Array, Array, Array]:
-        """Volume mismatch and its slope over p_A, with dV_A and p_B (absolute)."""
+        """Mismatch of the volumes, its derivative by p_A, the change dV_A and p_B (absolute)."""
         absolute_b = start_b + ((absolute_a - start_a) * area_a - force) / area_b
         bubble_a = gas_a * (start_a / absolute_a) ** index
         bubble_b = gas_b * (start_b / absolute_b) ** index

@@ -1,7 +1,7 @@
 """Stiffness formulas exactly as the sources print them, to reproduce and compare.
 
-They put the *totals* of oil, barrel and hoses in series, which is wrong by up to 13 % with hoses;
-`stiffness` has the correct forms.
+The sources sum each kind (oil, barrel, hoses) over both chambers and put these *totals* in series.
+With hoses this is wrong by up to 13 %; `stiffness` has the correct formulas.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from .lines import line_compliance
 def series_of_totals_as_published(
     *, oil: Array, barrel: Array, rod: Array, lines: Array = math.inf, other: Array = math.inf
 ) -> Array:
-    """Total stiffness as the sources write it: totals of each kind in series.
+    """Total stiffness as the sources write it: oil, barrel, lines and rod in series.
 
     1/k = 1/k_oil + 1/k_rod + 1/k_barrel + 1/k_lines + 1/k_other.
 
     Parameters
     ----------
-    oil : `oil_stiffness_as_published` [N/m]
+    oil : result of `oil_stiffness_as_published` [N/m]
     barrel : sum of both chambers' barrel stiffness [N/m]
     rod : [N/m]
     lines : sum of both chambers' line stiffness [N/m] (infinite: rigid)
@@ -62,7 +62,7 @@ def oil_stiffness_as_published(
 
     Parameters
     ----------
-    bulk_modulus_a, bulk_modulus_b : [Pa] ([ElAsswad2018] uses one value)
+    bulk_modulus_a, bulk_modulus_b : [Pa] ([ElAsswad2018] uses one value for both)
     area_a, area_b : [m^2]
     volume_a, volume_b : chamber volumes with line volumes [m^3]
 
@@ -100,7 +100,7 @@ def barrel_stiffness_as_published(
 ) -> Array:
     """Barrel expansion stiffness of one chamber, k_c = E A/(2 l (lambda + nu)).
 
-    With A = A_A (eq. 22) it equals A^2/(dV/dp); with A = A_B (eq. 23) it is too stiff by
+    With A = A_A (eq. 22) it equals A^2/(dV/dp). With A = A_B (eq. 23) it is too stiff by the factor
     A_A/A_B, since the wall swells over the full bore in both chambers.
 
     Parameters
@@ -163,7 +163,7 @@ def line_stiffness_as_published(
 
     Notes
     -----
-    Valid: isotropic open-ended line; exact as A^2/(dV/dp).
+    Valid: isotropic open-ended line, for which it equals A^2/(dV/dp) exactly.
 
     References
     ----------
@@ -188,9 +188,10 @@ def line_stiffness_as_published(
 
 @geometry
 def cylinder_expansion_as_published(*, pressure: Array, area: Array, stroke: Array) -> Array:
-    """Evaluate the "cylinder expansion stiffness" dp A/L_p: the unit fits, but it is no stiffness.
+    """Evaluate the source's "cylinder expansion stiffness" dp A/L_p, which is no true stiffness.
 
-    It grows with pressure; A^2/(dV/dp) does not.
+    It has the right unit, but it grows with pressure, whereas the true stiffness A^2/(dV/dp) does
+    not.
 
     Parameters
     ----------
@@ -206,7 +207,8 @@ def cylinder_expansion_as_published(*, pressure: Array, area: Array, stroke: Arr
     -----
     Valid: to reproduce the source only.
 
-    Eq. 11, the area of the grown bore, lost its /4 in the extracted text: pass pi (D + 2 u)^2/4.
+    Eq. 11, the area of the expanded bore, lacks its /4 in the extracted text: pass pi (D + 2
+    u)^2/4.
 
     References
     ----------
@@ -233,18 +235,18 @@ def equivalent_stiffness_as_published(
     oil: Array,
     rod: Array,
 ) -> tuple[Array, Array]:
-    """Equivalent stiffness and radial expansion along a record of pressure, as in figure 10.
+    """Equivalent stiffness and radial expansion of the bore over time, as in figure 10.
 
-    k = dp A/L_p with A of the bore grown by eq. 12, in series with oil and rod. The result is zero
-    at zero pressure, since `cylinder_expansion_as_published` is no stiffness.
-    `stiffness.hydraulic_stiffness` with the compliance of `barrel.chamber_compliance` is per
-    chamber and independent of pressure.
+    k = dp A/L_p, with the area A of the bore expanded by eq. 12, is put in series with oil and rod.
+    The result is zero at zero pressure, since `cylinder_expansion_as_published` is no stiffness.
+    The correct stiffness, `stiffness.hydraulic_stiffness` with `barrel.chamber_compliance`, treats
+    each chamber separately and does not depend on the pressure.
 
     Parameters
     ----------
     pressure : pressure difference at each time [Pa]
     bore, outer_diameter : of the barrel [m]
-    youngs_modulus, poissons_ratio : of the barrel [Pa], [-]; the source inserts a bending modulus
+    youngs_modulus, poissons_ratio : of the barrel [Pa], [-]; the source uses a bending modulus
     stroke : [m]
     oil, rod : stiffness of oil and rod [N/m]
 

@@ -1,26 +1,28 @@
 """Failure criteria by name with a common interface; Tsai-Wu in 3-D; yield of pre-stressed metal.
 
-A criterion takes the stress of the load in material axes, and the residual stress that does not
-grow with the load (from cure, cool-down or yielding). It gives the utilisation 1/SR of every mode
-by name. The strength ratio SR is the factor of the load at which residual + SR stress first meets
-the surface of that mode: exact, in closed form. A utilisation is
+A criterion takes two stresses in material axes: that of the load, and the residual stress (from
+cure, cool-down or yielding), which does not grow with the load. It gives the utilisation 1/SR of
+every failure mode by name. The strength ratio SR is the factor on the load at which the stress
+residual + SR stress first meets the failure surface of that mode; it is exact, in closed form. A
+utilisation is
 
-- never negative, at most 1 where the ply carries the present load, 0 where the mode never fails it;
+- never negative, at most 1 where the ply carries the present load, and 0 where the ply never fails
+  in this mode;
 - proportional to the load without residual stress, and finite at zero stress;
 - infinite (SR = 0) where the residual stress alone fails the ply.
 
 The largest utilisation of the modes is that of the ply; `strength_modes.load_multiplier` gives SR.
-Branches are chosen by real parts, so a complex step follows the branch of its point.
+Branches are chosen by real parts, so a complex step stays on the branch of the real value.
 
-The criteria use the same few strengths and differ by 20-25 % on one tube: a first-ply pressure
-means little without the name of its criterion. F_12* = F_12/sqrt(F_11 F_22) of Tsai-Wu comes from
-no uniaxial test; its default of -0.5 makes the form that of von Mises for equal strengths. Hashin
-and Puck are in plane stress and ignore sigma_3. Maximum strain includes sigma_3 through Poisson's
-ratios and does not test the radial strain; only maximum stress and Tsai-Wu limit it. A constant of
-one criterion (F_12*, Hashin's shear share, Puck's inclinations) is a keyword of its function: bind
-it with `functools.partial` for another value.
+The criteria use the same few strengths, yet their results for one tube differ by 20-25 %: a
+first-ply pressure means little without the name of its criterion. No uniaxial test gives Tsai-Wu's
+F_12* = F_12/sqrt(F_11 F_22); its default of -0.5 gives Tsai-Wu the form of von Mises where the
+strengths are equal. Hashin and Puck assume plane stress and ignore sigma_3. Maximum strain includes
+sigma_3 through Poisson's ratios but sets no limit on the radial strain; only maximum stress and
+Tsai-Wu limit sigma_3. A constant of one criterion (F_12*, Hashin's shear share, Puck's
+inclinations) is a keyword of its function: bind it with `functools.partial` for another value.
 
-Metal yields by von Mises, exact along the load path.
+Metal yields by von Mises; its strength ratio along the load path is exact.
 """
 
 from __future__ import annotations
@@ -43,7 +45,7 @@ from .strength_modes import (
 
 
 def _largest_root(square: Array, half: Array, left: Array | None) -> Array:
-    """1/SR of the first crossing of square SR^2 + 2 half SR = left (1 if None), 0 if none."""
+    """1/SR for the least SR > 0 with square SR^2 + 2 half SR = left (1 if None), else 0."""
     inside = half * half + (square if left is None else square * left)
     never = real(inside) < 0
     total = half + namespace(inside).sqrt(where(never, 0.0, inside))
@@ -55,7 +57,7 @@ def _largest_root(square: Array, half: Array, left: Array | None) -> Array:
 
 
 def _inner(first: Stress, second: Stress) -> Array:
-    """Sum of the products of the components."""
+    """Sum of the products of corresponding components of two stresses."""
     (a_1, a_2, a_3, a_12), (b_1, b_2, b_3, b_12) = first, second
     return a_1 * b_1 + a_2 * b_2 + a_3 * b_3 + a_12 * b_12
 
@@ -68,12 +70,13 @@ def tsai_wu_modes(
     elastic: PlyRatios | None = None,
     interaction: Array = -0.5,
 ) -> dict[str, Array]:
-    """Utilisation by the Tsai-Wu criterion in 3-D, its one mode named "interaction".
+    """Utilisation by the Tsai-Wu criterion in 3-D, whose only mode is named "interaction".
 
-    F_i sigma_i + F_ij sigma_i sigma_j = 1 on sigma = residual + SR stress, a quadratic in SR:
+    F_i sigma_i + F_ij sigma_i sigma_j = 1 for sigma = residual + SR stress, a quadratic in SR, with
     F_1 = 1/X_t - 1/X_c, F_2 = F_3 = 1/Y_t - 1/Y_c, F_11 = 1/(X_t X_c), F_22 = F_33 = 1/(Y_t Y_c),
     F_66 = 1/S^2, F_12 = F_13 = F_12* sqrt(F_11 F_22), and F_23 = -F_22/2, or F_22 - 1/(2 S_23^2)
-    where S_23 is known. With no residual 1/SR = (b + sqrt(b^2 + 4 a))/2 for a SR^2 + b SR = 1.
+    where S_23 is known. Without residual stress the quadratic is a SR^2 + b SR = 1, and
+    1/SR = (b + sqrt(b^2 + 4 a))/2.
 
     Parameters
     ----------
@@ -91,8 +94,8 @@ def tsai_wu_modes(
     -----
     Valid: |F_12*| < 1, with a radial stress |F_12*| <= 1/2.
 
-    The surface is open along X : Y : Y in the scaled stresses at F_12* = -1/2 and the default
-    F_23, as von Mises is along pressure.
+    With F_12* = -1/2 and the default F_23, the failure surface is open in the direction of stresses
+    in the ratio X : Y : Y (mean strengths), as that of von Mises is open along hydrostatic stress.
 
     References
     ----------
@@ -114,7 +117,7 @@ def tsai_wu_modes(
     plane = -0.5 if s.shear_23 is None else 1 - area_2 / (2 * s.shear_23 * s.shear_23)
 
     def scaled(values: Stress) -> Stress:
-        """Stress over the mean of its strengths: then F_11 = F_22 = F_33 = F_66 = 1."""
+        """Stresses divided by mean (geometric) strengths, so F_11 = F_22 = F_33 = F_66 = 1."""
         return values[0] / mean_1, values[1] / mean_2, values[2] / mean_2, values[3] / s.shear_12
 
     along, across, radial, slip = load = scaled(stress)
@@ -138,11 +141,11 @@ def tsai_wu_modes(
 
 
 _LEAST = 1e-9
-"""Least share of the strength that is left, for a metal that yields by residual stress alone."""
+"""Lower limit of 1 - <r, r>: keeps the result finite if residual stress alone yields the metal."""
 
 
 def mises_product(*, first: Stress, second: Stress) -> Array:
-    """Bilinear form of von Mises: the square of the equivalent stress for first = second.
+    """Bilinear form whose value for first = second is von Mises' equivalent stress squared.
 
     ((a1 - a2)(b1 - b2) + (a2 - a3)(b2 - b3) + (a3 - a1)(b3 - b1))/2 + 3 a12 b12.
 
@@ -177,10 +180,10 @@ def mises_product(*, first: Stress, second: Stress) -> Array:
 def yield_utilisation(
     *, stress: Stress, yield_strength: Array, residual: Stress | None = None
 ) -> Array:
-    """Utilisation 1/SR of a metal: von Mises of residual + SR stress reaches yield.
+    """Utilisation 1/SR of a metal, where the von Mises stress of residual + SR stress is at yield.
 
-    With <a, b> = `mises_product` / yield^2:
-    u = (<s, r> + sqrt(<s, r>^2 + (1 - <r, r>) <s, s>))/(1 - <r, r>).
+    u = (<s, r> + sqrt(<s, r>^2 + (1 - <r, r>) <s, s>))/(1 - <r, r>), where s is the load's stress,
+    r the residual stress and <a, b> = `mises_product`(a, b) / yield^2.
 
     Parameters
     ----------
@@ -194,7 +197,7 @@ def yield_utilisation(
 
     Notes
     -----
-    Valid: isotropic metals, elastic until then.
+    Valid: isotropic metals, elastic until yield.
 
     References
     ----------
@@ -218,7 +221,7 @@ def yield_utilisation(
 
 
 class Modes(Protocol):
-    """A failure criterion as a function from stresses to utilisations by mode."""
+    """Signature of a failure criterion: from stresses to the utilisation of every failure mode."""
 
     def __call__(
         self,
@@ -228,7 +231,7 @@ class Modes(Protocol):
         residual: Stress | None = None,
         elastic: PlyRatios | None = None,
     ) -> dict[str, Array]:
-        """Utilisation 1/SR of every mode; `elastic` is required if `Criterion.by_strain`."""
+        """Utilisation 1/SR of every mode; `Criterion.by_strain` states if `elastic` is required."""
         ...
 
 
@@ -238,10 +241,10 @@ class Criterion:
 
     Attributes
     ----------
-    name, help : its word in a design, and the meaning of that word
+    name, help : its key word in a design file, and the explanation of that word
     words : its name in a report
-    modes : utilisation of every mode [-]
-    by_strain : whether it needs the ratios of the ply's elastic constants
+    modes : function for the utilisation of every failure mode [-]
+    by_strain : whether `modes` needs the ratios of the ply's elastic constants
     """
 
     name: str
@@ -289,4 +292,4 @@ CRITERIA = kinds(
         by_strain=False,
     ),
 )
-"""The criteria that a design may name."""
+"""The failure criteria that a design may choose, by name."""

@@ -4,12 +4,13 @@ Stresses are in material axes (1 fibre, 2 transverse in the wall, 3 radial), ten
 criterion gives the utilisation 1/SR of each of its modes; `strength` states the common rules.
 
 Hashin and Puck separate fibre failure from inter-fibre failure, in plane stress. The sign of
-sigma_2 at failure decides which surface applies. Without residual stress that is the sign of the
-load's sigma_2. With residual stress, the load may lead across sigma_2 = 0 at some shear. If that
-shear is below S, the ply survives there and fails on the far side; otherwise it has failed before.
-Both criteria give |tau| = S at sigma_2 = 0 from either side, so the utilisation of the ply is
-continuous there. Of the inter-fibre modes only the mode that fails has a utilisation, the others
-are 0. Every surface is a conic in (sigma_2, tau), and so a quadratic in SR along the load.
+sigma_2 at failure decides which failure surface applies. Without residual stress that is the sign
+of the load's sigma_2. With residual stress, sigma_2 may change sign as the load grows. If the shear
+at sigma_2 = 0 is below S, the ply survives there and fails later, on the other side; otherwise it
+has failed before. At sigma_2 = 0 both criteria give |tau| = S from either side, so the utilisation
+of the ply is continuous there. Of the inter-fibre modes only the mode in which the ply fails has a
+utilisation; that of the others is 0. Every surface is a conic in (sigma_2, tau), and so gives a
+quadratic equation in SR along the load.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ Stress: TypeAlias = tuple[Array, Array, Array, Array]
 """Ply stress sigma_1, sigma_2, sigma_3, tau_12 [Pa]."""
 
 _IDLE = 1e-300
-"""Utilisations up to this count as no load: their inverse is infinite, without overflow."""
+"""Utilisations up to this value count as no load: SR is then infinite, without an overflow."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,10 +34,10 @@ class PlyStrength:
 
     Parameters
     ----------
-    tension_1, compression_1 : along the fibre
-    tension_2, compression_2 : across the fibre
-    shear_12 : in the plane
-    shear_23 : across the fibre, in the 2-3 plane; None where unknown
+    tension_1, compression_1 : strengths along the fibre
+    tension_2, compression_2 : strengths across the fibre
+    shear_12 : in-plane shear strength
+    shear_23 : shear strength in the 2-3 plane, across the fibre; None where unknown
     """
 
     tension_1: Array
@@ -49,7 +50,7 @@ class PlyStrength:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlyRatios:
-    """Ratios of a ply's elastic constants [-], as maximum strain needs them.
+    """Ratios of a ply's elastic constants [-], used by the maximum-strain criterion.
 
     Parameters
     ----------
@@ -66,8 +67,8 @@ class PlyRatios:
 def load_multiplier(inverse: Array) -> Array:
     """Factor by which the load may grow before the utilisation reaches one.
 
-    SR = 1/utilisation, infinite where it is not positive: the ply never fails; zero where it is
-    infinite: the residual stress alone fails the ply.
+    SR = 1/utilisation. SR is infinite where the utilisation is not positive, as the ply never
+    fails. SR is zero where the utilisation is infinite, as the residual stress alone fails the ply.
 
     Parameters
     ----------
@@ -79,7 +80,7 @@ def load_multiplier(inverse: Array) -> Array:
 
     Notes
     -----
-    Valid: proportional loading, on top of what the utilisation holds constant.
+    Valid: proportional loading, on top of the constant residual stress in the utilisation.
 
     References
     ----------
@@ -95,7 +96,7 @@ def load_multiplier(inverse: Array) -> Array:
 
 
 def _share(load: Array, left: Array) -> Array:
-    """Load over the strength that the residual stress leaves; infinite where none is left."""
+    """Load divided by the strength that the residual stress leaves; infinite if it leaves none."""
     broken = real(left) <= 0
     return where(broken, inf, load / where(broken, 1.0, left))
 
@@ -105,13 +106,13 @@ def one_stress_modes(
 ) -> tuple[Array, Array]:
     """Utilisation of one stress component in tension and in compression.
 
-    sigma/(X_t - sigma_residual) and -sigma/(X_c + sigma_residual), or 0 for the opposite
-    sign of sigma.
+    sigma/(X_t - sigma_residual) in tension and -sigma/(X_c + sigma_residual) in compression; the
+    utilisation that does not match the sign of sigma is 0.
 
     Parameters
     ----------
     stress : stress of the load [Pa]
-    tension, compression : strengths of either sign [Pa]
+    tension, compression : tensile and compressive strength, both positive [Pa]
     residual : stress that does not grow with the load [Pa], or None
 
     Returns
@@ -143,7 +144,7 @@ def _plane_modes(
     strength: PlyStrength,
     residual: tuple[Array | None, Array | None, Array | None],
 ) -> dict[str, Array]:
-    """Modes of sigma_1, sigma_2 and tau_12, or of equivalent stresses, each component alone."""
+    """Utilisations by sigma_1, sigma_2 and tau_12 (or modulus times strain), each on its own."""
     s = strength
     limits = (s.tension_1, s.compression_1), (s.tension_2, s.compression_2), (s.shear_12,) * 2
     along, across, slip = (
@@ -210,7 +211,7 @@ def max_stress_modes(
 
 
 def _strains(stress: Stress, elastic: PlyRatios) -> tuple[Array, Array, Array]:
-    """E_1 epsilon_1, E_2 epsilon_2 and tau_12 of a stress."""
+    """Strains of a stress, scaled to stresses: E_1 epsilon_1, E_2 epsilon_2 and tau_12."""
     along, across, radial, slip = stress
     e = elastic
     first = along - e.poissons_ratio_12 * across - e.poissons_ratio_13 * radial
@@ -225,18 +226,18 @@ def max_strain_modes(
     residual: Stress | None = None,
     elastic: PlyRatios | None = None,
 ) -> dict[str, Array]:
-    """Utilisation of every mode of maximum strain, failure strains being strength over modulus.
+    """Utilisation of every mode of maximum strain; failure strains are strength divided by modulus.
 
     E_1 eps_1 = sigma_1 - nu_12 sigma_2 - nu_13 sigma_3 against X_t and X_c,
     E_2 eps_2 = sigma_2 - nu_12 (E_2/E_1) sigma_1 - nu_23 sigma_3 against Y_t and Y_c, and
-    tau_12 against S; the strain is that of the stress, without free thermal or cure strain.
+    tau_12 against S. Only strain caused by stress counts, not free thermal or cure strain.
 
     Parameters
     ----------
     stress : sigma_1, sigma_2, sigma_3, tau_12 of the load [Pa]
     strength : ply strengths
     residual : stress that does not grow with the load [Pa], or None
-    elastic : Poisson's ratios and modulus ratio of the ply [-]; needed
+    elastic : Poisson's ratios and modulus ratio of the ply [-]; required
 
     Returns
     -------
@@ -271,9 +272,10 @@ def max_strain_modes(
 
 
 def _exit_root(square: Array, half: Array, left: Array) -> Array:
-    """1/SR where the load leaves square SR^2 + 2 half SR = left, even if it has to enter first.
+    """1/SR where the growing load leaves the region square SR^2 + 2 half SR <= left.
 
-    (half + root)/left or square/(root - half), whichever loses no digits.
+    The load may start outside and enter the region first. Of the two equal forms
+    (half + root)/left and square/(root - half), the code uses that which loses no digits.
     """
     inside = half * half + square * left
     root = namespace(inside).sqrt(where(real(inside) > 0, inside, 0.0))
@@ -284,7 +286,7 @@ def _exit_root(square: Array, half: Array, left: Array) -> Array:
 
 
 def _fails_pulled(across: Array, slip: Array, held: Array, held_slip: Array) -> Array:
-    """Whether sigma_2 >= 0 where the growing load fails the ply; shears are over S."""
+    """Whether sigma_2 >= 0 where the growing load fails the ply; shears are divided by S."""
     across, slip, held, held_slip = real(across), real(slip), real(held), real(held_slip)
     at_zero = held_slip * across - held * slip
     passes = at_zero * at_zero < across * across
@@ -298,10 +300,11 @@ def _matrix_surface(
     tension: tuple[Array, Array],
     compression: tuple[Array, Array],
 ) -> tuple[Array, Array, Array | None]:
-    """1/SR on slip^2 + k sigma_2^2 + 2 m sigma_2 = 1, (k, m) by the sign of sigma_2 at failure.
+    """1/SR on the failure surface (tau/S)^2 + k sigma_2^2 + 2 m sigma_2 = 1 of inter-fibre failure.
 
-    Also whether sigma_2 >= 0 there, and whether the residual stress (sigma_2, tau/S) alone fails:
-    there 1/SR means nothing and the sign is that of the residual stress.
+    (k, m) are `tension` or `compression`, by the sign of sigma_2 at failure. The function also
+    returns whether sigma_2 >= 0 at failure, and whether the residual stress (sigma_2, tau/S) alone
+    fails the ply. Where it does, 1/SR has no meaning and the sign is that of the residual stress.
     """
     if residual is None:
         pulled = real(across) >= 0
@@ -329,7 +332,9 @@ def _matrix_surface(
 def _fibre_tension_with_shear(
     along: Array, slip: Array, held: Array, held_slip: Array, share: Array
 ) -> Array:
-    """Utilisation by (sigma_1/X_t)^2 + share (tau/S)^2 = 1 where sigma_1 >= 0, all scaled.
+    """Utilisation by (sigma_1/X_t)^2 + share (tau/S)^2 = 1 where sigma_1 >= 0.
+
+    The arguments are stresses divided by X_t or S.
 
     A load may pull a fibre out of residual compression under more shear than this surface allows;
     the fibre then fails where sigma_1 changes sign.
@@ -359,8 +364,8 @@ def hashin_modes(
 
     Surfaces: fibre tension (sigma_1/X_t)^2 + a (tau/S)^2 = 1, fibre compression -sigma_1 = X_c,
     matrix tension (sigma_2/Y_t)^2 + (tau/S)^2 = 1, matrix compression
-    (sigma_2/(2 S_23))^2 + (tau/S)^2 + [(Y_c/(2 S_23))^2 - 1] sigma_2/Y_c = 1; each holds for its
-    sign of sigma_1 or sigma_2, with sigma = residual + SR stress.
+    (sigma_2/(2 S_23))^2 + (tau/S)^2 + [(Y_c/(2 S_23))^2 - 1] sigma_2/Y_c = 1. Each applies to its
+    own sign of sigma_1 or sigma_2, with sigma = residual + SR stress.
 
     Parameters
     ----------
@@ -379,7 +384,7 @@ def hashin_modes(
     -----
     Valid: unidirectional plies in plane stress.
 
-    The shear term of fibre tension and the default S_23 are choices.
+    The shear term of fibre tension and the default S_23 are our choices.
 
     References
     ----------
@@ -428,14 +433,17 @@ def hashin_modes(
 
 
 def _in_mode_c(across: Array, slip: Array, corner: tuple[Array, Array]) -> Array:
-    """Whether a stress lies beyond the line from zero to the corner of Puck's modes B and C."""
+    """Whether a stress is in mode C: beyond the line from zero to the corner of modes B and C."""
     return -real(across) * real(corner[1]) > real(corner[0]) * absolute(real(slip))
 
 
 def _puck_mode_c(
     across: Array, slip: Array, held: tuple[Array, Array], weight: Array, limit: Array
 ) -> tuple[Array, Array]:
-    """1/SR on weight slip^2 + (sigma_2/Y_c)^2 + sigma_2/Y_c = 0; whether `held` is outside it."""
+    """1/SR on Puck's surface weight (tau/S)^2 + (sigma_2/Y_c)^2 + sigma_2/Y_c = 0 of mode C.
+
+    Also whether the residual stress `held` is outside this surface.
+    """
     crush, held_crush = across / limit, held[0] / limit
     weighted = weight * held[1]
     left = -(weighted * held[1] + held_crush * (held_crush + 1))
@@ -457,9 +465,10 @@ def puck_modes(
 
     Surfaces, with t = tau/S: mode A (sigma_2 >= 0)
     sqrt(t^2 + (1 - p Y_t/S)^2 (sigma_2/Y_t)^2) + p sigma_2/S = 1; mode B
-    sqrt(t^2 + (q sigma_2/S)^2) + q sigma_2/S = 1 up to |sigma_2/tau| = R_A/tau_c; mode C beyond
+    sqrt(t^2 + (q sigma_2/S)^2) + q sigma_2/S = 1 up to |sigma_2/tau| = R_A/tau_c; beyond it, mode C
     (t/(2 (1 + q_t)))^2 + (sigma_2/Y_c)^2 = -sigma_2/Y_c; fibre sigma_1 = X_t, -sigma_1 = X_c.
-    Squared they are t^2 + (1/Y_t^2 - 2 p/(S Y_t)) sigma_2^2 + 2 p sigma_2/S = 1 and
+    Here R_A = Y_c/(2 (1 + q_t)), q_t = q R_A/S and tau_c = S sqrt(1 + 2 q_t). Without the roots,
+    mode A is t^2 + (1/Y_t^2 - 2 p/(S Y_t)) sigma_2^2 + 2 p sigma_2/S = 1 and mode B is
     t^2 + 2 q sigma_2/S = 1.
 
     Parameters
@@ -481,7 +490,7 @@ def puck_modes(
     Valid: unidirectional plies in plane stress, p Y_t < S, Y_c > S/2.
 
     The parabola of mode B touches the ellipse of mode C at their corner and encloses it, so the
-    crossing of B decides between them.
+    point where the load meets the parabola decides between the two modes.
 
     References
     ----------

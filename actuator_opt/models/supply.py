@@ -2,8 +2,8 @@
 
 Pressures are gauge, or relative to the tank. A supply line of volume V_S and bulk modulus K closes
 the loop: (V_S/K) dp_S/dt = delivery - relief flow - demand. Accumulators are in `accumulator`. The
-reducing valve relieves when its line exceeds the set pressure; `line_ends.reducing_valve_end` is
-its small-signal form.
+reducing valve lets oil out of its line to the tank when the line exceeds the set pressure;
+`line_ends.reducing_valve_end` is its small-signal form.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ def relief_flow(
 ) -> Array:
     """Flow of a relief valve, q = q_r min(x, 1) sqrt(dp/(p_c + dp_o)), x = (dp - p_c)/dp_o.
 
-    The area opens in proportion to the pressure above cracking and is fully open at the rated flow
-    (a choice: the data sheet's last point); above it the valve is a plain orifice.
+    The area grows in proportion to the pressure above cracking. The valve is fully open at the
+    rated flow (our choice: the data sheet's last point) and is a plain orifice above it.
 
     Parameters
     ----------
     pressure_difference : dp, pressure of the line minus tank pressure [Pa], either sign
-    cracking_pressure : p_c, where it begins to open [Pa], >= 0
+    cracking_pressure : p_c, at which the valve begins to open [Pa], >= 0
     override : dp_o, pressure above cracking at the rated flow [Pa], > 0
     rated_flow : q_r [m^3/s]
 
@@ -38,7 +38,7 @@ def relief_flow(
 
     Notes
     -----
-    Valid: steady state, turbulent seat, no hysteresis; slower than the poppet.
+    Valid: steady state or changes slower than the poppet; turbulent seat, no hysteresis.
 
     References
     ----------
@@ -65,15 +65,16 @@ def controlled_pump_rate(
 ) -> Array:
     """Rate of the flow of a pressure-controlled pump, dq/dt = (K_p (p_set - p_S) - q)/tau.
 
-    At rest it delivers q at the pressure p_set - q/K_p. This state has no limits: it may exceed the
-    flow that `controlled_pump_delivery` passes, and then takes a few tau to return.
+    In steady state the pump delivers q at the pressure p_set - q/K_p. The state q has no limits: it
+    may exceed the flow to which `controlled_pump_delivery` limits the pump, and then takes a few
+    tau to return.
 
     Parameters
     ----------
     flow : q, state of the pump [m^3/s]
     pressure : p_S of the supply line [Pa]
     set_pressure : p_set, at which the pump delivers no flow [Pa]
-    gain : K_p, flow per pressure [m^3/s/Pa]
+    gain : K_p, change of flow per unit pressure [m^3/s/Pa]
     time_constant : tau [s], > 0
 
     Returns
@@ -99,14 +100,14 @@ def controlled_pump_rate(
 
 
 def controlled_pump_delivery(*, flow: Array, largest_flow: Array) -> Array:
-    """Flow a pressure-controlled pump delivers, its state between the ends of its swash plate.
+    """Flow that a pressure-controlled pump delivers, q_P = min(max(q, 0), q_max).
 
-    q_P = min(max(q, 0), q_max).
+    The swash plate's stops limit the flow.
 
     Parameters
     ----------
     flow : q, state of the pump [m^3/s]
-    largest_flow : q_max, full displacement at its speed [m^3/s]
+    largest_flow : q_max, at full displacement and the pump's speed [m^3/s]
 
     Returns
     -------
@@ -141,18 +142,18 @@ def reducing_valve_acceleration(
     natural_frequency: Array,
     damping_ratio: Array,
 ) -> Array:
-    """Second-order spool of the valve, q'' = w^2 (G (p_set - p) - q) - 2 zeta w q'.
+    """Acceleration q'' of a reducing valve's flow, q'' = w^2 (G (p_set - p) - q) - 2 zeta w q'.
 
-    This state has no limits: it may exceed the flow that `reducing_valve_flow` passes, and then
-    takes part of a period to return.
+    The spool is a second-order system. The state q has no limits: it may exceed the flow to which
+    `reducing_valve_flow` limits the valve, and then takes part of a period to return.
 
     Parameters
     ----------
-    flow : q, flow that the spool regulates, into the line [m^3/s]
+    flow : q, flow into the line that the spool regulates [m^3/s]
     rate : q' [m^3/s^2]
-    pressure : p of the line it holds [Pa]
+    pressure : p of the line whose pressure the valve regulates [Pa]
     set_pressure : p_set [Pa]
-    conductance : G, flow per pressure by which the spool regulates [m^3/s/Pa]
+    conductance : G, flow per unit pressure error that the spool settles to [m^3/s/Pa]
     natural_frequency : w/(2 pi) [Hz]
     damping_ratio : zeta [-]
 
@@ -166,7 +167,8 @@ def reducing_valve_acceleration(
 
     References
     ----------
-    [AaltoThesis] section 5.2, the suspect of its 20 Hz peak; [derived] second-order spool
+    [AaltoThesis] section 5.2, which suspects this valve of a 20 Hz peak; [derived] second-order
+    spool
 
     Examples
     --------
@@ -189,17 +191,17 @@ def reducing_valve_flow(
     largest_flow: Array,
     passive_conductance: Array = 0.0,
 ) -> Array:
-    """Flow of the valve into its line, min(max(q, -q_max), q_max) + g (p_set - p).
+    """Flow of a reducing valve into its line, min(max(q, -q_max), q_max) + g (p_set - p).
 
     A negative flow relieves the line to the tank.
 
     Parameters
     ----------
     flow : q, state of `reducing_valve_acceleration` [m^3/s]
-    pressure : p of the line it holds [Pa]
+    pressure : p of the line whose pressure the valve regulates [Pa]
     set_pressure : p_set [Pa]
-    largest_flow : q_max of the fully open spool, both ways [m^3/s]
-    passive_conductance : g of its opening [m^3/s/Pa]
+    largest_flow : q_max of the fully open spool, in either direction [m^3/s]
+    passive_conductance : g of the spool's opening, felt without any spool motion [m^3/s/Pa]
 
     Returns
     -------
@@ -207,7 +209,7 @@ def reducing_valve_flow(
 
     Notes
     -----
-    Valid: three-way valve; as large a flow to the tank as from the supply.
+    Valid: three-way valve that passes as much flow to the tank as from the supply.
 
     References
     ----------

@@ -1,7 +1,8 @@
 """Two engaged ISO 60 degree threads: shear areas, flank pressure, and radial spreading.
 
-Each thread is checked against the strength of its own metal. The wall under a thread is a tube
-(`rod.section_area`, `barrel.bore_stresses`) between its other face and the thread's root.
+Each thread is checked against the strength of its own metal. The wall under a thread
+is treated as a tube (`rod.section_area`, `barrel.bore_stresses`) from the thread's root to the
+wall's other face.
 """
 
 from __future__ import annotations
@@ -18,16 +19,17 @@ RUN_OUT = 0.8
 """Length of thread that carries no load, in pitches: chamfer and run-out [VDI2230]."""
 
 FLANK = pi / 6
-"""Half of the angle of the thread [rad]."""
+"""Flank angle: half of the thread's 60 degrees [rad]."""
 
 LEAST_OVERLAP = 0.8
-"""Least engagement depth of the flanks, as a share of that with full crests (our choice: the depth
-that the tolerance 6g leaves at a pitch of 1 mm)."""
+"""Least allowed radial overlap of the flanks, as a share of the overlap with full crests. Our
+choice: the share that the tolerance 6g leaves at a pitch of 1 mm."""
 
 MALE = (5.594, -13.682, 14.107, -6.057, 0.9353)
 FEMALE = (0.728, 1.769, -2.896, 1.296)
 LEAST = 0.897
-"""Alexander's reductions: polynomials in the strength ratio, and their value at ratio 1."""
+"""Alexander's factors on strip strength: `MALE` and `FEMALE` are the coefficients of polynomials in
+the strength ratio; `LEAST` is their value at ratio 1."""
 
 
 @geometry
@@ -90,11 +92,11 @@ def root_diameter(*, diameter: Array, pitch: Array) -> Array:
 
 @geometry
 def engaged_length(*, length: Array, pitch: Array) -> Array:
-    """Length of an overlap whose threads carry, L_e = L - 0.8 P.
+    """Load-carrying length of two threads that overlap by L, L_e = L - 0.8 P.
 
     Parameters
     ----------
-    length : L of the overlap [m]
+    length : L, axial overlap of the threads [m]
     pitch : P [m]
 
     Returns
@@ -107,7 +109,7 @@ def engaged_length(*, length: Array, pitch: Array) -> Array:
 
     References
     ----------
-    [VDI2230] 0.8 P lost
+    [VDI2230] loss of 0.8 P
 
     Examples
     --------
@@ -119,7 +121,7 @@ def engaged_length(*, length: Array, pitch: Array) -> Array:
 
 @geometry
 def male_strip_area(*, diameter: Array, pitch: Array, engagement: Array) -> Array:
-    """Area over which the male thread shears off, at the crests of the female one.
+    """Shear area of the male thread, which strips off at the crests of the female thread.
 
     A = pi D_1 (L_e/P) [P/2 + (d_2 - D_1)/sqrt(3)] = 0.75 pi D_1 L_e.
 
@@ -135,7 +137,7 @@ def male_strip_area(*, diameter: Array, pitch: Array, engagement: Array) -> Arra
 
     Notes
     -----
-    Valid: ISO 60 degree threads, basic sizes; worst tolerances take some 10 % off.
+    Valid: ISO 60 degree threads, basic sizes; the worst tolerances reduce the area by some 10 %.
 
     References
     ----------
@@ -156,16 +158,17 @@ def male_strip_area(*, diameter: Array, pitch: Array, engagement: Array) -> Arra
 def female_strip_area(
     *, diameter: Array, pitch: Array, engagement: Array, crest_diameter: Array
 ) -> Array:
-    """Area over which the female thread shears off, at the crests of the male one.
+    """Shear area of the female thread, which strips off at the crests of the male thread.
 
-    A = pi d_c (L_e/P) [P/2 + (d_c - D_2)/sqrt(3)]; = 0.875 pi d L_e with full crests, d_c = d.
+    A = pi d_c (L_e/P) [P/2 + (d_c - D_2)/sqrt(3)]; with full crests (d_c = d), A = 0.875 pi d L_e.
 
     Parameters
     ----------
     diameter : nominal diameter d [m]
     pitch : P [m]
     engagement : engaged length L_e [m]
-    crest_diameter : d_c over the crests of the male thread, below d on a tube below d [m]
+    crest_diameter : d_c over the crests of the male thread; below d if the thread is cut on a tube
+        whose outer diameter is below d [m]
 
     Returns
     -------
@@ -173,7 +176,7 @@ def female_strip_area(
 
     Notes
     -----
-    Valid: ISO 60 degree threads, basic sizes; worst tolerances take some 10 % off.
+    Valid: ISO 60 degree threads, basic sizes; the worst tolerances reduce the area by some 10 %.
 
     References
     ----------
@@ -192,7 +195,7 @@ def female_strip_area(
 
 @geometry
 def crest_overlap(*, diameter: Array, pitch: Array, crest_diameter: Array) -> Array:
-    """Overlap of the flanks over that of full crests, (d_c - D_1)/(d - D_1).
+    """Radial overlap of the flanks as a share of that with full crests, (d_c - D_1)/(d - D_1).
 
     Parameters
     ----------
@@ -257,10 +260,10 @@ def flank_area(*, diameter: Array, pitch: Array, engagement: Array, crest_diamet
 
 
 def stripping_reductions(*, strength_ratio: Array) -> tuple[Array, Array]:
-    """Reductions of the strip strength by bending of the turns at rupture, male and female.
+    """Factors by which bending of the turns reduces the strip strength of both threads.
 
-    C_2 = 5.594 - 13.682 R + 14.107 R^2 - 6.057 R^3 + 0.9353 R^4 for 1 < R < 2.2, 0.897 below;
-    C_3 = 0.728 + 1.769 R - 2.896 R^2 + 1.296 R^3 for 0.4 < R < 1, 0.897 above.
+    C_2 = 5.594 - 13.682 R + 14.107 R^2 - 6.057 R^3 + 0.9353 R^4 for 1 < R < 2.2, 0.897 for R <= 1;
+    C_3 = 0.728 + 1.769 R - 2.896 R^2 + 1.296 R^3 for 0.4 < R < 1, 0.897 for R >= 1.
 
     Parameters
     ----------
@@ -297,14 +300,15 @@ def stripping_reductions(*, strength_ratio: Array) -> tuple[Array, Array]:
 
 @geometry
 def spread_stress(*, force: Array, thickness: Array, engagement: Array) -> Array:
-    """Hoop stress of a thin female ring that the flanks spread.
+    """Hoop stress in a thin ring with a female thread, whose flanks the axial force spreads.
 
-    sigma = p_s d_2/(2 t) with p_s = F tan(30 deg)/(pi d_2 L_e): F tan(30 deg)/(2 pi L_e t).
+    sigma = p_s d_2/(2 t) = F tan(30 deg)/(2 pi L_e t), as p_s = F tan(30 deg)/(pi d_2 L_e) is the
+    radial pressure on the thread.
 
     Parameters
     ----------
     force : axial force [N]
-    thickness : t of the ring over the thread [m]
+    thickness : wall thickness t of the ring outside the thread [m]
     engagement : engaged length L_e [m]
 
     Returns

@@ -3,11 +3,12 @@
 The distributed model gives the impedance at one end. Results are complex; arguments are real and
 the convention is e^(+i omega t), so that a result at -f is the conjugate of that at f. Pressure and
 flow at the near end follow from those at the far end by a matrix, p1 = A p2 + B q2,
-q1 = C p2 + D q2, flow positive from near to far [Merritt1967]. The names of the friction are
-those of `lines`.
+q1 = C p2 + D q2, flow positive from near to far [Merritt1967]. The friction models have
+the names that `lines` gives them.
 
-A plugged side branch (T-pipe) takes flow without pressure at odd quarter waves: the junction stays
-at rest and only the plugged end oscillates. At even quarter waves it takes no flow.
+A plugged side branch (T-pipe) whose length is an odd number of quarter waves takes in flow without
+any pressure oscillation at the junction; the pressure oscillates most at the plugged end. With an
+even number of quarter waves it takes no flow.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from .lines import series_impedance
 
 
 class LineMatrix(NamedTuple):
-    """Coefficients of near-end pressure and flow of a line from those at its far end."""
+    """Matrix that gives the pressure and flow at a line's near end from those at its far end."""
 
     A: Array
     B: Array
@@ -48,7 +49,7 @@ def line_matrix(
     density : [kg/m^3]
     sound_speed : wave speed a in the elastic line [m/s]
     dynamic_viscosity : [Pa s]
-    friction : name of the friction [-]
+    friction : `lossless`, `steady` or `distributed` [-]
 
     Returns
     -------
@@ -93,7 +94,7 @@ def input_impedance(*, matrix: LineMatrix, end_impedance: Array) -> Array:
     Parameters
     ----------
     matrix : of the line: A, D [-], B [Pa s/m^3], C [m^3/s/Pa]
-    end_impedance : Z at the far end [Pa s/m^3]: 0 constant pressure, infinite closed
+    end_impedance : Z at the far end [Pa s/m^3]: 0 if at constant pressure, infinite if closed
 
     Returns
     -------
@@ -124,7 +125,7 @@ def input_admittance(*, matrix: LineMatrix, end_admittance: Array) -> Array:
     Parameters
     ----------
     matrix : of the line: A, D [-], B [Pa s/m^3], C [m^3/s/Pa]
-    end_admittance : Y at the far end [m^3/s/Pa]: 0 closed, infinite constant pressure
+    end_admittance : Y at the far end [m^3/s/Pa]: 0 if closed, infinite if at constant pressure
 
     Returns
     -------
@@ -152,14 +153,14 @@ def input_admittance(*, matrix: LineMatrix, end_admittance: Array) -> Array:
 def _shunt_admittance(
     xp: Any, frequency: Array, inner_diameter: Array, density: Array, sound_speed: Array
 ) -> Array:
-    """Shunt admittance per length, i omega A/(rho a^2)."""
+    """Shunt admittance of a line per unit length, i omega A/(rho a^2)."""
     area = (0.25 * math.pi) * inner_diameter * inner_diameter
     rate = 2j * math.pi * xp.asarray(frequency, dtype=xp.complex128)
     return rate * (area / (density * sound_speed * sound_speed))
 
 
 def _finite(value: Array) -> tuple[Array, Array]:
-    """Mask of the finite values, and the values with zero elsewhere."""
+    """Mask of the finite values, and the values with zeros in place of the others."""
     xp = namespace(value)
     finite = xp.isfinite(value)
     return finite, where(finite, value, 0.0)
@@ -175,17 +176,18 @@ def _ratio(numerator: Array, denominator: Array) -> Array:
 def wave_speed(
     *, bulk_modulus: Array, density: Array, volume: Array, wall_compliance: Array = 0.0
 ) -> Array:
-    """Wave speed in an elastic line, a^2 = (K/rho)/(1 + K (dV/dp)/V).
+    """Wave speed a in an elastic line, a^2 = (K/rho)/(1 + K (dV/dp)/V).
 
-    Volume and compliance of the wall belong to the same piece of line, whatever its length:
-    `lines.line_volume` and `lines.line_compliance`, or a measured swelling of a hose.
+    The volume V and the wall's compliance dV/dp must be of the same piece of line; its length does
+    not matter. They come from `lines.line_volume` and `lines.line_compliance`, or from a measured
+    swelling of a hose.
 
     Parameters
     ----------
     bulk_modulus : effective tangent value of the oil [Pa]
     density : [kg/m^3]
     volume : of the line [m^3]
-    wall_compliance : dV/dp of its wall [m^3/Pa]; 0 rigid
+    wall_compliance : dV/dp of its wall [m^3/Pa]; 0 for a rigid wall
 
     Returns
     -------
@@ -250,7 +252,8 @@ def quarter_wave_length(
     ----------
     frequency : [Hz]
     sound_speed : wave speed in the branch [m/s]
-    quarter_waves : n = 1, 3, ... resonant, 2, 4, ... without effect on the junction [-]
+    quarter_waves : n [-]; at n = 1, 3, ... the branch is resonant, at n = 2, 4, ... it has no
+        effect on the junction
 
     Returns
     -------
@@ -283,9 +286,10 @@ def plugged_branch_impedance(
     dynamic_viscosity: Array,
     friction: str = "distributed",
 ) -> Array:
-    """Impedance at the mouth of a plugged T-pipe, Z_c coth Gamma; -i Z_c cot(omega l/a) lossless.
+    """Impedance at the mouth of a plugged T-pipe, Z_c coth Gamma.
 
-    Small at odd quarter waves, large at even ones.
+    It is small at odd numbers of quarter waves and large at even numbers. Without friction it is
+    -i Z_c cot(omega l/a).
 
     Parameters
     ----------

@@ -1,9 +1,9 @@
 """Bounds from trial shapes: stiffness of two chambers in one wall, critical load of a column.
 
-Stiffness: in the trial motion the piston moves by 1, the wall of one chamber grows by the volume by
-which the other shrinks, and the end loaded by a chamber's pressure moves too. The energy of oil and
-wall in this motion bounds the stiffness from above [Gurtin1972]. Critical load: any trial shape of
-a stepped column gives an upper bound.
+Stiffness: in the trial motion the piston moves by 1, and one chamber's wall grows by the volume by
+which the other chamber's wall shrinks. One end moves too: that on which a chamber's pressure pulls.
+The energy of oil and wall in this motion bounds the stiffness from above [Gurtin1972]. Critical
+load: any trial shape of a stepped column gives an upper bound.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ Chamber: TypeAlias = Literal["a", "b"]
 
 @dataclass(frozen=True, slots=True)
 class TrialMotion:
-    """Trial motion over that of the piston; the remaining motion compresses the oil.
+    """Trial motions of wall and end per unit piston motion; the rest compresses the oil.
 
-    `exchange` is the volume that passes from the wall of one chamber to that of the other, divided
-    by area B; `pull` is the motion of the end that is loaded by a chamber's pressure.
+    `exchange` is the volume by which the wall of one chamber grows and that of the other shrinks,
+    divided by area B. `pull` is the motion of the end on which a chamber's pressure pulls.
     """
 
     exchange: Array
@@ -40,16 +40,17 @@ def least_energy_motion(
     stretch: Array,
     pulling: Chamber,
 ) -> TrialMotion:
-    """The motion of least energy of `trial_motion_stiffness` in one actuator.
+    """Trial motion that gives `trial_motion_stiffness` its least value for one actuator.
 
-    v = (A_a/(A_b c_a) + 1/c_b)/(1/c_a + 1/c_b + 1/w_a + 1/w_b), c with s of the pulling chamber.
+    v = (A_a/(A_b c_a) + 1/c_b)/(1/c_a + 1/c_b + 1/w_a + 1/w_b), where s is added to the c of the
+    pulling chamber. c, w and s are the compliances of oil, wall and stretch.
 
     Parameters
     ----------
     area_a, area_b : piston areas [m^2]
-    oil_a, oil_b : compliance of the oil and the lines of either chamber [m^3/Pa]
-    wall_a, wall_b : growth of either chamber's volume per pressure [m^3/Pa]
-    stretch : volume that the pulling chamber gains per pressure by moving the end [m^3/Pa]
+    oil_a, oil_b : c, compliance of the oil and the lines of either chamber [m^3/Pa]
+    wall_a, wall_b : w, growth of either chamber's volume per unit pressure [m^3/Pa]
+    stretch : s, volume that the pulling chamber gains per unit pressure by moving the end [m^3/Pa]
     pulling : chamber whose pressure pulls an end
 
     Returns
@@ -62,7 +63,7 @@ def least_energy_motion(
 
     References
     ----------
-    [derived] zero derivatives of the energy
+    [derived] the energy's derivatives are zero
 
     Examples
     --------
@@ -96,15 +97,16 @@ def trial_motion_stiffness(
     """Upper bound on the stiffness of two closed chambers whose wall grows and stretches.
 
     k <= ((1 - h_a) A_a - v A_b)^2/c_a + ((1 - h_b - v) A_b)^2/c_b + (v A_b)^2 (1/w_a + 1/w_b)
-    + (h A)^2/s, h and A of the pulling chamber, h = 0 of the other.
+    + (h A)^2/s, with h and A of the pulling chamber; the other chamber's h is 0.
 
     Parameters
     ----------
-    motion : v and h of any motion [-]
+    motion : v (`exchange`) and h (`pull`) of any trial motion [-]
     area_a, area_b : piston areas [m^2]
     oil_a, oil_b : c, compliance of the oil and the lines of either chamber [m^3/Pa]
-    wall_a, wall_b : w, growth of either chamber's volume per pressure, held axially [m^3/Pa]
-    stretch : s, volume that the pulling chamber gains per pressure by moving the end, without
+    wall_a, wall_b : w, growth of either chamber's volume per unit pressure, if held axially
+        [m^3/Pa]
+    stretch : s, volume that the pulling chamber gains per unit pressure by moving the end, without
         radial growth of the wall [m^3/Pa]
     pulling : chamber whose pressure pulls at an end
 
@@ -116,8 +118,8 @@ def trial_motion_stiffness(
     -----
     Valid: one wall over both chambers.
 
-    One part of the wall grows by the volume by which the other shrinks, so that growth and axial
-    strain of the wall have no joint energy.
+    One part of the wall grows by the volume by which the other shrinks. The coupling energy of
+    radial growth and axial strain is therefore zero over the whole wall.
 
     References
     ----------
@@ -144,10 +146,10 @@ def trial_motion_stiffness(
 
 @dataclass(frozen=True, slots=True)
 class TrialMode:
-    """A bent shape between two pins: 1 where the segments meet, each segment scaled to length 1.
+    """Integrals of a stepped column's bent shape between two pins; its deflection at the step is 1.
 
-    The values are integrals from 0 to 1 over each segment: of the squared deflection, and of its
-    squared derivative.
+    For each segment, scaled to length 1: the integrals of the squared deflection and of the squared
+    slope.
     """
 
     square_1: Array
@@ -171,7 +173,7 @@ def buckled_mode(
 
     Parameters
     ----------
-    critical_load : by bending alone, `stepped.stepped_column_load` [N]
+    critical_load : of bending alone, from `stepped.stepped_column_load` [N]
     bending_stiffness_1, bending_stiffness_2 : EI of both segments [N m^2]
     length_1, length_2 : their lengths [m]
 
@@ -181,7 +183,7 @@ def buckled_mode(
 
     Notes
     -----
-    Valid: first mode, the joint off the middle of a node line.
+    Valid: first mode, with a non-zero deflection at the step.
 
     References
     ----------
@@ -232,7 +234,7 @@ def trial_mode_load(
 
     Notes
     -----
-    Valid: between two pins; exact where the shape is the buckled one, else from above.
+    Valid: between two pins; exact for the buckling shape, else too high.
 
     References
     ----------

@@ -1,8 +1,8 @@
 """Bounds for all layered tubes of given layers: bore growth, axial stiffness, pressure.
 
-Energy bounds: any compatible displacement stores at least the energy of the true displacement, any
-equilibrium stress at least the true complementary energy [Gurtin1972]. The bounds are sums over the
-layers, so they hold for every thickness and radius.
+They are energy bounds: any compatible displacement stores at least the energy of the true
+displacement, and any equilibrium stress at least the true complementary energy [Gurtin1972]. The
+bounds are sums over the layers, so they are valid for every thickness and radius.
 """
 
 from __future__ import annotations
@@ -24,23 +24,24 @@ def least_growth(
     thicknesses: Sequence[Array],
     inner_radius: Array,
 ) -> Array:
-    """Bore growth per pressure of a layered tube that is held axially, from below.
+    """Lower bound on a layered tube's radial bore growth per unit pressure.
 
     u >= p r_i/sum K_k a_k (1 - x_k^(-2 b_k))/(2 b_k), K_k = C_tt - 2 b_k C_tr + b_k^2 C_rr,
     x_k = r_k/r_(k-1), a_k = prod x_j^(-2 b_j) over all layers inside k. This is the energy of the
-    trial displacement that falls as r^(-b_k), with no axial strain. Each layer is cut into equal
-    parts.
+    trial displacement that falls as r^(-b_k), with no axial strain. Each layer may be cut into
+    equal parts, each with its own b.
 
     Parameters
     ----------
     hoop, cross, radial : stiffnesses C_tt, C_tr, C_rr of each layer from the bore outwards [Pa]
-    decays : b of each part of each layer, not zero [-]
+    decays : exponents b of the parts of each layer, not zero [-]
     thicknesses : of each layer [m]
     inner_radius : r_i [m]
 
     Returns
     -------
-    lower bound on the bore's radial growth per pressure, for a tube axially held or free [m/Pa]
+    lower bound on the bore's radial growth per unit pressure, for a tube held axially or free
+    [m/Pa]
 
     Notes
     -----
@@ -48,7 +49,7 @@ def least_growth(
 
     References
     ----------
-    [derived] minimum potential energy with a trial displacement of one power per part
+    [derived] minimum potential energy; the trial displacement is one power of r in each part
 
     Examples
     --------
@@ -79,11 +80,11 @@ def least_growth(
 def axial_stiffness(
     *, moduli: Sequence[Array], thicknesses: Sequence[Array], inner_radius: Array
 ) -> Array:
-    """Axial stiffness of layers side by side, sum q_k A_k.
+    """Axial stiffness of layers in parallel, sum q_k A_k.
 
-    For a bonded tube the sum is a lower bound with the moduli of layers that are free to contract,
-    and an upper bound with those of layers that all contract alike. With C_zz it is an upper bound
-    for a tube that cannot move radially.
+    For a bonded tube the sum is a lower bound if q_k are the moduli of layers that are free to
+    contract, and an upper bound if they are the moduli of layers that all contract alike. With
+    q_k = C_zz it is an upper bound for a tube that cannot move radially.
 
     Parameters
     ----------
@@ -135,11 +136,11 @@ def ply_hoop_strength(
 
     Notes
     -----
-    Valid: any ply whose failure is stress against strength, direction by direction.
+    Valid: any ply that fails when one stress reaches the strength in its direction.
 
     References
     ----------
-    [derived] hoop stress from ply stresses, each at its strength
+    [derived] hoop stress from ply stresses that are all at their strengths
 
     Examples
     --------
@@ -163,8 +164,9 @@ def greatest_pressure(
 ) -> Array:
     """Upper bound on the pressure that a layered tube bears before its first damage.
 
-    From the outer face inwards: a ply adds S_k t_k/r_(k-1) to p_k r_k/r_(k-1), a metal layer
-    (2/sqrt(3)) sigma_y ln(r_k/r_(k-1)) to p_k; p_n = 0.
+    From the outer face (p_n = 0) inwards, the pressure p_(k-1) on the inner face of a layer is
+    p_k r_k/r_(k-1) + S_k t_k/r_(k-1) for a ply and p_k + (2/sqrt(3)) sigma_y ln(r_k/r_(k-1)) for
+    a metal layer.
 
     Parameters
     ----------
@@ -179,10 +181,11 @@ def greatest_pressure(
 
     Notes
     -----
-    Valid: C_tt >= C_rr; axial strain and warmth alone stress no ply beyond S_k around the hoop.
+    Valid: C_tt >= C_rr; axial strain and warmth alone cause no hoop stress above S_k in any ply.
 
-    Each layer is in balance: d(r sigma_r)/dr = sigma_t in a ply, whose mean is no more than at its
-    faces, and d sigma_r/dr = (sigma_t - sigma_r)/r in a metal, limited by von Mises.
+    Each layer is in equilibrium. In a ply d(r sigma_r)/dr = sigma_t, and the mean of sigma_t is no
+    more than its value at the faces. In a metal d sigma_r/dr = (sigma_t - sigma_r)/r, which von
+    Mises limits.
 
     References
     ----------

@@ -1,7 +1,7 @@
 """Burst of the exact layered tube by ply discount: leak, liner yield and fibre failure.
 
-The ladder is that of `burst_ladder`; stresses come from `layered_tube` at both faces of every
-layer, so that the bore's fibres and the liner's bore govern where they are the most stressed.
+The sequence of failures is that of `burst_ladder`. Stresses come from `layered_tube` at both faces
+of every layer, so that the fibres or the liner at the bore govern where they are stressed most.
 """
 
 from __future__ import annotations
@@ -20,11 +20,14 @@ from .tube_elements import LayeredTube, TubeLayer, layered_tube
 __all__ = ["PlyStrength", "WallLayer", "burst_of_tube"]
 
 TRANSVERSE_RATIO = 0.4
-"""nu23 of a ply if it is not stated: usual for carbon epoxy, and the default of the library."""
+"""Poisson's ratio nu23 of a ply if not stated: usual for carbon epoxy, default of the library."""
 
 
 def _constants(layer: WallLayer, residual: float) -> dict[str, Array]:
-    """Constants with `residual` of E2, G12, nu12, nu23 left, or of the shear modulus of a metal."""
+    """Elastic constants of a failed ply (E2, G12, nu12, nu23 times `residual`) or yielded metal.
+
+    A metal keeps its bulk modulus and the share `residual` of its shear modulus.
+    """
     e1, ratio = layer.youngs_modulus_1, layer.poissons_ratio_12
     if layer.strength is None:
         if residual == 1.0:
@@ -46,7 +49,7 @@ def _constants(layer: WallLayer, residual: float) -> dict[str, Array]:
 
 
 def _isotropic(modulus: Array, ratio: Array) -> dict[str, Array]:
-    """An isotropic layer's constants as a ply's."""
+    """Constants of an isotropic layer in the form of a ply's constants."""
     return {
         **{f"youngs_modulus_{i}": modulus for i in (1, 2, 3)},
         **{f"poissons_ratio_{ij}": ratio for ij in (12, 13, 23)},
@@ -55,7 +58,7 @@ def _isotropic(modulus: Array, ratio: Array) -> dict[str, Array]:
 
 
 def _recovery(xp: Any, tube: LayeredTube) -> Array:
-    """Stresses 1, 2, 12 of a ply per hoop strain, radial stress and axial strain at a face."""
+    """Coefficients for a ply's stresses 1, 2, 12 by hoop strain, radial stress, axial strain."""
     c11, c12, c13, c22, c23, _, c66 = tube.ply
     _, _, zr, _, tr, rr, *_ = tube.wall
     along, slip = (1 + xp.cos(2 * tube.angle)) / 2, xp.sin(2 * tube.angle) * c66
@@ -77,10 +80,12 @@ def _recovery(xp: Any, tube: LayeredTube) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class _Tube:
-    """The exact wall with two faces per layer; yielded metals keep their mean stress deviator.
+    """Exact tube wall, stressed at both faces of each layer, for the burst calculation.
 
-    `transfer`, `recovery` and `hold` (thermal stresses held back, in tube axes z, t, r and in ply
-    axes 1, 2, 3) have intact and failed layers on an axis before the batch's, (.., layers, 2, ...).
+    Yielded metals keep their mean stress deviator. `hold` has the stresses that would hold back the
+    thermal expansion, in tube axes z, t, r and in ply axes 1, 2, 3. `transfer`, `recovery` and
+    `hold` have an axis for the states intact and failed before the axes of the batch: (.., layers,
+    2, ...).
     """
 
     transfer: Array
@@ -102,18 +107,19 @@ class _Tube:
 
     @property
     def sorted(self) -> bool:
-        """Whether the order of the ladder is that of the wall."""
+        """Whether the ladder lists the layers in the order of the wall."""
         return self.order == tuple(range(len(self.order)))
 
     def _chosen(self, table: Array, mask: Array | None) -> Array:
-        """The table with the softened layers of `mask`, which is in the wall's order."""
+        """The table with failed values for the layers in `mask`, which is in the wall's order."""
         intact = table[:, :, :, 0, ...]
         return intact if mask is None else where(mask, table[:, :, :, 1, ...], intact)
 
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
-        """Stresses per pressure, and those from the frozen stresses of metals.
+        """Stresses per unit pressure, and stresses from clamp, cooling and yielded metals.
 
-        A single march gives both: the loads are on an axis before the axes of the batch.
+        The latter are None if absent. One pass through the layers gives both: an axis before the
+        axes of the batch has the two loads.
         """
         xp = namespace(self.axial)
         mask = soft
@@ -141,9 +147,9 @@ class _Tube:
         return both[:, :, :, 0, ...], both[:, :, :, 1, ...]
 
     def _held_back(self, mask: Array | None, frozen: Any) -> tuple[Array, Array] | None:
-        """Stresses held back at zero strain, in tube and in ply axes; None without any.
+        """Stresses that would hold the wall at zero strain, in tube and in ply axes, or None.
 
-        These are the thermal stresses minus the frozen stresses of yielded metals (in tube axes).
+        They are the thermal stresses minus the stresses that yielded metals keep (in tube axes).
         """
         if self.hold is None:
             return None if frozen is None else (-frozen, -frozen)
@@ -183,7 +189,7 @@ class _Tube:
         return xp.stack([each[:, :, i, ...] for i in self.order], axis=2)
 
     def frozen(self, held: Any, yielded: Array, stress: Array) -> Any:
-        """Deviatoric stresses z, t, r at zero strain of every layer, from the bore."""
+        """Deviatoric stresses z, t, r that yielded layers keep, for all layers from the bore."""
         xp = namespace(stress)
         mean = (stress[:, 0, ...] + stress[:, 1, ...]) / 2
         normal = together([mean[0, ...], mean[1, ...], mean[3, ...]])
@@ -198,10 +204,10 @@ class _Tube:
 def _both_states(
     xp: Any, layers: Sequence[WallLayer], inner_radius: Array, residual: float, dims: int
 ) -> LayeredTube:
-    """The tube with intact and failed layers on a batch axis before the designs'."""
+    """The tube with intact and failed layers, on an axis before the axes of the designs."""
 
     def spread(value: Array) -> Array:
-        """A value of the batch on the axes of the designs, after the axis of the states."""
+        """The value reshaped to the axes of the designs, after the axis of the states."""
         value = xp.asarray(value)
         return xp.reshape(value, (1,) * (dims + 1 - value.ndim) + value.shape)
 
@@ -226,12 +232,15 @@ def _both_states(
 
 
 def _spread_or_zero(spread: Callable[[Array], Array], value: Array) -> Array:
-    """An expansion on the axes of the batch; a plain zero stays zero: no thermal part is built."""
+    """An expansion, reshaped by `spread`; a plain zero stays zero and skips the thermal part."""
     return 0.0 if isinstance(value, (float, int)) and value == 0.0 else spread(value)
 
 
 def _thermal(xp: Any, tube: LayeredTube, change: Array) -> Array | None:
-    """Stresses held back by cooling, in tube axes z, t, r and ply axes 1, 2, 3, or None."""
+    """Stresses that would hold back the thermal strain, in tube axes z, t, r and ply axes 1, 2, 3.
+
+    None without thermal strain.
+    """
     if tube.hold is None or (isinstance(change, (float, int)) and change == 0.0):
         return None
     c11, c12, c13, c22, c23, c33, _ = tube.ply
@@ -257,10 +266,10 @@ def burst_of_tube(
 ) -> BurstLadder:
     """First ply failure, liner yield and burst of the exact layered tube.
 
-    Maximum stress applies at both faces of each layer. A matrix or shear failure leaves `residual`
-    of E2, G12, nu12 and nu23 of all plies of that material and |angle| and removes their matrix
-    limits. A yielding metal keeps the deviator of its stress and its bulk modulus. Burst is the
-    largest load recorded until a fibre mode governs.
+    The maximum-stress criterion applies at both faces of each layer. A matrix or shear failure
+    multiplies E2, G12, nu12 and nu23 by `residual` for all plies of that material and |angle|, and
+    removes their matrix limits. A yielding metal keeps the deviator of its stress and its bulk
+    modulus. Burst is the largest pressure reached until a fibre fails.
 
     Parameters
     ----------
@@ -268,7 +277,7 @@ def burst_of_tube(
     inner_radius : bore radius [m]
     axial_force_per_pressure : N/p [m^2]; 0 for open ends, pi r_i^2 for closed ends
     temperature_change : from the stress-free state; needs the layers' expansions [K]
-    held_force : axial force without pressure, the clamp of tie rods being negative [N]
+    held_force : axial force without pressure; negative for the clamping force of tie rods [N]
     residual : share of stiffness left in a failed ply, and of shear stiffness in a yielded metal
         [-]
     liner_share : share of its stress that a yielded metal keeps [-]: 1 if perfectly plastic, 0 if
@@ -276,16 +285,16 @@ def burst_of_tube(
 
     Returns
     -------
-    pressures [Pa] and the ladder; the arrays broadcast over cases and designs
+    pressures [Pa] and the sequence of failures; arrays broadcast over load cases and designs
 
     Notes
     -----
     Valid: walls with fibres; the first fibre to fail, at the most stressed face, is burst.
 
-    For a wall of metals only, the burst pressure is that of yield; use
-    `barrel.burst_pressure_thick` instead. The frozen stress of a yielded metal is its mean over the
-    layer. Cure stresses act in the intact wall and vanish where it fails: a cracked matrix no
-    longer pulls, a yielded liner no longer holds back.
+    For a wall of metals only, the burst pressure of this function is that of yield; use
+    `barrel.burst_pressure_thick` instead. The stress that a yielded metal keeps is its mean over
+    the layer. Cure stresses act in the intact wall and vanish where it fails: a cracked matrix no
+    longer pulls on its neighbours, and a yielded liner no longer restrains them.
 
     References
     ----------

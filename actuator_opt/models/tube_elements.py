@@ -1,16 +1,18 @@
 """The layers of the exact tube: isotropic, orthotropic or monoclinic, bonded, of any thickness.
 
 Generalised plane strain: eps_z is constant, eps_t = u/r, eps_r = u', gamma_zt = gamma_0 r. In a
-layer, with x = r/a, tau = ln x, l^2 = C_tt/C_rr, radial equilibrium has the solution
+layer of inner radius a, with x = r/a, tau = ln x, l^2 = C_tt/C_rr, radial equilibrium has the
+solution
 
     u/a = e_a cosh(l tau) + q_a sinh(l tau)/l + G phi_1 + H phi_2.
 
 The solution starts from the hoop strain e_a and the radial strain q_a at the layer's inner face. G
-is linear in the axial strain and in frozen or thermal stresses, H in the twist;
-phi_1 = [cosh + sinh/l - x]/(l^2 - 1), phi_2 = [cosh + 2 sinh/l - x^2]/(l^2 - 4). Both are written
-with (e^y - 1)/y, so that l = 1 (isotropic and axial layers) and l = 2 need no branch. All integrals
-have closed forms. `layered_tube` applies the loads. Rounding errors grow as exp(2 l tau): 1e-15 in
-a barrel's wall, 1e-7 in a single layer with a radius ratio of 3 and E_t/E_r = 100.
+is linear in the axial strain and in thermal stresses and the stresses that yielded metals keep; H
+is linear in the twist. phi_1 = [cosh + sinh/l - x]/(l^2 - 1) and
+phi_2 = [cosh + 2 sinh/l - x^2]/(l^2 - 4), with cosh and sinh of l tau. Both are written with
+(e^y - 1)/y, so that l = 1 (isotropic and axial layers) and l = 2 need no branch. All integrals have
+closed forms. `layered_tube` applies the loads. Rounding errors grow as exp(2 l tau): 1e-15 in a
+barrel's wall, 1e-7 in a single layer with a radius ratio of 3 and E_t/E_r = 100.
 """
 
 from __future__ import annotations
@@ -30,7 +32,7 @@ class TubeLayer:
     Parameters
     ----------
     stiffness : C11, C12, C13, C22, C23, C33, C66 of the ply [Pa], from `solid_ply.solid_stiffness`
-    thickness : of the layer, of the whole pair [m]
+    thickness : of the layer; of both plies for a balanced pair [m]
     angle : winding angle from the tube axis [rad]
     balanced : True for a smeared +-angle pair without shear coupling; False for a single ply, which
         may twist the wall
@@ -48,7 +50,7 @@ class TubeLayer:
 
 @dataclass(frozen=True, slots=True)
 class LayeredTube:
-    """A tube ready to be loaded; arrays are (layers, ...), the batch of designs last.
+    """A tube ready to be loaded; arrays have the shape (layers, ...), the batch of designs last.
 
     Parameters
     ----------
@@ -57,12 +59,14 @@ class LayeredTube:
     free : expansions 1, 2, 3 of each layer [1/K]
     balanced : 1 for a pair, 0 for a single ply
     wall : stiffness of each layer in tube axes; couplings of balanced pairs are zero [Pa]
-    hold : K_z, K_t, K_r, K_s of each layer [Pa/K]; None where nothing expands
+    hold : K_z, K_t, K_r, K_s, stresses per kelvin that would hold back each layer's thermal
+        expansion [Pa/K]; None if nothing expands
     inner, outer : radii of each layer [m]
-    transfer : (inputs, outputs, layers, ...): outer hoop strain, outer radial stress, integral of
-        sigma_z r (and of tau_zt r^2) per inner hoop strain, inner radial stress, axial strain,
-        stress held back (radial less hoop) (and twist)
-    twisting : whether any layer couples shear with tension; the tables then have the parts in
+    transfer : table (inputs, outputs, layers, ...) from the inner to the outer face of each layer.
+        Inputs: inner hoop strain, inner radial stress, axial strain, held-back stress (radial less
+        hoop) (and twist). Outputs: outer hoop strain, outer radial stress, integral of sigma_z r
+        (and of tau_zt r^2)
+    twisting : whether any layer couples shear with tension; `transfer` then includes the entries in
         brackets
     """
 
@@ -78,7 +82,7 @@ class LayeredTube:
     twisting: bool
 
     def lifted(self, dims: int) -> LayeredTube:
-        """The tube with its batch on the last of `dims` axes, to match loads with more axes."""
+        """The tube with axes of length 1 before its batch, to match loads of `dims` axes."""
         missing, shape = dims - self.inner.ndim + 1, self.transfer.shape
         if missing <= 0:
             return self
@@ -121,7 +125,7 @@ class _Basis(NamedTuple):
 
 
 def _basis(xp: Any, wall: TubeStiffness, inner: Array, outer: Array) -> _Basis:
-    """cosh, sinh/l, phi_1, dphi_1/dtau; integrals of the first three."""
+    """The functions cosh, sinh/l, phi_1 and dphi_1/dtau; integrals of the first three."""
     ratio = outer / inner
     way = xp.log(ratio)
     order = xp.sqrt(wall[3] / wall[5])
@@ -140,7 +144,11 @@ def _basis(xp: Any, wall: TubeStiffness, inner: Array, outer: Array) -> _Basis:
 
 
 def _transfer(k: _Basis, wall: TubeStiffness, inner: Array, outer: Array) -> list[list[Array]]:
-    """Inputs by outputs from inner to outer face: u from the basis, q_a = (s - R - C_tr e)/C_rr."""
+    """Table (inputs by outputs) of one layer, see `LayeredTube.transfer`.
+
+    u follows from the basis, and q_a = (s - R - C_tr e)/C_rr, where e and s are the hoop strain and
+    radial stress at the inner face and R is the radial stress caused by the other inputs.
+    """
     zz, zt, zr, _, tr, rr, _, _, _, _ = wall
     soft, narrow, spread = 1 / rr, 1 / k.ratio, zt - zr
     grip, square_a, square_b = tr * soft, inner * inner, outer * outer
@@ -166,7 +174,7 @@ def _transfer(k: _Basis, wall: TubeStiffness, inner: Array, outer: Array) -> lis
 def _twist(
     k: _Basis, t: list[list[Array]], wall: TubeStiffness, inner: Array, outer: Array
 ) -> list[list[Array]]:
-    """Larger table of a layer under twist, which shears the layer and loads it through phi_2."""
+    """The table `t` of a layer plus twist, which shears the layer and loads it through phi_2."""
     _, zt, zr, _, tr, rr, zs, ts, rs, ss = wall
     way = namespace(inner).log(k.ratio)
     near = way * expm1_quotient((k.order - 2) * way)
@@ -213,8 +221,9 @@ def _expands(layer: TubeLayer) -> bool:
 def layered_tube(*, layers: Sequence[TubeLayer], inner_radius: Array) -> LayeredTube:
     """Prepare a tube of bonded layers for `layered_tube.tube_state`.
 
-    Rotates every stiffness into tube axes (pairs lose their shear coupling) and builds the transfer
-    of each layer from its inner to its outer face, as the module's docstring describes.
+    Rotates every stiffness into tube axes, where balanced pairs have no shear coupling. Then builds
+    the table that leads from the inner to the outer face of each layer (see the module's
+    docstring).
 
     Parameters
     ----------
@@ -231,7 +240,8 @@ def layered_tube(*, layers: Sequence[TubeLayer], inner_radius: Array) -> Layered
 
     References
     ----------
-    [Lekhnitskii1963] cylindrical anisotropy; [derived] forms regular at l = 1 and l = 2
+    [Lekhnitskii1963] cylindrical anisotropy; [derived] formulas without a singularity at l = 1 and
+    l = 2
 
     Examples
     --------

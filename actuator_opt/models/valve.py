@@ -1,6 +1,6 @@
 """Proportional valve with four edges: flows, effect of viscosity, motion and geometry of the spool.
 
-A signal U > 0 opens P to A and B to T, U < 0 opens A to T and P to B.
+A signal U > 0 opens the edges P to A and B to T; U < 0 opens the edges A to T and P to B.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from ..base.numeric import Array, geometry, maximum, minimum, positive, sqrt
 from .orifice import TURBULENT_COEFFICIENT
 
 SMOOTHING = 1e4
-"""Pressure difference below which an edge is laminar (Pa): a choice, 0.1 bar."""
+"""Pressure difference below which the flow through an edge is laminar [Pa], our choice: 0.1 bar."""
 
 
 def edge_coefficient(*, flow: Array, pressure_drop: Array) -> Array:
@@ -44,7 +44,9 @@ def edge_coefficient(*, flow: Array, pressure_drop: Array) -> Array:
 
 
 def edge_flow(*, coefficient: Array, pressure_drop: Array) -> Array:
-    """Flow through an edge, q = K dp/(dp^2 + delta^2)^(1/4): K sqrt(|dp|) sgn dp, smooth at zero.
+    """Flow through an edge, q = K dp/(dp^2 + delta^2)^(1/4).
+
+    This is K sqrt(|dp|) sgn dp, smoothed about zero pressure drop.
 
     Parameters
     ----------
@@ -57,7 +59,7 @@ def edge_flow(*, coefficient: Array, pressure_drop: Array) -> Array:
 
     Notes
     -----
-    Valid: |dp| well above delta = 0.1 bar for the plain square root.
+    Valid: equal to the plain square root for |dp| well above delta = 0.1 bar.
 
     References
     ----------
@@ -122,11 +124,11 @@ def edge_opening(
 
     Notes
     -----
-    Valid: no overlap; opening in proportion to the signal.
+    Valid: no overlap; the opening is proportional to the signal.
 
     References
     ----------
-    [MECE5005] model for a control edge; [derived] leakage and opening add (a choice)
+    [MECE5005] model for a control edge; [derived] leakage and opening add (our choice)
 
     Examples
     --------
@@ -186,7 +188,8 @@ def valve_flows(
     ----------
     signal, full_signal : position of the spool, either sign, and U_max > 0 [V]
     rated_coefficient : K10 of every edge [m^3/s/sqrt(Pa)]
-    leakage_supply, leakage_tank : K0 of P-A and P-B, of A-T and B-T [m^3/s/sqrt(Pa)]
+    leakage_supply : K0 of the edges P-A and P-B [m^3/s/sqrt(Pa)]
+    leakage_tank : K0 of the edges A-T and B-T [m^3/s/sqrt(Pa)]
     supply_pressure, return_pressure, pressure_a, pressure_b : gauge [Pa]
 
     Returns
@@ -226,7 +229,8 @@ def valve_flows(
 def viscosity_corrected(*, coefficient: Array, rated_viscosity: Array, viscosity: Array) -> Array:
     """Coefficient of an edge at another viscosity, K2 = K1 (nu1/nu2)^(1/8).
 
-    The pressure drop at a given flow grows with nu^(1/4): 1.189 times at twice the viscosity.
+    The pressure drop at a given flow is proportional to nu^(1/4): 1.189 times at twice the
+    viscosity.
 
     Parameters
     ----------
@@ -257,11 +261,12 @@ def viscosity_corrected(*, coefficient: Array, rated_viscosity: Array, viscosity
 def spool_acceleration(
     *, command: Array, opening: Array, rate: Array, natural_frequency: Array, damping_ratio: Array
 ) -> Array:
-    """Second-order spool, o'' = w^2 (u - o) - 2 zeta w o', with its position o in volts.
+    """Acceleration of a second-order spool, o'' = w^2 (u - o) - 2 zeta w o', with o in volts.
 
     Parameters
     ----------
-    command, opening, rate : u to the valve [V], o of the spool [V] and o' [V/s]
+    command : u, command to the valve [V]
+    opening, rate : position o of the spool [V] and its speed o' [V/s]
     natural_frequency, damping_ratio : w/(2 pi) [Hz] and zeta [-]
 
     Returns
@@ -301,7 +306,7 @@ def spool_edge_coefficient(
     Parameters
     ----------
     spool_position : x from the centre (-x for an edge that the opposite stroke opens) [m]
-    overlap, spool_diameter : x0 (negative: open at the centre) and d [m]
+    overlap, spool_diameter : x0 (negative if the edge is open at the centre) and d [m]
     share, flow_coefficient : f, open part of the circumference, and C_q [-]
     density : rho [kg/m^3], > 0
 

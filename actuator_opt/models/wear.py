@@ -10,7 +10,7 @@ def sliding_severity(*, line_load: Array, contact_width: Array, distance: Array)
     """Mean contact pressure times sliding distance, (f/b) L: proportional to the depth worn.
 
     The worn depth is k (f/b) L with the wear rate k of the material pair. Only a test gives k, so
-    the severity compares designs of the same pair.
+    the severity only compares designs with the same pair of materials.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ def sliding_severity(*, line_load: Array, contact_width: Array, distance: Array)
 
     Notes
     -----
-    Valid: dry or boundary contact; an oil film wears less.
+    Valid: dry or boundary contact; with an oil film there is less wear.
 
     References
     ----------

@@ -4,8 +4,8 @@ Motor and pump are one machine with two sign conventions. A motor counts flow an
 difference from inlet to outlet and delivers torque. A pump counts the pressure difference from
 outlet to inlet and takes torque; its flow and torque are those of the motor at -dp, with the torque
 reversed. Friction acts against the speed in every quadrant, so neither delivers more power than it
-takes. Losses do not shrink with the setting. The source writes mu as nu rho
-(`fluid.dynamic_viscosity`).
+takes. The losses stay the same if the displacement setting is reduced. The source writes mu as nu
+rho (`fluid.dynamic_viscosity`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ import math
 from ..base.numeric import Array, absolute, namespace, positive
 
 SIGN_SPEED = 0.5
-"""w_0 of tanh(w/w_0) for sgn w, rad/s (a choice: 5 rpm, where Coulomb friction is ill known)."""
+"""Speed w_0 in tanh(w/w_0), which replaces sgn w [rad/s] (our choice: 5 rpm, as Coulomb friction at
+such low speeds is hardly known)."""
 
 
 def motor_flow(
@@ -27,7 +28,7 @@ def motor_flow(
     slip_coefficient: Array,
     setting: Array = 1.0,
 ) -> Array:
-    """Flow into a motor, q = eps V_r w + C_s V_r dp/mu, V_r = V/2 pi.
+    """Flow into a motor, q = eps V_r w + C_s V_r dp/mu, V_r = V/(2 pi).
 
     Parameters
     ----------
@@ -125,7 +126,7 @@ def pump_flow(
     slip_coefficient: Array,
     setting: Array = 1.0,
 ) -> Array:
-    """Flow out of a pump, q = eps V_r w - C_s V_r dp/mu, V_r = V/2 pi.
+    """Flow out of a pump, q = eps V_r w - C_s V_r dp/mu, V_r = V/(2 pi).
 
     Parameters
     ----------

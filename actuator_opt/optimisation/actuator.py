@@ -1,10 +1,10 @@
 """The actuator as an optimisation problem, and the derivatives of its results by parameters.
 
 The variables are the design's free numbers, named by PATH. Each limit gives one margin per load
-case and location. Derivatives of values by a parameter use the complex step. Derivatives of
-gradients use central differences of complex-step gradients. A parameter whose complex step
-disagrees with a finite difference (as in a look-up table) uses differences. Bounds of variables
-count as parameters.
+case and location. A parameter is a fixed number of the design or a bound of a variable. Derivatives
+of objective and margins by a parameter use the complex step. Derivatives of their gradients use
+central differences of complex-step gradients. Where the complex step disagrees with a finite
+difference (as in a look-up table), the finite difference is used.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ from .kkt import KktResidual
 from .problem import BoxProblem, ParametricProblem, PointValues, Vector
 
 Fault = Callable[[str, str, str], Diagnostic]
-"""Builds the Diagnostic for a faulty variable, with its line in the file; takes PATH, message,
-remedy."""
+"""Function of PATH, message and remedy that builds the Diagnostic for a faulty variable, with the
+variable's line in the file."""
 
 
 def variant(subject: PreparedDesign, values: Mapping[str, Any], library: Library) -> PreparedDesign:
@@ -75,7 +75,7 @@ class Goal:
         return next(iter(self.weights)) if len(self.weights) == 1 else None
 
     def value(self, computed: MetricArrays, cases: tuple[str, ...]) -> Array:
-        """The objective of every design, in the form to be minimised."""
+        """The objective of every design; a maximised objective has its sign changed."""
         total: Array = 0.0
         for metric, weight in self.weights.items():
             value = worst_value(computed, metric, cases, self.aim)
@@ -83,12 +83,12 @@ class Goal:
         return self.sign * total
 
     def shown(self, objective: float) -> float:
-        """The objective as the user states it: a maximised metric gets its own sign back."""
+        """The objective with its true sign, from the value that the solver minimises."""
         return self.sign * objective
 
 
 def worst_value(computed: MetricArrays, metric: str, cases: tuple[str, ...], aim: Sense) -> Array:
-    """The worst value of an objective among load cases and locations, for each design (designs,).
+    """The worst value of a metric over load cases and locations, for each design (designs,).
 
     Raises
     ------
@@ -109,7 +109,7 @@ def worst_value(computed: MetricArrays, metric: str, cases: tuple[str, ...], aim
 
 
 def goal_of(subject: PreparedDesign) -> Goal:
-    """The objective of a design file; a weighted metric is divided by its present value."""
+    """The objective of a design file; present values scale the metrics of a weighted sum."""
     objective = subject.design.objective
     sign = 1.0 if objective.aim == "min" else -1.0
     weights = objective.minimise if objective.minimise is not None else objective.maximise
@@ -126,7 +126,7 @@ def goal_of(subject: PreparedDesign) -> Goal:
 
 @dataclass
 class Refusals:
-    """Counts the designs that have a mass but no value of a custom metric."""
+    """Counts designs for which a custom metric has no value although their mass has one."""
 
     names: frozenset[str] = frozenset()
     points: int = 0
@@ -164,11 +164,11 @@ class ActuatorProblem:
     paths: tuple[str, ...]
     rows: tuple[LimitRow, ...]
     fixed: tuple[LimitRow, ...]
-    """Limits that no variable affects: always met, or always missed."""
+    """Limits that no variable affects: they are met by every design or by none."""
     problem: BoxProblem
     metrics: frozenset[str] | None
-    """Names of the metrics to compute, for objective and limits; None (all) if a custom metric may
-    read any."""
+    """Names of the metrics that objective and limits require; None (compute all) if a custom metric
+    may read any metric."""
     refusals: Refusals = field(default_factory=Refusals)
     """Counts the designs where a custom metric has no value."""
     recorded: RecordedFunction | None = None
@@ -176,7 +176,7 @@ class ActuatorProblem:
     with custom metrics, whose code may do anything."""
 
     def parametric(self, parameters: tuple[str, ...]) -> ParametricProblem:
-        """The problem with the numbers at the PATHs `parameters` as parameters."""
+        """The problem with the design's numbers at the PATHs `parameters` as its parameters."""
 
         def evaluate(points: Array, values: Array) -> PointValues:
             varied = dict(zip(parameters, values, strict=True))
@@ -196,7 +196,7 @@ class ActuatorProblem:
         ]
 
     def number_steps(self, x: Vector, paths: Sequence[str]) -> PointValues:
-        """Values of the numbers at `paths` at the point x (n,), each with a complex step."""
+        """Objective and margins at x (n,), with a complex step in each of the `paths` in turn."""
         present = np.array([self.subject.numbers[path] for path in paths])
         varied = np.repeat(present[:, None].astype(complex), len(paths), axis=1)
         varied += np.diag(1j * STEP * present)
@@ -266,9 +266,9 @@ class ActuatorProblem:
 
 
 def _bounded(margin: Array) -> Array:
-    """Compress a margin m for the solver: m below 0, m/(1 + m) above 0, 1 for infinity.
+    """Compress a positive margin m to m/(1 + m) for the solver, so that infinity becomes 1.
 
-    This keeps the sign of the margin and, at a margin of 0, its value and slope.
+    A negative margin stays as it is. Sign, and value and slope at m = 0, do not change.
     """
     large = real(margin) > 1e9
     finite = where(large, 0.0, margin)
@@ -283,7 +283,7 @@ def _margins(
     count: int,
     reserves: Mapping[str, float],
 ) -> Array:
-    """Margins (rows, designs) of the limits, less their reserves, in one vectorised operation."""
+    """Margins (rows, designs) of all limits, less their reserves, in one vectorised operation."""
     if not rows:
         return np.empty((0, count))
     values, bounds = [], [row.limit_of.value(numbers) for row in rows]
@@ -444,7 +444,7 @@ def _check_read(numbers: Numbers, paths: tuple[str, ...], fault: Fault | None) -
     for path in paths:
         if path not in numbers.read:
             message = "no model of this design uses this variable"
-            remedy = "remove it, or check that the design uses the part it belongs to"
+            remedy = "remove the variable, or add the part of the design to which it belongs"
             place = fault(path, message, remedy) if fault else None
             faults.append(place or Diagnostic(message, remedy, path=f"variables.{path}"))
     if faults:
@@ -452,7 +452,7 @@ def _check_read(numbers: Numbers, paths: tuple[str, ...], fault: Fault | None) -
 
 
 RELATIVE_STEP = 1e-5
-"""Step of central differences: relative to the parameter, or absolute for a parameter of 0."""
+"""Step of central differences: a share of the parameter, or absolute for a parameter of 0."""
 
 
 @dataclass(frozen=True)
@@ -464,7 +464,8 @@ class Responses:
     names, values : names and values of the parameters
     rows : (rows, q), derivatives of objective, constraints and equalities
     mixed : (nf, q), derivatives of the Lagrangian's gradient
-    bounds : (2 nf, q), derivatives of the distances to all lower, then all upper bounds
+    bounds : (2 nf, q), derivatives of the variables' distances to all lower, then to all upper
+        bounds
     differences : labels of parameters whose derivatives are finite differences
     """
 
@@ -483,7 +484,7 @@ class Responses:
 def responses(
     parametric: ParametricProblem, evaluator: Evaluator, point: Point, weights: Vector
 ) -> Responses:
-    """Derivatives by the parameters; `weights` (rows,) combine the rows into the Lagrangian."""
+    """Derivatives by the parameters; `weights` (rows,) are the rows' factors in the Lagrangian."""
     count, nf = len(parametric.parameters), evaluator.space.size
     steps = RELATIVE_STEP * np.where(parametric.parameters == 0, 1.0, parametric.parameters)
     rows, fallen = _row_slopes(parametric, point, steps)
@@ -526,9 +527,10 @@ def with_bounds(derivatives: Responses, evaluator: Evaluator, multipliers: Vecto
 
 
 def perturbed(parametric: ParametricProblem, name: str, k: int, value: float) -> BoxProblem | None:
-    """The problem with parameter k set to `value`; None if a lower bound would exceed its upper.
+    """The problem with parameter k, or a variable's bound, set to `value`.
 
-    If k is beyond the last parameter, it means the bound labelled `name`.
+    A k beyond the last parameter means the bound that `name` labels. The result is None if a lower
+    bound would exceed its upper bound.
     """
     if k < len(parametric.parameters):
         parameters = parametric.parameters.copy()
@@ -555,7 +557,7 @@ def _rows(parametric: ParametricProblem, points: Vector, parameters: Vector) -> 
 def _row_slopes(
     parametric: ParametricProblem, point: Point, steps: Vector
 ) -> tuple[Vector, tuple[str, ...]]:
-    """Derivatives of the rows (rows, q); labels of parameters that need finite differences."""
+    """Derivatives (rows, q) of objective and margins; labels of finite-difference parameters."""
     count = len(steps)
     if count == 0:
         return np.zeros((len(point.rows), 0)), ()
@@ -590,7 +592,10 @@ def _mixed(
     weights: Vector,
     steps: Vector,
 ) -> Vector:
-    """Derivatives of the Lagrangian's gradient (nf, q), in one model call per side where exact."""
+    """Derivatives of the Lagrangian's gradient (nf, q), by central differences.
+
+    Where the complex step works, each side of the differences takes only one call of the model.
+    """
     count, nf = len(steps), evaluator.space.size
     if count == 0 or nf == 0:
         return np.zeros((nf, count))
@@ -617,7 +622,7 @@ def _mixed(
 
 
 MET = 1e-6
-"""Largest violation at which a constraint still counts as met; part of the documented interface."""
+"""Largest violation at which a constraint still counts as met."""
 
 
 class Outcome(Enum):
@@ -721,7 +726,7 @@ class LocalOptimum:
 
 @dataclass(frozen=True, slots=True)
 class StartRecord:
-    """One start and its result."""
+    """One start of the search, and its result."""
 
     x: Vector
     objective: float

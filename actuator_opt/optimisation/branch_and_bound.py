@@ -1,10 +1,11 @@
 """Branch and bound for variables that only take listed values, singly or in groups.
 
 The search first re-optimises all roundings of the continuous optimum together. It then splits the
-most promising box; among nearly equal boxes, it takes the newest, which is the most divided. The
-bound of a box is its continuous optimum, re-optimised from that of the enclosing box. This optimum
-is local, so the best point of the search is not proven to be the best of all. If a small box has no
-other free variables, all its points are evaluated in one model call.
+most promising box (part of the search space) again and again; among nearly equal boxes, it takes
+the newest, which is the most divided. The bound of a box is the objective of its continuous
+optimum, which starts from the optimum of the enclosing box. This optimum is local, so the best
+point of the search is not proven to be the best of all. If a small box has no other free variables,
+all its points are evaluated in one model call.
 """
 
 from __future__ import annotations
@@ -29,8 +30,8 @@ from .resolve.changed import ChangedProblems, applicable
 from .resolve.steps import ScaledHessian, hessian_at, valley_at
 
 ON = 1e-7
-"""Distance from a listed value up to which a variable counts as having it, relative to the spacing.
-"""
+"""Distance from a listed value, relative to the range of the list, up to which a variable counts as
+having that value."""
 
 
 SAME = 1e-9
@@ -38,15 +39,15 @@ SAME = 1e-9
 
 
 Rows: TypeAlias = tuple[int, ...]
-"""Numbers of the combinations that remain for a group of listed variables, ascending."""
+"""For one group of listed variables: the row numbers of the combinations that remain, ascending."""
 
 
 Box: TypeAlias = tuple[Rows, ...]
-"""A part of the search space: for every group, the combinations that remain."""
+"""A part of the search space: the combinations that remain for every group."""
 
 
 Assignment: TypeAlias = tuple[int, ...]
-"""One combination chosen for every group."""
+"""The row number of one chosen combination per group."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +68,7 @@ class Listed:
         return np.unique(self.rows[list(rows), column])
 
     def parts(self, rows: Rows, row: int) -> list[Rows]:
-        """Split all rows but `row` into parts; in each, a variable's bounds exclude `row`."""
+        """Split all rows but `row` into parts that lie on one side of `row` in some variable."""
         parts: list[Rows] = []
         for column, value in enumerate(self.rows[row]):
             of = self.rows[:, column]
@@ -79,14 +80,14 @@ class Listed:
         return [part for part in parts if part]
 
     def at(self, x: Vector, rows: Rows) -> int | None:
-        """The row among `rows` that a point (k,) has reached, or None."""
+        """The row among `rows` whose values a point (k,) has, or None."""
         span = np.ptp(self.rows, axis=0)
         matches = np.abs(self.rows[list(rows)] - x) <= ON * span + SAME * np.abs(x)
         positions = np.flatnonzero(matches.all(axis=1))
         return rows[int(positions[0])] if len(positions) else None
 
     def around(self, x: Vector) -> list[int]:
-        """The nearest row for every rounding of a point (k,); only its row if on one."""
+        """For each rounding up or down of a point (k,), its nearest row; on a row, only that."""
         all_rows = tuple(range(len(self.rows)))
         own_row = self.at(x, all_rows)
         if own_row is not None:
@@ -104,12 +105,12 @@ class Listed:
 
 
 def with_rows(box: Box, k: int, rows: Rows) -> Box:
-    """A box in which the rows of group k are replaced."""
+    """The box (see `Box`) with other rows for group k."""
     return (*box[:k], rows, *box[k + 1 :])
 
 
 def between(values: Vector, value: float) -> tuple[float, float, float]:
-    """The two listed values around a value, and its relative distance to the nearer."""
+    """The two listed values around a value, and the relative distance to the nearer."""
     if len(values) == 1:
         return float(values[0]), float(values[0]), 0.0
     k = int(np.clip(np.searchsorted(values, value), 1, len(values) - 1))
@@ -125,11 +126,10 @@ MOST_NEIGHBOURS = 256
 """Maximum number of roundings tried at once: all roundings of eight listed variables."""
 
 MOST_MISSED = 4
-"""Maximum number of assignments examined to find the least infeasible assignment."""
+"""Maximum number of combinations examined to find the least infeasible combination."""
 
 MOST_LISTED = 1024
-"""Maximum number of assignments in a box that are evaluated together, if no other variable is free.
-"""
+"""A box with at most so many combinations, and no other free variable, is evaluated in one call."""
 
 TIE = 0.01
 """Bounds this close count as equally promising. The difference is relative to the distance between
@@ -141,17 +141,17 @@ CLOSE = 1e-7
 
 @dataclass
 class SizeSearch:
-    """Result of a search: the best point, and the objective of every assignment tried.
+    """Result of a search: the best point, and the objective of every combination tried.
 
     Parameters
     ----------
-    x, objective, assignment : those of the best point; None if no point is feasible
+    x, objective, assignment : of the best point; None if no point is feasible
     tried : objective of each assignment, infinite if infeasible
     solves : number of boxes and assignments re-optimised
     complete : whether the search finished before reaching a limit
     nearest, missed : if no point is feasible, the least infeasible assignment and its point
-    ends : for every box its evaluator, and its optimum or least infeasible point; empty if some box
-        has neither
+    ends : evaluator of every box, with the box's optimum or least infeasible point; empty if some
+        box has neither
     """
 
     x: Vector | None
@@ -180,7 +180,7 @@ def search(
     Parameters
     ----------
     problem : the continuous problem
-    listed : the groups of its listed variables
+    listed : the groups of variables that take listed values
     x : the continuous optimum (n,)
     most : maximum number of re-optimisations
     deadline : time of `time.perf_counter` at which the search stops
@@ -209,7 +209,7 @@ def search(
 
 
 class _Boxes:
-    """Boxes that wait to be searched, with their bounds and their age."""
+    """Boxes (parts of the search space) that wait to be searched, with their bounds and age."""
 
     def __init__(self) -> None:
         self._entries: dict[int, tuple[float, Box, Vector]] = {}
@@ -251,7 +251,7 @@ def at(
 
 @dataclass
 class Memory:
-    """Results for each box, stored as starting points for similar problems."""
+    """Results for each part of the search space, stored to start similar problems from."""
 
     hessian: ScaledHessian | None = None
     ends: dict[Box, tuple[Evaluator, Point]] = field(default_factory=dict)
@@ -262,7 +262,7 @@ class Memory:
     """Boxes that the last search re-optimised."""
 
     def warm_start(self, box: Box) -> tuple[Vector, ScaledHessian | None] | None:
-        """The optimum and its Hessian that another problem had in the same box."""
+        """Optimum and Hessian of an earlier, similar problem in the same box, or None."""
         end = self.ends.get(box)
         if end is None:
             return None
@@ -271,7 +271,7 @@ class Memory:
         return end[1].x, self.hessians[box]
 
     def note(self, box: Box, evaluator: Evaluator, end: Nearest) -> None:
-        """Store the result of a box, unless a few steps from a stored result reach it."""
+        """Store the result of a box, unless a few steps from a stored result lead to it."""
         if end.optimum is not None and not (end.followed and box in self.ends):
             self.ends[box] = evaluator, end.optimum
             self.hessians.pop(box, None)
@@ -281,7 +281,7 @@ class Memory:
 
 @dataclass
 class _Run:
-    """The state of one search."""
+    """The state of one branch-and-bound search."""
 
     problem: BoxProblem
     listed: Sequence[Listed]
@@ -318,7 +318,7 @@ class _Run:
 
     @property
     def best(self) -> float:
-        """The objective that a further design must improve on."""
+        """The objective that a further design must beat."""
         return min(self.cutoff, self.lowest)
 
     def note(self, assignment: Assignment, objective: float) -> None:
@@ -338,7 +338,7 @@ class _Run:
         return np.concatenate([group.rows[row] for group, row in pairs])
 
     def try_neighbours(self) -> None:
-        """Try all roundings of the listed variables; together, if the problem allows."""
+        """Try all roundings of the listed variables, together if the problem allows that."""
         sides = [group.around(self.x[list(group.index)]) for group in self.listed]
         assignments = list(itertools.islice(itertools.product(*sides), MOST_NEIGHBOURS))
         for assignment, start in self.reoptimised_together(assignments):
@@ -351,7 +351,7 @@ class _Run:
     def reoptimised_together(
         self, assignments: list[Assignment]
     ) -> list[tuple[Assignment, Vector | None]]:
-        """Re-optimise assignments together; return those not solved, each with a start or None."""
+        """Re-optimise assignments together; return the unsolved, each with a start or None."""
         present = self.x[self.index]
         point, evaluator = self._nearest_point(present, present, self.x)
         names = [self.problem.names[i] for i in self.index]
@@ -503,7 +503,7 @@ class _Run:
         return SizeSearch(x, objective, best, tried, solves, complete, nearest, missed, ends)
 
     def nearest(self) -> tuple[Assignment, Point] | tuple[None, None]:
-        """Among the first assignments, the least infeasible and its point."""
+        """The least infeasible of the first assignments tried, and its point; or (None, None)."""
         candidates = []
         for assignment in list(self.tried)[:MOST_MISSED]:
             box = tuple((row,) for row in assignment)

@@ -1,13 +1,13 @@
 """Finds the best combination of the design's choices: a quick look at each, then full solutions.
 
 A quick look descends from the nearest known design. It usually finds the optimum of a combination
-but proves nothing. The best combination, and combinations close to it, are then solved from many
+but may miss it. The best combination, and combinations nearly as good, are then solved from many
 starts. The record of each combination states how it was searched.
 
 If variables take listed sizes, the sizes of each combination are searched, starting with the best
 combination. The continuous optimum bounds the result with sizes, so a combination is skipped if
 this bound does not beat the best design with sizes. The bounds are local optima, mostly of a quick
-look, so they prove nothing.
+look, so this skipping is no proof.
 """
 
 from __future__ import annotations
@@ -38,8 +38,7 @@ NEAR = 0.05
 """A combination worse than the best by at most this relative amount is solved from many starts."""
 
 MOST_DOUBTFUL = 2
-"""Maximum number of combinations solved from many starts without success; these searches take long.
-"""
+"""Maximum number of combinations solved from many starts in vain, as these searches take long."""
 
 MOST_SOLVED = 6
 """Maximum number of combinations solved from many starts."""
@@ -58,7 +57,7 @@ preferred."""
 
 @dataclass(frozen=True, slots=True)
 class ChoiceSettings:
-    """Settings of the full search; `until` is the time of `time.perf_counter` at which it stops."""
+    """Settings of the searches; `until` is the `time.perf_counter` at which they stop."""
 
     algorithm: str
     starts: int
@@ -67,7 +66,7 @@ class ChoiceSettings:
     until: float | None
 
     def left(self, share: float = 1.0, began: float = 0.0) -> float | None:
-        """Seconds that remain of a share of the time since `began`; None without a limit."""
+        """Seconds that remain of a share of the time from `began` to the limit, or None."""
         if self.until is None:
             return None
         return began + share * (self.until - began) - time.perf_counter()
@@ -88,7 +87,7 @@ class ChoiceSearch:
         return frozenset().union(*lists) - frozenset.intersection(*lists) if lists else frozenset()
 
     def ranked(self) -> list[Look]:
-        """The looks by requirements met, checks met, then objective; ties in file order."""
+        """The combinations by requirements met, checks met, then objective; ties in file order."""
         mendable = self.mendable()
 
         def rank(look: Look) -> tuple[bool, float, int, float, int]:
@@ -116,7 +115,7 @@ class ChoiceSearch:
 
 
 def possible(subject: PreparedDesign) -> list[Look]:
-    """All combinations of the choices, each with its design or why it is impossible.
+    """All combinations of the choices, each with its design or the reason why it is impossible.
 
     Raises
     ------
@@ -152,7 +151,9 @@ def _require_one(looks: Sequence[Look]) -> None:
             "the only combination is" if len(looks) == 1 else f"all {len(looks)} combinations are"
         )
         message = f"{count} impossible: {texts}"
-        raise InputError(Diagnostic(message, "change the values listed there", path="choices"))
+        raise InputError(
+            Diagnostic(message, "change the values listed in the block `choices`", path="choices")
+        )
 
 
 @np.errstate(all="ignore")  # designs without finite values come last
@@ -250,11 +251,11 @@ def _any(choice_search: ChoiceSearch) -> bool:
 
 
 def _starts(choice_search: ChoiceSearch, look: Look) -> list[LookStart]:
-    """Starts for a combination, taken from those that differ from it in the fewest values.
+    """Starts for a combination, from solved combinations that differ in the fewest values.
 
-    A feasible neighbour is the start of a descent. An infeasible neighbour is the start of a search
-    that reduces the violation. If the latest neighbour has a Hessian, it differs least, and steps
-    may follow its optimum.
+    From a feasible neighbour, a descent starts. From an infeasible neighbour, a search starts that
+    reduces the violation. The nearest neighbour with a known Hessian (the latest of several) gives
+    a third start, whose steps use that Hessian.
     """
     solved = [other for other in choice_search.looks if other.x is not None and other is not look]
 
@@ -384,7 +385,7 @@ def record(choice_search: ChoiceSearch, design: Design) -> Choices:
 
 
 def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
-    """Search method and outcome of a combination, in words."""
+    """Sentence on one combination: how it was searched, and the outcome."""
     if look.fault:
         return f"not possible: {look.fault}"
     if look.how == "not tried":
@@ -420,11 +421,11 @@ _SIZING = {
     "none": "no design with listed sizes",
     "no size fits": "no listed size lies within the bounds",
 }
-"""Words for the result of the search for listed sizes."""
+"""Words for each result of the search for listed sizes."""
 
 
 _WITHOUT = ("none", "none better", "no size fits")
-"""Words for combinations that have no design to compare."""
+"""Results of the size search without a design that could be compared."""
 
 
 _WAYS: dict[How, str] = {"multistart": "many starts: ", "quick": "quick look: ", "evaluated": ""}
@@ -442,7 +443,11 @@ def _sentence(choices: Choices) -> str:
             f"the best of {total} combinations is shown; {feasible} of them meet all requirements"
         )
     counts = ", ".join(_counts(choices))
-    proof = "; a quick look (one short search) proves nothing" if choices.count("quick") else ""
+    proof = (
+        "; a quick look is one short search and may miss a better design"
+        if choices.count("quick")
+        else ""
+    )
     return f"{result}; {counts}{proof}"
 
 
@@ -465,7 +470,7 @@ _NOTHING_BETTER = SizeSearch(None, None, None, {}, 0, complete=True)
 
 @dataclass(frozen=True)
 class Sized:
-    """A combination with the chosen sizes, and the result of the search for them."""
+    """A combination with the sizes chosen for it, and the result of the size search."""
 
     look: Look
     sizes: ListedSizes
@@ -478,8 +483,8 @@ def best_of_sizes(
 ) -> Sized | None:
     """Find the combination with the best design of listed sizes; it is solved from many starts.
 
-    If no size fits, returns the combination with the best continuous optimum. None if no variable
-    has listed sizes.
+    If no size fits, the result is the combination with the best continuous optimum. The result is
+    None if no variable has listed sizes.
 
     Raises
     ------

@@ -1,10 +1,10 @@
 """Finds remedies for an infeasible actuator: one changed dimension or choice that is enough.
 
-To change a fixed dimension, it is made a variable that may move in the helpful direction; the start
-is the design with the smallest joint relaxation of the limits. To change a choice, its alternative
-replaces the word in the file. Each remedy is confirmed by a design that meets all limits and
-checks. The effort is limited by counts, not by time, so the same input gives the same remedies.
-Candidates that were not tried are listed.
+A fixed dimension is made a variable that may move in the helpful direction. The search for its
+value starts from the design with the smallest joint relaxation of the limits. For a choice, each
+alternative word replaces the word in the file. Each remedy is confirmed by a design that meets all
+limits and checks. The effort is limited by counts, not by time, so the same input gives the same
+remedies. Candidates that were not tried are listed.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ DIMENSIONS = (
     "bore", "wall_thickness", "winding_angle", "rod_diameter", "rod_inner_diameter", "part_length",
     "radial_clearance", "thread_diameter", "squeeze", "diameter",
 )  # fmt: skip
-"""Quantities whose dimensions may change, without stroke and operating data. Our choice."""
+"""Kinds of dimension that a remedy may change: no stroke and no operating data. Our choice."""
 
 PARTS = re.compile(r"(cylinder|barrel|rod|piston|head|caps|retention|clevis|seals|lines)\b")
-"""Parts whose dimensions may change."""
+"""Parts whose dimensions a remedy may change."""
 
 MOST_DIMENSIONS = 8
 """Maximum number of dimensions tried, the most helpful first: our choice, to limit the time."""
@@ -53,8 +53,8 @@ ENOUGH = 3
 """The search for a kind of remedy stops after this number of remedies: our choice."""
 
 WORTH = 0.1
-"""Share of the missed margins that doubling or halving a number must close, judged by its slope.
-Numbers that close less are not tried. Our choice."""
+"""A number is only tried if doubling or halving it would, by its slope, close at least this share
+of the missed margins. Our choice."""
 
 DIGITS = 4
 """Significant digits of a dimension; a design with the rounded dimension confirms the remedy."""
@@ -74,9 +74,9 @@ BACK_UP = "back_up_ptfe"
 
 @dataclass(frozen=True, slots=True)
 class Cure:
-    """A change that is enough alone: a fixed dimension with another value (SI), or another choice.
+    """A single change that makes the design feasible: a dimension's value (SI), or a choice.
 
-    `beside` lists other entries that must change with a choice, by PATH.
+    `beside` gives, by PATH, other entries that must change together with a choice.
     """
 
     path: str
@@ -87,9 +87,9 @@ class Cure:
 
 @dataclass(frozen=True, slots=True)
 class Cures:
-    """Dimensions and choices that are each enough alone, and the PATHs that were not tried.
+    """Single changes that each make the design feasible, and the PATHs that were not tried.
 
-    `together` lists dimensions that are only enough if they change together.
+    `together` has dimensions that make the design feasible only if all of them change.
     """
 
     dimensions: tuple[Cure, ...] = ()
@@ -99,7 +99,7 @@ class Cures:
 
 
 def cures(actuator: ActuatorProblem, conflict: Conflict) -> Cures:
-    """Find the fixed dimensions and choices that are each enough alone.
+    """Find single changes of fixed dimensions or choices that make the design feasible.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def cures(actuator: ActuatorProblem, conflict: Conflict) -> Cures:
 
 
 def _gains(actuator: ActuatorProblem, conflict: Conflict) -> dict[str, float]:
-    """By PATH, how much a relative growth of each number reduces the missed margins."""
+    """By PATH, the reduction of the missed margins per relative increase of each number."""
     paths = [
         path
         for path in actuator.fixed_numbers(conflict.x)
@@ -134,7 +134,7 @@ def _gains(actuator: ActuatorProblem, conflict: Conflict) -> dict[str, float]:
 def _dimensions(
     actuator: ActuatorProblem, x: Vector, gains: Mapping[str, float]
 ) -> tuple[tuple[Cure, ...], tuple[Cure, ...], list[str]]:
-    """Dimensions that are enough alone, least change first, or else together; and the untried."""
+    """Dimensions that suffice alone (least change first), else together; PATHs not tried."""
     design = actuator.subject.design
     candidates = sorted(
         (
@@ -158,7 +158,7 @@ def _dimensions(
         if len(sufficient) == ENOUGH:
             return _least_first(sufficient), (), candidates[number:]
         tell(
-            "infeasible: searching for a fixed dimension whose change is enough",
+            "infeasible: searching for a fixed dimension whose change makes the design feasible",
             number / len(tried),
         )
         sufficient += least_changes(problem, start, {place: limits[place]}, {place: path}, design)
@@ -184,9 +184,9 @@ def least_changes(
     paths: Mapping[int, str],
     design: Design,
 ) -> list[Cure]:
-    """The least change of some fixed variables with which all limits are met; empty if impossible.
+    """The least changes of fixed variables with which all limits are met; empty if impossible.
 
-    Values are rounded away from the present value, and a design confirms the rounded values.
+    New values are rounded away from the present values. A feasible design confirms them.
 
     Parameters
     ----------
@@ -296,7 +296,7 @@ def outward(value: float, digits: int, upwards: bool) -> float:
 def _choices(
     actuator: ActuatorProblem, conflict: Conflict, gains: Mapping[str, float]
 ) -> tuple[tuple[Cure, ...], list[str]]:
-    """Choices that are enough alone, least infeasible first, and the choices not tried."""
+    """Single choices that make the design feasible, and the choices not tried."""
     subject, library = actuator.subject, load_library()
     present = _missed(actuator.problem, conflict.x)
     offered: list[tuple[float, Cure, BoxProblem]] = []
@@ -317,7 +317,10 @@ def _choices(
             return tuple(sufficient), [
                 path for path in untried if path not in {c.path for c in sufficient}
             ]
-        tell("infeasible: searching for a choice whose change is enough", number / len(offered))
+        tell(
+            "infeasible: searching for a choice whose change makes the design feasible",
+            number / len(offered),
+        )
         if repairs.near(problem, conflict.x) is not None:
             sufficient.append(cure)
     return tuple(sufficient), []
@@ -334,8 +337,8 @@ def _candidate_choices(
 ) -> Iterator[tuple[str, str, dict[str, str]]]:
     """Choices that may resolve the conflict: PATH, alternative, entries to change with it.
 
-    A part is included if its numbers have an effect (`gains`); a seal also if it misses a limit
-    (`places`).
+    A choice is included if numbers of its part have an effect (`gains`), and for a seal also if the
+    seal misses a limit (`places`).
     """
     design = subject.design
 
@@ -366,7 +369,7 @@ def _candidate_choices(
 
 
 def _rings(seal: Seal, section: str, count: int) -> dict[str, str] | None:
-    """Entries to change for more back-up rings; None if no standard has a gland for them."""
+    """Entries to change for `count` back-up rings on a seal; None if no standard gland fits."""
     if seal.back_up_material is not None and seal.back_up_thickness is not None:
         return {}
     try:
@@ -393,7 +396,7 @@ def _word_at(design: Design, path: str) -> str:
 def _with_choice(
     actuator: ActuatorProblem, values: Mapping[str, str], library: Library
 ) -> BoxProblem | None:
-    """The problem with another choice; None if that is invalid or misses another check."""
+    """The problem with other choices; None if they are invalid or miss a further check."""
     subject = actuator.subject
     try:
         other = build(replace(variant(subject, values, library), reserves=subject.reserves))

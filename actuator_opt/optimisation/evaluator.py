@@ -2,7 +2,7 @@
 
 Values come from real arithmetic, so that a domain error (such as the root of a negative number)
 becomes NaN. Gradients come from one batched complex step [Squire1998]. They are compared with
-finite differences once; rows that disagree use central differences.
+finite differences once. Rows (objective or margins) that disagree use central differences.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ CHUNK = 4096
 """Maximum number of points in one model call."""
 
 DIFFERENCE_STEP = 6e-6
-"""Step for central differences of values, in solver coordinates: near the cube root of rounding
-error."""
+"""Step for central differences of values, in solver coordinates: near the cube root of the machine
+precision."""
 
 HESSIAN_STEP = 1e-5
 """Step for central differences of exact gradients, which give the Hessian."""
@@ -48,7 +48,7 @@ class Point:
 
     @property
     def objective(self) -> float:
-        """Value to be minimised."""
+        """Value of the objective, to be minimised."""
         return float(self.rows[0])
 
 
@@ -85,13 +85,13 @@ class Evaluator:
         self.bad_slopes = 0
         self.complex_works = problem.has_complex_step
         self.eager = False
-        """Whether to compute the gradient with every value, for solvers that need both."""
+        """Whether every evaluation also computes the gradient, for solvers that need both."""
         self.difference_rows = np.zeros(problem.row_count, dtype=bool)
         self.influence = np.zeros((2, self.space.size))
         self.trace: list[tuple[int, float, float]] = []
         self.best: Point | None = None
         self.precomputed: dict[bytes, npt.NDArray[np.generic]] = {}
-        """Rows computed in advance for the `columns` of points, by the points' coordinates."""
+        """By a point's coordinates: rows computed in advance at the `columns` of that point."""
         self._cache: dict[bytes, Point] = {}
 
     @property
@@ -127,7 +127,7 @@ class Evaluator:
         return self._store(z, rows, slopes)
 
     def adopt_check(self, checked: Evaluator) -> None:
-        """Take over the gradient check of another evaluator whose problem has the same rows."""
+        """Reuse the gradient check of another evaluator whose problem has the same rows."""
         self.complex_works = checked.complex_works
         self.difference_rows = checked.difference_rows
 
@@ -154,17 +154,17 @@ class Evaluator:
         return point
 
     def enter(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
-        """The point at z (nf,), given the rows of its `columns`."""
+        """The point at z (nf,), given the rows computed at its `columns`."""
         return self._store(z, *self.values_and_slopes(rows))
 
     def enter_precomputed(self) -> None:
-        """Count the points computed in advance as visited."""
+        """Enter all points computed in advance, as if they had been evaluated."""
         for z, rows in self.precomputed.items():
             self.enter(np.frombuffer(z), rows)
         self.precomputed.clear()
 
     def _record(self, point: Point) -> None:
-        """Add a point to the trace if it improves on the last point there."""
+        """Add a point to the trace if it is better than the last point of the trace."""
         excess = point.violation if point.violation > 1e-6 else 0.0
         if self.trace:
             _, objective, violation = self.trace[-1]
@@ -187,7 +187,7 @@ class Evaluator:
         return values
 
     def violations(self, rows: Vector, kind: str) -> Vector:
-        """Infeasibility (k,) of rows (rows, k): the "worst" violation, or a bounded "sum".
+        """Infeasibility (k,) of k points: the "worst" violation, or a "sum" of bounded violations.
 
         The sum adds v/(1 + v) for every violation v, so that no row dominates. NaN counts as
         infinitely infeasible.
@@ -224,7 +224,7 @@ class Evaluator:
         return slopes
 
     def columns(self, z: Vector) -> npt.NDArray[np.complex128]:
-        """Complex points (n, nf) from which values and gradients at coordinates (nf, 1) follow."""
+        """Complex points (n, nf) whose results give value and gradient at coordinates (nf, 1)."""
         return self.space.complex_steps(self.space.to_x(z))
 
     def values_and_slopes(self, rows: npt.NDArray[np.generic]) -> tuple[Vector, Vector]:
@@ -281,7 +281,7 @@ class Evaluator:
         return np.where(np.isnan(above), (middle - below) / DIFFERENCE_STEP, forward)
 
     def hessian(self, point: Point, weights: Vector, columns: npt.NDArray[np.intp]) -> Vector:
-        """Hessian (nf, nf) of weights @ rows in the given columns; zero elsewhere."""
+        """Hessian (nf, nf) of weights @ rows; only `columns` are computed, the others are zero."""
         n = self.space.size
         result = np.zeros((n, n))
         if len(columns) == 0:
@@ -329,7 +329,7 @@ class Evaluator:
         labels = ("objective", *self.problem.constraint_names, *self.problem.equality_names)
         return tuple(
             f"the gradient of {labels[i]} is computed by finite differences, as the "
-            "complex step differs from them or is undefined; avoid abs, max, sign, "
+            "complex-step gradient differs or is undefined; avoid abs, max, sign, "
             "float() and floor in custom functions"
             for i in np.flatnonzero(wrong)
         )

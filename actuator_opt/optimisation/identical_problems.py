@@ -2,9 +2,9 @@
 
 Combinations of choices often differ only in numbers that enter inactive limits, such as the
 viscosity of oils with the same bulk modulus. The search of listed sizes depends on the result of
-each box of the search space: its optimum or its least infeasible point. If values and slopes of two
-problems agree at these points, both give the same results. Rows may differ if their limits are
-farther away than these points are accurate.
+each box (part) of the search space: the box's optimum or its least infeasible point. If values and
+slopes of two problems agree at these points, both searches give the same results. A limit may have
+different values if its distance from these points exceeds their accuracy.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ SAME_OPTIMUM = 1e-6
 
 @dataclass(frozen=True)
 class Evidence:
-    """Results of all boxes of a search; `optimum` is the objective of the continuous optimum."""
+    """Results of all boxes (parts of the space) of a search, and the continuous `optimum`."""
 
     problem: BoxProblem
     optimum: float
@@ -61,5 +61,5 @@ class Evidence:
 
 
 def _distance(rows: Vector, slopes: Vector) -> Vector:
-    """Distance of each row from its limit in solver coordinates, from value and slope."""
+    """Distance to each limit in solver coordinates, estimated from margin and slope."""
     return np.asarray(rows / np.maximum(np.sqrt((slopes**2).sum(axis=1)), 1e-300))

@@ -3,8 +3,8 @@
 All amounts are margins, as fractions of the limits. The smallest joint relaxation is the set of
 relaxed limits that makes the problem feasible with the least sum of margins given up (an elastic
 programme [Chinneck2008]). The sum favours a large relaxation of few requirements over a small
-relaxation of many. Physical laws (geometry) are never relaxed. All searches are local, from the
-given points: their remedies are valid, but others may exist.
+relaxation of many. Physical laws (geometry) are never relaxed. All searches are local and start
+from the given points. Their remedies are valid, but others may exist.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ class Conflict:
 
     Parameters
     ----------
-    joint : the limits to relax together, with the least total; largest first; empty if only laws
-        conflict
-    sole : for each conflicting requirement, the relaxation that is enough alone
-    bounds : bounds of variables that are active at the joint relaxation, the most helpful first
+    joint : limits that must be relaxed together, by the least total; largest first; empty if only
+        laws conflict
+    sole : for each conflicting requirement, the relaxation that is enough if only it is relaxed
+    bounds : bounds of variables that are active at `x`, the most helpful first
     laws : constraints that cannot be relaxed but conflict with each other
     x : the point of the joint relaxation
     total : sum of the joint relaxation
@@ -125,9 +125,9 @@ def _smaller_relaxation(
     sole: Sequence[RelaxedConstraint],
     point: Point,
 ) -> Point | None:
-    """A smaller joint relaxation, if a single limit alone needs less than its total; else None.
+    """A smaller relaxation of one limit alone, if it is less than the joint total; else None.
 
-    This happens if the descent to the joint relaxation stalled.
+    Such a relaxation exists if the descent to the joint relaxation stalled.
     """
     single = [(r.amount, group) for r, group in zip(sole, candidates, strict=True) if r.amount]
     amount, group = min(single, key=lambda entry: entry[0], default=(np.inf, groups[0]))
@@ -146,7 +146,7 @@ def _smaller_relaxation(
 def _conflicting(
     evaluator: Evaluator, point: Point, quality: kkt.KktResidual
 ) -> npt.NDArray[np.bool_]:
-    """Mask of the constraints that cause the conflict: it remains if all others are dropped.
+    """Mask of the constraints that cause the conflict, even if all others are dropped.
 
     The multipliers of the relaxation prove this locally, and globally for a convex problem. If the
     relaxation is not optimal, every active constraint counts as a possible cause.
@@ -157,7 +157,7 @@ def _conflicting(
 
 
 def _groups(problem: BoxProblem) -> list[repairs.Indices]:
-    """Row numbers of the constraints, grouped by limit."""
+    """Indices of the constraints, grouped by the limit to which they belong."""
     m = len(problem.constraint_names)
     numbers = np.arange(m) if problem.groups is None else np.asarray(problem.groups)
     return [np.flatnonzero(numbers == number) for number in dict.fromkeys(numbers.tolist())]
@@ -166,7 +166,7 @@ def _groups(problem: BoxProblem) -> list[repairs.Indices]:
 def _smallest(
     problem: BoxProblem, groups: list[repairs.Indices], points: Sequence[Vector]
 ) -> tuple[Point, Evaluator]:
-    """The smallest sum of slacks found from several starts, and its elastic problem."""
+    """The point with the smallest sum of relaxations, from several starts, and its evaluator."""
     judge = Evaluator(problem)
     room, starts = 1.0, []
     for x in list(points)[:STARTS] or [(problem.lower + problem.upper) / 2]:

@@ -33,7 +33,7 @@ def explained(
 ) -> tuple[Infeasibility | None, Solution]:
     """Explain an infeasible result; return explanation and solution of the joint relaxation.
 
-    There is no explanation for a feasible result, or for a search that was stopped by a limit.
+    A feasible result, or a search stopped by the evaluation or time limit, has no explanation.
     """
     limited = solution.outcome is Outcome.LIMIT_INFEASIBLE
     if solution.feasible or solution.kkt is None or limited:
@@ -86,7 +86,7 @@ def _kind(entry: Mapping[str, Any]) -> str:
 
 
 def _limit_entry(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
-    """Cure entry for a sufficient change of a limit or bound."""
+    """Record of a cure: a limit or bound whose change alone is enough."""
     return {
         "kind": kind,
         "parameter": entry["parameter"] or entry["requirement"],
@@ -96,7 +96,7 @@ def _limit_entry(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
 
 
 def _joint_entry(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[str, Any]:
-    """Cure entry for dimensions that are only enough together."""
+    """Record of a cure: dimensions that are only enough if all of them change."""
     parts = [_cure_entry(actuator, "dimension", cure) for cure in dimensions]
     texts = ("parameter", "limit_text", "needed_text")
     entry: dict[str, Any] = {
@@ -112,7 +112,7 @@ def _joint_entry(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[
 
 
 def _cure_entry(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, Any]:
-    """Cure entry for a dimension or choice that is enough alone."""
+    """Record of a cure: a dimension or choice whose change alone is enough."""
     entry: dict[str, Any] = {"kind": kind, "parameter": cure.path, "advised": True, "now": cure.now}
     if isinstance(cure.now, str) or isinstance(cure.needed, str):
         further = ", ".join(
@@ -131,7 +131,7 @@ def _cure_entry(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, A
 
 
 def entry_of(actuator: ActuatorProblem, relaxed: RelaxedConstraint) -> dict[str, Any]:
-    """Entry for a requirement, with its stated limit and the limit that would be enough."""
+    """Record of a requirement: its stated limit, and the limit that would be enough."""
     row, amount = actuator.rows[relaxed.index], relaxed.amount
     limit = float(np.ravel(row.limit)[0])
     path, sense = row.limit_of.path, row.limit_of.sense
@@ -188,7 +188,7 @@ def _bound_entry(actuator: ActuatorProblem, bound: Opening) -> dict[str, Any]:
 def _texts(
     quantity: Quantity, limit: float, needed: float | None, *, upwards: bool
 ) -> dict[str, str]:
-    """Both limits in the display unit; `needed` is rounded so that it suffices as printed."""
+    """Both limits in the display unit; `needed` is rounded so that the printed value is enough."""
     texts = {"limit_text": quantity.text(limit, MORE_DIGITS), "needed_text": ""}
     if needed is not None:
         fine = abs(needed - limit) < 0.01 * abs(limit)
@@ -222,7 +222,7 @@ def percent(share: float) -> str:
 
 
 _ACTS = {"dimension": "free {}", "choice": "change {}", "bound": "open {}"}
-"""Action for each kind of cure, except for limits."""
+"""Imperative for each kind of cure, except for limits."""
 
 
 def _sentence(
@@ -231,11 +231,11 @@ def _sentence(
     """The advice in one line: the first cure, or the smallest change of limits."""
     if laws:
         return (
-            "infeasible with any requirements, because within the bounds the geometry "
-            f"conflicts ({', '.join(laws)})"
+            "infeasible whatever the requirements, because no design within the bounds meets "
+            f"all geometric conditions (in conflict: {', '.join(laws)})"
         )
     if not joint:
-        return "infeasible, and the search found no relaxation that is sufficient"
+        return "infeasible, and the search found no relaxation of the requirements that is enough"
     cure = sufficient[0] if sufficient else None
     if cure is not None and cure["kind"] in _ACTS:
         enough_text = "together are enough" if "together" in cure else "alone is enough"
@@ -249,7 +249,7 @@ def _sentence(
     if unsafe:
         sentence += " (this weakens a safety factor: not advised)"
     if cure is not None and (unsafe or len(joint) > 1) and cure["advised"]:
-        sentence += f". One change alone is also enough: {change_text(cure)}"
+        sentence += f". This change alone is also enough: {change_text(cure)}"
     return sentence
 
 

@@ -2,13 +2,13 @@
 
 The residual is the norm of grad f - sum(multiplier * grad g), divided by the norm of grad f, in
 solver coordinates; f is the objective and g are constraint margins and distances to bounds. The sum
-includes those within 1e-6 of zero. The multipliers follow from non-negative least squares
+is over all g within 1e-6 of zero. The multipliers follow from non-negative least squares
 [LawsonHanson1974].
 
 The Newton steps are sequential quadratic programming with the Lagrangian's Hessian from exact
 gradients [NocedalWright2006] ch. 18. Each quadratic programme is a least-distance problem, solved
-by non-negative least squares [LawsonHanson1974] ch. 23. This finds the active set, and works with
-dependent rows and at vertices with more active rows than variables. The steps converge
+by non-negative least squares [LawsonHanson1974] ch. 23. This finds the active constraints, and also
+works if constraints depend on each other or outnumber the variables at a vertex. The steps converge
 quadratically near the optimum, also if they start from the optimum of a slightly changed problem.
 """
 
@@ -29,7 +29,7 @@ ACTIVE = 1e-6
 
 
 class Curvature(Enum):
-    """Sign of the Lagrangian's Hessian along the directions that the active limits leave free."""
+    """Sign of the Lagrangian's curvature in the directions that the active limits leave free."""
 
     VERTEX = "vertex: the active limits leave no direction free"
     POSITIVE = "positive definite: a strict local minimum"
@@ -45,8 +45,8 @@ class Active:
     ----------
     gradients : gradients of the margins (a, nf)
     margins : margins (a,), at least 0 where met
-    constraint, lower, upper : numbers of the active constraints, and of the variables at lower and
-        upper bounds; rows are in this order
+    constraint, lower, upper : indices of the active constraints, and of the variables at their
+        lower and upper bounds; `gradients` and `margins` are in this order
     """
 
     gradients: Vector
@@ -57,7 +57,7 @@ class Active:
 
     @property
     def count(self) -> int:
-        """Number of active rows."""
+        """Number of active limits and bounds."""
         return len(self.margins)
 
 
@@ -70,7 +70,8 @@ class KktResidual:
     residual : norm of the Lagrangian's gradient, relative to that of the objective's gradient
     active : labels of active constraints, equalities and bounds ("NAME lower", "NAME upper")
     count, rank : number of active gradients, and how many of them are independent
-    multipliers : (m,) for the constraints: change of the objective per unit of required margin
+    multipliers : (m,) for the constraints: change of the optimal objective per unit of additional
+        margin required
     equality_multipliers : (e,) for the equalities
     lower_multipliers, upper_multipliers : (n,) for the bounds, per unit of solver coordinate
     curvature : result of the second-order condition; None if not requested
@@ -95,9 +96,9 @@ class KktResidual:
 def nnls(matrix: Vector, vector: Vector, previous: Vector | None = None) -> Vector:
     """Non-negative least squares: minimise |matrix @ result - vector| with result >= 0.
 
-    First, all columns are solved without the sign constraint, which is enough at a regular optimum.
-    If a result is negative, the active-set method of Lawson and Hanson follows; it ends with
-    independent columns. It starts from the positive columns of `previous`, the result of a similar
+    First, plain least squares ignores the sign, which is enough at a regular optimum. If a result
+    is negative, the active-set method of Lawson and Hanson follows; it ends with independent
+    columns. It starts from the columns that are positive in `previous`, the result of a similar
     problem.
     """
     size = np.sqrt((matrix**2).sum(axis=0))
@@ -151,7 +152,7 @@ def _lawson_hanson(matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_
 def _initial_result(
     matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_]
 ) -> tuple[Vector, npt.NDArray[np.bool_]]:
-    """A first result from the largest subset of columns that is positive and independent."""
+    """A first result, from columns of `passive` that are independent and give positive values."""
     nothing = np.zeros(matrix.shape[1])
     while passive.any():
         trial, rank = _restricted(matrix, vector, passive)
@@ -196,8 +197,8 @@ def multipliers(
 ) -> tuple[Vector, Vector]:
     """Multipliers (a,) >= 0 of the active limits, and multipliers (e,) of the equalities.
 
-    A `damping` above 0 penalises multipliers of limits with a positive margin. So the active limits
-    of an optimum are identified from a point near it.
+    A `damping` above 0 penalises multipliers of limits with a positive margin. This identifies the
+    active limits of an optimum from a point near it.
     """
     matrix, vector = active.gradients.T, slope
     if len(equalities):
@@ -232,7 +233,7 @@ def slope_scale(evaluator: Evaluator, point: Point, objective_scale: float = 0.0
 def _priced(
     evaluator: Evaluator, point: Point, objective_scale: float
 ) -> tuple[Active, Vector, Vector, float]:
-    """The active set at a point, its multipliers, the equalities' multipliers, and the residual."""
+    """Active limits at a point, their multipliers, those of the equalities, and the residual."""
     jacobian = evaluator.jacobian(point)
     active = active_set(evaluator, point)
     equalities = jacobian[1 + evaluator.constraint_count :]
@@ -285,7 +286,7 @@ def lagrangian_weights(constraints: Vector, equalities: Vector) -> Vector:
 
 
 def null_space(rows: Vector, size: int) -> Vector:
-    """Orthonormal basis (size, k) of the directions along which no row (a, size) changes."""
+    """Orthonormal basis (size, k) of all directions orthogonal to the `rows` (a, size)."""
     if len(rows) == 0:
         return np.eye(size)
     lengths = np.sqrt((rows**2).sum(axis=1, keepdims=True))
@@ -310,7 +311,7 @@ def _curvature(
 
 
 DAMPING = 1e3
-"""Weight on margin times multiplier = 0 when multipliers are estimated away from the optimum."""
+"""Weight of the condition margin times multiplier = 0 in multipliers estimated near an optimum."""
 FEASIBLE = 1e-9
 """Violation up to which a point from Newton steps counts as exactly feasible."""
 RADIUS = 0.5
@@ -348,7 +349,7 @@ def polish(
 ) -> Point:
     """Improve a point by Newton steps; return the start if no better point is reached.
 
-    The steps end when the measure of optimality falls below `tolerance`.
+    The steps end once the measure of optimality (see `NewtonState`) is below `tolerance`.
     """
     if not start.valid or evaluator.space.size == 0:
         return start
@@ -373,9 +374,9 @@ def polish(
 
 
 def _acceptable(evaluator: Evaluator, initial: NewtonState, newton_state: NewtonState) -> bool:
-    """Whether a point is at least as feasible as the start, with no higher objective.
+    """Whether a point is at least as feasible as the start, and its objective not higher.
 
-    The objective may rise by twice what it costs to remove the violation of the start.
+    The objective may rise by twice the cost of removing the violation at the start.
     """
     if newton_state.point.violation > max(FEASIBLE, initial.point.violation):
         return False
@@ -417,7 +418,7 @@ def _advance(evaluator: Evaluator, state: NewtonState) -> NewtonState | None:
 
 
 def _merit(evaluator: Evaluator, point: Point, scale: float, price: float) -> float:
-    """The l1 merit: the objective, plus violations weighted with more than their multipliers."""
+    """The l1 merit function: the objective plus `price` times the sum of the violations."""
     m = evaluator.constraint_count
     missed = np.maximum(-point.rows[1 : 1 + m], 0.0).sum() + np.abs(point.rows[1 + m :]).sum()
     return point.objective / scale + price * float(missed)
@@ -456,10 +457,10 @@ def quadratic_step(
 
 
 def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
-    """Scaled Hessian of the Lagrangian, made positive definite in a way that keeps the step.
+    """Scaled Hessian of the Lagrangian, made positive definite with little effect on the step.
 
-    Multiples of the active rows' outer products are added, which keeps the solution on these rows.
-    If they are not enough, a negative curvature is replaced by its magnitude.
+    Multiples of the active gradients' outer products are added, which keeps the solution on the
+    active limits. If they are not enough, a negative curvature is replaced by its magnitude.
     """
     m, active = evaluator.constraint_count, state.active
     constraint_multipliers = np.zeros(m)
@@ -488,10 +489,11 @@ def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
 def quadratic_programme(
     hessian: Vector, slope: Vector, rows: Vector, margins: Vector, previous: Vector | None = None
 ) -> tuple[Vector, Vector]:
-    """Minimise d'Hd/2 + slope'd for a step d with margins + rows d >= 0; also multipliers (a,).
+    """Minimise d'Hd/2 + slope'd for a step d with margins + rows d >= 0, where H is the Hessian.
 
-    H is the Hessian. If the rows are inconsistent, the step with the least violation results
-    instead. `previous` holds multipliers of a similar programme and only saves time.
+    Returns the step and the multipliers (a,) of the rows. If no step satisfies all rows, the step
+    with the least violation results. `previous` has the multipliers of a similar programme, which
+    only save time.
     """
     factor = np.linalg.cholesky(hessian)
     scaled_slope = np.linalg.solve(factor, slope)

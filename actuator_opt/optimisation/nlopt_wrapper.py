@@ -32,11 +32,11 @@ class Algorithm:
     Parameters
     ----------
     name : NLopt's name
-    scope : "local", "global", or "wrapper" for one that needs an inner algorithm
+    scope : "local", "global", or "wrapper" for an algorithm that needs an inner algorithm
     inequalities, equalities : whether the algorithm supports them
     most_variables : maximum number of free variables
-    most_evaluations : maximum evaluations in one run; the time of the original DIRECT grows with
-        their cube
+    most_evaluations : maximum number of evaluations in one run; it is small for the original
+        DIRECT, whose time grows with the cube of this number
     about : description for the user
     """
 
@@ -93,9 +93,9 @@ ALGORITHMS = _table("""
  GN_CRS2_LM                 |global |- | 200|10000| controlled random search
  GN_ESCH                    |global |- | 200|10000| evolutionary algorithm
  GD_STOGO                   |global |- |  10| 1500| branch and bound with gradients
- AUGLAG                     |wrapper|ie|1000| 4000| augmented Lagrangian around an algorithm inside
+ AUGLAG                     |wrapper|ie|1000| 4000| augmented Lagrangian around an inner algorithm
  AUGLAG_EQ                  |wrapper|ie|1000| 4000| augmented Lagrangian for the equalities only
- G_MLSL_LDS                 |wrapper|- | 200| 1500| multi-level single linkage around another
+ G_MLSL_LDS                 |wrapper|- | 200| 1500| multi-level single linkage, inner algorithm
 """)
 
 OLDER = {
@@ -109,7 +109,7 @@ OLDER = {
     "GN_MLSL_LDS": "G_MLSL_LDS+LN_BOBYQA",
     "G_MLSL": "G_MLSL_LDS+LD_LBFGS",
 }
-"""Combinations that have a name of their own in NLopt, and their notation as a sum."""
+"""Combinations of two algorithms for which NLopt has a name, and their notation with "+"."""
 
 INSIDE = {"AUGLAG": "LD_LBFGS", "AUGLAG_EQ": "LD_MMA", "G_MLSL_LDS": "LD_LBFGS"}
 """Inner algorithm of a wrapper if the user names none."""
@@ -118,7 +118,7 @@ INSIDE = {"AUGLAG": "LD_LBFGS", "AUGLAG_EQ": "LD_MMA", "G_MLSL_LDS": "LD_LBFGS"}
 def find(text: str) -> tuple[Algorithm, Algorithm | None]:
     """The algorithm with a given name, and its inner algorithm, as in "AUGLAG+LD_LBFGS".
 
-    Upper and lower case are equal. A prefix may be omitted if the name remains unique ("slsqp").
+    Case is ignored. A prefix may be omitted if the name remains unique ("slsqp").
 
     Raises
     ------
@@ -189,14 +189,13 @@ def suit(text: str, problem: BoxProblem) -> str:
     for part in (outer, inner):
         if part is not None and count > part.most_variables:
             message = f"{part.name} supports at most {part.most_variables} variables, not {count}"
-            raise _refusal(message, "fix some variables, or write LD_SLSQP or GN_ISRES")
+            raise _refusal(message, "fix some variables, or choose LD_SLSQP or GN_ISRES")
     return outer.name if inner is None else f"{outer.name}+{inner.name}"
 
 
 ARRIVAL = (0.1, 1e-3, 1e-3)
-"""A run has reached a known optimum within this distance in solver coordinates, relative difference
-of the objective, and violation. The run can stop, as only slow convergence to that optimum would
-follow."""
+"""A run stops at a known optimum within these limits: distance in solver coordinates, relative
+difference of the objective, violation. Only slow convergence to that optimum would follow."""
 
 
 @dataclass(frozen=True)
@@ -207,7 +206,7 @@ class NloptRun:
     code: int
     algorithm: str
     arrived: int | None = None
-    """Number of the known optimum that the run reached, which stopped it."""
+    """Index of the known optimum whose vicinity the run reached and where it stopped; else None."""
 
 
 class _Arrived(Exception):
@@ -215,7 +214,7 @@ class _Arrived(Exception):
 
 
 class _Guard:
-    """Callbacks, in logarithmic or linear coordinates, that never raise and never return NaN."""
+    """Callbacks for NLopt that never raise and never return NaN."""
 
     def __init__(self, evaluator: Evaluator, start: Point, *, linear: bool, handle: Any) -> None:
         self.evaluator, self.handle, self.linear = evaluator, handle, linear
@@ -318,7 +317,7 @@ class _Guard:
         self._rows(result, u, slopes, slice(1, 1 + self.evaluator.constraint_count), 1.0)
 
     def worst_margin(self, u: Vector, slope: Vector) -> float:
-        """Margin of the most violated constraint, as the single constraint for AGS."""
+        """Margin of the most violated constraint, which is the only constraint that AGS gets."""
         result = np.zeros(self.evaluator.constraint_count)
         self.inequalities(result, u, slope)
         return float(result.max())
@@ -343,9 +342,10 @@ def run(
 
     The default of `max_evaluations` is the algorithm's own limit. A run that reaches one of the
     known `optima` (see `ARRIVAL`) stops there. Candidates for the result are NLopt's point, the
-    best feasible iterate, the last iterate and the start. `rank` selects the best of them; by
-    default, feasible points by objective come first, then others by violation. Exceptions of the
-    model and Ctrl-C are raised unchanged. A limit ends the run without an exception.
+    best feasible iterate, the last iterate and the start. `rank` sorts them; by default, feasible
+    points come first, by objective, then the others by violation. Exceptions of the model and
+    Ctrl-C are raised unchanged after NLopt has returned. A limit of evaluations or time ends the
+    run without an exception.
     """
     if evaluator.space.size == 0:
         return NloptRun(start, 1, algorithm)
@@ -403,7 +403,7 @@ def _pick(evaluator: Evaluator, guard: _Guard, end: Vector | None, start: Point)
 
 
 def _rank(point: Point) -> tuple[float, float]:
-    """Sort key: feasible points by objective, others by violation, then without values."""
+    """Sort key: feasible points by objective, then others by violation, points with NaN last."""
     if not point.valid:
         return (np.inf, np.inf)
     missed = point.violation if point.violation > 1e-6 else 0.0

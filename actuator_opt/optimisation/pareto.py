@@ -60,7 +60,7 @@ class FrontPoint:
 
 @dataclass(frozen=True, slots=True)
 class Knee:
-    """The design where the front bends most; its normalised distance to the anchors' plane."""
+    """The design where the front bends most; its normalised distance from the anchors' plane."""
 
     index: int
     depth: float
@@ -73,19 +73,20 @@ class ParetoFront(Displayed):
     Parameters
     ----------
     subject : the design studied
-    spec_hash : hash of the design studied
+    spec_hash : hash of the design's specification
     objectives : metrics with their direction
     points : designs on the front, sorted by the first objective
     knee : the design where the front bends most towards the ideal; None without a bend
     design, evaluation : the knee, or else the first point; without a front, the design in the file
-    passed : objectives of designs that the search found but that are dominated
+    passed : objectives of dominated designs that the search found
     gaps : normalised distances between neighbours; for three or more objectives, to the nearest
         design
     wide : with two objectives, gaps above three times the median and the reason for them
     checked, improved : number of checking searches between designs, and how many improved the front
     failed : number of levels without a design nearby
-    infeasibility : explanation of why there is no front
-    unsolved : the objective without a best design, and the outcome of its search
+    infeasibility : reason why no design is feasible, if there is no front for that reason
+    unsolved : the objective whose best design the search did not find, and the outcome of that
+        search
     """
 
     subject: Design
@@ -152,6 +153,7 @@ class ParetoFront(Displayed):
             sentence += f"; the search found no design at {self.failed} place" + "s" * (
                 self.failed > 1
             )
+            sentence += " of the front"
         return sentence
 
     def to_dict(self) -> dict[str, Any]:
@@ -190,7 +192,7 @@ class ParetoFront(Displayed):
 
 
 def wishes(texts: Sequence[str], quantities: dict[str, Quantity]) -> tuple[Wish, ...]:
-    """Parse objectives from ``METRIC:min`` or ``METRIC:max``.
+    """Parse objectives of the form ``METRIC:min`` or ``METRIC:max``.
 
     Raises
     ------
@@ -222,7 +224,7 @@ def wishes(texts: Sequence[str], quantities: dict[str, Quantity]) -> tuple[Wish,
 
 @dataclass(frozen=True)
 class _ManyObjectives:
-    """The problem of an actuator with several objectives."""
+    """An actuator's optimisation problem with several objectives."""
 
     actuator: ActuatorProblem
     goals: tuple[Goal, ...]
@@ -231,7 +233,7 @@ class _ManyObjectives:
     """The design, with the objective of its file."""
 
     def evaluate(self, points: Array) -> PointValues:
-        """Objectives, in the form to be minimised, and margins."""
+        """Objectives (with a changed sign if to be maximised) and margins."""
         cases = self.actuator.subject.cases
         outputs: list[MetricArrays] = []
         values = self.actuator.evaluate(points, outputs=outputs)
@@ -371,7 +373,9 @@ def _notes(many: _ManyObjectives) -> list[str]:
     design = many.actuator.subject.design
     notes = []
     if design.choices:
-        notes.append(f"choices stay as stated in the design: {', '.join(design.choices)}")
+        notes.append(
+            f"choices are not varied, but stay as in the design: {', '.join(design.choices)}"
+        )
     sized = [
         path
         for path, variable in design.variables.items()

@@ -2,9 +2,10 @@
 
 The price of a parameter is the change of the optimal objective per unit of the parameter, which is
 the derivative of the Lagrangian [Fiacco1983]. It is exact for limits, material data, pressures and
-bounds, whatever the form of the constraints. The derivative of the optimum solves the linearised
-optimality conditions [Fiacco1983]; the range in which the price is valid follows from it.
-Re-solving at plus and minus 10 % shows the error of the straight-line prediction.
+bounds, whatever the form of the constraints. The derivatives of the optimal design solve the
+linearised optimality conditions [Fiacco1983]; they give the range in which the price is valid.
+Re-optimising with the parameter changed by +10 % and -10 % shows the error of the straight-line
+prediction.
 
 At a degenerate vertex the multipliers are not unique but form a polytope. The prices of an increase
 and of a decrease are then the largest and the smallest within this polytope [Gauvin1982].
@@ -37,13 +38,13 @@ from .resolve.steps import valley_at
 INSTANT = 1e-7
 """Change of an active margin, per relative change of the parameter, that counts as zero."""
 BASES = 1000
-"""Maximum number of vertices that are enumerated for the multipliers; beyond, linear programming is
-used."""
+"""Maximum number of vertices of the multipliers' polytope that are enumerated; if there are more,
+linear programming is used."""
 
 
 @dataclass(frozen=True)
 class Optimum:
-    """Linear algebra at an optimum; margins are of constraints, then lower and upper bounds.
+    """Vectors and matrices at an optimum; margins are of constraints, lower and upper bounds.
 
     Parameters
     ----------
@@ -54,7 +55,7 @@ class Optimum:
     slope : gradient of the objective (nf,)
     hessian : Hessian of the Lagrangian (nf, nf)
     labels : labels of the margins
-    weights : factors of the rows in the Lagrangian
+    weights : factors of objective, constraints and equalities in the Lagrangian
     """
 
     margins: Vector
@@ -69,7 +70,7 @@ class Optimum:
 
     @property
     def active(self) -> npt.NDArray[np.intp]:
-        """Mask of the margins whose multiplier is positive."""
+        """Indices of the margins whose multiplier is positive."""
         size = self.multipliers * np.sqrt((self.gradients**2).sum(axis=1))
         return np.flatnonzero(size > 1e-10 * max(float(np.linalg.norm(self.slope)), 1e-300))
 
@@ -118,9 +119,10 @@ def lagrangian_slopes(optimum: Optimum, derivatives: Responses) -> Vector:
 
 
 def movement(optimum: Optimum, derivatives: Responses) -> tuple[Vector, Vector]:
-    """Derivatives by the parameters of the optimum (nf, q) and of its multipliers (M, q).
+    """Derivatives of the optimal point (nf, q) and of its multipliers (M, q) by the parameters.
 
-    Directions along which neither objective nor limits curve are taken not to move.
+    The optimum is assumed not to move along directions in which neither objective nor limits
+    curve.
     """
     active, nf = optimum.active, len(optimum.slope)
     rows = np.concatenate([optimum.gradients[active], optimum.equalities])
@@ -148,7 +150,7 @@ def reach(
 ) -> list[tuple[float | None, str | None]]:
     """For each parameter, the nearest value at which the active limits change, and that change.
 
-    None if there is no change between -100 % and +100 % of the parameter.
+    Both are None if the active limits do not change while the parameter changes by up to ±100 %.
     """
     result: list[tuple[float | None, str | None]] = []
     for value, changes in zip(
@@ -163,9 +165,9 @@ def reach(
 
 
 class ActiveSetChange(NamedTuple):
-    """A change of the active limits, and the distance and direction of the parameter to it.
+    """A change of the active limits: by how much and in which direction the parameter must change.
 
-    The direction matters at distance 0: a limit that is just met, without a multiplier, becomes
+    The direction matters at distance 0. A limit that is just met, without a multiplier, becomes
     active on one side only.
     """
 
@@ -177,7 +179,7 @@ class ActiveSetChange(NamedTuple):
 def ends(
     optimum: Optimum, derivatives: Responses, moves: Vector, shifts: Vector
 ) -> list[tuple[ActiveSetChange | None, ActiveSetChange | None]]:
-    """For each parameter, the nearest change of active limits below and above its present value."""
+    """For each parameter, the nearest changes of active limits below and above its value."""
     return [
         (
             min((change for change in changes if change.direction < 0), key=_size, default=None),
@@ -194,7 +196,7 @@ def _size(change: ActiveSetChange) -> float:
 def _changes(
     optimum: Optimum, derivatives: Responses, moves: Vector, shifts: Vector
 ) -> Iterator[list[ActiveSetChange]]:
-    """For each parameter, the values at which a linearised margin or multiplier reaches zero."""
+    """For each parameter, its changes at which a linearised margin or multiplier reaches zero."""
     rates = margin_slopes(optimum, derivatives) + optimum.gradients @ moves
     active = optimum.active
     for k, value in enumerate(derivatives.values):
@@ -248,8 +250,8 @@ def _without_copies(
 ) -> npt.NDArray[np.intp]:
     """Active margins without exact duplicates, such as the same limit in two load cases.
 
-    Only duplicates without a multiplier are dropped. Least squares gives a multiplier to at most
-    one of several equal margins.
+    Only duplicates without a multiplier are dropped: of several equal margins, least squares gives
+    a multiplier to at most one.
     """
     slopes = np.concatenate([optimum.gradients, margin_slopes(optimum, derivatives)], axis=1)
     indices: list[int] = []
@@ -264,7 +266,10 @@ def _without_copies(
 
 
 def _vertices(rows: Vector, target: Vector, rank: int, free_count: int) -> Vector:
-    """Vertices (v, a) of {m : rows.T @ m = target, m >= 0}; the last `free_count` are free."""
+    """Vertices (v, a) of {m : rows.T @ m = target, m >= 0}; `free_count` entries have any sign.
+
+    These entries are the last.
+    """
     count = len(rows)
     vertices = []
     for combination in itertools.combinations(range(count - free_count), rank - free_count):
@@ -299,10 +304,9 @@ def _by_linear_programming(
 
 
 CHANGE = 0.1
-"""Relative change of a parameter for prediction and re-solving; part of the documented interface.
-"""
+"""Relative change of a parameter for which the price's prediction is checked by re-solving."""
 STRAIGHT = 0.25
-"""Largest error of a straight-line prediction, as a share of the re-solved change."""
+"""Largest error up to which a prediction counts as straight, as a share of the re-solved change."""
 Kind: TypeAlias = Literal["requirement", "parameter", "material"]
 """A limit that can be negotiated, a fixed number of the design, or a material property."""
 
@@ -314,21 +318,23 @@ class Sensitivity:
     Parameters
     ----------
     parameter : PATH
-    label : name of its quantity
+    label : name of the parameter's quantity
     unit : display unit of the parameter
     scale : display value = SI value / scale
     limit : present value
     price : change of the objective per unit of the parameter
     percent_per_percent : relative change of the objective per relative change of the parameter;
         None if the objective or the parameter is 0
-    predicted_10, resolved_10, predicted_minus10, resolved_minus10 : the objective at +10 % and -10
-        %, predicted by the price, and re-optimised; None if there is no design
-    holds_until : value of the parameter up to which the same limits are active; None beyond ±100 %
-    next_active : the limit that becomes active, or stops being active, at this value
+    predicted_10, resolved_10, predicted_minus10, resolved_minus10 : the objective with the
+        parameter changed by +10 % and -10 %, predicted from the price or re-optimised; None if no
+        design exists
+    holds_until : value of the parameter up to which the same limits are active; None if it is more
+        than ±100 % away
+    next_active : the limit that becomes active, or stops being active, at the value `holds_until`
     active : whether the limit is active at the optimum
     price_up, price_down : prices of an increase and of a decrease, which differ only at a
         degenerate vertex; None if no design exists in this direction
-    movement : change of each variable of the optimum per unit of the parameter, by PATH
+    movement : change of each variable at the optimum per unit of the parameter, by PATH
     """
 
     parameter: str
@@ -359,7 +365,10 @@ class Sensitivity:
 
     @property
     def ends(self) -> tuple[tuple[int, float | None, float | None], ...]:
-        """Sign, predicted and re-solved objective at +10 % and -10 %; empty for a limit of 0."""
+        """For +10 % and -10 %: sign, predicted objective, re-solved objective.
+
+        Empty for a limit of 0.
+        """
         if self.limit == 0:
             return ()
         return (
@@ -376,12 +385,12 @@ class Sensitivity:
         return abs(up - down) > 1e-6 * max(abs(up), abs(down))
 
     def effect(self, objective: float) -> float:
-        """Largest re-solved change of the objective, at +10 % or -10 %."""
+        """Largest re-solved change of the objective if the parameter changes by +10 % or -10 %."""
         changes = [abs(solved - objective) for _, _, solved in self.ends if solved is not None]
         return max(changes, default=0.0)
 
     def straight(self, objective: float) -> bool:
-        """Whether the price predicts the changes at ±10 % with an error below a quarter."""
+        """Whether the price predicts the changes of the objective at ±10 % to within a quarter."""
         for _, predicted, solved in self.ends:
             if predicted is None or solved is None:
                 if predicted is not solved:
@@ -409,7 +418,7 @@ def ranked(rows: Sequence[Sensitivity], objective: float) -> tuple[Sensitivity, 
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """The better of the changes of a row by +10 % and -10 % (SI); a positive `gain` is better."""
+    """Change of one parameter by 10 %, up or down, that improves the objective by `gain` (SI)."""
 
     row: Sensitivity
     change: float
@@ -425,9 +434,9 @@ class Offer:
 
 @dataclass(frozen=True, slots=True)
 class Offers:
-    """The most valuable change of each kind; None for a kind without a worthwhile change.
+    """The most valuable change by 10 % of each kind of parameter; None if no change is worthwhile.
 
-    `no_design` lists requirements that have no feasible design after a change of 10 %, with the
+    `no_design` lists the requirements which, changed by 10 %, leave no feasible design, with the
     sign of that change.
     """
 
@@ -438,7 +447,7 @@ class Offers:
 
     @property
     def found(self) -> tuple[Offer, ...]:
-        """The changes that exist, requirements first."""
+        """The changes that are not None, requirements first."""
         existing = (self.requirement, self.parameter, self.material)
         return tuple(offer for offer in existing if offer is not None)
 
@@ -457,7 +466,7 @@ class Offers:
 
 
 def offers(rows: Sequence[Sensitivity], objective: float, *, maximised: bool) -> Offers:
-    """For each kind of row, the best re-solved change, if it improves on the optimum."""
+    """For each kind of parameter, the best re-solved change by 10 %, if it improves the optimum."""
     direction = 1.0 if maximised else -1.0
     best: dict[Kind, Offer] = {}
     infeasible = []
@@ -489,12 +498,13 @@ class ParameterPrice:
         no feasible point exists in this direction
     percent_per_percent : relative change of the objective per relative change of the parameter;
         None where the objective or the parameter is 0
-    predicted_up, predicted_down : objective at +10 % and -10 % as predicted by the price; None
-        where infinite
-    resolved_up, resolved_down : re-optimised objective; None if infeasible or not requested
-    holds_until : the nearest value of the parameter at which the active limits change; None beyond
-        -100 % and +100 %
-    change : this change in words, "LABEL becomes active" or "LABEL stops being active"
+    predicted_up, predicted_down : objective predicted from the price, with the parameter changed by
+        +10 % and -10 %; None where infinite
+    resolved_up, resolved_down : the same, re-optimised; None if infeasible or not requested
+    holds_until : the nearest value of the parameter at which the active limits change; None if it
+        is more than ±100 % away
+    change : the change of the active limits in words, "LABEL becomes active" or "LABEL stops being
+        active"
     movement : change of each variable (n,) per unit of the parameter
     """
 
@@ -521,7 +531,7 @@ def prices(
     resolve: bool = True,
     bounds: bool = True,
 ) -> tuple[ParameterPrice, ...]:
-    """Price every parameter, and every bound that has a multiplier, at the optimum.
+    """Price every parameter, and every bound with a positive multiplier, at the optimum.
 
     Parameters
     ----------
@@ -654,10 +664,10 @@ MOST_PARAMETERS = 10
 """Maximum number of parameters (besides limits) in the sensitivity table, the most important first.
 """
 LEAST_EFFECT = 1e-3
-"""A parameter enters the table if 1 % of it changes the objective by at least this many per cent.
-"""
+"""A parameter enters the table if its change by 1 % changes the objective by at least this many
+per cent."""
 FREE = 1e-9
-"""A limit of 0 is left out if its price, relative to the objective, is at most this."""
+"""A limit whose value is 0 is left out if its price, relative to the objective, is at most this."""
 _NO_PERCENT = ("temperature", "temperature_difference", "angle", "count")
 
 
@@ -728,7 +738,7 @@ def _quantity(actuator: ActuatorProblem, path: str) -> Quantity:
 def _strongest(
     actuator: ActuatorProblem, solution: Solution, excluded: set[str]
 ) -> tuple[str, ...]:
-    """The parameters to which the objective is most sensitive, by the Lagrangian."""
+    """The parameters to which the objective is most sensitive by the Lagrangian's derivatives."""
     if solution.kkt is None:
         return ()
     candidates = [
@@ -753,7 +763,7 @@ PER_CENT = round(100 * CHANGE)
 
 
 def display_of(row: Sensitivity, value: float | None) -> float | None:
-    """A value of the parameter in its display unit."""
+    """A value of a row's parameter in its display unit; None for no value."""
     if value is None:
         return None
     offset = 273.15 if row.unit in ("degC", "°C") else 0.0
@@ -804,7 +814,7 @@ def buys_most(
             f"{gain(best)}, the most of any requirement."
         ]
     else:
-        parts = [f"Relaxing a single requirement by {PER_CENT} % gains nothing."]
+        parts = [f"Relaxing any single requirement by {PER_CENT} % does not improve the objective."]
     for best, group in (
         (best_offers.parameter, "Among the design's fixed values"),
         (best_offers.material, "Among the material properties"),
@@ -823,7 +833,7 @@ def buys_most(
 
 
 def _at(row: Sensitivity, value: float) -> str:
-    """A value of the parameter as text with its unit."""
+    """A value of a row's parameter as text with its unit."""
     display = display_of(row, value)
     assert display is not None
     unit = "" if row.unit == "-" else row.unit

@@ -1,8 +1,8 @@
 """The optimisation problem: a vector function within bounds, without physical meaning.
 
 Constraints are relative margins, at least zero if met. An evaluation is a pure function of several
-real or complex points, one per column. Solver coordinates are logarithms for variables with a
-positive lower bound. Other variables are divided by half the width between their bounds.
+real or complex points, one per column. In solver coordinates, variables with a positive lower bound
+are logarithms. Other variables are divided by half the distance between their bounds.
 """
 
 from __future__ import annotations
@@ -49,11 +49,12 @@ class BoxProblem:
     constraint_names, equality_names : label of each row of the values
     start : a first guess within the bounds, or None
     relaxable : for each constraint, True for a requirement, False for a law such as geometry
-    groups : for each constraint, the number of its limit; constraints of one limit are relaxed
-        together. None: each constraint is a limit of its own
+    groups : for each constraint, the number of the limit to which it belongs. Constraints of one
+        limit are relaxed together. None: each constraint is a limit of its own
     has_complex_step : False if `evaluate` only takes real points; then gradients are finite
         differences
-    linear : labels of variables that stay linear although their lower bound is positive
+    linear : labels of variables that are not scaled logarithmically although their lower bound is
+        positive
     """
 
     names: Sequence[str]
@@ -173,8 +174,7 @@ class ParametricProblem:
 
 
 ON_BOUND = 1e-12
-"""A coordinate this close to a bound becomes the bound (as a share of the range), so 1e-23 becomes
-0."""
+"""A coordinate this close to a bound, as a share of the range, is set to the bound (1e-23 to 0)."""
 
 
 @dataclass(frozen=True)
@@ -220,7 +220,7 @@ class Space:
         return np.asarray(np.clip(z, self.lower, self.upper))
 
     def to_x(self, z: Vector, *, inside: bool = True) -> Vector:
-        """Points (n, k) at coordinates (nf, k); exactly on a bound if z is.
+        """Points (n, k) at coordinates z (nf, k), exactly on a bound where z is.
 
         `inside=False` permits points beyond the bounds, for finite-difference steps.
         """
@@ -242,7 +242,7 @@ class Space:
         return x
 
     def slope(self, x: Vector) -> Vector:
-        """dx/dz of the free variables (nf, k) at points (n, k)."""
+        """Derivatives dx/dz (nf, k) of free variables by solver coordinates, at points (n, k)."""
         return np.where(self.logarithmic[:, None], x[self.free], self.scale[:, None])
 
     def complex_steps(self, x: Vector) -> npt.NDArray[np.complex128]:
@@ -262,7 +262,7 @@ class Space:
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """One optimum of the robust search: objective (SI), and share of draws that meet all limits."""
+    """One optimum of the robust search: objective (SI), share of draws that meet all limits."""
 
     objective: float
     rate: float
@@ -278,7 +278,7 @@ class Robust:
     rate, lower, upper : probability of meeting all covered limits, with its 95 % confidence
         interval
     samples : number of independent draws from which the rate was counted
-    converged : whether the reserves converged
+    converged : whether the reserves (added margins) converged
     nominal_objective, nominal_rate : objective and rate of the optimum without reserves
     reserves : margin added for scatter, by limit
     rounds : the optima in sequence; the first is without reserves

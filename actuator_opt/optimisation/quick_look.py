@@ -1,6 +1,7 @@
 """A quick look at a combination of the choices: descends from solved, similar combinations.
 
-It usually finds the optimum of the combination, or shows that it is infeasible, but proves neither.
+It usually finds the optimum of the combination, or no feasible design if there is none. It proves
+neither that the optimum is the best nor that the combination is infeasible.
 """
 
 from __future__ import annotations
@@ -31,18 +32,18 @@ SAMPLES = 256
 """Number of points of the sweep that gives another start if the similar combinations fail."""
 
 DOUBTFUL = 0.02
-"""If the least violation is at most this, the look may have overlooked a feasible design."""
+"""If the least violation found is at most this, the look may have missed a feasible design."""
 
 STUCK = 0.3
-"""If the least violation exceeds this, the search may be stuck. Between both limits, all starts of
-the shipped designs led to the same value, so one start is enough."""
+"""If the least violation found exceeds this, the search may be stuck. Between `DOUBTFUL` and this
+limit, all starts of the shipped designs led to the same violation, so one start is enough."""
 
 SETTLED = 1e-2
 """A descent counts as converged up to this residual of the optimality conditions."""
 
 STARTS = 3
-"""Number of starts if a descent did not converge: its end point, the design's start, and the best
-point of a sweep."""
+"""Number of starts after a descent that did not converge: its end point, the design's start, and
+the best point of a sweep."""
 
 
 @dataclass
@@ -65,10 +66,10 @@ class Look:
     """Missed checks that no variable can correct."""
     solution: Solution | None = None
     hessian: ScaledHessian | None = None
-    """Hessian at the optimum of this combination, or at that of the neighbour from which steps led
-    to it."""
+    """Hessian at the optimum of this combination, or of the neighbour from whose optimum steps led
+    here."""
     sizing: str = ""
-    """In words, the result of the search for listed sizes; empty without a search."""
+    """Result of the search for listed sizes, in one or a few words; empty without a search."""
     rounded: float | None = None
     """Objective of the best design of listed sizes."""
 
@@ -79,12 +80,12 @@ class Look:
 
 
 class LookStart(NamedTuple):
-    """A start; if `descend` is false, the worst violation is reduced first."""
+    """A start for a descent; if `descend` is false, the worst violation is minimised first."""
 
     x: Vector
     descend: bool
     hessian: ScaledHessian | None = None
-    """Hessian at the start, if it is an optimum of a neighbour."""
+    """Hessian at the start if the start is an optimum of a neighbour; else None."""
 
 
 def look_quickly(
@@ -132,7 +133,7 @@ def look_quickly(
 
 
 def _follow_neighbour(look: Look, evaluator: Evaluator, starts: Sequence[LookStart]) -> bool:
-    """Step from a neighbour's optimum to that of the combination; return whether this succeeds."""
+    """Take Newton steps from a neighbour's optimum; return whether they reach the new optimum."""
     neighbour = next((start for start in starts if start.hessian is not None), None)
     if neighbour is None or neighbour.hessian is None or not evaluator.space.size:
         return False
@@ -158,7 +159,7 @@ def hessian_of(look: Look) -> ScaledHessian | None:
 
 
 def _settle_quickly(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> None:
-    """Solve from a few starts, if the descent ended before it reached an optimum."""
+    """Optimise from a few starts if the descent ended before it reached an optimum."""
     quality = kkt.check(evaluator, evaluator.point(evaluator.space.to_z(x)))
     if quality.residual <= SETTLED or not evaluator.space.size:
         return

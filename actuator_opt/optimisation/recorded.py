@@ -1,8 +1,9 @@
 """Stores an optimisation or a Pareto front as plain data of a run record, and restores it.
 
 A design is stored as a tree of SI numbers, from which exactly the same design can be rebuilt. An
-evaluation is stored as its design and its estimated yield; the design is evaluated again on
-reading. All other data are dataclasses, which are restored by their type annotations.
+evaluation is stored as its design and its yield estimate (share of parts that meet all limits); the
+design is evaluated again on reading. All other data are dataclasses, which are restored by their
+type annotations.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ Found = TypeVar("Found", Optimisation, ParetoFront)
 
 
 _PLAIN: dict[Any, Any] = {float: (int, float), int: int, str: str, bool: bool}
-"""Plain types, with the JSON types that are accepted for each."""
+"""Plain Python types, with the JSON types that are accepted for each."""
 
 
 def to_plain(result: Optimisation | ParetoFront) -> dict[str, Any]:
@@ -62,7 +63,9 @@ def to_plain(result: Optimisation | ParetoFront) -> dict[str, Any]:
             return {key: plain(item) for key, item in value.items()}
         if is_dataclass(value):
             return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
-        assert isinstance(value, Iterable), f"no plain data: {type(value).__name__}"
+        assert isinstance(value, Iterable), (
+            f"values of the type {type(value).__name__} cannot be stored"
+        )
         return [plain(item) for item in value]
 
     return {"result": plain(result), "designs": designs}
@@ -152,7 +155,7 @@ def _typed(kind: Any, value: Any) -> Any:
         return None
     if kind in _PLAIN:
         if not isinstance(value, _PLAIN[kind]) or (isinstance(value, bool) and kind is not bool):
-            raise TypeError(f"{type(value).__name__} is no {kind.__name__}")
+            raise TypeError(f"a value of type {type(value).__name__} instead of {kind.__name__}")
         return value
     if isinstance(kind, type) and is_dataclass(kind):
         if isinstance(value, kind):

@@ -19,9 +19,10 @@ from .run import optimise
 
 @dataclass(frozen=True, slots=True)
 class Shift:
-    """A requirement with old and new values, and the range from the measured uncertainty.
+    """A requirement evaluated with the old and the new values of the design.
 
-    `lower` and `upper` enclose the value after the change (SI); None without uncertainties.
+    `lower` and `upper` enclose the requirement's new value (SI) for the measured uncertainties;
+    they are None without uncertainties.
     """
 
     before: Requirement
@@ -38,7 +39,7 @@ class Shift:
 
     @property
     def verdict(self) -> str:
-        """Verdict in one word."""
+        """Verdict on the requirement with the new values, in one word."""
         if self.before.met == self.after.met:
             return "still met" if self.after.met else "still missed"
         return "now met" if self.after.met else "now missed"
@@ -71,11 +72,11 @@ class ObjectiveChange(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Redesign:
-    """A design with old and new values: unchanged otherwise, and optimised again.
+    """Effect of new values on a design, which is evaluated as it is and optimised again.
 
     Parameters
     ----------
-    evaluation : with the new values
+    evaluation : the unchanged design, evaluated with the new values
     shifts : every requirement with the old and the new values
     best_before, best_after : the optima with old and new values; None for a design without
         variables and choices
@@ -107,8 +108,8 @@ class Redesign:
     def goals(self) -> tuple[ObjectiveChange, ...]:
         """The metrics of the objective at both optima; the terms of a weighted sum are separate.
 
-        A weighted sum divides each term by its value in the design file, and the new values change
-        that divisor. So the sums with old and new values cannot be compared.
+        A weighted sum divides each term by that term's value for the design file, which the new
+        values change. So the sums with old and new values cannot be compared.
         """
         before, after = self.best_before, self.best_after
         if before is None or after is None:
@@ -278,7 +279,7 @@ def _goal_words(objective_change: ObjectiveChange) -> str:
 
 
 def _repairs(optimisation: Optimisation) -> list[str]:
-    """The single change that is enough, and the smallest change of limits."""
+    """Remedies in words: a single change that is enough, and the smallest change of limits."""
     if optimisation.infeasibility is None:
         return []
     first_cure = next((cure for cure in optimisation.infeasibility.cures if cure["advised"]), None)
@@ -290,13 +291,13 @@ def _repairs(optimisation: Optimisation) -> list[str]:
     unsafe = any(row["safety_factor"] for row in joint)
     warned = " (this weakens a safety factor: not advised)" if unsafe else ""
     joint_change = (
-        [f"the smallest sufficient change of limits: {changes}{warned}"] if changes else []
+        [f"the smallest change of limits that is enough: {changes}{warned}"] if changes else []
     )
     return [*single, *joint_change]
 
 
 def _active_words(old: Sequence[str], new: Sequence[str]) -> list[str]:
-    """Limits that became active at the optimum, and limits that are now inactive."""
+    """Sentences on the limits that became active or inactive at the optimum."""
     pairs = (
         ([limit for limit in new if limit not in old], "newly at its limit"),
         ([limit for limit in old if limit not in new], "no longer at its limit"),

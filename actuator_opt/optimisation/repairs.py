@@ -1,9 +1,9 @@
 """Single changes of a requirement or a bound that make an infeasible problem feasible.
 
-Each candidate drops one requirement or opens one bound. For all candidates at once, shortest steps
-to the linearised limits search for a point that meets all other limits. If the steps fail, an
-elastic problem (with slacks on the constraints) minimises the worst violation from several points.
-The feasible point then leads to the least change that is enough.
+Each candidate change drops one requirement or widens one bound. For all candidates at once,
+shortest steps to the linearised limits search for a point that meets all other limits. If the steps
+fail, an elastic problem (with slacks on the constraints) minimises the worst violation from several
+points. From the feasible point, the search then finds the least change that is enough.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ MOST = 200
 
 
 FINE = 1e-7
-"""Relative tolerance of a descent whose result is polished afterwards."""
+"""Relative tolerance of a descent whose result Newton steps polish afterwards."""
 
 
 EXACT = 1e-9
-"""Polishing ends when the measure of optimality falls below this."""
+"""The polishing Newton steps end once the measure of optimality is below this."""
 
 
 ROUGH = 1e-5
@@ -62,7 +62,7 @@ def common(problem: BoxProblem, room: float) -> BoxProblem:
 
 
 def separate(problem: BoxProblem, groups: Sequence[Indices], room: Sequence[float]) -> BoxProblem:
-    """The elastic problem with one slack for each group of constraints; all others must be met."""
+    """The elastic problem with one slack for each of the `groups`; the rest must be met."""
     n, m = len(problem.names), len(problem.constraint_names)
 
     def evaluate(x: Array) -> PointValues:
@@ -123,7 +123,8 @@ def feasible_point(evaluator: Evaluator, point: Point) -> Point | None:
 def least_missed(evaluator: Evaluator, point: Point, rough: float = np.inf) -> Point:
     """Minimise the worst violation near a point; return a feasible point unchanged.
 
-    A result with a violation above `rough` is not polished, which halves the effort.
+    If a rough search ends with a violation above `rough`, it is not refined, which halves the
+    effort.
     """
     inner = Evaluator(common(evaluator.problem, 2.0 * point.violation + 1.0))
     start = best = inner.point(inner.space.to_z(np.append(point.x, point.violation)))
@@ -144,14 +145,14 @@ def least_missed(evaluator: Evaluator, point: Point, rough: float = np.inf) -> P
 
 
 def _miss(point: Point) -> float:
-    """The worst violation at a point of the problem with a common slack, for sorting."""
+    """Sort key for points of the problem with a common slack: slack plus remaining violation."""
     return point.objective + point.violation if point.valid else np.inf
 
 
 def descend(
     problem: BoxProblem, x: Vector, slack: Sequence[float], ends: Sequence[Point] = ()
 ) -> Point:
-    """Solve an elastic problem from a point and slacks; stop at an end point already known."""
+    """Solve an elastic problem from a point and slacks; stop near a known result (`ends`)."""
     inner = Evaluator(problem)
     start = inner.point(inner.space.to_z(np.concatenate([x, np.asarray(slack, dtype=float)])))
     if not start.valid:
@@ -173,26 +174,26 @@ def finish(evaluator: Evaluator, point: Point) -> Point:
 
 
 NOTHING = 1e-6
-"""Relaxation or violation below which it counts as zero."""
+"""Relaxations and violations up to this count as zero."""
 
 SETTLED = 1e-6
 """A result counts as an optimum up to this residual of the optimality conditions."""
 
 CHALLENGE = 0.99
-"""If this share of an amount is also enough, the amount is too large."""
+"""If this share of a relaxation is also enough, the relaxation found was too large."""
 
 FAINT = 1e-3
-"""Least amount that is checked in this way; a hundredth of it must exceed the feasibility
-tolerance."""
+"""Least relaxation that is checked with `CHALLENGE`, since a hundredth of it must exceed the
+feasibility tolerance."""
 
 CHALLENGES = 8
-"""Maximum number of such checks; seven halvings reach one per cent."""
+"""Maximum number of checks with `CHALLENGE`; seven halvings reach one per cent."""
 
 WIDEST = 2.0
 """Largest factor on a bound or dimension; with a larger factor it would be another actuator."""
 
 _FREED = 1e9
-"""Margin granted to a requirement that must be ignored; larger than any violation."""
+"""Margin given up to ignore a requirement altogether; larger than any violation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,7 +216,8 @@ class Opening:
     ----------
     variable, index, side, value : the bound
     gain : decrease of the total relaxation per relative change of the bound
-    needed : value of the bound that is enough alone; None if no bound is enough up to `WIDEST`
+    needed : value of the bound that is enough if only this bound changes; None if no change up to
+        the factor `WIDEST` is enough
     """
 
     variable: str
@@ -227,7 +229,7 @@ class Opening:
 
 
 def missed(evaluator: Evaluator, x: Vector, groups: Sequence[Indices]) -> list[float]:
-    """In each group, the largest violation at a point."""
+    """For each group of constraints, the largest violation at a point."""
     rows = evaluator.point(evaluator.space.to_z(x)).rows[1 : 1 + evaluator.constraint_count]
     lacks = np.maximum(-np.nan_to_num(rows, nan=0.0), 0.0)
     return [float(lacks[group].max(initial=0.0)) for group in groups]
@@ -244,14 +246,17 @@ def by_limits(
     Parameters
     ----------
     problem : the infeasible problem
-    groups : row numbers of each candidate
-    named : first rows of those groups that are searched from every point
+    groups : indices of the constraints in each group
+    named : first constraint of each group that is searched from every point
     points : starting points; the first is that of the smallest joint relaxation
     """
     amounts: list[float | None] = []
     points_without = without_each(problem, groups, points[0])
     for number, (group, x) in enumerate(zip(groups, points_without, strict=True)):
-        tell("infeasible: searching for a requirement whose change is enough", number / len(groups))
+        tell(
+            "infeasible: searching for a requirement whose change makes the design feasible",
+            number / len(groups),
+        )
         if x is None:
             x = _without(problem, group, points if int(group[0]) in named else points[:1])
         amounts.append(None if x is None else _least_of_all(problem, group, x, points[1:]))
@@ -268,10 +273,10 @@ def _challenged(
     amounts: Sequence[float | None],
     points: Sequence[Vector],
 ) -> list[float | None]:
-    """The amounts, reduced wherever the share `CHALLENGE` of an amount is enough as well.
+    """The relaxations, reduced wherever the share `CHALLENGE` of a relaxation is also enough.
 
-    A descent may end at a kink or in a shallow valley. Halving the amount then leads to a smaller
-    amount.
+    A descent may end too early, at a kink or in a shallow valley. Repeated halving then finds a
+    smaller relaxation.
     """
     sufficient = {k: amount for k, amount in enumerate(amounts) if amount is not None}
     trials = {k: CHALLENGE * amount for k, amount in sufficient.items() if amount > FAINT}
@@ -309,8 +314,8 @@ def without_each(
 ) -> list[Vector | None]:
     """For each group, a point that meets all rows of the other groups.
 
-    The group's own violation may be up to `granted`; None permits any violation. The result is None
-    without such a point.
+    The violation of the group itself may be up to `granted`; None permits any violation. Where
+    there is no such point, the result is None.
     """
     evaluator = Evaluator(problem)
     point = evaluator.point(evaluator.space.to_z(x))
@@ -360,7 +365,7 @@ def _without(problem: BoxProblem, group: Indices, points: Sequence[Vector]) -> V
 def _least_of_all(
     problem: BoxProblem, group: Indices, x: Vector, points: Sequence[Vector]
 ) -> float | None:
-    """The least relaxation of one group; other starting points follow if a descent stalls."""
+    """The least relaxation of one group; tried from further points if a descent stalls."""
     amount, optimal = _least(problem, group, x)
     for point in points:
         if optimal:
@@ -389,16 +394,22 @@ def _least(problem: BoxProblem, group: Indices, x: Vector) -> tuple[float | None
 
 
 def by_bounds(problem: BoxProblem, bounds: Sequence[Opening], x: Vector) -> tuple[Opening, ...]:
-    """The bounds, each with the value that is enough if only this bound is changed."""
+    """The bounds, each with the value that is enough if only that bound changes."""
     result = []
     for number, bound in enumerate(bounds):
-        tell("infeasible: searching for a bound whose change is enough", number / len(bounds))
+        tell(
+            "infeasible: searching for a bound whose change makes the design feasible",
+            number / len(bounds),
+        )
         result.append(replace(bound, needed=_opened(problem, bound, x)))
     return tuple(result)
 
 
 def _opened(problem: BoxProblem, bound: Opening, x: Vector) -> float | None:
-    """The value beyond its bound, nearest to it, with which a variable meets all requirements."""
+    """The variable's value, as little beyond its bound as possible, that meets all requirements.
+
+    None if there is no such value.
+    """
     j, is_upper = bound.index, bound.side == "upper"
     if bound.value <= 0:
         return None

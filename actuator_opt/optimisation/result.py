@@ -32,7 +32,7 @@ class VariableResult:
     at_bound: str | None
 
     def moved(self, value: float) -> VariableResult:
-        """The dimension with another value."""
+        """The same dimension with another value; `at_bound` is updated."""
         room = 1e-6 * max(abs(self.lower), abs(self.upper), self.upper - self.lower)
         bounds = {"lower": value - self.lower, "upper": self.upper - value}
         active_bound = next((name for name, distance in bounds.items() if distance <= room), None)
@@ -41,7 +41,11 @@ class VariableResult:
 
 @dataclass(frozen=True, slots=True)
 class Kkt:
-    """Quality of the optimum: residual ‖∇f + Σλ∇g‖/‖∇f‖, active limits, their rank."""
+    """Quality of the optimum by its Karush-Kuhn-Tucker conditions.
+
+    `residual` is ‖∇f + Σλ∇g‖/‖∇f‖, with the objective f, the constraints g and their multipliers λ.
+    `active` names the active limits, and `rank` is the rank of their gradients.
+    """
 
     residual: float
     active: tuple[str, ...]
@@ -54,25 +58,28 @@ class Kkt:
 class Infeasibility:
     """Explanation of an infeasible design: which limits conflict, and which changes are enough.
 
-    An entry of `joint` is a limit to relax together with others. An entry of `sole` is a limit that
-    is enough if it alone is relaxed. Both contain requirement, origin, parameter (PATH), metric,
-    sense, limit, needed (the limit that is enough; None if no change of this limit alone is
-    enough), relaxation (fraction of the margin given up), change (of the limit, a fraction),
+    A change is "enough" if it makes the design feasible. `joint` lists limits that are enough if
+    they are all relaxed together. `sole` lists limits each of which is enough if it alone is
+    relaxed. An entry of either contains requirement, origin, parameter (PATH), metric, sense,
+    limit, needed (the relaxed limit that is enough; None if no change of this limit alone is
+    enough), relaxation (given-up fraction of the margin), change (of the limit, a fraction),
     safety_factor (True for the check list and safety factors, whose relaxation is not advised) and
-    both limits as text in the display unit. The text of `needed` is rounded so that it is enough as
-    printed. If a torque is required through a lever, limit and needed are torques.
+    both limits as text in the display unit. The text of `needed` is rounded towards the safe side,
+    so that the printed value is enough. If the requirement is a torque at a lever, limit and needed
+    are torques.
 
     An entry of `bounds` is a bound of a variable that is active at the joint relaxation. It
     contains variable, parameter (PATH), quantity, bound (side), value, gain (decrease of `total`
-    per relative change; a change of 1 % gives 0.01 of it), needed (the bound that is enough alone;
-    None if none is), change and texts.
+    per relative change of the bound, so that a change of 1 % decreases `total` by 0.01 of it),
+    needed (the bound that is enough if it alone is moved; None if no bound is), change and texts.
 
     An entry of `cures` is a single change that is enough, the most advisable first. It contains
     kind (dimension, choice, bound, requirement, safety factor), parameter (PATH), now and needed
-    (SI, or a word), change, texts, and advised (False for safety factors). A dimension here is not
-    a variable of the design. `together` lists dimensions that are only enough together. `beside`
-    lists other entries that must change with a choice, by PATH. A design confirmed each cure.
-    `untried` lists candidates that were not tried.
+    (SI, or a word), change, texts, and advised (False for safety factors). A cure of kind
+    "dimension" is an input that is not a variable of the design. `together` lists dimensions that
+    are enough only if they change together. `beside` lists, by PATH, other inputs that must change
+    with a choice. Each cure was confirmed by a feasible design. `untried` lists candidates that
+    were not tried.
 
     `laws` lists geometrical conditions that conflict. `total` is the sum of the joint relaxations.
     `sentence` is the advice in one line, and `evidence` states what is proven.
@@ -91,13 +98,14 @@ class Infeasibility:
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """Distance of a design from the best possible design: the proof, and the evidence.
+    """Largest distance of a design from the best possible design, with proof and evidence.
 
-    No design that meets the covered limits has an objective below `lower_bound` (SI). `gap` is the
-    distance of this design's objective from that bound, as a share of the objective. Without a
-    proof both are None, and `sentence` gives the reason. `dropped` gives the reason for each limit
-    that is not covered; dropping a limit can only lower the bound. `evidence` is a statistic of the
-    search's starts, not a proof.
+    The proof covers the limits in `covers`: no design that meets them has an objective below
+    `lower_bound` (SI). `gap` is the distance of this design's objective from that bound, as a share
+    of the objective. Without a proof both are None, and `sentence` gives the reason. `dropped`
+    gives the reason for each limit that is not covered; dropping a limit can only lower the bound.
+    `evidence` is not a proof but a statistic: how many starts of the search reached the same
+    optimum.
     """
 
     sentence: str
@@ -109,15 +117,16 @@ class Certificate:
     boxes: int = 0
 
     def to_dict(self) -> dict[str, Any]:
-        """The "certificate" of `optimise --json` (SI)."""
+        """The entry "certificate" in the output of `optimise --json` (SI)."""
         return asdict(self) | {"covers": list(self.covers), "dropped": dict(self.dropped)}
 
 
 @dataclass(frozen=True, slots=True)
 class RoundedVariable:
-    """A variable before and after rounding (SI); a `discrete` variable has only listed values.
+    """A variable before and after rounding (SI); a `discrete` variable can take only listed values.
 
-    `plies` is the number of plies of a layer; `sizes` is the name of the list or series.
+    `plies` is the number of plies if the variable is the thickness of a layer. `sizes` is the name
+    of the list or series from which the value is taken.
     """
 
     path: str
@@ -131,7 +140,7 @@ class RoundedVariable:
 
 @dataclass(frozen=True, slots=True)
 class RunnerUp:
-    """Another rounded design that meets all requirements, with its listed variables by PATH."""
+    """A next best rounded design that is feasible; `values` gives its rounded variables by PATH."""
 
     objective: float
     cost: float
@@ -143,8 +152,9 @@ class RunnerUp:
 class SizeRemedy:
     """A small change of one number that makes better sizes possible.
 
-    `change` contains parameter (PATH), limit and needed (SI), change (a fraction) and both limits
-    as text. `objective` and `values` (sizes by PATH) belong to a feasible design with this change.
+    `change` contains parameter (PATH), limit and needed (the present and the changed number, SI),
+    change (a fraction) and both numbers as text. `objective` and `values` (sizes by PATH) belong to
+    a feasible design with this change.
     """
 
     change: Mapping[str, Any]
@@ -160,12 +170,13 @@ class Rounding:
     `name` is the kind of sizes ("whole plies", "standard sizes"). `cost` is the loss in the
     objective (≥ 0, in its SI unit); `percent` is this loss relative to the continuous optimum. Both
     are None, like `design` and `evaluation`, if no rounded design was feasible. `plies` gives the
-    number of plies of every layer with a ply thickness. `tried` and `feasible` count the rounded
-    designs, `solves` the re-optimisations. `complete` is True if the search did not stop at a
-    limit. The bounds of the search are local optima, so the result is not proven. `unmade` lists
-    the PATHs of values that are not whole plies or allowed angles because the requested sizes leave
-    them free; such a design cannot be built yet. `remedies` lists small changes of a limit, load or
-    pressure that make better sizes possible; they are searched if rounding costs much.
+    number of plies of every layer with a ply thickness. `tried` and `feasible` are the numbers of
+    rounded designs tried and found feasible; `solves` is the number of re-optimisations. `complete`
+    is True if the search did not stop at its time limit. The result is not proven, because branch
+    and bound used local optima as bounds. `unmade` lists the PATHs of values that are not whole
+    plies or allowed angles because the requested sizes leave them free; such a design cannot be
+    built yet. `remedies` lists small changes of a limit, load or pressure that make better sizes
+    possible; they are computed only if rounding costs much.
     """
 
     met: bool
@@ -201,7 +212,7 @@ class Rounding:
         return "\n".join([self.sentence + cost, *self.notes, *table])
 
     def to_dict(self) -> dict[str, Any]:
-        """The "rounding" of `optimise --json` (SI)."""
+        """The entry "rounding" in the output of `optimise --json` (SI)."""
         keys = ("met", "remedy", "cost", "percent", "tried", "feasible", "solves")
         return {name: getattr(self, name) for name in keys} | {
             "sizes": self.name,
@@ -222,20 +233,21 @@ class Rounding:
 
 
 How: TypeAlias = Literal["multistart", "quick", "evaluated", "not possible", "not tried"]
-"""Search method of a combination of choices."""
+"""Method that gave the best design of a combination of choices (see `Combination`)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Combination:
     """A combination of the choices, and its best design.
 
-    `how` is the kind of search. "multistart" means from many starts. "quick" means only from the
-    nearest known design, which may miss the optimum. "evaluated" has no variables, "not possible"
-    has values that contradict each other, and "not tried" was left out at the time limit.
-    `feasible` is True if all requirements are met. `cost` is the loss against the best objective
-    (in its SI unit), `percent` the relative loss; both are None without a comparison. `rounded` is
-    the objective with listed sizes, if these were requested and it beats all combinations before.
-    Costs then refer to the best rounded objective.
+    `how` is the method that gave the design. "multistart" means a search from many starts, and
+    "quick" a search only from the nearest known design, which may miss the optimum. "evaluated"
+    means that there are no variables, "not possible" that the values contradict each other, and
+    "not tried" that the time limit was reached before. `feasible` is True if all requirements are
+    met. `cost` is the difference of the objective from the best combination (in its SI unit), and
+    `percent` the relative difference; both are None without a comparison. `rounded` is the
+    objective with listed sizes if these were requested and if it beats all combinations solved
+    before. `cost` then refers to the best rounded objective.
     """
 
     values: Mapping[str, choice_list.Value]
@@ -281,7 +293,7 @@ class Choices:
         return sum(combination.feasible for combination in self.combinations)
 
     def to_dict(self) -> dict[str, Any]:
-        """The "choices" of `optimise --json` (SI)."""
+        """The entry "choices" in the output of `optimise --json` (SI)."""
         best, *runners_up = (combination.to_dict() for combination in self.combinations)
         return {
             "outcome": self.sentence,
@@ -325,7 +337,7 @@ class Optimisation(Displayed):
     certificate: Certificate | None = None
     """If requested, how far the design is from the best possible design."""
     rounding: Rounding | None = None
-    """The best design of listed sizes, if requested and a continuous optimum exists."""
+    """The best design with listed sizes, if requested and if a continuous optimum exists."""
     choices: Choices | None = None
     """All combinations of the design's choices, if it has any."""
     robust: Robust | None = None
@@ -334,12 +346,12 @@ class Optimisation(Displayed):
 
     @property
     def made(self) -> Rounding | None:
-        """The rounding, if it found a design with listed sizes, which is shown and saved."""
+        """The rounding if it found a design with listed sizes (the design to build), else None."""
         return None if self.rounding is None or self.rounding.design is None else self.rounding
 
     @property
     def best(self) -> Design:
-        """The design to build: with listed sizes if it exists, or else the continuous optimum."""
+        """The design to build: with listed sizes if possible, else the continuous optimum."""
         return self.design if self.made is None or self.made.design is None else self.made.design
 
     @property
@@ -350,7 +362,7 @@ class Optimisation(Displayed):
 
     @property
     def tight(self) -> tuple[str, ...]:
-        """Limits without margin in the design to build; empty if its yield is as requested."""
+        """Limits that the design to build only just meets; empty if a requested yield is met."""
         return () if self.robust and self.robust.reached else self.best_evaluation.tight
 
     @property
@@ -372,12 +384,12 @@ class Optimisation(Displayed):
 
     @property
     def optimum(self) -> bool:
-        """Whether the design to build is optimal; with sizes, among designs of these sizes."""
+        """Whether the design to build is optimal, if necessary among designs with listed sizes."""
         return self.status == "optimal" and self.best_evaluation.met
 
     @property
     def shown(self) -> str:
-        """In words, the design in tables, drawing and JSON; empty without requested sizes."""
+        """Sentence on which design the outputs show; empty if no sizes were requested."""
         if self.rounding is None:
             return ""
         quantity, name = of_metric(self.objective_metric), self.rounding.name
@@ -394,13 +406,13 @@ class Optimisation(Displayed):
             names = ", ".join(self.rounding.unmade)
             to_build = f"which cannot be built yet, as {names} need whole plies or allowed angles"
         return (
-            f"shows the design of {name} ({quantity.label} {rounded_text}), {to_build}; "
-            f"prices refer to the continuous optimum, with {continuous_text}"
+            f"shows the design with {name} ({quantity.label} {rounded_text}), {to_build}; "
+            f"prices refer to the continuous optimum ({continuous_text})"
         )
 
     @property
     def offers(self) -> Offers:
-        """The most valuable changes, judged by the re-solved optima."""
+        """The most valuable changes of requirement, parameter and material, re-optimised."""
         maximised = self.design.objective.maximise is not None
         return offers(self.sensitivities, self.objective_value, maximised=maximised)
 
@@ -436,7 +448,7 @@ class Optimisation(Displayed):
         return table | {"limit": [row.limit / row.scale for row in self.sensitivities]}
 
     def to_dict(self) -> dict[str, Any]:
-        """The object of `optimise --json` (SI): keys of evaluation and optimisation.
+        """The output of `optimise --json` (SI): the keys of an evaluation and of an optimisation.
 
         Metrics, requirements, checks, objective and variables are those of the design to build;
         `evaluate` gives the same values for the saved file. Multipliers, prices and certificate are

@@ -1,15 +1,16 @@
-"""Rounds the continuous optimum to sizes that can be made; gives the cost and remedies.
+"""Rounds the continuous optimum to sizes that can be made; reports the cost and remedies.
 
-A variable takes sizes that its file states (a list, a step, a standard series). On request,
-variables also take whole plies, allowed angles or all standard sizes; see `design.sizes`. All other
-variables remain continuous and are optimised again. The search proves nothing; see
-`branch_and_bound`.
+A variable is rounded to the sizes that the design file states for it (a list, a step, a standard
+series). On request, variables are also rounded to whole plies, allowed angles or all standard
+sizes; see `design.sizes`. All other variables remain continuous and are optimised again. The search
+proves nothing; see `branch_and_bound`.
 
 Remedies are small changes of a limit, a load or the supply pressure that make better sizes
-possible. If rounding costs much, the most changed variable is moved to the listed size on its other
-side, which some limit forbids. If no design with sizes is feasible, the least infeasible sizes are
-taken. For these sizes, the least relaxation of each limit is computed. The best design with this
-relaxation confirms the remedy.
+possible. If rounding costs much, the variable that rounding changed most is moved to the
+neighbouring size on the other side of its continuous value; some limit forbids this size. If no
+design with listed sizes is feasible, the least infeasible sizes are used instead. For these sizes,
+the smallest sufficient relaxation of each limit is computed. An optimisation with the relaxed limit
+then confirms the remedy.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ from .result import Optimisation, RoundedVariable, Rounding, RunnerUp, SizeRemed
 from .solver import solve
 
 COSTLY = 10.0
-"""If rounding costs more than this (%), remedies are searched for: our choice."""
+"""If rounding costs more than this (% of the objective), remedies are searched for (our choice)."""
 
 
 SMALL = 0.25
@@ -70,7 +71,7 @@ def size_remedies(
     size_search: SizeSearch,
     deadline: float | None = None,
 ) -> tuple[tuple[SizeRemedy, ...], str]:
-    """Single changes that make better sizes possible, best design first; a note if there are none.
+    """Single changes that make better sizes possible, best first; a note if there are none.
 
     Parameters
     ----------
@@ -85,17 +86,14 @@ def size_remedies(
     for assignment in assignments:
         if deadline is not None and time.perf_counter() > deadline:
             break
-        tell("standard sizes cost much: searching for a limit that allows smaller sizes")
+        tell("rounding costs much: searching for changes that allow better sizes")
         fixed = _FixedSizes(actuator, listed, assignment, solution.x, objective)
         remedies += [
             *fixed.relaxed(_limits(actuator, solution, size_search)),
             *fixed.with_other_pressure(),
         ]
     sign = actuator.goal.sign
-    note = (
-        "no change of a single limit, of a load or of the supply pressure by up to "
-        f"{100 * SMALL:g} % "
-    )
+    note = f"no single change of a limit, a load or the supply pressure by up to {100 * SMALL:g} % "
     note = f"{note}allows better sizes" if assignments and not remedies else ""
     return tuple(sorted(remedies, key=lambda remedy: sign * remedy.objective)), note
 
@@ -119,7 +117,7 @@ def _other_sizes(listed: Sequence[Listed], x: Vector, size_search: SizeSearch) -
 
 
 def _limits(actuator: ActuatorProblem, solution: Solution, size_search: SizeSearch) -> list[int]:
-    """Requirements and loads with the least margins, at the optimum or with the sizes."""
+    """Indices of the requirements and loads with the least margins, before or after rounding."""
     margins = solution.constraints
     if size_search.missed is not None:
         margins = np.minimum(margins, size_search.missed.rows[1 : 1 + len(margins)])
@@ -162,7 +160,7 @@ class _FixedSizes:
         return replace(problem, lower=lower, upper=upper, start=None)
 
     def relaxed(self, indices: Sequence[int]) -> Iterator[SizeRemedy]:
-        """For each limit, the least relaxation that makes the sizes feasible."""
+        """For each limit, the remedy with the least relaxation that makes the sizes feasible."""
         problem = self.with_sizes(self.actuator.problem)
         assert problem.groups is not None
         numbers = np.asarray(problem.groups)
@@ -186,7 +184,7 @@ class _FixedSizes:
             yield from self.remedy(replace(problem, evaluate=evaluate), start, entry)
 
     def with_other_pressure(self) -> Iterator[SizeRemedy]:
-        """The least change of the supply pressure that makes the sizes feasible."""
+        """The remedy with the least change of the supply pressure that makes the sizes feasible."""
         if PRESSURE in self.actuator.paths:
             return
         design = self.actuator.subject.design
@@ -214,7 +212,7 @@ class _FixedSizes:
     def remedy(
         self, eased: BoxProblem, x: Vector, entry: Mapping[str, Any]
     ) -> Iterator[SizeRemedy]:
-        """The best design with the sizes and the changed number, if the change helps."""
+        """The remedy, with the best design of these sizes after the change, if it is better."""
         point = repairs.near(eased, x)
         if point is None:
             return
@@ -232,7 +230,7 @@ class _FixedSizes:
 
 
 RUNNERS_UP = 3
-"""Number of next best designs listed in the result."""
+"""Number of next best designs that the result lists."""
 
 MOST_SAID = 4
 """Maximum number of sizes named in a sentence."""
@@ -242,7 +240,7 @@ _OF_PLIES = ("whole plies", "allowed angles")
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """Sizes that the user requests in addition to those of the file."""
+    """Kinds of sizes that the user requests in addition to those in the design file."""
 
     whole_plies: bool = False
     standard: bool = False
@@ -250,7 +248,7 @@ class Wanted:
 
 @dataclass(frozen=True)
 class ListedSizes:
-    """The variables with listed values: their groups for the search, and the series of each."""
+    """The variables with listed values, in groups for the search, and the source of their sizes."""
 
     listed: tuple[Listed, ...]
     labels: dict[str, str]
@@ -296,7 +294,7 @@ def uncounted(design: Design, materials: Mapping[str, Material]) -> tuple[str, .
 
 
 def misfits(design: Design) -> tuple[str, ...]:
-    """PATHs of lay-up values that are not whole plies or not allowed angles."""
+    """PATHs of thicknesses that are not whole plies, and of angles that are not allowed."""
     paths = []
     allowed = design.barrel.allowed_angles
     for path, ply in layers(design):
@@ -311,13 +309,13 @@ def misfits(design: Design) -> tuple[str, ...]:
 
 
 def unrounded(optimisation: Optimisation) -> str:
-    """A note if an optimum has no whole plies and none were requested; else empty."""
+    """A note if an optimum has no whole plies because none were requested; else empty."""
     design = optimisation.design
     paths = [path for path in misfits(design) if path in design.variables]
     if optimisation.rounding is not None or not paths or not optimisation.evaluation.met:
         return ""
     return (
-        f"{', '.join(paths)}: these are not yet whole numbers of plies or allowed angles; see "
+        f"{', '.join(paths)}: not yet rounded to whole numbers of plies or to allowed angles; see "
         "--whole-plies"
     )
 
@@ -372,9 +370,13 @@ def sizes_of(
 
 
 def _require_plies(design: Design, requested: Wanted, materials: Mapping[str, Material]) -> None:
-    """Check that every fibre layer has countable plies, and if fixed, whole plies."""
+    """Check that all fibre layers state a ply thickness, and that fixed layers fit it."""
     plies_by_path = dict(layers(design))
-    hint = "" if requested.whole_plies else '; for bore and rod alone write "sizes: iso_3320"'
+    hint = (
+        ""
+        if requested.whole_plies
+        else '; to round only bore and rod, set "sizes: iso_3320" for these variables'
+    )
     faults = [
         Diagnostic(
             "the layer states no ply_thickness, so its plies cannot be counted",
@@ -390,7 +392,7 @@ def _require_plies(design: Design, requested: Wanted, materials: Mapping[str, Ma
             pairs = "" if not ply.balanced or along(ply.angle) else "pairs of "
             faults.append(
                 Diagnostic(
-                    f"not a whole number of {pairs}plies of {thickness}, and not a variable",
+                    f"fixed, and not a whole number of {pairs}plies of {thickness}",
                     "change it, or make it a variable",
                     path=path,
                 )
@@ -405,8 +407,8 @@ def _nothing_to_round(requested: Wanted) -> Diagnostic:
         remedy = "make cylinder.bore or rod.outer_diameter a variable, or give a variable sizes"
     else:
         message = (
-            "nothing to round: no variable is a layer that states ply_thickness, or an angle of a "
-            "barrel with allowed_angles"
+            "nothing to round: no variable is the thickness of a layer with ply_thickness, or "
+            "an angle of a barrel with allowed_angles"
         )
         remedy = "add ply_thickness to a layer whose thickness is a variable"
     return Diagnostic(message, remedy, path="variables")
@@ -430,9 +432,10 @@ def rounded(
     until: float | None = None,
     seed: int = 0,
 ) -> tuple[Rounding, Solution]:
-    """The best design with the sizes, and the continuous optimum for comparison.
+    """The best design with listed sizes, and the continuous optimum with which it is compared.
 
-    The continuous optimum is the given solution, unless the search of sizes finds a better design.
+    The continuous optimum is the given solution, or a new solution if the search for sizes finds a
+    better design.
 
     Parameters
     ----------
@@ -459,7 +462,7 @@ def rounded(
 
 
 def _cost(objective: float, solution: Solution) -> float:
-    """Loss of objective against the continuous optimum; at least 0, despite rounding errors."""
+    """Difference of the objective from the continuous optimum; rounding errors count as 0."""
     cost = objective - solution.objective
     return 0.0 if abs(cost) <= 10 * SAME * abs(solution.objective) else cost
 
@@ -475,7 +478,8 @@ def _rounding(
     feasible = sum(math.isfinite(objective) for objective in size_search.tried.values())
     failure = Rounding(
         met=False,
-        sentence=f"none of {len(size_search.tried)} designs of {sizes.name} meets all requirements"
+        sentence=f"none of the {len(size_search.tried)} tried designs with {sizes.name} "
+        "meets all requirements"
         + ("" if size_search.complete else ", and the search stopped at its time limit")
         + _nearest(actuator, sizes, size_search),
         remedy=f"{_FINER[sizes.name]}, widen the bounds of these variables, or relax a requirement",
@@ -512,7 +516,7 @@ def _rounding(
 
 
 def _nearest(actuator: ActuatorProblem, sizes: ListedSizes, size_search: SizeSearch) -> str:
-    """The limit that the least infeasible sizes miss most, in words; empty if unknown."""
+    """Clause on the limit that the least infeasible sizes miss most; empty if unknown."""
     if (
         size_search.nearest is None
         or size_search.missed is None
@@ -549,9 +553,9 @@ _FINER = {
 
 
 def _sentence(name: str, met: bool, complete: bool) -> tuple[str, str]:
-    """Sentence on the result of the search and the remedy."""
+    """Sentence on the result of the search, and the remedy."""
     if not met:
-        return f"the design of {name} misses a requirement", f"relax it, or {_FINER[name]}"
+        return f"the best design with {name} misses a requirement", f"relax it, or {_FINER[name]}"
     if not complete:
         return (
             f"all requirements are met with {name}; the search stopped at its time limit and "
@@ -560,7 +564,7 @@ def _sentence(name: str, met: bool, complete: bool) -> tuple[str, str]:
         )
     return (
         f"all requirements are met with {name}; this is the best design that branch and bound "
-        "found, without proof, because its bounds come from local optima",
+        "found (not proven, because its bounds are local optima)",
         "",
     )
 
@@ -568,9 +572,10 @@ def _sentence(name: str, met: bool, complete: bool) -> tuple[str, str]:
 def _unbuildable(
     actuator: ActuatorProblem, design: Design
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """PATHs without whole plies, allowed angles or `ply_thickness`, and a sentence on each.
+    """PATHs of values that are not whole plies or allowed angles, and a sentence on each.
 
-    For the design before rounding; its variables are left out.
+    PATHs of layers without `ply_thickness` are included. If `design` is the design before rounding,
+    its variables are left out.
     """
     start = design is actuator.subject.design
     excluded = design.variables if start else {}
@@ -620,7 +625,7 @@ def _variables(
 def _runners_up(
     actuator: ActuatorProblem, solution: Solution, listed: Sequence[Listed], size_search: SizeSearch
 ) -> tuple[RunnerUp, ...]:
-    """The next best designs with sizes."""
+    """The next best designs with listed sizes."""
     candidates = sorted(
         (objective, assignment)
         for assignment, objective in size_search.tried.items()

@@ -80,7 +80,7 @@ def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
 
 
 def enumerated(optimisation: Optimisation, goal: Goal) -> Certificate | None:
-    """The certificate of a design without variables, whose combinations are all evaluated."""
+    """The certificate of a design that has choices but no variables; None if not applicable."""
     choices = optimisation.choices
     if choices is None or not optimisation.evaluation.met:
         return None
@@ -96,14 +96,14 @@ def enumerated(optimisation: Optimisation, goal: Goal) -> Certificate | None:
     best = min((sign * objective for objective in objectives), default=sign * value)
     sentence += "none that meets all requirements is better"
     if best < sign * value:  # checks met count before the objective
-        sentence += ", except those that miss more of the check list"
+        sentence += ", except combinations that fail more checks of the check list"
     if goal.single is None or sign < 0 or not value > 0:
         return Certificate(sentence, "")
     return Certificate(sentence, "", best, 1 - best / value)
 
 
 def _percent(share: float) -> str:
-    """A gap in per cent, rounded upwards."""
+    """The gap to the best possible design in per cent, rounded upwards."""
     percent = 100 * share
     if percent < 0.01:
         return "0.01 %"
@@ -123,7 +123,7 @@ def _unsuited(actuator: ActuatorProblem, solution: Solution) -> str:
 
 
 def _evidence(solution: Solution) -> str:
-    """Sentence: how strongly the starts suggest that no optimum is better."""
+    """Sentence on how strongly the starts of the search suggest that there is no better optimum."""
     count = len(solution.starts)
     if count == 0:
         return ""
@@ -135,9 +135,9 @@ def _evidence(solution: Solution) -> str:
     missed = 1 - (1 - CHANCE) ** (1 / count)
     return (
         f"{count_same} of {count} starts reached this optimum, and none reached a better "
-        f"one. If more than {100 * missed:.0f} % of all starts led to a better optimum, "
-        f"this search would have found it with {100 * CHANCE:.0f} % probability (evidence, "
-        "not proof)"
+        f"one. If a better optimum were reached from more than {100 * missed:.0f} % of all "
+        f"possible starts, this search would have found it with {100 * CHANCE:.0f} % "
+        "probability (evidence, not proof)"
     )
 
 
@@ -171,10 +171,12 @@ def optimise(
     algorithm : "auto" or an NLopt name such as ``LD_SLSQP``
     starts : number of starts from the global sweep
     seed : seed of sweep and stochastic algorithms; the same seed gives the same result
-    prices : whether to compute prices of requirements and parameters, and re-solve at ±10 %
+    prices : whether to compute the prices of requirements and parameters, and to re-optimise with
+        each of them changed by ±10 %
     max_seconds : time limit of the search; the best design so far is kept
-    whole_plies : whether to find the best design of whole plies and allowed angles, too
-    standard_sizes : whether to find the best design with all standard sizes, too
+    whole_plies : whether to find also the best design with whole plies and allowed angles
+    standard_sizes : whether to find also the best design with standard sizes for all variables that
+        have them
     certify : whether to prove how far the design is from the best possible design
     explain : whether to explain an infeasible result
     keep_interrupted : whether the best design so far is kept after Ctrl-C; not for designs with
@@ -266,7 +268,7 @@ class _FollowUp:
 def _complete(
     actuator: ActuatorProblem, follow_up: _FollowUp, *, prices: bool, certify: bool, explain: bool
 ) -> None:
-    """Explain an infeasible solution; certify and price a feasible solution."""
+    """Explain an infeasible solution; compute certificate and prices of a feasible solution."""
     if follow_up.solution.interrupted:
         return
     if explain:
@@ -329,7 +331,10 @@ def _idle(actuator: ActuatorProblem) -> tuple[str, ...]:
     """Warnings about objective terms that no variable affects."""
     if actuator.goal.single is not None:
         return ()
-    return tuple(f"objective: no variable affects {name}" for name in idle_metrics(actuator))
+    return tuple(
+        f"no variable affects {name}, which is part of the objective"
+        for name in idle_metrics(actuator)
+    )
 
 
 def _enumerated(
@@ -348,7 +353,7 @@ def _enumerated(
     if not best.feasible:
         status, remedy = (
             "infeasible",
-            "relax the requirement that is missed, or add values to choices",
+            "relax the requirement that is missed, or add values under choices",
         )
     optimisation = Optimisation(
         status=status,

@@ -1,13 +1,13 @@
-"""The optimiser: sweep the design space, descend from the best starts, polish, verify.
+"""The optimiser: sweeps the design space, descends from the best starts, refines and verifies.
 
 On the default path, a low-discrepancy sweep suggests starts. From each start, SLSQP runs in
-logarithmic variables, and if that fails in linear variables. If all runs fail, an augmented
-Lagrangian around LBFGS follows. Active-set Newton steps reduce the remaining error to rounding.
-Feasibility and optimality are then verified, whatever a solver reports.
+logarithmic variables, and after a failure in linear variables. If all runs fail, the augmented
+Lagrangian method with LBFGS follows. Active-set Newton steps reduce the remaining error to
+rounding. Feasibility and optimality are then verified, independently of what a solver reports.
 
-The sweep is a scrambled Halton sequence [Halton1960] [Owen2017]: each variable has a prime base, in
-which the digits of a point's index are reversed behind the radix point. The digits are permuted at
-random, with a seed.
+The sweep is a scrambled Halton sequence [Halton1960] [Owen2017]: each variable has its own prime
+base. The coordinate of a point is the point's index, written in this base with its digits reversed
+behind the radix point. The digits are permuted at random, with a seed.
 """
 
 from __future__ import annotations
@@ -86,8 +86,9 @@ class Sweep:
     ----------
     z : candidates (nf, k), sorted by violation, then by objective
     violation, objective : violation and objective of the candidates (k,)
-    count, valid, feasible : numbers of all points, points with finite values, and feasible points
-    spread : range of the objective within the sweep, relative to its largest magnitude
+    count, valid, feasible : numbers of all points, of points with finite values, and of feasible
+        points
+    spread : range of the objective in the sweep, relative to its largest magnitude there
     scale : largest magnitude among the candidates' objectives
     """
 
@@ -102,7 +103,7 @@ class Sweep:
 
 
 def sweep(evaluator: Evaluator, samples: int, seed: int) -> Sweep:
-    """Evaluate `samples` low-discrepancy points, in chunks, and sort the best of them."""
+    """Evaluate `samples` low-discrepancy points in chunks, and return the best of them, sorted."""
     space = evaluator.space
     sequence = Halton(space.size, seed, max_points=max(2, samples))
     width = (space.upper - space.lower)[:, None]
@@ -178,10 +179,12 @@ def solve(
     starts : number of starts; after the given starts, the best points of the global sweep are used
     samples : number of points of the global sweep
     seed : seed of sweep and stochastic algorithms; the same seed gives the same result
-    max_evaluations, max_seconds : limits of the whole run; the best point so far is kept
+    max_evaluations, max_seconds : limits of the whole search; once a limit is reached, the best
+        point so far is returned
     more_starts : further starts (n,)
-    keep_interrupted : whether Ctrl-C ends the search with the best point so far, as a limit does
-    stop : called before every evaluation of a descent; True ends the search as a limit does
+    keep_interrupted : whether the best point so far is returned after Ctrl-C
+    stop : called before every evaluation of a descent; if it returns True, the search ends with the
+        best point so far
 
     Raises
     ------
@@ -216,7 +219,7 @@ def solve(
 
 
 def _nothing(evaluator: Evaluator) -> Sweep:
-    """An empty sweep, for a search without one."""
+    """An empty sweep, for a search that needs no sweep."""
     size = evaluator.space.size
     return Sweep(np.empty((size, 0)), np.empty(0), np.empty(0), 0, 0, 0, 0.0, 0.0)
 
@@ -269,7 +272,7 @@ def _default_path(search: Descents, points: list[Point]) -> None:
 
 
 def _chosen_path(search: Descents, points: list[Point], name: str) -> None:
-    """Run a local algorithm from every start; a global one once, then refine with SLSQP."""
+    """Run a local algorithm from every start, or a global algorithm once and then SLSQP."""
     outer, _ = nlopt_wrapper.find(name)
     if outer.scope == "local" or outer.name.startswith("AUGLAG"):
         for point in points:
@@ -311,10 +314,12 @@ def _conclude(search: Descents, swept: Sweep) -> Solution:
         )
         lost = labels[~np.isfinite(point.rows)]
         others = f" and {len(lost) - 3} more" if len(lost) > 3 else ""
-        search.warnings.append(f"no finite value of {', '.join(lost[:3])}{others}")
+        search.warnings.append(
+            f"not computable at the end of the search: {', '.join(lost[:3])}{others}"
+        )
     if evaluator.bad_slopes:
         search.warnings.append(
-            f"{evaluator.bad_slopes} gradients had undefined entries (infinite slope)"
+            f"{evaluator.bad_slopes} gradients had undefined entries (a derivative was not finite)"
         )
     m = evaluator.constraint_count
     return Solution(
@@ -343,7 +348,7 @@ def _conclude(search: Descents, swept: Sweep) -> Solution:
 
 
 def _best_seen(search: Descents, swept: Sweep) -> SearchResult:
-    """The best of all points: from the runs, the sweep, and the start or middle."""
+    """The best point of the runs, the sweep, and the start (or the middle of the bounds)."""
     evaluator = search.evaluator
     if search.interrupted or evaluator.exhausted:
         evaluator.enter_precomputed()

@@ -1,8 +1,8 @@
 """Re-solves problems near an optimum, and predicts how the optimum moves.
 
-The search's local optima, with their Hessians computed once, are the starts for full steps, then
-for restoration and descent (`resolve.ladder`). If these fail, a search from `STARTS` starts
-follows. If that finds no design, the original search is repeated. So every problem that the
+The starts are the local optima of the original search, whose Hessians are computed once. Full steps
+follow, then restoration and descent (`resolve.ladder`). If these fail, a search from `STARTS`
+starts follows. If that finds no design, the original search is repeated. So every problem that the
 original search can solve is solved.
 """
 
@@ -31,16 +31,16 @@ STARTS = 3
 """Number of starts in the search that follows if the steps fail."""
 
 SAMPLES = 1024
-"""Number of points in the sweep of this search."""
+"""Number of sweep points in that search."""
 
 AGREES = 1e-9
-"""Tolerance of margins, for rounding, when testing whether a parameter describes a changed problem.
-"""
+"""Allowed difference of margins, due to rounding errors, when testing whether a parameter describes
+a changed problem."""
 
 
 @dataclass(frozen=True, slots=True)
 class SearchEffort:
-    """Effort of a search: numbers of starts and sweep points, and the seed."""
+    """Effort of a search: number of starts, number of sweep points, and the seed."""
 
     starts: int
     samples: int
@@ -49,14 +49,15 @@ class SearchEffort:
 
 @dataclass(frozen=True)
 class LinearPath:
-    """The optimum as a linear function of one parameter (in units of the model).
+    """The optimum as a linear function of one parameter (in the units of the model).
 
     Parameters
     ----------
-    below, above : slope of the objective downwards and upwards; infinite without a design
-    moves : change of each variable (n,) per unit
-    low, high : distance to the nearest change of the active limits on each side, and its
-        description; None without a change
+    below, above : slope of the objective if the parameter decreases and if it increases; infinite
+        if no feasible design remains
+    moves : change of each variable (n,) per unit of the parameter
+    low, high : on each side, change of the parameter at which the set of active limits first
+        changes, and a description of this event; None if the set does not change
     """
 
     below: float
@@ -128,10 +129,10 @@ class WarmStart:
         self, path: str, values: Sequence[float], rebuilt: Callable[[float], ActuatorProblem],
         stop: Stop | None = None,
     ) -> list[Point | None]:  # fmt: skip
-        """Find the optimum at each value of a number, solving all together.
+        """Find the optimum for each value of one number, in parallel.
 
-        If the shared steps do not reach a value, searches proceed outwards from the optimum. On
-        each side they stop at the first value without a design.
+        For values that the parallel steps do not solve, single searches follow, from the value
+        nearest to the optimum outwards. On each side they stop at the first value without a design.
 
         Parameters
         ----------
@@ -171,7 +172,7 @@ class WarmStart:
         Parameters
         ----------
         changes : difference of each number by PATH
-        size : number of units that make up a change of 100 %
+        size : number of these joint changes that make up a change of 100 %
         """
         optimum = self.optimum
         derivatives = self._along(changes, size)
@@ -190,7 +191,7 @@ class WarmStart:
 
     @property
     def optimum(self) -> prices.Optimum:
-        """The linear algebra of the optimum, computed once."""
+        """The derivatives and active limits of the optimum, as needed for prices; computed once."""
         if self._optimum is None:
             quality = kkt.check(self.evaluator, self.point)
             self._optimum = prices.optimum_at(self.evaluator, self.point, quality)
@@ -211,7 +212,7 @@ class WarmStart:
         )
 
     def differentiate(self, paths: Iterable[str]) -> None:
-        """Compute the derivatives by the numbers at `paths`, unless already known.
+        """Compute the derivatives with respect to the numbers at `paths`, unless already known.
 
         A single call for many numbers takes little longer than a call for one number.
         """
@@ -227,7 +228,7 @@ class WarmStart:
                 )  # fmt: skip
 
     def _take_gradients(self, evaluator: Evaluator) -> None:
-        """Reuse the gradient check if the changed problem has the same rows; else check again."""
+        """Reuse the gradient check if the constraints have the same names; else check again."""
         solved, problem = self.evaluator, evaluator.problem
         if tuple(problem.constraint_names) == tuple(solved.problem.constraint_names):
             evaluator.adopt_check(solved)
@@ -237,7 +238,7 @@ class WarmStart:
             )
 
     def _valleys(self, evaluator: Evaluator) -> list[Valley]:
-        """The valleys of the optimum as starts for a changed problem."""
+        """The known local optima, as starts for a changed problem."""
         solved, space = self.evaluator.space, evaluator.space
         same_coordinates = np.array_equal(solved.free, space.free) and all(
             np.array_equal(getattr(solved, name), getattr(space, name))
@@ -261,7 +262,7 @@ class WarmStart:
     def _stepped(
         self, evaluator: Evaluator, valleys: Sequence[Valley]
     ) -> tuple[Point | None, Vector | None]:
-        """Optimum by steps from the valleys, and a feasible point (nf,); None if missing."""
+        """Optimum by steps from the known optima, and a feasible point (nf,); None if not found."""
         problem = evaluator.problem
         parametric = ParametricProblem(problem, (), np.zeros(0), lambda x, _: problem.evaluate(x))
         if not valleys or not applicable(parametric, evaluator):
@@ -283,10 +284,10 @@ class WarmStart:
         values: Sequence[float],
         rebuilt: Callable[[float], ActuatorProblem],
     ) -> bool:
-        """Whether the problem changes as if the number were a parameter; checked at both ends.
+        """Whether the number acts only as a parameter; checked at its lowest and highest value.
 
-        Some numbers act in more ways than the models read directly: temperatures, for example,
-        change the factors on material properties.
+        Some numbers act not only as inputs of the models: temperatures, for example, also change
+        the factors on material properties.
         """
         parametric = self.actuator.parametric((path,))
         if not applicable(parametric, self.evaluator):
@@ -303,7 +304,7 @@ class WarmStart:
         return True
 
     def _curve(self, path: str, values: Sequence[float], stop: Stop | None) -> list[Point | None]:
-        """The optima at values of a number; None where shared steps do not reach them."""
+        """The optimum for each value of a number; None where the parallel steps do not reach it."""
         evaluator = Evaluator(self.actuator.problem, stop=stop)
         self._take_gradients(evaluator)
         changed = ChangedProblems(self.actuator.parametric((path,)), evaluator, np.array([values]))

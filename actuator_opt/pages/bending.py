@@ -1,4 +1,4 @@
-"""The page of a bending test: slope and moduli with their confidence intervals, and doubts."""
+"""The page of a bending test: slope and moduli, each with confidence interval, and doubts."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def _strains(bending: BendingResult) -> str:
 
 
 def _parameters(bending: BendingResult) -> list[tuple[str, Parameter]]:
-    """Slope and moduli, before and after the known compliances are subtracted."""
+    """Slope, and the modulus before and after the known compliances are subtracted."""
     rows = [
         ("slope of force over deflection", bending.slope),
         ("modulus, no compliance subtracted", bending.as_published),
@@ -101,13 +101,13 @@ def _blocks(bending: BendingResult) -> Iterator[Block]:
 def _basis(bending: BendingResult) -> list[str]:
     """Sources of the confidence intervals, energy lost in the load cycle, and share of shear."""
     section = (
-        "the second moment of area once"
+        "the second moment of area causes the same error"
         if bending.specimen.outer_diameter is None
-        else "the outer diameter at least four times"
+        else "the outer diameter at least four times the error"
     )
     words = [
-        "the 95 % bounds include only the noise of the record; in addition, a relative "
-        f"error of the span counts three times, and an error of {section}"
+        "the 95 % bounds include only the noise of the record; a relative error of the span "
+        f"causes three times this error in the modulus, and an error of {section}"
     ]
     if bending.hysteresis is not None:
         cycles = "the cycle loses" if bending.cycles == 1 else f"{bending.cycles} cycles lose"

@@ -39,7 +39,8 @@ from .identification_figures import FORCE, SPEED, joined, measured, speed
 from .report import doubts
 
 MOST_LEVELS, MOST_ROWS = 3, 9
-"""Most pressures and most requirements drawn (our choice: more are hard to distinguish by eye)."""
+"""Largest numbers of pressures and of requirements drawn (our choice, as the eye can hardly
+distinguish more)."""
 STATED, MEASURED = "as stated", "as measured"
 
 
@@ -48,7 +49,7 @@ def page(calibration: Calibration, redesign: Redesign, bench: Bench) -> Page:
 
     Parameters
     ----------
-    calibration : the values of the record
+    calibration : the values identified from the record
     redesign : their effect on the design
     bench : the actuator with the measured values
     """
@@ -64,7 +65,7 @@ def page(calibration: Calibration, redesign: Redesign, bench: Bench) -> Page:
 
 
 def verdict(redesign: Redesign) -> Verdict:
-    """Whether a design with the measured values meets its requirements."""
+    """The badge: whether the design meets its requirements with the measured values."""
     total = len(redesign.evaluation.requirements)
     met = sum(row.met for row in redesign.evaluation.requirements)
     lines = [f"as tested: {met} of {total} requirements met"]
@@ -79,7 +80,7 @@ def verdict(redesign: Redesign) -> Verdict:
     elif solved(best):
         state, words = "met", "REDESIGN MEETS ALL"
         count = _tight(redesign)
-        lines.append("the best design meets every requirement")
+        lines.append("the re-optimised design meets every requirement")
     else:
         state, words = "infeasible", "INFEASIBLE AS MEASURED"
         lines.append("no design meets every requirement")
@@ -90,7 +91,7 @@ def verdict(redesign: Redesign) -> Verdict:
 
 
 def _sentence(calibration: Calibration) -> str:
-    """The record and its result."""
+    """Sentence on the record and the Coulomb friction measured with it."""
     ratio = calibration.coulomb / calibration.stated
     return (
         f"Record {calibration.identification.record.file_name}: Coulomb friction is "
@@ -159,7 +160,7 @@ def _values(calibration: Calibration) -> Table:
 
 
 def _shifts(redesign: Redesign) -> Table:
-    """Results of the requirements before and after the calibration, the largest change first."""
+    """Results for each requirement before and after the calibration, largest change first."""
     columns = [
         Column("requirement", "left", 1.0, breaks=60, mono=True, least=20),
         Column("limit", "right", drop=2),
@@ -243,7 +244,7 @@ def _change(
 
 
 def _tight(redesign: Redesign) -> int:
-    """Number of limits without reserve in the best design after the calibration; 0 without it."""
+    """Number of limits without reserve in the best calibrated design; 0 without such a design."""
     best = redesign.best_after
     return len(best.tight) if best is not None and solved(best) else 0
 
@@ -252,7 +253,7 @@ def remarks(calibration: Calibration, redesign: Redesign) -> list[str]:
     """Sentences on changed values, on values that were not measured, and on doubts."""
     said = list(redesign.sentences)
     if count := _tight(redesign):
-        said.append(f"{count_words(count)} at the best design, which lies on these limits")
+        said.append(f"{count_words(count)} at the best design, which meets these limits only just")
     said += [f"{key} keeps the value of the design: {why}" for key, why in calibration.left.items()]
     said += calibration.doubts
     return [sentence(text.pretty(words)) for words in dict.fromkeys(said)]
@@ -280,7 +281,7 @@ def shown_levels(points: Sequence[FrictionPoint]) -> list[list[FrictionPoint]]:
 
 
 def _friction(points: Sequence[FrictionPoint], stated: Bench, measured_: Bench) -> Panel:
-    """Measured points with error bars; the design's curves before and after at each pressure."""
+    """Friction over speed: measured points, and the design's curves as stated and as calibrated."""
     groups = shown_levels(points)
     curves = []
     for style, (words, bench) in enumerate(((MEASURED, measured_), (f"design {STATED}", stated))):
@@ -311,7 +312,7 @@ def _against(point: FrictionPoint) -> tuple[float, float]:
 
 
 def _margins(redesign: Redesign) -> Panel:
-    """Margins of the changed requirements before and after, with confidence intervals."""
+    """Margins of the changed requirements, before and after the calibration."""
     moved = _moved(redesign)[:MOST_ROWS]
     title = "Margin of requirements, as tested, %"
     if not moved:
@@ -332,7 +333,7 @@ def _margins(redesign: Redesign) -> Panel:
 
 
 def _span(shift: Shift) -> tuple[float, float, float, float]:
-    """Margin before, margin after, and the confidence interval of the margin after [%]."""
+    """Margin before, margin after, and lower and upper confidence bound of the latter [%]."""
     before, after = (100 * (row.margin or 0.0) for row in (shift.before, shift.after))
     if shift.lower is None or shift.upper is None or shift.after.limit == 0:
         return before, after, after, after

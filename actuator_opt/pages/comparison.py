@@ -33,7 +33,8 @@ from .sweep_figures.ucurves import MOST, Required, has_points, stiffness_panels
 _WORST = {"lighter": "light", "stiffer": "stiff", "smoother": "smooth"}
 _NAMED = {"lighter": "mass", "stiffer": "stiffness", "smoother": "running friction"}
 PART_UNITS = {"lighter": (1e3, "g"), "stiffer": (1e9, "µm/kN"), "smoother": (1.0, "N")}
-"""Display factor and unit for the bars of each question (lighter, stiffer, smoother)."""
+"""For each question (which design is lighter, stiffer, smoother): factor from SI to the unit of the
+bars, and this unit."""
 PART_TITLES = {
     "lighter": "Mass",
     "stiffer": "Compliance at the weakest position",
@@ -42,13 +43,15 @@ PART_TITLES = {
 _MOST_PARTS = 4
 """Largest number of parts named in a sentence."""
 _LONGEST = 18
-"""Longest printed value of an input, in letters; longer values would crowd out the input paths."""
+"""Largest number of characters printed of a value of an input; longer values would leave no space
+for the PATHs."""
 
 _WIDTH, _RIGHT = 180.0, 20.0
 _STEP, _LEAST_STEP, _SHARE, _LINE = 7.6, 3.8, 5.6 / 7.6, 4.2
-"""Usual and least spacing of bars [mm], bar height as a share of it, and line height [mm]."""
+"""Usual and least spacing of bars [mm], bar height as a share of the spacing, and line height [mm].
+"""
 _GAP, _TOP, _SMALL = 5.0, 8.4, 3.3
-_NOTE = "The parts of a bar are in the order of the key; bold: best value."
+_NOTE = "Parts of a bar: in the order of the key. Bold: best value."
 
 
 def page(comparison: Comparison) -> Page:
@@ -66,7 +69,7 @@ def page(comparison: Comparison) -> Page:
 
 
 def _verdict(comparison: Comparison) -> Verdict:
-    """The number of designs that meet their requirements."""
+    """The badge: how many designs meet their requirements."""
     every = len(comparison.labels)
     met = sum(evaluation.met for evaluation in comparison.evaluations)
     words = f"{met} OF {every} MEET THEIR REQUIREMENTS"
@@ -114,7 +117,7 @@ def _table(
 ) -> Block:
     """Table with a column per design.
 
-    A table that is too wide is split; each part repeats design A.
+    A table that is too wide is split; each part repeats the column of design A.
     """
     if not rows:
         return Notes(title, ["none"])
@@ -127,7 +130,7 @@ def _table(
 
 
 def sentences(comparison: Comparison) -> list[str]:
-    """The answer to each question, then its reservations."""
+    """The answer to each question, then damping ratios, missed requirements and reservations."""
     lines = [answer(comparison, question) for question in comparison.questions]
     damping = [e.metrics["damping_ratio"].value for e in comparison.evaluations]
     if len(set(damping)) > 1:
@@ -145,7 +148,7 @@ def sentences(comparison: Comparison) -> list[str]:
 def unlike(comparison: Comparison) -> list[str]:
     """Sentences on metrics that cannot be compared.
 
-    For some designs their smallest value governs, for others their largest.
+    For some designs the smallest value of such a metric is the worst value, for others the largest.
     """
     lines = []
     for metric, senses in comparison.unlike.items():
@@ -154,8 +157,8 @@ def unlike(comparison: Comparison) -> list[str]:
             for sense in ("min", "max")
         )
         lines.append(
-            f"{metric}: the worst value is the smallest for {least} and the largest for "
-            f"{most}, so that these designs cannot be compared"
+            f"{metric}: cannot be compared, because the worst value is the smallest for "
+            f"{least}, but the largest for {most}"
         )
     return lines
 
@@ -169,7 +172,7 @@ def optimality(comparison: Comparison, *, remedy: bool = False) -> list[str]:
     names = f"{', '.join(labels[:-1])} and {labels[-1]}" if many else labels[0]
     words = (
         f"{names} {'are' if many else 'is'} not known to be "
-        f"{'optima' if many else 'an optimum'}: optimised designs may compare differently"
+        f"{'optima' if many else 'an optimum'}: after optimisation, the comparison may differ"
     )
     can = any(
         comparison.states[k].status is None and comparison.evaluations[k].design.variables
@@ -221,12 +224,12 @@ def answer(comparison: Comparison, question: Question) -> str:
     equal = [comparison.labels[k] for k in question.leaders]
     change = 100 * (best / other - 1) if other else 0.0
     values = f"{text.value_text(quantity, best)} against {text.value_text(quantity, other)}"
-    head = f"{name}: {' and '.join(equal)}, {values} of {comparison.labels[question.other]}"
+    head = f"{name}: {' and '.join(equal)}, {values} for {comparison.labels[question.other]}"
     return f"{head} ({number(change, 3, signed=True)} %){_parts(question)}{note}"
 
 
 def _parts(question: Question) -> str:
-    """The parts that change most on the way to the better design."""
+    """Clause on the parts that contribute most to the difference from the better design."""
     scale, unit = PART_UNITS[question.name]
     steps = question.steps
     if not steps:
@@ -241,7 +244,7 @@ def _parts(question: Question) -> str:
 
 
 def named(comparison: Comparison, k: int) -> str:
-    """A design's name and origin, whether it is an optimum, and whether it is feasible."""
+    """A design's name and file, whether it is an optimum, and whether it meets its requirements."""
     evaluation, state = comparison.evaluations[k], comparison.states[k]
     origin = comparison.origins[k]
     beside = "" if origin == evaluation.name else f" ({origin})"
@@ -302,7 +305,7 @@ def _metric(quantity: Quantity, value: float | None) -> str:
 
 
 def comparison_figure(comparison: Comparison) -> Ink:
-    """A bar to scale for every design and question; equal parts have equal fills.
+    """For every question, a bar to scale for each design; equal parts have equal fills.
 
     Drawn, not a chart: stacked bars with their sums and a key of the parts.
     """
@@ -431,7 +434,10 @@ def _bars(
     said: Sequence[str],
     step: float = _STEP,
 ) -> float:
-    """Draw title, a stacked bar with its sum per design, and the key; return the height used."""
+    """Draw the title, a stacked bar with its sum for each design, and the key.
+
+    Returns the height used.
+    """
     scale, unit = PART_UNITS[question.name]
     parts, tall = list(question.parts), _SHARE * step
     shades = fills(parts) if question.name == "stiffer" else range(len(parts))

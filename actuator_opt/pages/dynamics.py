@@ -30,14 +30,14 @@ COMPACT, MODES, RESPONSE, OPEN, CLOSED = 56.0, 54.0, 105.0, 97.0, 58.0
 """Heights of the figures [mm]."""
 _END = {
     "closed": "ports closed",
-    "valve": "the valve at its centre",
-    "constant_pressure": "lines held at constant pressure",
-    "reducing_valve": "a pressure reducing valve at each line",
+    "valve": "lines end at the centred valve",
+    "constant_pressure": "lines end at constant pressure",
+    "reducing_valve": "each line ends at a pressure reducing valve",
 }
 
 
 def dynamics_blocks(evaluation: Evaluation) -> list[Block]:
-    """All blocks on dynamics; empty if the evaluation has no dynamics study."""
+    """All blocks on dynamics; empty if the evaluation contains no study of the dynamics."""
     study = evaluation.dynamics
     if study is None or len(study.position) < 2 or not study.position[-1] > study.position[0]:
         return []
@@ -59,21 +59,21 @@ def _ratio(value: float) -> str:
 
 
 def damping_sentence(study: DynamicsStudy) -> str:
-    """Sentence on the damping ratio at the weakest position and its sources."""
+    """Sentence on the damping ratio at the weakest position, and on the contributions to it."""
     friction, ends = study.friction_share, study.conductance_share
     whole = friction + ends
     small = 1e-4 * abs(whole)
     circle = " (open circle)" if abs(ends) >= small else ""
     shares = {f"friction and oil shear{circle}": friction, "leakage and lines": ends}
     causes = ", ".join(
-        f"{name} {_ratio(share) if abs(share) >= small else 'next to nothing'}"
+        f"from {name} {_ratio(share) if abs(share) >= small else 'next to nothing'}"
         for name, share in shares.items()
     )
-    words = f"At the weakest position the damping ratio is {_ratio(whole)}: {causes}."
+    words = f"At the weakest position the damping ratio is {_ratio(whole)} ({causes})."
     if whole >= 1:
-        words += " Above 1 the load does not oscillate."
+        words += " At 1 or above, the load does not oscillate."
     if whole < 0:
-        words += " Below 0 the oscillation grows, because friction falls with speed."
+        words += " It is negative, so the oscillation grows: friction falls with rising speed."
     return words
 
 
@@ -86,9 +86,9 @@ def _compact(evaluation: Evaluation, study: DynamicsStudy) -> Block:
         study, required(evaluation, "natural_frequency"), required(evaluation, "damping_ratio")
     )
     note = (
-        f"Case {study.case}, {_line_end(study)}, {text.number(1.0 * study.mass)} kg at the "
-        f"rod. {damping_sentence(study)} Dynamic stiffness includes the mass of the load, "
-        "which resists most above the resonance."
+        f"Load case {study.case}, {_line_end(study)}, {text.number(1.0 * study.mass)} kg at the "
+        f"rod. {damping_sentence(study)} Dynamic stiffness includes the inertia of the load, "
+        "which dominates above the resonance."
     )
     return Chart("Dynamics", panels, note, height=COMPACT, widths=(52.0, 48.0, 62.0))
 
@@ -98,8 +98,8 @@ def _modes(evaluation: Evaluation, study: DynamicsStudy) -> Block:
         study, required(evaluation, "natural_frequency"), required(evaluation, "damping_ratio")
     )
     note = (
-        f"Case {study.case}, {text.number(study.mass)} kg at the rod; lines under an "
-        f"oscillating load: {_line_end(study)}. {damping_sentence(study)}"
+        f"Load case {study.case}, {text.number(study.mass)} kg at the rod; with an oscillating "
+        f"load, {_line_end(study)}. {damping_sentence(study)}"
     )
     return Chart("Dynamics along the stroke", panels, note, height=MODES)
 
@@ -120,20 +120,23 @@ def _response(evaluation: Evaluation, study: DynamicsStudy) -> Block:
         required(evaluation, "dynamic_stiffness"),
         required(evaluation, "dynamic_phase"),
     )
-    note = f"Curves: case {study.response_case}, {_line_end(study)}."
+    note = f"Curves: load case {study.response_case}, {_line_end(study)}."
     if cases:
         note += (
-            " Circles: load cases with an oscillating load, each at its frequency and "
-            "worst position. Red: requirements there, with the forbidden side hatched."
+            " Circles: load cases with an oscillating load, each at its frequency and its "
+            "worst position. Red: requirements at these frequencies; the forbidden side is hatched."
         )
-    note += " The position loop is open"
+    note += " The position is not controlled (open loop)"
     note += ", so leakage lets the piston creep slowly." if study.end != "closed" else "."
     note += lumped_sentence(study)
     return Chart("Dynamic stiffness", [panels], note, height=RESPONSE)
 
 
 def lumped_sentence(study: DynamicsStudy) -> str:
-    """Up to which frequency lumped lines agree with transmission lines; empty without lines."""
+    """Sentence: up to which frequency the lumped and the distributed model of the lines agree.
+
+    Empty if the design has no lines.
+    """
     if study.distributed is None:
         return ""
     lumped = next(response for response in study.responses if response.place == "weakest position")
@@ -148,7 +151,7 @@ def lumped_sentence(study: DynamicsStudy) -> str:
         return "1 kHz" if frequency is None else f"{text.number(frequency, 2)} Hz"
 
     words = (
-        " If the lines are modelled as transmission lines and not as lumped masses, the "
+        " With the lines modelled as transmission lines instead of lumped masses, the "
         f"magnitude differs by less than 1 % up to {upto(0.01)}"
     )
     return words + (
@@ -162,9 +165,9 @@ def _poles(study: DynamicsStudy) -> Block:
     rows: list[list[Cell]] = []
     for pole in shown:
         if abs(pole.damping_ratio) < 1 and abs(pole.frequency / natural - 1) < 1e-3:
-            meaning = "the load, on the springs of oil, walls and rod"
+            meaning = "oscillation of the load on the springs of oil, walls and rod"
         elif abs(pole.damping_ratio) < 1:
-            meaning = "the lines, with the valve or supply at their ends"
+            meaning = "oscillation of the oil in the lines between cylinder and valve or supply"
         else:
             constant = text.number(1e3 / (2 * math.pi * pole.frequency), 3)
             meaning = f"no oscillation: decays with a time constant of {constant} ms"
@@ -177,10 +180,10 @@ def _poles(study: DynamicsStudy) -> Block:
         Column("what", "left", 2.0),
     ]
     fast = len(study.poles) - len(shown)
-    note = f"At the weakest position, case {study.case}, {_line_end(study)}."
+    note = f"At the weakest position, load case {study.case}, {_line_end(study)}."
     if fast:
         plural = "poles lie" if fast > 1 else "pole lies"
-        note += f" {fast} {plural} above 10 kHz, where the model is not valid."
+        note += f" {fast} {plural} above 10 kHz and not listed, as the model is not valid there."
     return Table("Dynamics: poles", columns, rows, note=note, on="paper")
 
 
@@ -196,13 +199,13 @@ def _loop(
         required(evaluation, "bandwidth"),
     )
     note = (
-        "One curve for each piston position and spool direction at which a margin or the "
-        "bandwidth is least. Circles: least margins; red: requirements, with the forbidden "
-        "side hatched."
+        "One curve for each combination of piston position and spool direction at which a "
+        "margin or the bandwidth is least. Circles: least margins. Red: requirements; the "
+        "forbidden side is hatched."
     )
     if any(_passes_behind(loop) for loop in loops):
         note += (
-            " Above the resonance of the load the phase is below -180 degrees; there the "
+            " Above the resonance of the load the phase is below -180 degrees. There, the phase "
             "margin is the angle up to -180 degrees, and the loop is stable as long as the "
             "gain margin is above 1."
         )
@@ -214,7 +217,7 @@ def _loop(
 
 
 def _passes_behind(loop_study: LoopStudy) -> bool:
-    """Whether the phase margin belongs to a gain crossover with a phase beyond -180 degrees."""
+    """Whether the loop is stable despite a gain above 1 at phases below -180 degrees."""
     if loop_study.crossover is None or loop_study.gain_margin <= 1:
         return False
     above = np.asarray(loop_study.open_magnitude) >= 1
@@ -225,7 +228,7 @@ def _loop_table(evaluation: Evaluation, loops: tuple[LoopStudy, ...]) -> Block:
     first = loops[0]
     at = {(loop.case, loop.place): loop for loop in loops}
     tuned = (
-        "half the ultimate gain: Ziegler and Nichols' rule for proportional control"
+        "half the ultimate gain (Ziegler and Nichols' rule for proportional control)"
         if first.tuned
         else "as stated in control.gain"
     )
@@ -258,8 +261,8 @@ def _loop_table(evaluation: Evaluation, loops: tuple[LoopStudy, ...]) -> Block:
     ]
     worst = first.place.partition(", ")[0]
     note = (
-        f"The two spool directions differ; {worst} has the smaller gain margin. Each value "
-        "is the least over load cases, positions and spool directions."
+        f"The two directions of spool travel differ; {worst} has the smaller gain margin. Each "
+        "value is the least of all load cases, positions and spool directions."
     )
     rows = [row(name) for name in names if name in evaluation.metrics]
     return Table("Position loop: gain, margins, bandwidth", columns, rows, note=note, on="paper")

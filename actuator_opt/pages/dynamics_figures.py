@@ -1,6 +1,6 @@
 """Figures of the dynamics: modes along the stroke, dynamic stiffness and position loop.
 
-Required limits are drawn in red, and their forbidden side is hatched.
+Requirements are drawn in red, and their forbidden side is hatched.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ STATIC, SHAKEN, BASE, MARGIN = 5, 5, 4, 4
 OPEN, FILLED, PALE = 2, 3, 1
 """Styles of points: ochre, blue, and light blue with a black edge."""
 REACH = 1.25
-"""Ratio by which a limit at a single frequency is drawn wider, above and below that frequency."""
+"""A limit that applies at a single frequency is drawn from this frequency divided by `REACH` to
+this frequency times `REACH`."""
 ALONG = "piston position from the cap end, mm"
 
 
@@ -49,7 +50,7 @@ def frequency_axis(study: DynamicsStudy, label: str = "frequency, Hz") -> Axis:
 
 
 def limit_level(row: Requirement, value: float, unit: str = "") -> Level:
-    """A requirement as a limit line at a value of the axis."""
+    """A requirement as a limit line at `value` on the axis."""
     words = f"{SENSES[row.sense]} {trimmed(value)}{unit}"
     return Level(value, words, "min" if row.sense == "min" else "max")
 
@@ -93,7 +94,7 @@ def _frequency_panel(study: DynamicsStudy, requirements: Sequence[Requirement]) 
 
 
 def _damping_panel(study: DynamicsStudy, requirements: Sequence[Requirement]) -> Panel:
-    """Damping ratio along the stroke, and at the weakest position the share due to friction."""
+    """Damping ratio along the stroke, and the part due to friction at the weakest position."""
     xs = [1000.0 * float(x) for x in study.position]
     ratios = np.asarray(study.damping_ratio, dtype=float)
     finite = ratios[np.isfinite(ratios)]
@@ -184,7 +185,7 @@ def _case_points(letter: str, case: Shaken) -> Points:
 def _limits_at(
     frequency: float, requirements: Sequence[Requirement], scale: float, unit: str
 ) -> list[Level]:
-    """A vertical line at a frequency, and the limits that apply there; `unit` adds their names."""
+    """The limits that apply at a frequency, with a vertical line; labelled if `unit` is given."""
     levels = [Level(frequency, "", style=SHAKEN, upright=True)]
     for row in requirements:
         level = limit_level(row, scale * row.limit, unit)
@@ -203,7 +204,7 @@ def _phase_panel(
     for k, case in enumerate(shaken):
         levels += _limits_at(case.frequency, requirements, math.degrees(1.0), "" if k else "°")
     return Panel(
-        "Phase by which the force leads, °",
+        "Phase lead of the force over the motion, °",
         frequency_axis(study),
         Axis(
             range=(low, 180.0),
@@ -221,7 +222,7 @@ def _phase_panel(
 
 
 def whole(value: float) -> str:
-    """A whole number for an axis."""
+    """A number as the label of an axis, rounded to a whole number."""
     return f"{value:.0f}".replace("-", MINUS)
 
 
@@ -231,7 +232,7 @@ def response_panels(
     stiffness: Sequence[Requirement],
     phase: Sequence[Requirement],
 ) -> list[Panel]:
-    """Dynamic stiffness, magnitude above phase."""
+    """Dynamic stiffness: the magnitude, and below it the phase."""
     return [magnitude_panel(study, shaken, stiffness), _phase_panel(study, shaken, phase)]
 
 
@@ -255,7 +256,7 @@ HALF_POWER = -10 * math.log10(2.0)
 
 @dataclass(frozen=True, slots=True)
 class LoopLimits:
-    """Requirements on the loop."""
+    """Requirements on the position loop: gain margin, phase margin and bandwidth."""
 
     gain_margin: Sequence[Requirement] = ()
     phase_margin: Sequence[Requirement] = ()
@@ -284,7 +285,7 @@ def governing(loops: Sequence[LoopStudy], figure: str) -> int:
 def open_panels(
     study: DynamicsStudy, loops: Sequence[LoopStudy], limits: LoopLimits
 ) -> list[Panel]:
-    """Open loop, magnitude above phase, with the smallest gain and phase margins marked."""
+    """Open loop: the magnitude, below it the phase; the least gain and phase margins are marked."""
     return [
         _loop_magnitude_panel(study, loops, limits.gain_margin),
         _loop_phase_panel(study, loops, limits.phase_margin),
@@ -429,7 +430,7 @@ def closed_panel(study: DynamicsStudy, loops: Sequence[LoopStudy], limits: LoopL
             levels.append(replace(limit_level(row, row.limit, " Hz"), upright=True))
     notes = []
     if loops[governing(loops, "gain_margin")].gain_margin < 1:
-        notes.append("The closed loop is unstable, so this is not its response.")
+        notes.append("The closed loop is unstable, so these curves are not its response.")
     if loops[least].bandwidth is None:
         notes.append("No bandwidth.")
     return Panel(

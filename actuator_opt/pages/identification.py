@@ -99,7 +99,8 @@ COLUMNS = {
     "stiffness": ("k_eq [kN/mm]", 1e-6, "5g"),
     "growth": ("growth at seal [um]", 1e6, "5g"),
 }
-"""For each column: head with unit, factor from SI to the displayed value, and digits."""
+"""For each column: heading with unit, factor from SI to the displayed value, and number of digits.
+"""
 
 
 def series(identification: Identification) -> list[Series]:
@@ -114,7 +115,7 @@ def series(identification: Identification) -> list[Series]:
 
 
 def _tiles(identification: Identification) -> list[Tile]:
-    """Friction, its pressure, Coulomb friction and the friction coefficient."""
+    """Friction, the equivalent pressure loss, Coulomb friction and the friction coefficient."""
     mean, mu = identification.mean, identification.coefficient
     largest = f"{pressure(identification.largest / identification.area)} at the largest friction"
     tiles = [
@@ -200,7 +201,9 @@ def _lugre(identification: Identification) -> list[Block]:
     fit = identification.lugre
     if isinstance(fit, str):
         return []
-    said = f"Scatter of the windows about the model {force(fit.misfit)}. {held(fit.held)}"
+    said = (
+        f"The measured friction scatters by {force(fit.misfit)} about the model. {held(fit.held)}"
+    )
     return [_parameters("LuGre model", parameter_rows(fit.parameters), said.strip())]
 
 
@@ -246,7 +249,7 @@ def _channels(identification: Identification) -> Block:
 
 
 def _curve(identification: Identification) -> list[Block]:
-    """The Stribeck curve over the logarithm of speed, for extension if the rod extended."""
+    """The Stribeck curve over the logarithm of speed: extension if recorded, else retraction."""
     fit, points = identification.stribeck, identification.points
     speeds = [point.speed for point in points]
     if not isinstance(fit, StribeckFit) or max(speeds) <= min(speeds):
@@ -305,7 +308,7 @@ COEFFICIENTS = {
 }
 """Parameters of the laws fitted to the secant damping."""
 NOTHING = 2e-3
-"""A value below this share of half its confidence interval is printed as 0 (our choice)."""
+"""A value smaller than this share of half its confidence interval is printed as 0 (our choice)."""
 
 
 class Estimate(NamedTuple):
@@ -431,8 +434,8 @@ def coefficient_words(coefficient: Coefficient | str) -> str:
         f"{number(coefficient.lower, 3)} to {number(coefficient.upper, 3)}), median of "
         f"{coefficient.windows} windows of sliding at {low} to {high} mm/s; contact "
         f"pressure {number(coefficient.contact_pressure / 1e6, 3)} MPa, contact force "
-        f"{force(coefficient.contact_force)}, by {coefficient.law}; it includes the rise "
-        "towards rest and the viscous part."
+        f"{force(coefficient.contact_force)}, by {coefficient.law}; the coefficient "
+        "includes the rise of friction towards standstill, and viscous friction."
     )
 
 
@@ -452,15 +455,15 @@ def subject(identification: Identification) -> str:
             if len(ways) == 2
             else "outwards only"
             if True in ways
-            else "inwards"
+            else "inwards only"
         )
         points = "1 point" if count == 1 else f"{count} points"
         by = kind[identification.points[0].kind]
-        seen = f"{points} of steady sliding by {by}, {range_}, {way}"
+        seen = f"{points} of steady sliding from {by}, {range_}, {way}"
     if not isinstance(identification.lugre, str):
         total = identification.lugre.count
         windows = "1 window" if total == 1 else f"{total} windows"
-        seen += f"; {windows} about reversals"
+        seen += f"; {windows} around reversals of motion"
     return f"Record {identification.record.file_name}: {seen}."
 
 
@@ -505,7 +508,7 @@ _CHANNELS = {
 
 
 def channel_rows(identification: Identification) -> list[list[str]]:
-    """For every channel: missing, spiked and clipped samples, smallest step, and noise."""
+    """For every channel: counts of missing, spiked and clipped samples, smallest step, noise."""
     rows = []
     for name, channel in identification.motion.quality.items():
         counts = [trimmed(x, 9) for x in (channel.missing, channel.spikes, channel.clipped)]
@@ -533,7 +536,8 @@ def conditioning(identification: Identification) -> str:
         f"{trimmed(motion.cutoff)} Hz ({gain}), which keeps "
         f"{number(100 * spectrum.kept, 3)} % of the power of the velocity signal: "
         f"{spectrum.says(motion.cutoff)}. Force balance with "
-        f"{value_text(MASS, identification.mass)} moving inside the force sensor{against}; "
+        f"{value_text(MASS, identification.mass)} moving on the actuator's side of the force "
+        f"sensor{against}; "
         f"{_lag(identification)}. {_bounds_by(identification)}"
     )
 
@@ -542,27 +546,27 @@ def _lag(identification: Identification) -> str:
     """The lag removed from the pressure signals, or why none was removed."""
     taken, seen = identification.pressure_lag, identification.lag_seen
     if identification.settings.pressure_lag is not None:
-        return f"{number(1e3 * taken, 3)} ms of lag, as stated, is corrected in the pressures"
+        return f"{number(1e3 * taken, 3)} ms of lag in the pressures, as stated, is corrected"
     if taken:
-        return f"{number(1e3 * taken, 3)} ms of lag is corrected in the pressures"
+        return f"{number(1e3 * taken, 3)} ms of lag in the pressures is corrected"
     if seen is None or not math.isfinite(seen.upper - seen.lower):
         return "the record cannot show whether the pressures lag, so no lag is corrected"
     low, high = (number(1e3 * x, 2) for x in (seen.lower, seen.upper))
-    return (
-        f"by the record, the lag of the pressures is between {low} and {high} ms; none is corrected"
-    )
+    return f"according to the record, the pressures lag by {low} to {high} ms; no lag is corrected"
 
 
 def mean_label(identification: Identification) -> str:
-    """Label of the mean friction, with the parts of the record that it is averaged over."""
+    """Label of the mean friction, which states whether it is averaged over sliding."""
     return "mean while sliding" if identification.slides else "mean, without sliding"
 
 
 def _bounds_by(identification: Identification) -> str:
     """Sentence on how the parameters' confidence intervals were computed."""
     if identification.settings.bootstrap:
-        return f"95 % bounds from {identification.settings.bootstrap} resampled records."
-    return "95 % bounds from the linearised models."
+        return (
+            f"95 % bounds are computed from {identification.settings.bootstrap} resampled records."
+        )
+    return "95 % bounds come from the linearised models."
 
 
 def doubts(identification: Identification) -> list[str]:
@@ -611,7 +615,7 @@ def fit_note(fits: Mapping[str, LawFit | str]) -> str:
         parts.append(f"{FITS.get(name, name)} B = {LAWS.get(name, '')}, R² {share}")
     if not parts:
         return ""
-    return sentence("; ".join(parts) + "; relative errors weighted, v in m/s")
+    return sentence("; ".join(parts) + "; fitted to relative errors, v in m/s")
 
 
 def verdict(identification: Identification) -> Verdict:
@@ -621,7 +625,7 @@ def verdict(identification: Identification) -> Verdict:
     known = every_parameter(identification)
     sure = sum(parameter.identifiable for parameter in known)
     if not names:
-        return Verdict("missed", "NO MODEL", ["friction over time alone"])
+        return Verdict("missed", "NO MODEL", ["only friction over time"])
     state: State
     state, words = "checks", "PARTLY IDENTIFIED"
     if not sure:

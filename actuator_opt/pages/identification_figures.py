@@ -31,9 +31,9 @@ FORCE, PRESSURE = METRICS["friction_running"], quantities.INPUTS["pressure"]
 SPEED, LENGTH = quantities.INPUTS["stribeck_speed"], quantities.INPUTS["position"]
 STIFFNESS, GROWTH = METRICS["stiffness_min"], METRICS["growth_at_seal"]
 LEAST, MOST = 64.0, 140.0
-"""Heights of the whole figure [mm]."""
+"""Least and greatest height of the whole figure [mm]."""
 NEAREST = 1.5
-"""Ratio of the lowest measured speed to the lowest speed drawn of a Stribeck curve."""
+"""Ratio of the lowest measured speed to the lowest speed at which a Stribeck curve is drawn."""
 LEAST_SPEEDS = 3
 """Least number of speeds per pressure for which a map is drawn instead of a curve (our choice)."""
 DAMPING = "Secant damping F/v, kN·s/m"
@@ -91,7 +91,7 @@ def _over_time(identification: Identification) -> list[Panel]:
 
 
 def _sound(sliding: Sliding) -> Array:
-    """Friction over time, without the samples that are disturbed or clipped."""
+    """Friction over time, without disturbed or clipped samples."""
     return np.where(sliding.piece.sound, sliding.friction, np.nan)
 
 
@@ -132,7 +132,7 @@ def measured(
     across: Callable[[FrictionPoint], float],
     up: Callable[[FrictionPoint], tuple[float, float]],
 ) -> list[Points]:
-    """Points of both directions with 95 % error bars; `up` gives value and standard error."""
+    """Points of both directions with 95 % error bars; `up` returns value and standard error."""
     groups = []
     for style, (words, way) in enumerate((("out", 1), ("in", -1))):
         here = [point for point in points if way * point.velocity > 0]
@@ -174,9 +174,10 @@ def _velocity_panel(identification: Identification, fit: StribeckFit) -> Panel:
 
 
 def _stribeck_curves(points: Sequence[FrictionPoint], fit: StribeckFit) -> list[Curve]:
-    """Curves with their bounds, at the mean pressure.
+    """Stribeck curves with their bounds, at the mean pressure.
 
-    If friction depends on pressure: at the least and at the greatest pressure.
+    If the fitted friction depends on pressure, there are two curves: at the least and at the
+    greatest pressure.
     """
     levels = [(fit.reference_pressure, "Stribeck curve, 95 % band")]
     if "pressure_slope" in fit.parameters:
@@ -269,10 +270,12 @@ def _loop(identification: Identification, title: str, why: str) -> Panel:
 
 
 def _damping(identification: Identification) -> list[Panel]:
-    """Secant damping: a map over speed and pressure, or curves with their residuals below."""
+    """Secant damping: a map over speed and pressure, or curves over speed with residuals below."""
     usable = [point for point in identification.points if point.damping > 0]
     if not usable:
-        why = "No point of steady sliding with friction against motion: no secant damping."
+        why = (
+            "No secant damping: the record has no steady sliding with friction opposing the motion."
+        )
         return [Panel(DAMPING, note=why)]
     if pressure_levels(usable):
         return [_map(usable, identification.stribeck)]
@@ -320,8 +323,9 @@ def _ratios(name: str, fit: LawFit, points: Sequence[FrictionPoint]) -> Points:
 def pressure_levels(points: Sequence[FrictionPoint]) -> list[list[FrictionPoint]]:
     """Points of one direction of motion, grouped by pressure.
 
-    Empty unless at least two pressures have three speeds each and share a range of speeds. Only
-    one direction counts: even without load, the pressure differs between the two.
+    Empty unless at least two pressures have three speeds each, within a common range of speeds.
+    Only one direction is used, because the pressure differs between the two directions even without
+    load.
     """
     for way in (1, -1):
         here = [point for point in points if way * point.velocity > 0]
@@ -336,7 +340,7 @@ def _speeds(group: Sequence[FrictionPoint]) -> int:
 
 
 def _overlap(groups: Sequence[Sequence[FrictionPoint]]) -> bool:
-    """Whether all pressures share a range of speeds.
+    """Whether the ranges of speed at all pressures overlap.
 
     If not, the effects of pressure and of speed cannot be separated.
     """
@@ -346,18 +350,18 @@ def _overlap(groups: Sequence[Sequence[FrictionPoint]]) -> bool:
 
 
 def _map(points: Sequence[FrictionPoint], fit: StribeckFit | str) -> Panel:
-    """Points over speed and pressure, shaded by damping, above the surface fitted to them."""
+    """Points over speed and pressure, shaded by damping, drawn on the fitted Stribeck surface."""
     speeds = [speed(point) for point in points]
     pressures = [PRESSURE.to_display(point.pressure) for point in points]
     surface = ShadedMap((), (), np.empty((0, 0)))
-    words = f"upwards: pressure, {unit_text(PRESSURE.unit)}; circles: measured"
+    words = f"vertical axis: pressure, {unit_text(PRESSURE.unit)}; circles: measured"
     across, upwards = log_range(speeds), even_range(pressures)
     if isinstance(fit, StribeckFit):
         xs, ys = np.logspace(*across, 40), np.linspace(*upwards, 24)
         moving = xs / SPEED.to_display(1.0)
         table = fit.predict(moving[None, :], ys[:, None] / PRESSURE.to_display(1.0)) / moving
         surface = ShadedMap(xs, ys, np.broadcast_to(np.asarray(table) / 1e3, (24, 40)))
-        words += "; bands: Stribeck curve, outwards"
+        words += "; shades: Stribeck curve, outwards"
     low, high = (10.0**end for end in across)
     return Panel(
         DAMPING,

@@ -1,7 +1,7 @@
 """Pages of materials: a list of the library, one material with its sources, and a comparison.
 
-The properties of an oil are also shown over temperature and pressure. They follow the laws that an
-evaluation uses if the design names no law.
+The properties of an oil are also shown over temperature and pressure. They are computed by the laws
+that an evaluation uses by default.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _STRENGTH = ("strength_1_tension", "yield_strength", "ultimate_strength")
 
 
 def listing(library: Library, *, kind: str | None = None) -> list[Block]:
-    """List with a material per line: main properties, share of unverified values, and label."""
+    """List with a material per line: main properties, count of unverified values, and label."""
     shown: list[Block] = []
     for group in SHOWN if kind is None else (kind,):
         materials = [library.get(name) for name in library.names(kind=group)]
@@ -58,7 +58,7 @@ def listing(library: Library, *, kind: str | None = None) -> list[Block]:
             share = f"{len(material.unverified)} of {len(material.properties)}"
             rows.append((material.name, *values, share, pretty(material.label)))
         shown.append(Table("", columns, rows))
-    end = "Every value has source, scatter and confidence: actuator-opt materials show NAME"
+    end = "For source, scatter and confidence of every value: actuator-opt materials show NAME"
     return [*shown, Notes("", [end], headless=True)]
 
 
@@ -105,7 +105,7 @@ def blocks(material: Material) -> list[Block]:
 
 
 def _values(entry: Property) -> list[str]:
-    """The value of a property, or the points of its table, each with its argument."""
+    """The value of a property, or the points of its table with their temperatures or pressures."""
     if not entry.points:
         return [pretty(entry.text)]
     return [pretty(f"{entry.quantity.text(y)} at {_argument(entry, x)}") for x, y in entry.points]
@@ -162,16 +162,21 @@ def _compared(entry: Property | None, first: Property | None) -> str:
 PRESSURES = (0.0, 200e5, 350e5)
 """Gauge pressures at which curves are drawn, Pa."""
 AIR = (0.0, 0.005, 0.01, 0.03)
-"""Contents of entrained air for which curves are drawn, by volume at atmospheric pressure."""
+"""Contents of entrained air for which curves are drawn, as a share of volume at atmospheric
+pressure."""
 _LOW, _HIGH = 1e5, 350e5
 _ZERO = 273.15
 ROOM = 10.0
-"""Margin of the temperature axis beyond the coldest and the hottest point [K]."""
+"""Extension of the temperature axis beyond the coldest and the hottest point [K]."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Range:
-    """Temperatures (K) of an oil: its service range, and that range with its table's points."""
+    """Temperature ranges of an oil [K].
+
+    `low` and `high` limit its service range. `coldest` and `hottest` also include the points of its
+    viscosity table.
+    """
 
     low: float
     high: float
@@ -191,7 +196,7 @@ def _degrees(temperature: float) -> str:
 
 
 def laws_text(material: Material) -> str:
-    """The laws of an oil over pressure, in words."""
+    """Clauses on the laws by which bulk modulus and viscosity depend on pressure."""
     modulus = bulk_modulus_law(None, material.numbers)
     viscosity = VISCOSITY_LAWS[viscosity_law(None, material.numbers)]
     return f"bulk modulus {modulus} in pressure; viscosity {viscosity.words}"
@@ -219,9 +224,9 @@ def _over_range(material: Material) -> Table:
     ]
     rows = [_oil_row(material, t) for t in (over.low, *steps, over.high)]
     note = (
-        "mm²/s and mPa·s: viscosity at 0, 200 and 350 bar; K: bulk modulus in MPa, first "
-        "without air, then at 20 bar with 1 % air; vapour pressure in Pa, absolute. Laws: "
-        f"{laws_text(material)}."
+        "mm²/s: kinematic viscosity; mPa·s: dynamic viscosity at 0, 200 and 350 bar; kg/m³: "
+        "density at 0 and 350 bar; K: bulk modulus in MPa without air, and at 20 bar with 1 % air; "
+        f"vapour: absolute vapour pressure in Pa. Laws: {laws_text(material)}."
     )
     return Table("Over the service range", columns, rows, note=note)
 
@@ -280,7 +285,7 @@ def _sentence(text: str) -> str:
 
 
 def _decades(low: float, high: float) -> list[float]:
-    """The values 1, 2, 5, 10, ... (times powers of ten) within limits."""
+    """The values 1, 2 and 5, times powers of ten, between two limits."""
     powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
     steps = (step * 10.0**power for power in powers for step in (1, 2, 5))
     return [step for step in steps if low <= step * (1 + 1e-9) and step <= high * (1 + 1e-9)]
@@ -353,7 +358,7 @@ def _air_panel(material: Material, over: _Range) -> Panel:
         curves.append(Curve("", pressure / 1e5, modulus, end=f"{100 * air:g} % air"))
     stops = [(stop, trimmed(stop)) for stop in (*_decades(1.0, 200.0), 350.0)]
     return Panel(
-        f"Bulk modulus with air at {_degrees(temperature)} °C, MPa",
+        f"Bulk modulus with entrained air, {_degrees(temperature)} °C, MPa",
         Axis("gauge pressure, bar", log=True, ticks=stops),
         Axis(zero=True),
         curves,
@@ -375,7 +380,7 @@ def _modulus_panel(material: Material, over: _Range) -> Panel:
 
 
 def _over_temperature(title: str, over: _Range, values: Sequence[float | Array]) -> Panel:
-    """A curve over temperature for each of the pressures."""
+    """Panel with a curve over temperature for each of `PRESSURES`."""
     temperature = _temperatures(over)
     curves = [
         Curve("", temperature, own + 0 * temperature, end=_pressure(pressure))

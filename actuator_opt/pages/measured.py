@@ -32,11 +32,11 @@ from .simulation import tied
 from .simulation_figures import CONSTANT, curve, scaled, timed, titled
 
 MOST_PLACES = 6
-"""Largest number of decimals of a bias."""
+"""Largest number of decimals with which a bias (mean residual) is printed."""
 TALL = 50.0
 """Height of the chart of a channel with its residual [mm]."""
 ALONE = 3
-"""Largest number of channels for which each channel has a full row."""
+"""Up to this number of channels, the charts of each channel fill a whole row."""
 BAND = 2.0
 """Half width of the drawn noise band in standard deviations; the band contains 95 % of samples."""
 
@@ -53,7 +53,7 @@ def blocks(overlay: Overlay, fit: Fit | None) -> list[Block]:
 
 
 def drawn(overlay: Overlay) -> dict[str, tuple[Array, Array]]:
-    """Measured channels over the time of the simulation; gaps where samples are missing."""
+    """Measured channels over the time of the simulation, with gaps where samples are missing."""
     channels = overlay.measured.channels.items()
     return {name: _broken(time - overlay.lag, values) for name, (time, values) in channels}
 
@@ -111,7 +111,7 @@ def _residuals(overlay: Overlay, before: Overlay | None) -> Table:
 
 
 def _parameters(fit: Fit) -> Table:
-    """A row for every fitted parameter; the unit is printed with the fitted value."""
+    """Table with a row for every fitted parameter; its unit is printed with the fitted value."""
     columns = [
         Column("parameter", width=1.0, breaks=14),
         Column("start", "right", style="dim", drop=3),
@@ -140,7 +140,7 @@ def _parameters(fit: Fit) -> Table:
 
 
 def _significant(value: float, half: float) -> str:
-    """A number rounded to two digits of its uncertainty `half`; a dash without an uncertainty."""
+    """A number rounded to the second digit of its uncertainty `half`; a dash if not finite."""
     if not math.isfinite(value):
         return DASH
     if value == 0 or half == 0 or not math.isfinite(half):
@@ -154,15 +154,18 @@ def _verdict(fitted: Fitted, *, missed: bool) -> str:
         return f"at its {fitted.at_bound} bound"
     if not fitted.parameter.identifiable:
         return fitted.parameter.verdict
-    return "if the model were exact" if missed else "identified"
+    return "only if the model is exact" if missed else "identified"
 
 
 def remarks(overlay: Overlay, fit: Fit | None) -> list[str]:
-    """Sentences: notes on the record, doubts about the fit, and the lag."""
+    """Sentences on the record, on doubts about the fit, and on the lag of the record."""
     words = [*overlay.notes, *(() if fit is None else fit.doubts)]
     if overlay.lag:
         way = "late" if overlay.lag > 0 else "early"
-        words.append(f"the record comes {number(1e3 * abs(overlay.lag), 3)} ms {way}")
+        words.append(
+            f"the record is {number(1e3 * abs(overlay.lag), 3)} ms {way} against the simulation; "
+            "this is corrected"
+        )
     return [sentence(pretty(remark)) for remark in words]
 
 

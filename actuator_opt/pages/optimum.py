@@ -23,11 +23,13 @@ from ..rendering.text import DASH, sentence
 from .uncertainty import percent
 
 MOST_ROWS = 20
-"""Largest number of combinations shown; the JSON output has them all."""
+"""Largest number of combinations shown; the JSON output contains all combinations."""
 MOST_COLUMNS = 4
-"""Largest number of PATHs with a column each; if there are more, their values share a column."""
+"""Up to this number of choices, each has its own column; if there are more, all share one column.
+"""
 WORTH = 10.0
-"""Reserves above this multiple of their limit are left out: the limit is far away."""
+"""Margins added for scatter are not shown if they exceed this multiple of their limit, as the
+design is then far from the limit."""
 _KINDS = {"dimension": "fixed dimension", "safety factor": "safety: not advised"}
 """Clearer words for some kinds of remedy."""
 
@@ -79,7 +81,7 @@ def _place(row: VariableResult) -> float:
 def best_values(optimisation: Optimisation, room: float) -> list[Block]:
     """Best values of the variables side by side.
 
-    Only as many are shown as fit into the height `room` [mm]; a line refers to the others.
+    Only the values that fit into the height `room` [mm] are shown; a line refers to the others.
     """
     best = optimisation.best_variables
     lines = (len(best) + 1) // 2
@@ -99,14 +101,16 @@ def best_values(optimisation: Optimisation, room: float) -> list[Block]:
         value, unit = text.number(quantity.to_display(row.value)), text.unit_text(quantity.unit)
         rows.append([row.path, value, unit, Slot(_place(row), row.at_bound or "")])
     more = len(best) - 2 * fit
-    note = f"{more} more, starts and bounds" if more > 0 else "Starts and bounds"
-    left = Table("Best values", columns, rows[:fit], note=f"{note}: Design variables.", on="paper")
+    note = f"{more} more variables, starts and bounds" if more > 0 else "Starts and bounds"
+    left = Table(
+        "Best values", columns, rows[:fit], note=f"{note}: see table Design variables.", on="paper"
+    )
     right = Table("Best values, continued", columns, rows[fit : 2 * fit], on="paper")
     return [Pair([[left], [right]] if right.rows else [[left]])]
 
 
 def heading(optimisation: Optimisation) -> str:
-    """Column head of the values shown: optimum, or requested sizes."""
+    """Heading for the column of values: "optimum", "continuous", or the kind of sizes."""
     if optimisation.rounding is None:
         return "optimum"
     return "continuous" if optimisation.made is None else optimisation.made.name
@@ -124,7 +128,7 @@ def sizes_and_choices(optimisation: Optimisation) -> Iterator[Block]:
 
 
 def heads(paths: Sequence[str]) -> list[str]:
-    """The shortest endings of PATHs that differ from each other, with at least two words each.
+    """The shortest endings by which the PATHs can be distinguished, with at least two words each.
 
     >>> heads(["seals.rod.compound", "seals.piston.compound", "fluid.material"])
     ['rod.compound', 'piston.compound', 'fluid.material']
@@ -146,11 +150,11 @@ def choice_notes(optimisation: Optimisation) -> list[str]:
         return []
     lines = [sentence(choices.sentence)]
     if len(choices.combinations) > MOST_ROWS:
-        lines.append(f"The best {MOST_ROWS} are shown; JSON has all.")
+        lines.append(f"The best {MOST_ROWS} combinations are shown; the JSON output lists all.")
     if any(tried.cost is not None and tried.cost < 0 for tried in choices.combinations):
         lines.append(
             "A combination with a better objective ranks lower if it misses a check that "
-            "other choices meet."
+            "other combinations meet."
         )
     return [*lines, *map(sentence, choices.notes)]
 
@@ -266,14 +270,14 @@ def rounding_notes(optimisation: Optimisation) -> list[str]:
     objective = text.metric(optimisation.objective_metric)
     lines = [sentence(rounding.sentence), sentence(rounding.remedy)]
     lines.append(
-        f"{rounding.tried} rounded designs tried, {rounding.feasible} meet every requirement;"
-        f" {rounding.solves} re-optimisations."
+        f"{rounding.tried} rounded designs were tried; {rounding.feasible} of them meet every"
+        f" requirement. This took {rounding.solves} re-optimisations."
     )
     for row in rounding.runners_up:
         share = text.number(row.percent, 3, signed=True)
         cost = "" if row.percent is None else f" ({share} %)"
         sizes = _sizes(optimisation, row.values)
-        lines.append(f"Next: {text.value_text(objective, row.objective)}{cost} with {sizes}.")
+        lines.append(f"Next best: {text.value_text(objective, row.objective)}{cost} with {sizes}.")
     for remedy in rounding.remedies:
         change = text.pretty(remedy.sentence).replace("->", "→")
         reached = text.value_text(objective, remedy.objective)
@@ -302,19 +306,19 @@ def infeasibility_blocks(card: Infeasibility) -> list[Block]:
     if card.joint:
         these = "this" if len(card.joint) == 1 else "all of these together"
         note = (
-            f"With {these} the design shown here meets all limits. The search found no smaller "
-            "total relaxation."
+            f"With {these}, the design shown here meets all limits. The search found no relaxation "
+            "with a smaller total."
         )
         if any(entry["safety_factor"] for entry in card.joint):
-            note += " It weakens a safety factor, which is not advised."
+            note += " This reduces a safety factor, which is not advised."
         rows = [_limit(entry) for entry in card.joint]
         blocks.append(Table("Smallest joint relaxation", _columns("limit"), rows, note=note))
     others = [str(e["parameter"] or e["requirement"]) for e in card.sole if e["needed"] is None]
     words = ""
     if card.cures:
         words = (
-            "Each of these changes alone is enough, the most advisable first; a smaller change "
-            "was not enough. "
+            "Each of these changes alone is enough, and no smaller change of the same input was. "
+            "The most advisable is first. "
         )
     if others:
         words += f"Not enough alone, however far they are relaxed: {', '.join(others)}. "
@@ -344,7 +348,7 @@ def _columns(first: str) -> list[Column]:
 
 
 def _limit(entry: Mapping[str, Any]) -> list[Cell]:
-    """Row of a relaxed limit, with its path or the name of its check."""
+    """Row of a relaxed limit, with its PATH or the name of its check."""
     origin = str(entry["origin"])
     return [
         str(entry["parameter"] or entry["requirement"]),
@@ -356,7 +360,7 @@ def _limit(entry: Mapping[str, Any]) -> list[Cell]:
 
 
 def _cure(entry: Mapping[str, Any]) -> list[Cell]:
-    """Row of a relaxation that is sufficient on its own."""
+    """Row of a single change that is sufficient on its own."""
     return [
         str(entry["parameter"]),
         soft(_KINDS.get(entry["kind"], entry["kind"])),
@@ -389,17 +393,17 @@ def _bounds(card: Infeasibility) -> Block:
         ]
         for bound in card.bounds
     ]
-    total = DASH if card.total is None else f"{text.number(100 * card.total, 3)} % of the limits"
+    total = DASH if card.total is None else f"{text.number(100 * card.total, 3)} % of their values"
     note = (
-        f"Gap: the smallest total by which the limits must be relaxed together, {total}. The "
-        "column shows the share of it that the first 1 % of widening this bound closes. "
+        f"Gap: the smallest sum of relaxations of all limits with which a design exists, {total}. "
+        "Gap closed by 1 %: share by which this sum falls if the bound is widened by 1 %. "
         f"{DASH}: widening this bound alone led to no design."
     )
     return Table("Bounds that prevent a design", columns, rows, note=note)
 
 
 def _closes(gain: float, total: float | None) -> str:
-    """Share of the gap that the first 1 % of widening a bound closes."""
+    """Share of the gap that is closed if a bound is widened by 1 %."""
     return f"{text.number(min(gain / total, 100.0), 2)} %" if total else DASH
 
 
@@ -407,7 +411,10 @@ def _closes(gain: float, total: float | None) -> str:
 
 
 def robust_tables(optimisation: Optimisation) -> Iterator[Table]:
-    """Robust search: its successive optima and the margins added for scatter; else empty."""
+    """Tables of a robust search: successive optima, and the margins added for scatter.
+
+    Empty if the search was not a robust one.
+    """
     robust = optimisation.robust
     if robust is None:
         return
@@ -417,11 +424,11 @@ def robust_tables(optimisation: Optimisation) -> Iterator[Table]:
         for number, step in enumerate(robust.rounds)
     ]
     note = (
-        "Round 0 has no margins added for scatter. In an independent sample of "
-        f"{robust.samples} draws the design shown meets all limits in {percent(robust.rate)} "
-        f"({percent(robust.lower)} to {percent(robust.upper)})."
+        "In round 0 no margins are added for scatter. In an independent sample, the design shown "
+        f"meets all limits in {percent(robust.rate)} of {robust.samples} draws (95 % confidence: "
+        f"{percent(robust.lower)} to {percent(robust.upper)})."
     )
-    columns = [Column(head, width=1.0) for head in ("round", quantity.label, "all limits hold")]
+    columns = [Column(head, width=1.0) for head in ("round", quantity.label, "all limits met")]
     title = f"Towards a yield of {percent(robust.target)}"
     yield Table(title, columns, rounds, note=note, on="paper")
     kept: list[list[Cell]] = [
@@ -432,7 +439,7 @@ def robust_tables(optimisation: Optimisation) -> Iterator[Table]:
     if kept:
         columns = [Column(head, width=1.0) for head in ("limit", "added, of the limit")]
         note = (
-            "Added margin: how far the margin of a limit may fall by scatter before the share "
-            "of draws that miss this limit exceeds the share allowed to it."
+            "Added margin: the margin that the nominal design needs so that, with scatter, no more "
+            "draws miss this limit than the yield allows."
         )
         yield Table("Margins added for scatter", columns, kept, note=note, on="paper")

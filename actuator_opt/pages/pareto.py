@@ -32,14 +32,15 @@ from ..rendering.text import trimmed, unit_text, value_text
 from .report import doubts
 
 SHOWN, FEWER = 21, 17
-"""Designs in the table with two objectives, and with more, as their heads need more lines."""
+"""Number of designs in the table for two objectives, and for more, whose headings need more lines.
+"""
 MOVING = 5
 """Largest number of variables in the table."""
 
 WIDTH, HEIGHT = 180.0, 82.0
 """Size of the chart [mm]."""
 ROOM = 0.06
-"""Free margin around the designs, as a share of their range."""
+"""Free space around the designs in the chart, as a share of their range."""
 
 
 def page(front: ParetoFront) -> Page:
@@ -95,7 +96,7 @@ def front_outcome(front: ParetoFront) -> dict[str, Any]:
 
 
 def verdict(front: ParetoFront) -> Verdict:
-    """The badge, with the doubts about the design that was evaluated in full."""
+    """The badge, with doubts about the design that was fully evaluated (the knee or the first)."""
     tight = len(front.evaluation.tight)
     plain, cautions = doubts(front.evaluation)
     if tight:
@@ -163,7 +164,7 @@ def _role(front: ParetoFront, k: int) -> str:
 
 
 def _moving(front: ParetoFront) -> list[str]:
-    """Variables that change most along the front, relative to their mean."""
+    """The variables that change most along the front, relative to their mean value."""
 
     def span(path: str) -> float:
         values = [point.variables[path] for point in front.points]
@@ -175,7 +176,7 @@ def _moving(front: ParetoFront) -> list[str]:
 
 
 def _evaluated(front: ParetoFront) -> str:
-    """Sentence on the design that was evaluated in full."""
+    """Name of the design that was fully evaluated."""
     return "first design" if front.knee is None else "knee"
 
 
@@ -210,7 +211,7 @@ def _blocks(front: ParetoFront) -> Iterator[Block]:
     numbers = [[text.number(row.quantity.to_display(row.values[k])) for row in rows] for k in kept]
     body = [[str(k + 1), *cells, _role(front, k)] for k, cells in zip(kept, numbers, strict=True)]
     more = len(front.points) - len(kept)
-    note = f"{more} more designs lie between those shown." if more else ""
+    note = f"{more} more designs lie between the designs shown." if more else ""
     yield Table("Designs of the front", columns, body, note=note)
     yield Notes("How far to trust it", [text.pretty(line) for line in remarks(front)])
 
@@ -221,14 +222,14 @@ def remarks(front: ParetoFront) -> list[str]:
     if front.evenness is not None and len(front.points) > 2:
         lines.append(
             f"the largest gap between neighbours is {text.number(front.evenness, 3)} times "
-            "the median, measured in objectives divided by their range"
-            + (", without jumps" if front.jumps else "")
+            "the median gap (each objective is divided by its range)"
+            + (", jumps excluded" if front.jumps else "")
         )
     lines += _wide(front)
     if front.knee is not None:
         lines.append(f"knee: design {front.knee.index + 1}, where the front bends most")
     elif len(front.points) > 1:
-        lines.append("no knee: the front does not bend towards the ideal point")
+        lines.append("no knee: the front does not bulge towards the ideal point")
     worst = max(point.kkt_residual for point in front.points)
     lines.append(
         f"the residual of the optimality conditions is at most {text.number(worst, 2)} at "
@@ -236,7 +237,7 @@ def remarks(front: ParetoFront) -> list[str]:
     )
     if tight := len(front.evaluation.tight):
         lines.append(
-            f"{_evaluated(front)}: {count_words(tight)}; `actuator-opt uncertainty` gives the "
+            f"{_evaluated(front)}: {count_words(tight)}; `actuator-opt uncertainty` computes the "
             "yield of a design"
         )
     return [*lines, *front.warnings]
@@ -251,18 +252,18 @@ def _wide(front: ParetoFront) -> Iterator[str]:
     if jumps := front.jumps:
         most = text.number(100 * max(gap.reach / gap.size for gap in jumps), 2)
         yield (
-            f"the front jumps between designs {between(jumps)}: searches from both sides "
-            f"show that further designs can lie in at most {most} % of such a gap"
+            f"the front jumps between designs {between(jumps)}: according to searches from both "
+            f"sides, further designs can exist in at most {most} % of such a gap"
         )
     if gaps := [gap for gap in front.wide if not gap.jump]:
-        yield f"wide gap between designs {between(gaps)}: no design found there"
+        yield f"wide gap between designs {between(gaps)}: the search reached no design there"
 
 
 # ---- figure ----
 
 
 def front_chart(front: ParetoFront) -> Chart:
-    """Panels side by side, each with one of the other objectives over the first."""
+    """Chart with panels side by side: each other objective over the first objective."""
     first, *others = front.objectives
     panels = [_panel(front, (first, 0), (other, k)) for k, other in enumerate(others, 1)]
     return Chart("Pareto front", panels, height=HEIGHT)
@@ -287,7 +288,7 @@ def _panel(front: ParetoFront, across: tuple[Wish, int], up: tuple[Wish, int]) -
     ]
     points = [Points("front", xs, ys, small=True, style=0)]
     if inside:
-        words = "dominated designs that the search computed"
+        words = "dominated designs from the search"
         pale = Points(words, [x for x, _ in inside], [y for _, y in inside], weight="guide")
         points.insert(0, pale)
     if front.knee is not None:
@@ -317,7 +318,7 @@ def _label(wish: Wish) -> str:
 
 
 def _range(values: list[float], wish: Wish, front: ParetoFront) -> tuple[float, float]:
-    """Range of the designs with a free margin; it includes a limit that is near."""
+    """Range of the axis: that of the designs with free space around them, and limits nearby."""
     low, high = min(values), max(values)
     span = (high - low) or abs(high) or 1.0
     for row in _required(front, wish):

@@ -19,13 +19,13 @@ MOST_MOVES = 8
 LEAST_MOVE = 1e-4
 """Relative change per +1 % below which a dimension counts as unchanged."""
 LEAST_EFFECT = 1e-5
-"""Smallest change that is drawn, as a share of the objective."""
+"""Smallest change of the objective that is drawn, as a share of the objective."""
 NO_DESIGN = "no design"
-"""Words at an end of a bar for which no feasible design exists."""
+"""Words at an end of a bar if no feasible design exists for this change."""
 
 
 def price_blocks(optimisation: Optimisation, *, moving: bool = False) -> list[Block]:
-    """Blocks: tornado of re-solved optima, prices, best trades, and changes of dimensions.
+    """Blocks on prices: tornado chart, table, most valuable changes, and changes of dimensions.
 
     `moving`: the terminal also shows the changes of dimensions.
     """
@@ -93,9 +93,9 @@ def _margin(limit: Requirement) -> str:
 
 
 def _price(optimisation: Optimisation, row: Sensitivity, objective: Quantity) -> Cell:
-    """The price per displayed unit; at a kink, the prices on both sides.
+    """The price per displayed unit; if an increase and a decrease have different prices, both.
 
-    "~" marks a price that is not linear up to ±10 %.
+    "~" marks a price that predicts the changes at ±10 % badly.
     """
     factor = row.scale * (objective.to_display(1.0) - objective.to_display(0.0))
 
@@ -133,7 +133,7 @@ def quality(optimisation: Optimisation) -> str:
     """Line below the prices on how accurate they are."""
     kkt = optimisation.kkt
     if kkt is None:
-        return "Quality: no multipliers (the design is not an optimum); prices are not exact."
+        return "Quality: prices are not exact, because the design is not an optimum."
     parts = [
         f"Quality: KKT residual {text.number(kkt.residual, 2)}, {len(kkt.active)} active limits "
         f"of rank {kkt.rank}, {kkt.curvature}."
@@ -145,21 +145,21 @@ def quality(optimisation: Optimisation) -> str:
             if not kinks
             else f"{kinks} prices differ between an increase and a decrease"
         )
-        parts.append(
-            f"Degenerate optimum, with more active limits than variables they fix: {sides}."
-        )
+        parts.append(f"Degenerate optimum (more active limits than independent ones): {sides}.")
     if (made := optimisation.made) is not None:
         value = text.value_text(text.metric(optimisation.objective_metric), made.objective_before)
         parts.append(f"Prices are those of the continuous optimum ({value}), before rounding.")
     parts.append(
-        f"Prices are per unit shown in the limit column; at ±{PER_CENT} %: first the change "
-        "that the price predicts, then that of a new optimum, which also ranks the rows; "
+        "Price: change of the objective per unit of the column limit. "
+        f"At ±{PER_CENT} %: the objective that the price predicts, then the objective of the new "
+        "optimum (solved), by which the rows are ranked. "
         f"{DASH}: no design found. Holds until: value up to which the same limits stay active."
     )
     if not all(row.straight(optimisation.objective_value) for row in optimisation.sensitivities):
         parts.append(
-            f"~: at ±{PER_CENT} % the price is wrong by more than {round(100 * STRAIGHT)} % of "
-            "the change, or no design was found on one side; trust the solved columns."
+            f"~: the change predicted for ±{PER_CENT} % is wrong by more than "
+            f"{round(100 * STRAIGHT)} %, or no design was found on one side; trust the columns "
+            "solved."
         )
     return " ".join(parts)
 
@@ -214,8 +214,8 @@ def moves(optimisation: Optimisation, *, shown: bool = False) -> Block | None:
         Column("which dimensions move, per +1 %", "left", 3.0),
     ]
     note = (
-        f"Derivative of the optimum: the {MOVING} largest changes of dimensions, for the first "
-        f"{MOST_MOVES} rows that change any; ~: valid only as far as the price holds."
+        f"Derivatives of the optimum: the {MOVING} largest relative changes of dimensions in each "
+        f"row, for the first {MOST_MOVES} rows with any change; ~: valid only for small changes."
     )
     on: Medium = "both" if shown else "paper"
     return Table("Which dimension moves", columns, rows, note=note, on=on)
@@ -237,24 +237,24 @@ def drawn(optimisation: Optimisation) -> list[Sensitivity]:
 
 
 def _tornado_block(optimisation: Optimisation) -> Block | None:
-    """The tornado with its title; None if no limit or parameter has an effect."""
+    """The tornado chart with its title; None if no limit or parameter has an effect."""
     rows = drawn(optimisation)
     if not rows:
         return None
     left = len(optimisation.sensitivities) - len(rows)
     more = f" {left} more have a smaller effect or none." if left else ""
     note = (
-        "Bars: change of the objective after optimising again; strokes: change that the price "
-        f"predicts. Ranked by the larger bar.{more}"
+        "Bars: change of the objective after re-optimisation; tick marks: change that the price "
+        f"predicts. Ranked by the longer bar.{more}"
     )
     return Drawing(f"Effect of ±{PER_CENT} % of each", tornado(optimisation), note)
 
 
 def tornado(optimisation: Optimisation, *, width: float = 180.0) -> Ink:
-    """Bars of the re-solved objective at +10 % (dark) and -10 % (light) of every row.
+    """Tornado chart: change of the re-optimised objective at +10 % (dark) and -10 % (light).
 
-    If no design exists at an end, words at the right say so. A prediction beyond the frame ends
-    there with an arrow.
+    If no design exists for a change, words at the right end of the row report this. A prediction
+    beyond the frame ends at the frame with an arrow.
     """
     objective = optimisation.objective_value
     quantity = text.metric(optimisation.objective_metric)
@@ -272,7 +272,7 @@ def tornado(optimisation: Optimisation, *, width: float = 180.0) -> Ink:
 
 
 def _bar(row: Sensitivity, objective: float, factor: float) -> TornadoBar:
-    """A price row as a bar."""
+    """A limit or parameter as a bar of the tornado chart."""
     limit = text.with_unit(text.trimmed(display_of(row, row.limit)), text.unit_text(row.unit))
     changes: dict[bool, float | None] = {}
     predictions: dict[bool, float | None] = {}

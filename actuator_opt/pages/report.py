@@ -50,8 +50,8 @@ KEY_FIGURES = (
     "pull_force",
     "closed_length",
 )
-"""Candidates for key figures; after the objective, the first with a value are shown, five in
-total."""
+"""Candidates for key figures, the most important first. The page shows five key figures: the
+objective, then the first of these that have a value."""
 
 NO_RESERVE = f"No reserve: met, with a margin below {100 * result.NO_RESERVE:g} %"
 FLAG = " (!)"
@@ -65,7 +65,7 @@ _MET = ("met", "checks")
 (amber)."""
 _BAR = Column("", "left", "22mm", drop=2)
 _MARK = Column("", on="terminal")
-"""Column that shows only the mark of a state."""
+"""Column that shows a state only by its mark, without words."""
 
 
 def page(
@@ -122,7 +122,7 @@ def page(
 
 
 def prices_page(optimisation: Optimisation) -> Page:
-    """The page of the command `sensitivity`: the prices of an optimum alone."""
+    """The page of the command `sensitivity`: only the prices of an optimum."""
     blocks = prices.price_blocks(optimisation, moving=True)
     if not blocks and optimisation.infeasibility is not None:
         blocks = optimum.infeasibility_blocks(optimisation.infeasibility)
@@ -140,7 +140,7 @@ def prices_page(optimisation: Optimisation) -> Page:
 def parts_of(subject: Evaluation | Optimisation) -> tuple[Evaluation, Optimisation | None]:
     """The evaluation to show and, if it results from an optimisation, that optimisation.
 
-    If sizes were requested, the evaluation is that of the design with these sizes, which is built.
+    If sizes were requested and possible, the evaluation is that of the design with these sizes.
     """
     if isinstance(subject, Optimisation):
         return subject.best_evaluation, subject
@@ -148,7 +148,7 @@ def parts_of(subject: Evaluation | Optimisation) -> tuple[Evaluation, Optimisati
 
 
 def outcome(subject: Evaluation | Optimisation) -> dict[str, Any]:
-    """The values that a repeated run must reproduce: SI, by metric and by PATH."""
+    """The values that a repeated run must reproduce (SI): metrics by name, variables by PATH."""
     evaluation, optimisation = parts_of(subject)
     numbers: dict[str, Any] = {
         "metrics": {metric.name: metric.value for metric in evaluation.metrics.values()},
@@ -180,7 +180,7 @@ def _opening(
 def _with_variables(
     page: Page, hero: float, optimisation: Optimisation
 ) -> tuple[list[Block], list[Block]]:
-    """Blocks of the first sheet (requirements, variables), and tables that do not fit on it.
+    """Blocks of the first sheet (requirements, variables), and tables for the following sheets.
 
     If the table of variables does not fit, the labels of the requirements are dropped first. If
     it still does not fit, a short list of values replaces it.
@@ -211,7 +211,7 @@ def sentences(optimisation: Optimisation) -> list[str]:
 def reserve_sentences(subject: Evaluation | Optimisation) -> list[str]:
     """Sentences on limits without reserve and on the yield.
 
-    Empty unless requirements are met and the search was not a robust one.
+    Empty if a requirement is missed, or if the search already included scatter (robust search).
     """
     evaluation, optimisation = parts_of(subject)
     robust = optimisation is not None and optimisation.robust is not None
@@ -227,7 +227,7 @@ def _sentence(subject: Evaluation | Optimisation) -> str:
 
 
 def verdict(subject: Evaluation | Optimisation) -> Verdict:
-    """The badge: state, words, counts of requirements and checks, doubts.
+    """The badge: state, words, numbers of requirements and checks met, and doubts.
 
     `cautions` are lines in amber: limits without reserve, unverified values, values outside a
     model's range.
@@ -246,7 +246,7 @@ def verdict(subject: Evaluation | Optimisation) -> Verdict:
     elif optimisation is not None and optimisation.status == "undefined":
         state, words = "missed", "NO USABLE ANSWER"
     elif none_made:
-        state, words = "missed", f"NO DESIGN OF {none_made.upper()}"
+        state, words = "missed", f"NO DESIGN WITH {none_made.upper()}"
     elif missed:
         state, words = "missed", "REQUIREMENTS MISSED"
     elif robust is not None and not robust.reached:
@@ -299,16 +299,20 @@ def _counts(evaluation: Evaluation) -> dict[str, int]:
 
 
 def _misfit(optimisation: Optimisation | None) -> str:
-    """The geometric constraints that no design meets."""
+    """Clause on the geometrical conditions that no design meets together."""
     card = None if optimisation is None else optimisation.infeasibility
-    return f"; the geometry conflicts: {', '.join(card.laws)}" if card and card.laws else ""
+    return (
+        f"; conflicting conditions of the geometry: {', '.join(card.laws)}"
+        if card and card.laws
+        else ""
+    )
 
 
 # ---- key figures ----
 
 
 def key_figures(subject: Evaluation | Optimisation) -> list[Tile]:
-    """Five key figures, the objective first, each with its limit or its origin."""
+    """Five key figures, the objective first, each with a note on its limit or origin."""
     evaluation, optimisation = parts_of(subject)
     first = () if optimisation is None else (optimisation.objective_metric,)
     names = [n for n in dict.fromkeys((*first, *KEY_FIGURES)) if n in evaluation.metrics]
@@ -357,9 +361,9 @@ def _limited(evaluation: Evaluation, name: str) -> Requirement | None:
 
 
 def _before(optimisation: Optimisation | None, name: str) -> tuple[str, float, int] | None:
-    """Words, value and digits of the reference of a key figure.
+    """Reference value with which a key figure is compared: its name, value and number of digits.
 
-    It is the optimum before rounding, or else the start.
+    The reference is the optimum before rounding, or else the start.
     """
     if optimisation is None:
         return None
@@ -382,8 +386,8 @@ def flag(evaluation: Evaluation, name: str | None) -> str:
 def requirements(evaluation: Evaluation, *, shown: bool = True, labelled: bool = True) -> Block:
     """Limit, result, margin and status of every requirement.
 
-    `shown`: also on the terminal (unless its list of all quantities shows them). `labelled`: on
-    paper, every quantity has its label in words.
+    `shown`: the terminal shows the table, too (an evaluation lists limits with all quantities
+    instead). `labelled`: on paper, every quantity also has a label in words.
     """
     on: Medium = "both" if shown else "paper"
     rows: list[Row] = []
@@ -414,7 +418,9 @@ def requirements(evaluation: Evaluation, *, shown: bool = True, labelled: bool =
         Column("status", on="paper"),
         Column("governing case", "left", 1.2 if labelled else 2.0, breaks=18, drop=2, style="dim"),
     ]
-    note = "Margin: distance from the limit, relative to the limit; the bar is full at 100 %."
+    note = (
+        "Margin: distance from the limit as a share of the limit; a full bar means 100 % or more."
+    )
     note = " ".join([note, *(f"{line}." for line in _row_notes(evaluation))])
     shown_columns = [k for k, column in enumerate(columns) if labelled or column.head != "quantity"]
     return Table(
@@ -441,9 +447,9 @@ def _result(evaluation: Evaluation, row: Requirement) -> Cell:
 
 
 def quantities(evaluation: Evaluation) -> Iterator[Block]:
-    """Every computed quantity with its limits, and what is not computed, for the terminal.
+    """Every computed quantity with its limits, and the quantities not computed, for the terminal.
 
-    Each limit has beside it the value from which its margin is computed.
+    Beside each limit is the value from which its margin is computed.
     """
     limits: dict[str, list[Requirement]] = {}
     for required in evaluation.requirements:
@@ -496,7 +502,7 @@ def quantities(evaluation: Evaluation) -> Iterator[Block]:
 
 
 def masses(evaluation: Evaluation) -> Block:
-    """Mass of every part with the total; the oil mass is below."""
+    """Mass of every part and their total, followed by the mass of the oil."""
     quantity = METRICS["mass"]
     parts = evaluation.mass_parts
     total = sum(parts.values())
@@ -536,14 +542,14 @@ def masses(evaluation: Evaluation) -> Block:
 
 
 def checks(evaluation: Evaluation) -> Iterator[Block]:
-    """The check list: all lines on paper, only the open lines on the terminal."""
+    """The check list: on paper all lines; on the terminal only lines that are not clearly met."""
     if not evaluation.checks:
         yield Notes("Check list", ["No check list."], on="paper")
         return
     counts = _counts(evaluation)
     note = (
         f"{counts['met']} met, {counts['missed']} missed, {counts['not_checked']} not "
-        "checked; a line that is not checked does not claim that its limit is met."
+        "checked. If a line is not checked, its limit may be missed."
     )
     columns = [
         Column("check", "left", 1.25),
@@ -614,7 +620,7 @@ def warnings(subject: Evaluation | Optimisation) -> list[str]:
 
 
 def _remarks(evaluation: Evaluation, optimisation: Optimisation | None) -> Iterator[Block]:
-    """Warnings; the terminal adds a short form of the appendix that paper has."""
+    """Warnings; on the terminal also a short form of the appendix, which is only on paper."""
     if lines := warnings(optimisation or evaluation):
         yield Notes("Warnings", [text.pretty(line) for line in lines], style="yellow")
     data = []
@@ -625,7 +631,9 @@ def _remarks(evaluation: Evaluation, optimisation: Optimisation | None) -> Itera
         for value in evaluation.unverified:
             counts[value.material] = counts.get(value.material, 0) + 1
         listed = ", ".join(f"{material} {count}" for material, count in counts.items())
-        data.append(f"unverified library values used: {len(evaluation.unverified)} ({listed})")
+        data.append(
+            f"library values used but not verified: {len(evaluation.unverified)} ({listed})"
+        )
     if data:
         yield Notes("Data", data, headless=True, style="yellow", on="terminal")
     if optimisation is not None:
@@ -634,7 +642,7 @@ def _remarks(evaluation: Evaluation, optimisation: Optimisation | None) -> Itera
 
 def _appendix(evaluation: Evaluation) -> Iterator[Block]:
     """The origin of the numbers: unverified values, models, notes of the author."""
-    contents = ["Unverified values, models with their valid ranges, and the input."]
+    contents = ["Unverified values, models with their valid ranges, and the design file."]
     yield Notes("Appendix", contents, on="paper")
     yield assumptions(evaluation)
     yield models(evaluation)
@@ -644,7 +652,7 @@ def _appendix(evaluation: Evaluation) -> Iterator[Block]:
 
 
 def models(evaluation: Evaluation) -> Block:
-    """Models with source and valid range; extrapolation is flagged."""
+    """Table of the models used, with source and valid range; extrapolation is flagged."""
     rows: list[list[Cell]] = [
         [
             row.name,
@@ -667,7 +675,7 @@ def models(evaluation: Evaluation) -> Block:
         Column("range"),
     ]
     outside = sum(not row.in_range for row in evaluation.models)
-    note = f"{outside} of {len(rows)} models used outside their valid range." if outside else ""
+    note = f"{outside} of {len(rows)} models are used outside their valid range." if outside else ""
     return Table("Models", columns, rows, note=note, on="paper")
 
 

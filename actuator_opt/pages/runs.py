@@ -1,4 +1,4 @@
-"""Recorded runs: their list, and the details of a single run; findings of `doctor`.
+"""Recorded runs: their list, and the details of a single run. Also the findings of `doctor`.
 
 The table of `doctor` is never cut, so that paths can be copied.
 """
@@ -14,15 +14,15 @@ from ..rendering.blocks import Block, Column, Row, State, Table, short
 from ..rendering.text import DASH, number, pretty
 
 MET = 1e-6
-"""Largest violation with which a limit counts as met, as documented."""
+"""Largest violation with which a limit counts as met, as stated in the documentation."""
 _STEPS = 8
 """Largest number of improvements of the search shown."""
 _COMMAND = 600
-"""Largest number of letters shown of a command."""
+"""Largest number of characters of a command that are shown."""
 _VALUES = 8
-"""Largest number of values listed of an axis."""
+"""Largest number of values listed for a varied input."""
 _DESIGNS = 5
-"""Largest number of designs shown of a sweep."""
+"""Largest number of designs shown for a sweep."""
 _BOUNDS = (("value", 5), ("lower", 4), ("upper", 4))
 """Columns of the variables, with their significant digits."""
 Fact = tuple[str, str]
@@ -95,7 +95,7 @@ def blocks(name: str, head: Mapping[str, Any], body: Mapping[str, Any]) -> list[
 
 
 def _facts(head: Mapping[str, Any], body: Mapping[str, Any]) -> list[Fact]:
-    """Facts about a run: the request, its origin, and the outcome."""
+    """Facts about a run: design, command, settings of the computation, and outcome."""
     given = body["input"]
     request: list[Fact] = []
     if head["kind"] == "sweep" and "plan" in body:
@@ -117,7 +117,7 @@ def _facts(head: Mapping[str, Any], body: Mapping[str, Any]) -> list[Fact]:
 
 
 def _sweep_facts(body: Mapping[str, Any]) -> list[Fact]:
-    """The axes of a sweep, the order of its points, and the file that contains its rows."""
+    """The varied inputs of a sweep, the method that places its points, and the file of its rows."""
     plan, request = body["plan"], body["asked"]
     store = request["store"]
     if request["reduce"]:
@@ -134,7 +134,7 @@ def _sweep_facts(body: Mapping[str, Any]) -> list[Fact]:
 
 
 def _values(axis: Mapping[str, Any]) -> str:
-    """The values of an axis in display units."""
+    """The values of a varied input in display units."""
     if axis["values"] is None:
         values = [*axis["texts"]]
     else:
@@ -147,7 +147,7 @@ def _values(axis: Mapping[str, Any]) -> str:
 
 
 def _quantity(axis: Mapping[str, Any]) -> Quantity:
-    """The quantity of an axis: of the design, of a limit or of a material."""
+    """The quantity of a varied input (an input of the design, a limit or a material value)."""
     tables = {"requirements": METRICS, "materials": MATERIAL_PROPERTIES}
     known = tables.get(axis["path"].partition(".")[0], INPUTS)
     return known.get(axis["quantity"]) or of_metric(axis["quantity"])
@@ -245,11 +245,11 @@ _STATUS: dict[str, tuple[str, State]] = {
     "missing": ("not there", "no_reserve"),
     "fault": ("FAULT", "missed"),
 }
-"""Words and state of a status."""
+"""For each status: words, and the state that determines the colour."""
 
 
 def findings(entries: Iterable[tuple[str, str, str, str, str]]) -> Table:
-    """A table of findings: group, name, status, value and remedy of each."""
+    """Table of the findings of `doctor`: group, name, status, value and remedy of each."""
     columns = [
         Column("", strong=True, drop=1),
         Column("", style="state"),

@@ -56,8 +56,8 @@ def page(study: SealStudy) -> Page:
 def blocks(study: SealStudy) -> list[Block]:
     """Blocks on the seals of piston or rod, with their gland, for the report of a design."""
     note = (
-        "Dashed: sections of the free rings. Long lands between grooves are shortened in "
-        "the drawing."
+        "Dashed: sections of the rings before assembly. Long lands between grooves are drawn "
+        "shortened."
     )
     if study.place == "piston":
         note += " The bore is drawn at its size without pressure."
@@ -115,7 +115,7 @@ def _tiles(study: SealStudy) -> list[Tile]:
 
 
 def _blocks(study: SealStudy, sentences: str) -> list[Block]:
-    """Tables and figures of a seal study, with `sentences` below the operating point."""
+    """Tables and figures of a seal study; `sentences` are printed below the operating point."""
     shown: list[Block] = [
         _gland(study), _squeeze(study), _operating(study, sentences), _contact(study)
     ]  # fmt: skip
@@ -146,10 +146,10 @@ def _gland(study: SealStudy) -> Table:
     ]
     growth = ""
     if study.growth > 0:
-        growth = f", and {number(1e3 * study.growth, 3)} more by the bore's growth at pressure"
+        growth = f", plus {number(1e3 * study.growth, 3)} by which pressure widens the bore"
     note = (
-        "mm; gland depth from the counterface to the groove's floor, with the tolerance of both;"
-        f" ring: axial × radial. Radial gap {trimmed(1e3 * study.clearance)}{growth}."
+        "In mm. Gland depth: from the counterface to the floor of the groove, with both tolerances;"
+        f" ring: axial × radial size. Radial gap {trimmed(1e3 * study.clearance)}{growth}."
     )
     return Table(f"{_seals(study)}: sizes", columns, gland_rows(study), note=note)
 
@@ -192,10 +192,11 @@ def _ring_size(element: SealElement) -> str:
 
 def _squeeze(study: SealStudy) -> Drawing:
     note = (
-        "Bars from loosest to tightest over the tolerances of ring and gland, rod and bore "
-        "concentric; line: nominal. Loosest and nominal: section thinned by its stretch; "
-        "tightest: section without stretch. Ring and housing expand with heat, each by its own "
-        "coefficient if the compound states one; pressure widens the bore around the piston."
+        "Bars: from the loosest to the tightest squeeze that the tolerances of ring and gland "
+        "allow, with rod and bore concentric; line: nominal squeeze. Stretching thins the section; "
+        "this is included in the loosest and the nominal squeeze, but not in the tightest. Ring "
+        "and housing expand with heat, each by its own coefficient if the compound states one. "
+        "Pressure widens the bore around the piston."
     )
     if any(row.loosest <= 0 for row in study.squeezes):
         note += " Red: the ring loses contact."
@@ -214,8 +215,14 @@ def _squeeze(study: SealStudy) -> Drawing:
         cells = (row.label, degrees(row.temperature), bars(row.pressure), *shares)
         rows.append(Row(cells, "missed" if row.loosest <= 0 else ""))
     limits = [f"{sense} {trimmed(100 * level)} %" for sense, level in figures.squeeze_limits(study)]
-    required = f"Over the tolerances; required: {', '.join(limits)}" if limits else ""
-    table = Table(title, columns, rows, note=required or "Over the tolerances")
+    required = (
+        f"Loosest and tightest: within the tolerances. Required: {', '.join(limits)}"
+        if limits
+        else ""
+    )
+    table = Table(
+        title, columns, rows, note=required or "Loosest and tightest: within the tolerances."
+    )
     return Drawing(title, figures.squeeze_figure(study), note, instead=table)
 
 
@@ -223,7 +230,7 @@ def _squeeze(study: SealStudy) -> Drawing:
 
 
 def operating_point(study: SealStudy) -> str:
-    """Pressure, speed and temperature."""
+    """The operating point in words: pressure, speed and temperature."""
     point = study.drive
     return f"{bars(point.pressure)}, {speed_words(point.speed)}, {degrees(point.temperature)}"
 
@@ -232,8 +239,8 @@ def _operating(study: SealStudy, sentences: str) -> Table:
     columns = [Column("quantity", "left", 1.6, wraps=True, least=10)]
     columns += [Column(name, "right", 1.0, wraps=True, least=9) for name in stroke_names(study)]
     note = (
-        f"{sentences} Negative flows and oil volumes return to the sealed side; residuals are "
-        "relative."
+        f"{sentences} Negative flows and volumes: oil returns to the sealed side. Residuals are "
+        "relative errors of the solution."
     )
     title = f"{_seals(study)}: at {operating_point(study)}"
     return Table(title, columns, operating_rows(study), note=note)
@@ -249,7 +256,7 @@ def operating_rows(study: SealStudy) -> list[tuple[str, str, str]]:
         row("friction, film", lambda point: _force(point.friction)),
         row("part by oil shear", lambda point: _force(point.viscous)),
         row("part by asperities", lambda point: _force(point.asperity)),
-        row("friction, by scatter of the moduli", _scatter),
+        row("friction, range by scatter of the moduli", _scatter),
         row("friction by friction coefficient", lambda p: _force(p.coefficient_friction)),
         row("breakaway, dry", lambda point: _force(point.breakaway)),
         row("secant damping at this speed", lambda point: _damping(point.damping)),
@@ -323,9 +330,9 @@ def _contact(study: SealStudy) -> Table:
         Column("contact model", "left", 1.4, breaks=14, wraps=True, drop=5),
     ]
     note = (
-        "Static contact. Line load: force per length of circumference; peak: contact pressure "
-        "above that of the outer side. Columns: lowest, assumed and highest modulus of the "
-        "squeezed part."
+        "Static contact. Line load: force per length of circumference. Peak: highest contact "
+        "pressure, relative to the pressure on the outer side. Modulus: lowest, assumed and "
+        "highest value for the squeezed part."
     )
     return Table(f"{_seals(study)}: contact", columns, contact_rows(study), note=note)
 
@@ -371,9 +378,9 @@ def _modulus(point: RingPoint) -> str:
 def _film(study: SealStudy, index: int) -> Chart:
     label = study.drive.rings[index].ring.label
     note = (
-        f"At {operating_point(study)}. Static: contact pressure without oil; in motion, oil and "
-        "asperities carry it together. Film: distance between the mean planes of the two rough "
-        "surfaces."
+        f"At {operating_point(study)}. Static: contact pressure without oil. In motion, oil and "
+        "asperities together carry this load. Film: distance between the mean planes of the two "
+        "rough surfaces."
     )
     title = f"{label.capitalize()}: contact pressure and oil film"
     return Chart(title, figures.contact_panels(study, index), note, height=54.0)
@@ -415,9 +422,9 @@ def _element_rows(study: SealStudy) -> list[tuple[str, ...]]:
 
 
 def elements_sentence(study: SealStudy) -> str:
-    """Contact width and peak pressure by finite elements compared with the closed form.
+    """Sentence that compares contact width and peak pressure by finite elements and closed form.
 
-    At the operating point; empty without finite elements.
+    The sentence is for the operating point; it is empty without finite elements.
     """
     if not study.elements:
         return ""
@@ -430,7 +437,7 @@ def elements_sentence(study: SealStudy) -> str:
         return f"{own} {unit} (closed form {closed})"
 
     return (
-        f"Contact of the {point.ring.label} by finite elements: at {bars(pressure)} width"
+        f"Contact of the {point.ring.label} by finite elements at {bars(pressure)}: width"
         f" {beside(point.contact.width, law.width, 'mm', 1e3)}, peak"
         f" {beside(point.contact.peak, law.peak, 'MPa', 1e-6)}."
     )
@@ -438,22 +445,22 @@ def elements_sentence(study: SealStudy) -> str:
 
 def stress_note(study: SealStudy) -> str:
     """Note on what the stress sections show, and on their limitations."""
-    words = "Deformed to scale, sealed side left; red: the contact. "
+    words = "Deformed shape to scale, sealed side on the left; red: contact. "
     if study.out.rings[0].ring.element.back_ups:
-        words += "The groove shown is the space beside the back-up rings. "
+        words += "The back-up rings are not drawn; the groove shown is the space beside them. "
     return (
-        f"{words}Stress is averaged at the corners of the elements; the highest value is the "
-        "mean of an element. Rigid walls with closed corners; no friction, no creep, no "
-        "yielding."
+        f"{words}Stresses drawn are averages at the corners of the elements; the highest stress "
+        "stated is the mean of one element. Assumptions: rigid walls with closed corners, no "
+        "friction, no creep, no yielding."
     )
 
 
 def contact_note(study: SealStudy) -> str:
     """Note on the limitations of the contact curves."""
     words = (
-        "Pressures are relative to the outer side; neither curve includes the bore's growth. "
-        "Between the computed points of the finite elements, and between two computed "
-        "pressures, values are interpolated linearly."
+        "Pressures are relative to the outer side. Neither finite elements nor closed form include "
+        "the growth of the bore. Values by finite elements are interpolated linearly between "
+        "the computed points and pressures."
     )
     elements = study.out.rings[0].ring.element.seal_type.elements
     return words if elements is None else f"{words} {elements.note}"
@@ -466,13 +473,13 @@ def _speeds(study: SealStudy, curves: FilmMap) -> Chart:
     point, note = study.drive, ""
     if point.converged:
         note = (
-            f"At {operating_point(study)} friction is {_force(point.friction)} (with the "
-            f"scatter of the moduli: {_scatter(point)}) and secant damping "
+            f"At {operating_point(study)}, friction is {_force(point.friction)} (with the "
+            f"scatter of the moduli: {_scatter(point)}). Secant damping is "
             f"{_damping(point.damping)}, which applies to this speed only. "
         )
     note += (
-        f"By the coefficient of friction it is {_force(point.coefficient_friction)};"
-        f" breakaway {_force(point.breakaway)}.{missing(curves)}"
+        f"By the coefficient of friction, friction is {_force(point.coefficient_friction)};"
+        f" breakaway takes {_force(point.breakaway)}.{missing(curves)}"
     )
     title = f"{_seals(study)}: friction and damping over speed"
     table = _speed_table(study, curves)
@@ -499,13 +506,13 @@ def _map(study: SealStudy, film_map: FilmMap) -> Chart:
     driven = stroke_names(study)[0].capitalize()
     note = f"{driven}.{missing(film_map)}"
     if film_map.why:
-        note += " Hatched: unknown, next to points without a film."
+        note += " Hatched: unknown, as neighbouring points have no film."
     title = f"{_seals(study)}: friction and damping over speed and pressure"
     return Chart(title, figures.map_panels(study, film_map), note, height=62.0)
 
 
 def missing(film_map: FilmMap) -> str:
-    """Number of points of a map without an oil film, with reasons; empty if there are none."""
+    """Sentence on points of a map without an oil film, with reasons; empty if there are none."""
     if not film_map.why:
         return ""
     reasons: dict[str, int] = {}
@@ -515,7 +522,7 @@ def missing(film_map: FilmMap) -> str:
         reasons[plain] = reasons.get(plain, 0) + 1
     counted = "; ".join(f"{count} × {reason}" for reason, count in reasons.items())
     points = f"{len(film_map.why)} of {film_map.friction.size} points"
-    return f" Without a film, and not drawn: {points} ({counted})."
+    return f" Not drawn, because no film was computed: {points} ({counted})."
 
 
 def _is_number(word: str) -> bool:
@@ -530,12 +537,12 @@ def _is_number(word: str) -> bool:
 
 
 def why(study: SealStudy) -> str:
-    """Reason of a missing oil film at the operating point; empty if both strokes have a film."""
+    """Reason for a missing oil film at the operating point; empty if both strokes have a film."""
     names = stroke_names(study)
     if study.place == "rod":
         names = (f"on the {names[0]}", f"on the {names[1]}")
     parts = [
-        f"No film {name}: {point.why.rstrip('.')}."
+        f"No oil film {name}: {point.why.rstrip('.')}."
         for name, point in zip(names, (study.drive, study.other), strict=True)
         if point.why
     ]
@@ -543,14 +550,14 @@ def why(study: SealStudy) -> str:
 
 
 def strokes(study: SealStudy) -> str:
-    """Sentence on which stroke is driven and which returns, and on the pressure that is sealed."""
-    pressure = f"The seal withstands {bars(study.drive.pressure)}"
+    """Sentences on the two strokes of a piston, and on the pressure that is sealed."""
+    pressure = f"The seal seals {bars(study.drive.pressure)}"
     if study.place == "rod":
-        return f"{pressure} above the atmosphere."
+        return f"{pressure} above atmospheric pressure."
     return (
         "Driven: the oil pressure moves the piston. Overrun: a load moves the piston against "
-        f"the pressure that its seal withstands. {pressure} above the "
-        f"{bars(study.outer_pressure)} of the other chamber."
+        f"the sealed pressure. {pressure} above the {bars(study.outer_pressure)} of the other "
+        "chamber."
     )
 
 
@@ -572,8 +579,8 @@ def leakage(study: SealStudy) -> str:
     back = oil.drawn_back
     inwards = f"draws {_volume(back)} back" if back >= 0 else f"leaks {_volume(-back)} more"
     return (
-        f"Over {trimmed(1e3 * study.stroke)} mm the outstroke carries "
-        f"{_volume(oil.carried_out)} past the seal and the instroke {inwards}, both at "
+        f"Over {trimmed(1e3 * study.stroke)} mm of stroke, the outstroke carries "
+        f"{_volume(oil.carried_out)} of oil past the seal and the instroke {inwards}, both at "
         f"{pressure} and {speed}. A double stroke leaves {_volume(oil.net)} outside."
     )
 
@@ -592,32 +599,32 @@ def notes(study: SealStudy) -> list[str]:
         "Model: static contact, oil film with cavitation between two rough planes, asperity "
         "contact, leakage. Input: sizes, modulus or hardness, oil, and roughness and asperities "
         "of the surfaces.",
-        "Asperity density, radius and friction "
-        f"({' and '.join(trimmed(friction) for friction in frictions)}) are literature "
-        "orders of magnitude for the compound, not measurements of this seal. The "
-        "asperity part of the friction is proportional to the asperity friction: where "
-        "asperities cause nearly all of the friction, the total is, too.",
-        "The averaged film passes some oil at any gap, at rest too, where a real elastomer seal "
-        "does not leak: its flow factors do not include the contact pressure at which the last "
-        "leakage path closes. Near standstill it overstates the leakage.",
-        f"Band: {scatter}, for all rings together, with the oil and the surfaces as stated.",
+        "Density, radius and friction coefficient of the asperities "
+        f"({' and '.join(trimmed(friction) for friction in frictions)}) are orders of magnitude "
+        "from the literature for the compound, not measurements of this seal. The asperity part "
+        "of the friction is proportional to this coefficient, and so is the total friction if "
+        "asperities cause nearly all of it.",
+        "The film model lets some oil pass even at rest, where a real elastomer seal does not "
+        "leak: its averaged flow factors do not include the contact pressure at which the last "
+        "leakage path closes. Near standstill, the model overstates the leakage.",
+        f"Scatter of the moduli: {scatter}, the same for all rings; oil and surfaces as stated.",
         (
-            "Breakaway assumes that all oil is squeezed out: asperity friction coefficient "
-            "times the whole line load."
+            "Breakaway assumes that all oil is squeezed out: friction coefficient of the "
+            "asperities times the whole contact force."
         ),
-        "Secant damping is friction over speed: it is valid only at the stated speed and "
-        "amplitude, falls as 1/v where friction hardly depends on speed, and is not the damping "
-        "by the oil.",
+        "Secant damping is friction divided by speed. It is valid only at the stated speed and "
+        "amplitude, and falls as 1/v where friction hardly depends on speed. It is not the "
+        "damping by the oil.",
     ]
     lugre = study.lugre
     if lugre is not None:
         words.append(
-            "LuGre for a simulation of this seal: bristle stiffness "
+            "LuGre parameters for a simulation of this seal: bristle stiffness "
             f"{number(lugre.stiffness / 1e6, 3)} N/µm (breakaway over "
             f"{trimmed(1e3 * study.design.stiffness.seal_deflection)} mm), damping "
             f"{number(lugre.damping / 1e3, 3)} kN·s/m (square root of stiffness times load "
-            "mass). The model cannot create energy up to "
-            f"{number(1e3 * lugre.passive_speed, 3)} mm/s; above that speed, reduce the damping "
-            "gradually."
+            "mass). With them, the LuGre model cannot create energy up to "
+            f"{number(1e3 * lugre.passive_speed, 3)} mm/s; above this speed, reduce the damping "
+            "gradually with speed."
         )
     return words

@@ -33,7 +33,7 @@ DAMPING = "Secant damping F/v, kN·s/m"
 
 
 def squeeze_figure(study: SealStudy) -> Ink:
-    """Bars from loosest to tightest squeeze of every ring, with the limits.
+    """Bars from the loosest to the tightest squeeze of every ring, with the required limits.
 
     There is a bar for each combination of temperature and pressure. Drawn, not a chart: each row
     has its numbers beside its bar.
@@ -113,7 +113,7 @@ def contact_panels(study: SealStudy, index: int) -> list[Panel]:
     """Pressures and oil film of a ring on both strokes, from the sealed side outwards."""
     strokes = stroke_names(study)
     points = (study.drive.rings[index], study.other.rings[index])
-    x = Axis("from the sealed side, mm")
+    x = Axis("distance from the sealed side, mm")
     highest = max(
         float(np.max(curve)) / 1e6 for point in points for curve in _pressures(point) if len(curve)
     )
@@ -150,7 +150,7 @@ def _pressures(point: RingPoint) -> tuple[Array, Array, Array]:
 
 
 def drawable(film_map: FilmMap | None) -> bool:
-    """Whether a map can be drawn: at least two points have a friction above zero."""
+    """Whether a map can be drawn; for this, at least two points must have a friction above zero."""
     return film_map is not None and int(np.sum(np.nan_to_num(film_map.friction) > 0)) >= 2
 
 
@@ -191,7 +191,7 @@ def _speed_panel(
 def _breakaways(study: SealStudy, curves: FilmMap) -> list[Points]:
     """Breakaway friction at the pressures of the curves; for two rings, only the operating point.
 
-    The oil films decide how two rings share the pressure; at standstill there is no film.
+    The oil films determine the pressure between two rings, and at standstill there is no film.
     """
     point, rim = study.drive, 1e3 * float(curves.speeds[0])
     if len(point.rings) > 1:
@@ -215,7 +215,7 @@ def _friction_points(study: SealStudy) -> list[Points]:
         )
         points.append(Points(words, speed, [point.coefficient_friction], style=3, small=True))
     if point.friction > 0:
-        words = "operating point, with the modulus' scatter"
+        words = "operating point, with scatter of the modulus"
         ends = sorted(known([point.lower, point.upper], log=True))
         low, high = ([end] for end in ends) if len(ends) == 2 else ((), ())
         points.append(Points(words, speed, [point.friction], low, high, style=3))
@@ -250,7 +250,7 @@ def _map_panel(study: SealStudy, film_map: FilmMap, title: str, values: Array) -
         Axis(range=(float(pressures[0]), float(pressures[-1]))),
         points=points,
         surface=ShadedMap(speeds, pressures, values),
-        note="upwards: pressure, bar",
+        note="vertical axis: pressure, bar",
     )
 
 
@@ -294,7 +294,7 @@ def elements_panels(study: SealStudy) -> list[list[Panel]]:
 
 
 def _profiles(study: SealStudy, ring: Ring) -> list[Panel]:
-    """Contact pressure over the width, at every pressure: by finite elements and closed form."""
+    """Contact pressure over the contact width, at every sealed pressure, by both methods."""
     solved = [(contact.positions, contact.contact_pressure) for contact in study.elements]
     closed = [_closed_profile(ring, contact.pressure) for contact in study.elements]
     highest = max(float(np.max(values)) for _, values in [*solved, *closed]) / 1e6
@@ -302,7 +302,7 @@ def _profiles(study: SealStudy, ring: Ring) -> list[Panel]:
     return [
         Panel(
             f"Contact pressure, {title}, MPa",
-            Axis("from the sealed end of the contact, mm", range=(0.0, longest)),
+            Axis("distance from the sealed end of the contact, mm", range=(0.0, longest)),
             Axis(range=(0.0, 1.06 * highest)),
             [
                 Curve(bars(contact.pressure), 1e3 * places, values / 1e6)
@@ -314,7 +314,7 @@ def _profiles(study: SealStudy, ring: Ring) -> list[Panel]:
 
 
 def _closed_profile(ring: Ring, pressure: float) -> tuple[Array, Array]:
-    """Positions and contact pressures by the closed form."""
+    """Positions along the contact, and contact pressures, by the closed form."""
     contact = closed_form(ring.at(pressure=pressure))
     share = np.linspace(0.0, 1.0, 121)
     return share * float(contact.profile_width), np.asarray(contact.profile(share), dtype=float)

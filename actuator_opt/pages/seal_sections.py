@@ -1,4 +1,4 @@
-"""Sections of seals as ink, true to scale: gland with its rings, and finite-element stress.
+"""Drawings of seal sections, true to scale: gland with its rings, and finite-element stress.
 
 The sealed side is on the left.
 """
@@ -49,7 +49,8 @@ METAL, HATCHING = "#eef1f3", "#9aa3ab"
 def stroke_names(study: SealStudy) -> tuple[str, str]:
     """Names of the driven stroke and of its return.
 
-    On the return stroke an overrunning load drives the piston against the pressure it seals.
+    The names for a piston refer to what moves it: the oil pressure, or (overrun) a load that moves
+    it against the sealed pressure.
     """
     return ("outstroke", "instroke") if study.place == "rod" else ("driven", "overrun")
 
@@ -63,12 +64,13 @@ _FILLS = {
     "back-up": ("#d9c9e3", 135.0),
 }
 _BESIDE = (21.0, 28.0)
-"""Space left and right of the drawing for the words on each side (mm of paper)."""
+"""Widths of the spaces for words to the left and to the right of the drawing (mm of paper)."""
 _LAND = 7.0
-"""Greatest length of a land as drawn (mm of paper); longer lands are shown interrupted."""
+"""Greatest drawn length of a land between grooves (mm of paper); longer lands are drawn with a
+break."""
 _GLAND_BAND, _GLAND_WALL, _GLAND_HEIGHT = 7.5, 4.0, 34.0
-"""Drawn height (mm) of the counterface, of the housing behind the deepest groove, and of that
-groove."""
+"""Drawn heights (mm of paper) of the counterface, of the housing behind the deepest groove, and of
+this groove."""
 _LINE = 3.1
 
 
@@ -85,7 +87,7 @@ class FilledGroove:
 
 @dataclass(frozen=True, slots=True)
 class GlandDrawing:
-    """The drawing, its scale in words, and its scale in millimetres of paper per metre."""
+    """The drawing of a gland, its scale in words, and its scale in mm of paper per metre."""
 
     ink: Ink
     scale: str
@@ -142,7 +144,7 @@ class _Gland:
         return max(filled.depth for filled in self.grooves)
 
     def y(self, r: float, beyond: float = 0.0) -> float:
-        """Position on paper of r (m from the counterface), moved `beyond` mm further away."""
+        """Position on paper of a radial distance r (m) from the counterface, plus `beyond` (mm)."""
         return self.surface + self.side * (r * self.factor + beyond)
 
     def right(self, index: int) -> float:
@@ -290,7 +292,7 @@ def _span(ink: Ink, a: Point, b: Point) -> None:
 
 
 def _dimensions(frame: _Gland) -> None:
-    """Dimension groove widths behind the housing, and gland depths right of each groove."""
+    """Draw dimensions: groove widths behind the housing, gland depths right of each groove."""
     ink, level = frame.ink, frame.y(frame.deepest, _GLAND_WALL + 2.6)
     words = [trimmed(1e3 * filled.width) for filled in frame.grooves]
     widths = [text_width(text, 6.5) for text in words]
@@ -323,11 +325,11 @@ def _dimensions(frame: _Gland) -> None:
 
 
 _ROOM = 6.5
-"""Least drawn land into which a gland depth can be written (mm of paper)."""
+"""Least drawn length of a land beside which a gland depth can be written (mm of paper)."""
 
 
 def _caption(study: SealStudy, filled: FilledGroove, *, room: bool) -> list[str]:
-    """Lines of words that name a groove, with its depth if the land is too short for it."""
+    """Lines of words that name a groove; they include its depth if the land is too short for it."""
     count = float(filled.groove.count)
     words = filled.groove.place.removeprefix(f"{study.place} ")
     lines = [words if count == 1 else f"{trimmed(count)} × {words}"]
@@ -344,7 +346,7 @@ def _caption(study: SealStudy, filled: FilledGroove, *, room: bool) -> list[str]
 
 
 def _captions(frame: _Gland) -> None:
-    """Write the names of grooves with leaders beyond the width dimensions, without overlaps."""
+    """Write the names of grooves beyond the width dimensions, with leaders and without overlaps."""
     room = frame.land >= _ROOM
     captions = [_caption(frame.study, filled, room=room) for filled in frame.grooves]
     widths = [max(text_width(line, 6.5, bold=True) for line in lines) for lines in captions]
@@ -365,7 +367,7 @@ def _captions(frame: _Gland) -> None:
 
 
 def _sides(frame: _Gland) -> None:
-    """Write the pressures of both sides and between two rings, and the gap with its growth."""
+    """Write the pressures on both sides and between the rings, and the gap with its growth."""
     study, ink = frame.study, frame.ink
     middle = frame.y(study.clearance / 2)
     held = f"{trimmed(study.drive.pressure / 1e5)} bar"
@@ -388,7 +390,7 @@ def _sides(frame: _Gland) -> None:
         ink.line((x, middle), (x, y - 1.6 * math.copysign(1.0, y - middle)), pen=0.1)
         ink.circle(x, middle, 0.4, fill=BLACK, pen=0.1)
         driven, other = stroke_names(study)
-        words = f"between: {number(study.drive.between / 1e5)} bar {driven}"
+        words = f"between the rings: {number(study.drive.between / 1e5)} bar {driven}"
         words += f", {number(study.other.between / 1e5)} bar {other}"
         ink.text(x, y, words, anchor="center")
 
@@ -443,9 +445,11 @@ def guide_shapes(guide: Guide) -> tuple[Shape, ...]:
 # ---- finite elements ----
 
 _SECTION_WALL, _SECTION_BAND, _SECTION_GAP, _SECTION_HEIGHT = 2.2, 3.0, 3.0, 46.0
-"""Drawn sizes (mm): groove walls, counterface, distance between two sections, and groove."""
+"""Drawn sizes (mm of paper): thickness of groove walls and counterface, distance between two
+sections, and height of the groove."""
 _PRESSURES, _WORDS, _SCALE = 6.0, 8.0, 9.0
-"""Drawn heights (mm): pressures above, words below, and colour scale."""
+"""Heights (mm of paper) of the pressures above a section, of the words below, and of the colour
+scale."""
 MOST_BANDS = 12
 """Largest number of stress bands."""
 
@@ -459,9 +463,9 @@ def stress_levels(study: SealStudy) -> list[float]:
 
 @dataclass(frozen=True, slots=True)
 class GrooveOnPaper:
-    """Position on paper of a groove: outer wall at `right`, sliding face at `surface`.
+    """Position of a groove on paper: its outer wall is at `right`, the sliding face at `surface`.
 
-    `side` is -1 where the groove lies above the counterface; lengths in mm of paper per m.
+    `side` is -1 if the groove lies above the counterface. Scales are in mm of paper per m.
     """
 
     right: float
@@ -482,7 +486,7 @@ def gland_sizes(ring: Ring) -> tuple[float, float]:
 
 
 def stress_scale(study: SealStudy) -> tuple[int, int]:
-    """Scale of the sections, paper to real."""
+    """Scale of the sections: length on paper, and real length."""
     wide, deep = gland_sizes(study.out.rings[0].ring)
     count = len(study.elements)
     panel = (WIDTH - (count - 1) * _SECTION_GAP) / count

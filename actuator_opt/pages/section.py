@@ -1,7 +1,7 @@
-"""The longitudinal section, hatched and dimensioned, to an ISO 5455 scale at print width.
+"""The longitudinal section of the cylinder, hatched and dimensioned, at a scale of ISO 5455.
 
-Layout by rule: item balloons in a row above the parts, diameters in a row below, lengths below
-those. `ink.spread_within` places every label, so that no two touch.
+The layout follows rules: item balloons in a row above the cylinder, diameters in a row below it,
+lengths below the diameters. `ink.spread_within` places every label, so that no two touch.
 """
 
 from __future__ import annotations
@@ -93,7 +93,10 @@ def choose_scale(length: float, height: float, room: float, room_high: float) ->
 def section(
     evaluation: Evaluation, *, width: float = 180.0, height: float = 78.0
 ) -> SectionDrawing:
-    """The dimensioned section of an evaluation, `width` mm wide; parts at most `height` mm high."""
+    """The dimensioned section of an evaluated design, `width` mm wide.
+
+    The cylinder itself is drawn at most `height` mm high.
+    """
     outlines = [o for o in evaluation.outlines if o.polygons]
     points = [p for o in outlines for polygon in o.polygons for p in polygon]
     if not points:
@@ -160,7 +163,7 @@ def _parts(ink: Ink, frame: _Frame, outlines: Sequence[Outline]) -> None:
 
 
 def _edges(outline: Outline, frame: _Frame) -> list[list[Point]]:
-    """Outline strokes of both halves; omitted on the axis and where polygons of a part meet."""
+    """Outline strokes of both halves, except on the axis and where polygons of a part touch."""
     segments = []
     for index, polygon in enumerate(outline.polygons):
         for a, b in zip(polygon, [*polygon[1:], polygon[0]], strict=True):
@@ -266,7 +269,7 @@ def _balloons(ink: Ink, frame: _Frame, outlines: Sequence[Outline], rows: int) -
 def _chamber(
     frame: _Frame, outlines: Sequence[Outline], lengths: Mapping[str, float]
 ) -> tuple[float, float]:
-    """Position x on paper of the piston's rod-side face, and of that face one stroke further."""
+    """Horizontal position on paper of the piston's rod-side face, retracted and extended."""
     stroke = lengths.get("stroke", 0.0)
     for outline in outlines:
         if outline.part == "piston":
@@ -284,7 +287,7 @@ def _diameters(
     outlines: Sequence[Outline],
     row: float,
 ) -> list[tuple[float, str]]:
-    """Rod, bore and barrel diameters, dimensioned across the free part of the chamber.
+    """Draw the dimensions of rod, bore and barrel diameter, across the free part of the chamber.
 
     Returns the labels with their positions on `row`; they are written after the other lines.
     """

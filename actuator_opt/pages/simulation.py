@@ -63,19 +63,20 @@ ZERO_BELOW = {
     "hold_drift": 1e-9,
     "following_error": 1e-9,
 }
-"""Values (SI) below which results are shown as 0: the tolerances of the integration."""
+"""Results below these values (SI) are shown as 0, as they are within the tolerance of the
+integration."""
 CLOSED = 1e-3
 """Least error of a balance that raises a warning (our choice: one digit of the printed value)."""
 AGREE = 1e-2
-"""Least difference of two integrators that raises a warning, as a share of a signal's range\n(our
-choice)."""
+"""Least difference of two integrators that raises a warning, as a share of a signal's range
+(our choice)."""
 MOST_EVENTS = 4
 """Largest number of events listed."""
 MOST_PARTS = 3
-"""Largest number of parts listed of a signal."""
+"""Largest number of pieces of a signal (steps, ramps, ...) that are listed."""
 MOST_TILES = 6
 BRIEF = 900
-"""Length of notes, in letters, that fits beside a table (our choice: a quarter of the sheet)."""
+"""Number of characters of notes that fit beside a table (our choice: a quarter of the sheet)."""
 POINTS = 240
 """Number of points in the step response on the terminal."""
 NEAR = 1e-6
@@ -125,7 +126,7 @@ def page(
 
 
 def series(simulation: Simulation) -> list[Series]:
-    """Every signal over time, at the sample times."""
+    """Every signal over time, at evenly spaced sample times."""
     time, samples = _grid(simulation)
     columns = [Series("t [s]", time.tolist(), 9)]
     for name, values in simulation.signals.items():
@@ -136,7 +137,7 @@ def series(simulation: Simulation) -> list[Series]:
 
 
 def _grid(simulation: Simulation) -> tuple[Array, Array]:
-    """Evenly spaced times [s] with their samples; of two samples at an instant, the later."""
+    """Evenly spaced times [s], and indices of their samples (the later of two at a time)."""
     time, duration = simulation.time, simulation.scenario.duration
     step = simulation.scenario.sample_time or duration / SAMPLES
     count = max(round(duration / step), 1)
@@ -160,7 +161,7 @@ def tied(words: str) -> str:
 
 
 def description(simulation: Simulation) -> str:
-    """Machine, duration, reference and load in a few sentences."""
+    """Sentences on machine, duration, reference signal and load."""
     scenario, plant = simulation.scenario, simulation.plant
     control = scenario.control
     asked = ""
@@ -195,7 +196,7 @@ def _amount(quantity: Quantity, value: float) -> str:
 
 
 def _signal(parts: Sequence[Any], quantity: Quantity) -> str:
-    """The parts of a signal in words; empty if the signal is always zero."""
+    """The pieces of a signal in words (steps, ramps, ...); empty if the signal is always zero."""
     moving = [part for part in parts if height(part) or "file" in SHAPES[part.shape].needed]
     words = [
         SHAPES[part.shape].words(part, _amount(quantity, height(part)), trimmed)
@@ -222,9 +223,9 @@ def _machine(simulation: Simulation) -> str:
     words = []
     if held is not None:
         ports = " and ".join(_amount(PRESSURE, p) for p in (held.pressure_a, held.pressure_b))
-        words.append(f"the valve alone, ports at {ports}")
+        words.append(f"the valve alone, with its ports at {ports}")
     elif scenario.motor is not None:
-        words.append("its valve with a hydraulic motor")
+        words.append("the valve with a hydraulic motor")
     elif "flow_supply" not in simulation.signals:
         words.append(ENDS[ends_of(scenario, plant)].words or "")
     if "flow_supply" in simulation.signals:
@@ -325,7 +326,7 @@ def reasons(simulation: Simulation) -> dict[str, list[str]]:
 
 
 def controller(simulation: Simulation) -> list[tuple[str, str]]:
-    """The parts of the controller with their values, its origin and its margins."""
+    """Table rows on the controller: its gains, their origin, and the margins."""
     tuned, control = simulation.tuned, simulation.scenario.control
     if tuned is None or control is None:
         return []
@@ -393,7 +394,7 @@ def gain_margin(ratio: float) -> str:
 
 
 def sound(simulation: Simulation) -> bool:
-    """Whether balances close, powers match the energies, and two integrators agree."""
+    """Whether the balances close, powers and energies agree, and both integrators agree."""
     balance, second = simulation.balance, simulation.second
     closed = max(balance.mass, balance.energy) < CLOSED and not doubts(simulation)
     return closed and (second is None or second.max_difference < AGREE)
@@ -409,38 +410,38 @@ def share_words(share: float) -> str:
 
 
 def trust(simulation: Simulation, more: Sequence[str] = ()) -> list[str]:
-    """A paragraph on balances, second integrator, events and size of the run; then all remarks."""
+    """A paragraph on balances, second integrator, events and size of the run, then all remarks."""
     first = (_balance, second_words, event_words, _run)
     return [" ".join(words(simulation) for words in first), *remarks(simulation, more)]
 
 
 def _balance(simulation: Simulation) -> str:
-    """Words on the errors of the volume and energy balances."""
+    """Sentence on the errors of the oil mass and energy balances."""
     balance = simulation.balance
     mass, energy = share_words(balance.mass), share_words(balance.energy)
-    volumes = "" if balance.mass == 0 else f"mass within {mass} of a volume's content, "
-    return f"Balances: {volumes}energy within {energy} of the energy converted."
+    volumes = "" if balance.mass == 0 else f"oil mass {mass} of a volume's content, "
+    return f"Errors of the balances: {volumes}energy {energy} of the energy converted."
 
 
 def second_words(simulation: Simulation) -> str:
-    """The largest difference from the second integrator."""
+    """Sentence on the largest difference from the second integrator."""
     second = simulation.second
     if second is None:
         return "Not compared with a second integrator."
     method = second.method.capitalize()
     if not second.signal:
-        return f"{method} on the same equations: no signal changed, so none was compared."
+        return f"{method} on the same equations: no signal changes, so there is nothing to compare."
     signal = simulation.told.get(second.signal)
     words = second.signal if signal is None else signal.label
     return (
-        f"{method} on the same equations: signals differ by at most "
-        f"{share_words(second.max_difference)} of their span, most in {words} at "
-        f"{number(second.time)} s."
+        f"Compared with {method} on the same equations, signals differ by at most "
+        f"{share_words(second.max_difference)} of their range; the difference is largest for "
+        f"{words} at {number(second.time)} s."
     )
 
 
 def event_words(simulation: Simulation) -> str:
-    """The first events, and the total number of events."""
+    """Sentence on the number of events, with the first of them."""
     events = simulation.events
     if not events:
         return "No discrete event occurred."
@@ -455,7 +456,7 @@ def event_words(simulation: Simulation) -> str:
 
 
 def _run(simulation: Simulation) -> str:
-    """Words on the number of samples and of evaluations, and on the oil."""
+    """Sentence on the number of samples and of evaluations, and on the oil."""
     oil = simulation.plant.oil
     count = trimmed(float(np.unique(simulation.time).size), 9)
     calls = simulation.evaluations
@@ -479,11 +480,14 @@ def _open(simulation: Simulation) -> Iterator[str]:
     for name in ("mass", "energy"):
         error = getattr(simulation.balance, name)
         if error >= CLOSED:
-            yield f"in doubt: the balance of {name} does not close, by {share_words(error)}"
+            yield (
+                f"in doubt: the balance of {name} does not close; its relative error is "
+                f"{share_words(error)}"
+            )
     second = simulation.second
     if second is not None and second.max_difference >= AGREE:
         apart = share_words(second.max_difference)
-        yield f"in doubt: the second integrator differs by {apart} of a signal's span"
+        yield f"in doubt: the second integrator differs by {apart} of the range of a signal"
 
 
 # ---- verdict and key figures ----
@@ -497,7 +501,7 @@ def verdict(simulation: Simulation) -> Verdict:
     mass = f"mass {share_words(balance.mass)} · " if balance.mass else ""
     lines = [
         f"{met} of {total} requirements met" if total else "no requirement stated",
-        f"balances: {mass}energy {share_words(balance.energy)}",
+        f"errors of the balances: {mass}energy {share_words(balance.energy)}",
     ]
     if met < total:
         return Verdict("missed", "REQUIREMENTS MISSED", lines)
@@ -597,12 +601,12 @@ def _blocks(simulation: Simulation, more: Sequence[str]) -> Iterator[Block]:
     if not beside:
         yield notes
     if simulation.seconds:
-        seconds = f"{number(simulation.seconds, 2)} s of computing."
+        seconds = f"Computing time {number(simulation.seconds, 2)} s."
         yield Notes("", [seconds], headless=True, style="dim", on="terminal")
 
 
 def _results(simulation: Simulation) -> Block | None:
-    """Table of every result with its limit and margin; a note lists results without a value."""
+    """Table of every result with its limit and margin; a note gives reasons for missing values."""
     shown = results(simulation)
     missing = [f"{', '.join(names)}: {why}" for why, names in reasons(simulation).items()]
     note = f"No value: {'; '.join(missing)}." if missing else ""
@@ -636,8 +640,8 @@ def _controller(simulation: Simulation) -> Block | None:
     if not rows:
         return None
     note = (
-        "Margins of the linear loop without sticking friction, at its worst position and "
-        "spool direction."
+        "The margins are those of the linear loop without sticking friction, at its worst "
+        "position and spool direction."
     )
     columns = [Column("controller"), Column("", width=1.0, breaks=14, wraps=True)]
     return Table("Controller and its margins", columns, rows, note=note)

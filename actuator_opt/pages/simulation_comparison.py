@@ -68,10 +68,10 @@ TALLEST = 92.0
 WIDTHS = (93.6, 80.4)
 """Widths of the two columns of the figure of step responses [mm]."""
 ERROR = 0.1
-"""Range of the enlarged plot of errors, as a share of the step (our choice: five bands)."""
+"""Range of the plot of errors, as a share of the step (our choice: five times the 2 % band)."""
 SINKS = ("valve edges", "relief valve", "return line", "load", "friction of the seals",
          "losses of the motor", "leakage across the piston")  # fmt: skip
-"""Sinks of energy with a colour of their own; all others are "other"."""
+"""Sinks of energy that have their own colour; all others are shown as "other"."""
 SIGNALS = (
     "position", "speed", "shaft_speed", "shaft_angle", "signal", "pressure_a", "pressure_b",
     "flow_a", "flow_b", "friction",
@@ -88,13 +88,13 @@ def comparison_figure(
     measured: Measured | None = None,
     static: Static | None = None,
 ) -> Ink:
-    """All runs in the same figure, their names in its first rows.
+    """One figure with the curves of all runs; its first rows list the names of the runs.
 
     Parameters
     ----------
-    runs : with their names, as `simulation_comparison.comparison`
-    height : of the figure [mm]
-    measured, static : as `simulation_comparison.page`
+    runs : name and simulation of each run, as for `simulation_comparison.comparison`
+    height : height of the figure [mm]
+    measured, static : see `simulation_comparison.page`
     """
     height = min(max(height, LEAST), MOST)
     pens = styles([name for name, _ in runs])
@@ -125,7 +125,9 @@ def kind_of(simulations: Sequence[Simulation]) -> str:
 
 
 def styles(names: Sequence[str]) -> list[Pen]:
-    """Pen of every run: the words before the last comma choose the colour, those after it the dash.
+    """Pen of every run, chosen by its name.
+
+    The words before the last comma of the name determine the colour, those after it the dash.
 
     If the names form no such groups, every run has a different colour and dash.
 
@@ -143,7 +145,7 @@ def styles(names: Sequence[str]) -> list[Pen]:
 
 
 def _steps(runs: Runs, pens: Sequence[Pen], measured: Measured) -> list[Sequence[Panel | Ink]]:
-    """Response and its error on the left, valve signal and energies on the right."""
+    """Step response and its error on the left, valve signal and energies on the right."""
     servos = [run.servo for _, run in runs if run.servo is not None]
     first, servo = runs[0][1], servos[0]
     words, quantity, *_ = LOOPS[servo.loop]
@@ -209,7 +211,7 @@ def _least(shown: Curve, span: tuple[float, float]) -> float:
 
 
 def _taken(run: Simulation) -> dict[str, float]:
-    """Energy dissipated in each of `SINKS` [J]; all other sinks are summed."""
+    """Energy taken by each of `SINKS` [J]; all other sinks are summed, with stored energy."""
     taken: dict[str, float] = {}
     for flow in run.balance.flows:
         if flow.energy < 0:
@@ -289,13 +291,13 @@ def _signals(runs: Runs, pens: Sequence[Pen], measured: Measured, height: float)
 
 
 MOST_COLUMNS = 9
-"""Largest number of columns that fit beside the names."""
+"""Largest number of columns of results that fit beside the names of the runs."""
 MOST_TILES = 5
 
 
 @dataclass(frozen=True, slots=True)
 class RunComparison:
-    """Runs by their names, with the columns of their table."""
+    """Runs with their names, and the columns of the table that compares them."""
 
     runs: tuple[tuple[str, Simulation], ...]
     title: str
@@ -314,10 +316,10 @@ def comparison(
     Parameters
     ----------
     runs : name and simulation of each; "50 %, extending" and "50 %, retracting" share a colour
-    title : of the page
-    notes : for the reader
-    columns : results and gains of the table, by the names of `COLUMNS`; default: those of this
-        kind of run
+    title : title of the page
+    notes : sentences for the reader
+    columns : names from `COLUMNS` of the results and gains in the table; default: the usual columns
+        for this kind of run
 
     Raises
     ------
@@ -445,7 +447,7 @@ _USUAL = {
 
 
 def _usual(simulations: Sequence[Simulation]) -> list[str]:
-    """Usual columns for this kind of run, if at least one run has a value."""
+    """The usual columns for this kind of run, without columns that have no value in any run."""
     return [
         name
         for name in _USUAL[kind_of(simulations)]
@@ -485,7 +487,7 @@ def run_table(comparison: RunComparison) -> Table:
 
 
 def _sentence(comparison: RunComparison, designs: Sequence[str]) -> str:
-    """Sentence on the number of runs and their designs, and on their scenario if it is the same."""
+    """Sentence on the number of runs, their designs, and their scenario if all have the same."""
     named = " and ".join(designs) if len(designs) < 3 else f"{len(designs)} designs"
     count = "1 run" if len(comparison.runs) == 1 else f"{len(comparison.runs)} runs"
     first = f"{count} of {named}."
@@ -523,19 +525,19 @@ def tiles(comparison: RunComparison) -> list[Tile]:
 
 
 def _trust(comparison: RunComparison) -> list[str]:
-    """Balances and second integrators of all runs, then every note with its runs."""
+    """Sentences on balances and second integrators of all runs, then every note with its runs."""
     simulations = [run for _, run in comparison.runs]
     mass, energy = (
         share_words(max(getattr(run.balance, name) for run in simulations))
         for name in ("mass", "energy")
     )
-    first = f"Balances of all runs: mass within {mass}, energy within {energy}."
+    first = f"Largest errors of the balances of all runs: mass {mass}, energy {energy}."
     checked = [run.second for run in simulations if run.second is not None]
     if checked:
         most = share_words(max(second.max_difference for second in checked))
         first += (
-            f" {len(checked)} of {len(simulations)} runs were integrated again by another "
-            f"method: signals differ by at most {most} of their span."
+            f" {len(checked)} of {len(simulations)} runs were integrated again by another method; "
+            f"signals differ by at most {most} of their range."
         )
     else:
         first += " No run was compared with a second integrator."

@@ -27,7 +27,8 @@ BRIEF = {
 }
 """Short names of energy flows, written beside their curves."""
 SMALL = 2e-3
-"""Share of all energy below which a flow is added to "others" (our choice: a hairline on paper)."""
+"""Energy flows below this share of all energy are summed as "others" (our choice, as their bars
+would be hairlines)."""
 USEFUL = ("load", "joint")
 """Energy flows that are always shown, however small, as they are the actuator's purpose."""
 MOST_ROWS = 9
@@ -35,12 +36,12 @@ MOST_ROWS = 9
 MOST_CURVES = 5
 """Largest number of energies shown over time."""
 AGREES = 0.01
-"""Greatest difference between an energy and the integral of its sampled power, as a share of
-all\nenergy (our choice)."""
+"""Greatest allowed difference between an energy and the integral of its sampled power, as a share
+of all energy (our choice)."""
 ROW, TOP = 3.7, 9.0
 """Height of a row, and of the title above the rows [mm]."""
 GIVEN, TAKEN, KEPT = BLUE, OCHRE, "#7d868e"
-"""Fills of sources, of sinks, and of stored energy."""
+"""Fill colours of sources, of sinks, and of stored energy."""
 
 
 class EnergyShare(NamedTuple):
@@ -51,7 +52,7 @@ class EnergyShare(NamedTuple):
 
 
 def shares(simulation: Simulation) -> list[EnergyShare]:
-    """Sources of energy with the supply first, then sinks by size; small shares are summed."""
+    """Sources of energy (the supply first), then sinks by size; small shares are summed."""
     flows = [EnergyShare(flow.name, flow.energy) for flow in simulation.balance.flows]
     flows.append(EnergyShare("store", -sum(store.energy for store in simulation.balance.stored)))
     total = sum(share.energy for share in flows if share.energy > 0)
@@ -78,14 +79,18 @@ def shares(simulation: Simulation) -> list[EnergyShare]:
 
 def _words(share: EnergyShare) -> str:
     if share.name == "store":
-        return "out of oil, walls, motion" if share.energy > 0 else "into oil, walls, motion"
+        return (
+            "released by oil, walls, motion" if share.energy > 0 else "stored in oil, walls, motion"
+        )
     if share.energy > 0 and share.name in ("load", "joint", "machine outside", "held ports"):
         return f"from the {share.name}"
     return share.name
 
 
 def share_picture(simulation: Simulation, width: float) -> Ink | None:
-    """Sources as bars from the left, sinks as bars back to zero; None without energy.
+    """Chart of sources and sinks of energy; None if there are no sources.
+
+    Sources are bars that add up from the left, sinks are bars that lead back to zero.
 
     Drawn, not a `Chart`: each bar starts where the bar above it ends, and has figures beside it.
     """
@@ -171,7 +176,10 @@ def _load(simulation: Simulation) -> Array | None:
 
 
 def _at_unit(simulation: Simulation) -> str:
-    """Signal of the pressure at pump or accumulator, which a pipe separates from the valve."""
+    """Name of the signal for the pressure at the pump or accumulator.
+
+    A pipe may separate them from the valve.
+    """
     return "pressure_unit" if "pressure_unit" in simulation.signals else "pressure_supply"
 
 
@@ -200,10 +208,10 @@ POWERS: dict[str, Callable[[Simulation], Array | None]] = {
 
 
 def _summed(simulation: Simulation) -> tuple[dict[str, Array], dict[str, float]]:
-    """Energy over time [J] of every flow of known power, and the error of its final value.
+    """Energy over time [J] for every flow of known power, and the error of its final value.
 
-    Energies are positive if they leave the machine; for the supply, if they enter it. The error is
-    a share of all energy.
+    Energy that leaves the machine is positive, but energy of the supply is positive if it enters.
+    The error is a share of all energy.
     """
     flows: dict[str, float] = {flow.name: flow.energy for flow in simulation.balance.flows}
     ways = [sum(abs(e) for e in flows.values() if (e > 0) == way) for way in (True, False)]
@@ -224,8 +232,9 @@ def _summed(simulation: Simulation) -> tuple[dict[str, Array], dict[str, float]]
 def over_time(simulation: Simulation) -> dict[str, Array]:
     """The largest energies over time [J].
 
-    Energies are positive if they leave the machine; for the supply, if they enter it. A flow is
-    left out if the integral of its sampled power differs from its energy.
+    Energy that leaves the machine is positive, but energy of the supply is positive if it enters. A
+    flow is left out if the integral of its sampled power differs from its energy by more than
+    `AGREES`.
     """
     curves, off = _summed(simulation)
     curves = {name: energies for name, energies in curves.items() if abs(off[name]) <= AGREES}
@@ -238,8 +247,8 @@ def over_time(simulation: Simulation) -> dict[str, Array]:
 
 
 _LOADED = ("load", "valve edges")
-"""Flows whose power can be computed from the signals only without lines, joint or outside
-machine."""
+"""Flows whose power can be computed from the signals only if the machine has no lines, no joint and
+no machine outside."""
 
 
 def doubts(simulation: Simulation) -> list[str]:
@@ -254,9 +263,8 @@ def doubts(simulation: Simulation) -> list[str]:
         f"{name} by {number(100 * error, 2, signed=True)} %" for name, error in wrong.items()
     )
     return [
-        "the sampled powers add up to energies that differ from the integration by "
-        f"{errors} of all energy; take shorter samples, and do not trust the energies if "
-        "that does not help"
+        f"energies summed from the sampled powers differ from the integrated energies: {errors} of "
+        "all energy; take shorter samples, and do not trust the energies if that does not help"
     ]
 
 

@@ -31,12 +31,13 @@ LEAST, MOST = 92.0, 150.0
 WIDTHS = (96.0, 78.0)
 """Widths of the two columns: signals over time, and other panels [mm]."""
 LEAST_STRIP, FOOT = 15.2, 8.4
-"""Least height of a panel over time with its title, and height of the time axis below it [mm]."""
+"""Least height of a panel over time with its title, and height of the time axis below the last
+panel [mm]."""
 MOST_MARKS = 8
 """Largest number of events marked in the panels over time."""
 LAG = 0.02
-"""Greatest difference between spool position and valve signal, as a share of the largest signal,
-for which a flow is drawn over the signal (our choice)."""
+"""Samples are drawn in the chart of flow versus signal only if spool position and valve signal
+differ by less than this share of the largest signal (our choice)."""
 FLOWS = (("flow_a", "A"), ("flow_b", "B"), ("flow_supply", "supply"), ("flow_tank", "tank"))
 Measured = Mapping[str, tuple[Array, Array]]
 """Time [s] and values (SI) by the name of the signal."""
@@ -64,15 +65,16 @@ _SIGNALS: tuple[tuple[str, int, bool, tuple[tuple[str, str], ...]], ...] = (
     ("Torque on the joint", 8, True, (("joint_torque", ""),)),
     ("Stops and cushions", 5, True, (("stop_force", "stops"), ("cushion_force", "cushions"))),
 )  # fmt: skip
-"""Panels over time: title, rank, whether the axis includes zero, and signals with their names."""
+"""Panels over time: title, rank (the highest ranks are dropped first), whether the axis includes
+zero, and signals with their names."""
 _STILL = {"Stops and cushions", "Load", "Supply", "Torque on the joint", "Friction"}
 """Panels over time that are left out if none of their signals changes."""
 _PUMPED = ("Supply", "Flows of the pump")
-"""Panels over time that move up if the supply pressure varies."""
+"""Panels over time that become more important if the supply pressure varies."""
 LEAST_SHOWN = 0.01
 """Least overshoot that is marked, as a share of the step; less lies within the settling band."""
 ROOM = 0.08
-"""Space for words beyond the peak, as a share of the axis."""
+"""Space for words above the peak of the step response, as a share of the axis."""
 REFERENCE, FINE = 4, 2
 """Line style and dash of a reference signal."""
 EVENT, MARK, CONSTANT, VAPOUR = 2, 1, 5, 3
@@ -80,7 +82,8 @@ EVENT, MARK, CONSTANT, VAPOUR = 2, 1, 5, 3
 PRESSURE = INPUTS["pressure"]
 STIFFNESS, PHASE = RESULTS["dynamic_stiffness"], RESULTS["dynamic_phase"]
 MOVED = 0.02
-"""Share of the stroke that evaluation windows must cover to be drawn over position (our choice)."""
+"""Evaluation windows are drawn over position, not over time, if they cover more than this share of
+the stroke (our choice)."""
 MOST_WINDOWS = 40
 """Most evaluation windows drawn as points with error bars; more are drawn as a line with a band."""
 CYCLES = 3
@@ -88,14 +91,14 @@ CYCLES = 3
 Static = tuple[Array, Array]
 """Positions [m], and the static stiffness at each [N/m]."""
 Limits = Sequence[tuple[str, float]]
-"""Senses and limits (SI)."""
+"""Limits: sense ("min" or "max") and value (SI)."""
 
 
 # ---- the whole figure ----
 
 
 class FigurePart(NamedTuple):
-    """Panels that belong together, or a picture, with the least height required [mm]."""
+    """Panels that belong together, or a picture, and the least height that they need [mm]."""
 
     name: str
     panels: Sequence[Panel | Ink]
@@ -110,7 +113,7 @@ class Strip(NamedTuple):
 
 
 def parts(simulation: Simulation, measured: Measured, static: Static | None) -> list[FigurePart]:
-    """Panels for this kind of run, drawn beside its signals; the most important first."""
+    """The panels for this kind of run, drawn beside its signals; the most important first."""
     made: list[FigurePart] = []
     if simulation.servo is not None:
         panel = step_panel(simulation, simulation.servo, measured)
@@ -141,7 +144,7 @@ def simulation_figure(
     measured: Measured | None = None,
     static: Static | None = None,
 ) -> Ink:
-    """One drawing: signals over time on the left, panels for this kind of run on the right."""
+    """One drawing: signals over time on the left, panels for the kind of run on the right."""
     height = min(max(height, LEAST), MOST)
     known = measured or {}
     left = strips_with_room(strips(simulation, known), height)
@@ -161,7 +164,7 @@ def strips_with_room(shown: Sequence[Strip], height: float) -> list[Panel]:
 
 
 def _parts_with_room(made: Sequence[FigurePart], height: float) -> list[FigurePart]:
-    """Parts that fit the height, in order; a part that does not fit is skipped."""
+    """The parts that fit into the height, in order; a part that does not fit is skipped."""
     chosen: list[FigurePart] = []
     used = 0.0
     for part in made:
@@ -198,7 +201,7 @@ def _friction(simulation: Simulation) -> Panel:
 
 
 def _flows(simulation: Simulation) -> Panel:
-    """Flows of a valve over its signal, from samples at which the spool follows the signal."""
+    """Flows of a valve versus its signal, from samples at which the spool follows the signal."""
     quantity, volts = simulation.told["flow_a"].quantity, SCENARIOS["signal_value"]
     signal = scaled(volts, simulation.signals["signal"])
     lag = np.abs(scaled(volts, simulation.signals["spool"]) - signal)
@@ -278,7 +281,7 @@ def titled(words: str, quantity: Quantity) -> str:
 
 
 def followed(simulation: Simulation) -> Loop | None:
-    """The controlled signal, else the main moving signal; None if nothing moves."""
+    """The controlled quantity, else the main quantity that moves; None if nothing moves."""
     control = simulation.scenario.control
     if control is not None and "reference" in simulation.signals:
         return loop_of(control)
@@ -286,7 +289,7 @@ def followed(simulation: Simulation) -> Loop | None:
 
 
 def response(simulation: Simulation, measured: Measured) -> Panel | None:
-    """The moving signal with its reference and its measured record; None if nothing moves."""
+    """Panel of the moving quantity with reference and measured values; None if nothing moves."""
     name = followed(simulation)
     if not name:
         return None
@@ -360,7 +363,7 @@ def _moves(values: Array) -> bool:
 
 
 def _levels(simulation: Simulation, name: str) -> list[Level]:
-    """Constant values: pressures of supply, return and vapour, the largest valve signal."""
+    """Lines at constant values: pressures of supply, return and vapour, largest valve signal."""
     if name == "pressure_a":
         plant = simulation.plant
         vapour = PRESSURE.to_display(plant.oil.vapour_pressure - ATMOSPHERIC_PRESSURE)
@@ -403,7 +406,7 @@ def window(simulation: Simulation, servo: Servo) -> tuple[float, float]:
 
 
 def step_panel(simulation: Simulation, servo: Servo, measured: Measured) -> Panel:
-    """Step response with settling band, rise from 10 to 90 %, peak, and settling time."""
+    """Panel of the step response with settling band, 10 to 90 % rise, peak, and settling time."""
     words, quantity, *_ = LOOPS[servo.loop]
     begin, end = window(simulation, servo)
     start, target = quantity.to_display(servo.start), quantity.to_display(servo.target)
@@ -455,7 +458,7 @@ def _sorted(shown: Curve) -> tuple[Array, Array]:
 def _rise(
     servo: Servo, own: Curve, start: float, size: float
 ) -> tuple[list[Curve], list[Points], list[Level]]:
-    """Marks for the rise time from 10 to 90 %, drawn at the 10 % level."""
+    """Marks for the rise time from 10 to 90 %; the dimension is drawn at the 10 % level."""
     rise = servo.metrics.rise_time
     time, values = np.asarray(own.xs), np.asarray(own.ys)
     late = np.flatnonzero((time > 0) & ((values - start) / size >= 0.9))
@@ -476,7 +479,7 @@ def _rise(
 
 @dataclass(frozen=True, slots=True)
 class StrokeProfile:
-    """Values of a run's evaluation windows as drawn: position, magnitude and phase with errors."""
+    """Dynamic stiffness of a run as drawn: position, magnitude, phase and errors per window."""
 
     place: list[float]
     size: list[float]
@@ -488,7 +491,7 @@ class StrokeProfile:
 
 
 def travelled(windows: Sequence[Window], stroke: float) -> bool:
-    """Whether the evaluation windows spread along the stroke, rather than lie at one position."""
+    """Whether the evaluation windows lie along the stroke, and not all at one position."""
     places = [window.position for window in windows]
     return max(places) - min(places) > MOVED * stroke
 
@@ -496,7 +499,7 @@ def travelled(windows: Sequence[Window], stroke: float) -> bool:
 def along(
     shaken: HarmonicLoad, over: str, style: int = 0, dash: int | None = None
 ) -> StrokeProfile:
-    """Values of the evaluation windows over stroke (mm) or time (s), in kN/mm and degrees.
+    """Dynamic stiffness in the evaluation windows (kN/mm, degrees), over stroke (mm) or time (s).
 
     A relative error of the stiffness changes its phase by at most the same number of radians.
     """
@@ -531,7 +534,7 @@ def stiffness_panels(
     static: Static | None = None,
     limits: tuple[Limits, Limits] = ((), ()),
 ) -> tuple[Panel, Panel]:
-    """Panels of magnitude and phase of the dynamic stiffness of several runs."""
+    """Panels with magnitude and phase of the dynamic stiffness, for one run or several."""
     places = [place for profile in profiles for place in profile.place]
     low, high = min(places), max(places)
     spare = 0.04 * (high - low) or 0.5
@@ -561,9 +564,10 @@ def _profile_panel(
     quantity: Quantity,
     limits: Limits,
 ) -> Panel:
-    """Values with their errors: points with bars, or a line for many windows.
+    """Panel of values with their errors: points with error bars, or a line for many windows.
 
-    For a single run, points are not connected, and a line has its error band.
+    Points are connected only if there are several runs; a line has an error band only for a single
+    run.
     """
     alone = len(profiles) == 1
     curves, points = [*beside], []
@@ -590,7 +594,7 @@ def _profile_panel(
 
 
 def _ends(values: Sequence[tuple[list[float], list[float]]]) -> list[float]:
-    """Values for the axis range; long error bars are cut, so that values remain distinguishable."""
+    """Values for the axis range; long error bars are cut to keep the values distinguishable."""
     ys = [y for column, _ in values for y in column]
     errors = [error for _, column in values for error in column]
     low, high = min(ys), max(ys)
@@ -623,7 +627,7 @@ def loop_panel(simulation: Simulation, shaken: HarmonicLoad) -> Panel | None:
     unit, factor = _micro(float(np.max(np.abs(swings[0]))))
     return Panel(
         "Last cycles: force, N",
-        Axis(f"position about its mean, {unit}"),
+        Axis(f"position minus its mean, {unit}"),
         curves=[
             Curve("run", factor * swings[0], swings[1], weight="thin"),
             Curve("fit", factor * ellipse_x, ellipse_force, (), (), REFERENCE, "thin", dash=FINE),

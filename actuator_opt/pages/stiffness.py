@@ -1,4 +1,4 @@
-"""The stiffness over the stroke: the curve, its parts, and the most effective change."""
+"""The stiffness over the stroke: the curve, the share of each part, the most effective change."""
 
 from __future__ import annotations
 
@@ -19,27 +19,29 @@ SHARES = ((0.0, "cap end"), (0.25, "25 %"), (0.5, "50 %"), (0.75, "75 %"), (1.0,
 """Positions in the table, as shares of the stroke."""
 _TOPOLOGY = {
     "per_chamber": (
-        "Per chamber: the share of a part is its strain energy under a unit force; the "
-        "shares add up to 1/k"
+        "Computed per chamber: the share of a part is its strain energy under a unit force; the "
+        "shares add up to the compliance 1/k"
     ),
     "aalto_as_published": (
-        "As published in [AaltoThesis], not per chamber: totals of oil, walls and lines in series"
+        "As published in [AaltoThesis], not per chamber: total compliances of oil, walls and "
+        "lines are in series"
     ),
     "elasswad_as_published": (
-        "As published in [ElAsswad2018], not per chamber: oil and wall expansion in series"
+        "As published in [ElAsswad2018], not per chamber: compliances of oil and wall expansion "
+        "are in series"
     ),
 }
 
 
 def stiffness_blocks(evaluation: Evaluation, *, curve_shown: bool = True) -> list[Block]:
-    """Figure and table; only the figure if no part contributes a compliance.
+    """Figure and table of the stiffness; without the table if fewer than two parts are compliant.
 
-    `curve_shown`: the terminal shows a small curve.
+    `curve_shown`: the terminal also shows a small curve.
     """
     rows = evaluation.requirements
     required = next((r for r in rows if r.metric == "stiffness_min" and r.sense == "min"), None)
     curve, title = evaluation.curve, "Stiffness over the stroke"
-    note = f"Case {curve.case}, ports closed. {_topology(evaluation)}."
+    note = f"Load case {curve.case}, ports closed. {_topology(evaluation)}."
     panels = stiffness_panels(curve, required)
     if not panels:
         words = "No stiffness curve: the stroke was not evaluated."
@@ -64,7 +66,7 @@ def _terminal_curve(curve: StrokeCurve, required: Requirement | None) -> Termina
         note += f", required {trimmed(limit)}"
     if shares := summary(curve):
         note += f"; compliance there: {shares}"
-    title = f"Stiffness over the stroke, kN/mm (case {curve.case})"
+    title = f"Stiffness over the stroke, kN/mm (load case {curve.case})"
     return TerminalFigure(title, points, limit, note=note)
 
 
@@ -99,7 +101,7 @@ def weakest(curve: StrokeCurve) -> int:
 
 
 def gain_sentence(curve: StrokeCurve) -> str:
-    """The part whose change would raise the stiffness most, and by how much."""
+    """Sentence on the part whose change would raise the stiffness most, and by how much."""
     index = weakest(curve)
     compliances = shares(curve, float(curve.position[index]))
     name, share = max(compliances.items(), key=lambda part: part[1])
@@ -110,8 +112,8 @@ def gain_sentence(curve: StrokeCurve) -> str:
     gain = 1 / (1 - share / 2) - 1
     place = text.trimmed(1e3 * float(curve.position[index]), 3)
     return (
-        f"At the weakest position, {place} mm, {name} matters most: it is "
-        f"{per_cent(share)} of the compliance{both}; halving it would make the actuator "
+        f"At the weakest position, {place} mm, {name} matters most: it causes {per_cent(share)} "
+        f"of the compliance{both}. With half of its compliance, the actuator would be "
         f"{per_cent(gain)} stiffer there."
     )
 
@@ -158,11 +160,11 @@ PARTS = (
     "oil A", "oil B", "oil in lines", "barrel", "stretch", "pipes", "hoses", "seals", "rod",
     "mount", "load cell",
 )  # fmt: skip
-"""Parts of the stiffness budget; each has the same fill in every report."""
+"""Parts that contribute to the compliance; each has the same fill in every report."""
 
 
 def stiffness_panels(curve: StrokeCurve, requirement: Requirement | None) -> list[Panel]:
-    """Panels of stiffness over the stroke and of its compliances; empty without a stroke."""
+    """Panels over the stroke: stiffness, and compliances of the parts; empty without a stroke."""
     positions = [1000.0 * float(x) for x in curve.position]
     stiffness = [float(k) / 1e6 for k in curve.stiffness]
     usable = [(x, k) for x, k in zip(positions, stiffness, strict=True) if math.isfinite(k)]

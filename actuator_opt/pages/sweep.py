@@ -1,4 +1,4 @@
-"""The page of a sweep: counts, best designs and reasons of failures; and its columns as files."""
+"""The page of a sweep: counts, best designs and reasons of failures. Also its columns for files."""
 
 from __future__ import annotations
 
@@ -50,7 +50,8 @@ def page(swept: Swept) -> Page:
 def counts(swept: Swept) -> str:
     """Sentence on how many designs were computed, failed and are feasible.
 
-    For a reduced sweep, also how many were ruled out without being computed.
+    For a sweep that keeps only the best designs: how many were ruled out early and how many were
+    evaluated in full.
     """
     if swept.feasible is None:
         full = swept.computed - swept.screened
@@ -66,12 +67,12 @@ def _verdict(swept: Swept) -> Verdict:
         return Verdict("missed", words)
     tight = sum(best.margin < NO_RESERVE for best in swept.best)
     limit = f"least margin below {100 * NO_RESERVE:g} %"
-    cautions = [f"{tight} of the best without reserve: {limit}"] if tight else []
+    cautions = [f"{tight} of the best designs without reserve: {limit}"] if tight else []
     return Verdict("checks" if tight else "met", "FEASIBLE", cautions=cautions)
 
 
 def _nothing(swept: Swept) -> str:
-    """Why there is no best design."""
+    """Sentences on the reason why there is no best design."""
     if swept.feasible:
         return f"The objective has no value for any of the {swept.feasible} feasible designs."
     missed = sorted(swept.missed.items(), key=lambda item: (-item[1], item[0]))
@@ -82,8 +83,8 @@ def _nothing(swept: Swept) -> str:
         "them" if swept.feasible is not None else f"{sum(swept.missed.values())} designs examined"
     )
     words = (
-        f"None meets every requirement and check; {name} is the limit missed by most "
-        f"in {times} of {whom}"
+        f"None meets every requirement and check; in {times} of {whom}, the limit missed by the "
+        f"largest margin is {name}"
     )
     return f"{words}. Widen the varied ranges, or run `optimise` to see which limits conflict."
 
@@ -103,7 +104,7 @@ def _tiles(swept: Swept) -> Iterator[Tile]:
 
 
 def _hero(swept: Swept) -> Ink:
-    """Parallel axes; only for a full sweep with at least one feasible design."""
+    """Figure of parallel axes; empty unless the sweep keeps every design and one is feasible."""
     study = swept.study
     if swept.best and study.full:
         metrics = chosen(study, ())[: max(1, AXES - len(study.plan.axes))]
@@ -133,7 +134,7 @@ def _blocks(swept: Swept) -> Iterator[Block]:
 
 
 def _best(swept: Swept) -> Table:
-    """The best designs with varied inputs, objective and smallest margin."""
+    """Table of the best designs with their varied inputs, objective and smallest margin."""
     study = swept.study
     goal = list(study.goal.weights)
     paths = [axis.path for axis in study.plan.axes]
@@ -168,7 +169,7 @@ def _head(name: str, quantity: Quantity | None) -> str:
 
 
 def _short(path: str, paths: list[str]) -> str:
-    """The shortest ending of a path that differs from all other paths."""
+    """The shortest ending by which a PATH differs from all other PATHs."""
     parts = path.split(".")
     for count in range(1, len(parts)):
         tail = ".".join(parts[-count:])
@@ -187,7 +188,7 @@ def _cell(value: float | str, quantity: Quantity | None) -> str:
 
 
 class SweepColumns:
-    """The rows of a study as columns of files, in display units.
+    """The designs of a sweep as columns for CSV and Parquet files, in display units.
 
     The columns: number of the design, varied inputs, metrics, smallest margin and its limit,
     whether all limits are met, and the reason of a failure.
@@ -202,20 +203,20 @@ class SweepColumns:
                 for column in study.columns[:count]
             ),
             *((x, study.quantity(x).label, study.quantity(x)) for x in study.metrics),
-            (margin, "least margin of all limits, a share of the limit", None),
+            (margin, "least margin of all limits, as a share of the limit", None),
         ]
         self._quantities = [quantity for _, _, quantity in named]
         self.fields = [
-            FileColumn("number", "whole", "number of the design in its plan"),
+            FileColumn("number", "whole", "number of the design in the plan of the sweep"),
             *(FileColumn(axis.path, "text", axis.path, axis.path) for axis in study.plan.named),
             *(_number(name, label, quantity) for name, label, quantity in named),
-            FileColumn("governing_limit", "text", "limit of the least margin"),
+            FileColumn("governing_limit", "text", "limit that has the least margin"),
             FileColumn("feasible", "flag", "whether every limit is met"),
             FileColumn("failure", "text", "reason of missing results"),
         ]
 
     def values(self, chunk: Chunk) -> list[Values]:
-        """The cells of a chunk, column by column."""
+        """The values of a chunk of designs, column by column."""
         count, failures = len(chunk.rows.numbers), chunk.rows.failures
         failed = np.zeros(count, dtype=bool)
         failed[list(failures)] = True
@@ -233,7 +234,7 @@ class SweepColumns:
         ]
 
     def _named(self, chunk: Chunk, count: int) -> Iterator[Coded]:
-        """Columns of varied inputs whose values are names."""
+        """Columns of the varied inputs whose values are names (such as materials)."""
         plan = self.study.plan
         if not plan.named:
             return
@@ -276,7 +277,7 @@ def about(study: Study) -> dict[str, str]:
 
 
 def _axis(axis: SweepAxis) -> object:
-    """The values of an axis in SI: a list, or the ends of a range with its number of steps."""
+    """The values of a varied input in SI: a list, or ends and number of steps of a range."""
     if axis.values is None:
         return list(axis.texts)
     values = axis.values.tolist()

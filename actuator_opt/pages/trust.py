@@ -19,7 +19,7 @@ from ..rendering.ink import BLACK, BLUE, GREY, PALE, Ink, spread_within, text_wi
 from ..rendering.text import number, sentence, unit_text
 
 LEAST_ABOVE = 1e-4
-"""Smallest excess over the optimum that is drawn [%]; less counts as zero."""
+"""Smallest excess of the objective over the optimum that is drawn [%]; less counts as zero."""
 
 NEAR = 1e-3
 """Largest relative difference of objectives at which two starts count as the same optimum."""
@@ -29,7 +29,7 @@ WIDTH = 180.0
 
 
 def trust_blocks(optimisation: Optimisation) -> list[Block]:
-    """Blocks: statement of the proof, scale with bound and optimum, and convergence."""
+    """Blocks: statement of the proof, scale with bound and optimum, and course of the search."""
     sentences = [*proof(optimisation), *convergence(optimisation)]
     blocks: list[Block] = [Notes("How good is this?", sentences, on="paper")]
     if optimisation.infeasibility is None:
@@ -57,7 +57,10 @@ def proof(optimisation: Optimisation, *, shortened: bool = False) -> list[str]:
     if certificate is None:
         if optimisation.infeasibility is not None or not optimisation.variables:
             return []
-        return ["Not proven: `optimise --certify` computes how far this is from the best possible."]
+        return [
+            "Not proven: `optimise --certify` computes how far this design can be from the "
+            "best possible."
+        ]
     lines = [sentence(certificate.sentence), *_of_sizes(optimisation)]
     if certificate.covers and not shortened:
         names = ", ".join(certificate.covers)
@@ -70,7 +73,7 @@ def proof(optimisation: Optimisation, *, shortened: bool = False) -> list[str]:
         ]
         covered = f"It covers {len(certificate.covers)} limits and does" if shortened else "It does"
         lines.append(
-            f"{covered} not include these limits, which can only lower the bound: "
+            f"{covered} not include the following limits, which can only lower the bound: "
             f"{'; '.join(shown)}."
         )
     if certificate.evidence:
@@ -79,13 +82,13 @@ def proof(optimisation: Optimisation, *, shortened: bool = False) -> list[str]:
 
 
 def _of_sizes(optimisation: Optimisation) -> list[str]:
-    """Distance from the proven bound of the design with the requested sizes."""
+    """Sentence on the distance of the design with the requested sizes from the proven bound."""
     bound, made = _bound(optimisation), optimisation.made
     if made is None or bound is None or not made.objective_after:
         return []
     share = math.ceil(1e4 * (1 - bound / made.objective_after)) / 100  # rounded up
     return [
-        f"This gap is that of the continuous optimum; the design of {made.name} is within "
+        f"This gap is that of the continuous optimum; the design with {made.name} is within "
         f"{text.trimmed(share)} % of the bound."
     ]
 
@@ -124,8 +127,8 @@ def _scale_block(optimisation: Optimisation) -> list[Block]:
     if bound is None and not _marks(optimisation):
         return []
     note = (
-        "Left of the bound no design meets the limits covered by the proof; right of it a "
-        "better design may exist."
+        "To the left of the bound, no design meets the limits covered by the proof. Between the "
+        "bound and the optimum, a better design may exist."
     )
     title = "Proven bound, optimum, and other designs"
     return [Drawing(title, scale(optimisation), "" if bound is None else note)]
@@ -161,7 +164,7 @@ def scale(optimisation: Optimisation) -> Ink:
 
 
 def _labelled(ink: Ink, axes: Axes, names: Sequence[tuple[float, str, bool]]) -> None:
-    """Strokes at values, with names above that are spread apart so as not to overlap."""
+    """Tick marks at values, with names above that are spread apart so as not to overlap."""
     widths = [text_width(words, 6.5, bold=strong) for _, words, strong in names]
     wanted = [axes.x(value) for value, _, _ in names]
     gaps = [(a + b) / 2 + 2.0 for a, b in pairwise(widths)]
@@ -185,7 +188,7 @@ def _course_block(optimisation: Optimisation) -> list[Block]:
     counts = [float(count) for count, _, _ in steps]
     last = max(float(optimisation.evaluations), counts[-1])
     heights = [_above(value, best) for _, value, _ in steps]
-    title = f"Best design so far, above {text.value_text(_quantity(optimisation), best)}"
+    title = f"Best design so far: excess over {text.value_text(_quantity(optimisation), best)}"
     x = Axis("evaluations", range=(0.0, last))
     panels = [Panel(title, x, _decades(heights), [Curve("", *_stairs(counts, heights, last))])]
     ends = [(k, start) for k, start in enumerate(optimisation.starts, 1) if start is not None]
@@ -228,7 +231,7 @@ def _stairs(
 
 
 def convergence(optimisation: Optimisation) -> list[str]:
-    """Sentences on algorithm, effort, starts and trace.
+    """Sentences on algorithm, effort, starts and improvements during the search.
 
     Wall time is left out, so that a repeated run gives the same bytes.
     """
@@ -272,13 +275,13 @@ def _missed(violation: float) -> str:
 
 
 LOWEST = 1e-6
-"""Violation below which a limit counts as met; lower end of the axis in the right panel."""
+"""Relative violation below which a limit counts as met; lower end of the axis of violations."""
 
 
 def convergence_figure(
     trace: Sequence[Sequence[float]], metric: str, evaluations: int, title: str
 ) -> Ink:
-    """Improvements (evaluation, objective in SI, worst violation) over the evaluation count."""
+    """Figure of the improvements during a search: objective and worst violation."""
     if not trace:
         return titled(Chart(title, [], height=0.0), ["No search: no variable was free to change."])
     quantity = of_metric(metric)

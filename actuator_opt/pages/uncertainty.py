@@ -35,12 +35,12 @@ from ..uncertainties.result import LimitYield, Swing, Uncertainty
 SHOWN = 8
 """Largest number of inputs shown for an output."""
 LEAST_SHARE = 0.005
-"""Share of the variance below which an input gets no row."""
+"""Inputs that cause less than this share of the variance get no row."""
 
 ROW, NAMES, HOLDS = 5.4, 46.0, 22.0
 """Height of a row, and widths of the names (left) and of the probabilities (right) (mm)."""
 LOWEST, HIGHEST = -0.6, 1.0
-"""Ends of the axis of margins; a strip that extends further ends with an arrow."""
+"""Limits for the ends of the axis of margins; a strip that extends further ends with an arrow."""
 
 
 def page(study: Uncertainty) -> Page:
@@ -75,7 +75,7 @@ def series(study: Uncertainty) -> list[Series]:
 
 
 def verdict(study: Uncertainty) -> Verdict:
-    """Whether the nominal design meets its requirements, and the yield."""
+    """The badge: whether the nominal design meets its requirements, and the yield."""
     known = [limit for limit in study.required if limit.margin is not None]
     met = sum(limit.margin >= -TOLERANCE for limit in known if limit.margin is not None)
     tight = sum(without_reserve(limit.margin, limit.limit) for limit in known)
@@ -124,7 +124,7 @@ def _sentence(study: Uncertainty) -> str:
 
 
 def weakest(study: Uncertainty) -> str:
-    """The requirement with the lowest yield."""
+    """Sentence on the requirement with the lowest yield."""
     if not study.required:
         return "The design states no requirement."
     worst = study.required[0]
@@ -134,10 +134,11 @@ def weakest(study: Uncertainty) -> str:
         margin = (
             ""
             if low is None
-            else f": {_margin(worst, low)} at the 1 % point (99 % of the draws have more)"
+            else f": {_margin(worst, low)} at the 1 % point (99 % of the draws have a larger "
+            "margin)"
         )
         return f"No draw missed a requirement; {worst.name} has the smallest margin{margin}."
-    words = f"{worst.name} is missed most often: by {percent(1 - worst.rate.value)} of the draws"
+    words = f"{worst.name} is missed most often, in {percent(1 - worst.rate.value)} of the draws"
     if len(failing) > 1:
         others = ", ".join(f"{x.name} {percent(1 - x.rate.value)}" for x in failing[1:4])
         words += f"; then {others}"
@@ -152,8 +153,8 @@ def _with_checks(study: Uncertainty) -> str:
     named = ", ".join(f"{x.name} {percent(1 - x.rate.value)}" for x in failing[:4])
     more = f" and {len(failing) - 4} more" if len(failing) > 4 else ""
     return (
-        f"{percent(study.rate_checks.value)} meet the requirements and the check list "
-        f"({between(study.rate_checks)}); missed checks: {named}{more}."
+        f"{percent(study.rate_checks.value)} of the actuators meet the requirements and the check "
+        f"list (95 % bounds {between(study.rate_checks)}). Missed checks: {named}{more}."
     )
 
 
@@ -170,9 +171,9 @@ def value_words(study: Uncertainty, output: str, number: float | None) -> str:
 
 
 def followed(study: Uncertainty) -> list[str]:
-    """Outputs shown in detail: up to three missed requirements, then metrics.
+    """Outputs shown in detail: up to three requirements that draws miss, then requested metrics.
 
-    If all draws meet the requirements, the requirement nearest to its limit is shown.
+    If all draws meet the requirements, the requirement with the smallest margin is shown.
     """
     failing = [limit.name for limit in study.required if limit.rate.value < 1][:3]
     nearest = [limit.name for limit in study.required[:1]]
@@ -245,7 +246,7 @@ def _limits(title: str, limits: Iterable[LimitYield]) -> Table:
 
 
 def _causes(study: Uncertainty, output: str) -> Iterator[Block]:
-    """Inputs behind the variance of an output: bars on paper, a table on the terminal."""
+    """Inputs that cause the variance of an output: bars on paper, a table on the terminal."""
     if output in study.units:
         title = f"Causes of the variation of {text.metric(output).label}"
     else:
@@ -259,8 +260,9 @@ def _causes(study: Uncertainty, output: str) -> Iterator[Block]:
         Column("at 95 %", "right", drop=1),
     ]
     note = (
-        "Bars: result with only this input at its 5 % and 95 % points. Alone: share of the "
-        "variance from this input; with others: share including its interactions."
+        "Bars: change of the result if only this input is moved to its 5 % or 95 % point. Alone: "
+        "share of the variance due to this input by itself. With others: share that includes its "
+        "interactions with other inputs."
     )
     table = Table(title, columns, rows, on="terminal") if rows else None
     ink = tornado(study, output)
@@ -271,7 +273,7 @@ def _causes(study: Uncertainty, output: str) -> Iterator[Block]:
 
 
 def _indices(study: Uncertainty, output: str) -> list[tuple[str, ...]]:
-    """Sensitivity indices of the main inputs, and the output at both ends of each input."""
+    """Table rows: sensitivity indices of the main inputs, and the output at both their ends."""
     ranked, swings = study.of_output(output)
     ends = {swing.path: swing for swing in swings}
     rows = []
@@ -293,7 +295,7 @@ def _share(index: float | None, half: float | None) -> str:
 
 
 def _inputs(study: Uncertainty) -> Table:
-    """All uncertain inputs."""
+    """Table of all uncertain inputs with their distributions."""
     columns = [
         Column("input", "left", 1.3, breaks=30, mono=True, least=14, wraps=True),
         *(Column(head, "right") for head in ("value", "5 %", "95 %")),
@@ -323,8 +325,8 @@ def shown(uncertainty: Uncertainty) -> list[LimitYield]:
 def margins_figure(uncertainty: Uncertainty, *, width: float = 180.0) -> Ink:
     """Margins of every requirement as a strip.
 
-    The line covers 1 to 99 % of draws, the box 5 to 95 %. Marks show the median and the nominal
-    design. Drawn, not a chart: the probability is beside each strip.
+    The line extends from the 1 % to the 99 % point of the draws, the box from 5 to 95 %. Marks show
+    the median and the nominal design. Drawn, not a chart: the probability is beside each strip.
     """
     lines = shown(uncertainty)
     top = 9.0
@@ -396,7 +398,7 @@ def _above(margin: float | None, axes: Axes) -> bool:
 
 
 def tornado(uncertainty: Uncertainty, output: str, *, width: float = 180.0) -> Ink | None:
-    """Bars of an output with each main input at its 95 % (dark) and 5 % (light) percentile."""
+    """Tornado chart: change of an output at the 95 % (dark) and 5 % point of each input."""
     ranked, swings = uncertainty.of_output(output)
     ends = {swing.path: swing for swing in swings}
     centre = uncertainty.nominal[output]

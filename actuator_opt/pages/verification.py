@@ -15,18 +15,19 @@ from .simulation import label, tied
 
 HEADS = ("requirement", "limit", "evaluation", "linear", "simulated", "difference", "holds")
 BESIDE = 0.02
-"""Least relative difference that is reported between the linear model's worst position and
-the\nposition of the time simulation."""
+"""Least relative difference between two results of the linear model that is reported: the worst
+result, and the result at the position of the time simulation."""
 MEANING = (
     "Evaluation: worst result of the linear models. Linear: result of the same models at the "
-    "position of the experiment, for the side to which its spool is open; the difference refers "
-    "to this value. Beside: the linear result is worse for the other side, which the spool only "
-    "passes while the load drifts; experiments start at rest."
+    "position of the experiment and for the side to which its spool is open; the difference "
+    "refers to this value. Beside: the worst linear result is for the other side of the spool. "
+    "The spool only passes through this side while the load drifts, so no experiment, which "
+    "starts at rest, can reach it."
 )
 UNSURE = "?"
-"""Mark after an effect that a run with half the parameter step does not confirm."""
+"""Mark behind an effect that a run with half the parameter step does not confirm."""
 MOST_RESULTS = 6
-"""Largest number of results in a table of sensitivities; the most affected are shown."""
+"""Largest number of results in a table of sensitivities; the most affected results are shown."""
 BRIEF = {
     "rise_time": "rise",
     "settling_time": "settling",
@@ -49,7 +50,7 @@ _HOLDS = {"met": "yes", "missed": "no", "not_checked": "not known"}
 
 
 class RequirementLine(NamedTuple):
-    """A requirement as printed."""
+    """A requirement as printed, with its state and the experiment that checked it."""
 
     cells: tuple[str, ...]
     """Cells of the columns `HEADS`."""
@@ -59,7 +60,7 @@ class RequirementLine(NamedTuple):
 
 
 def blocks(verification: Verification) -> list[Block]:
-    """Terminal: every requirement by linear model and time simulation, then experiments."""
+    """Blocks for the terminal: requirements by linear model and by simulation, then experiments."""
     lines = [_line(row) for row in verification.rows]
     columns = [Column(HEADS[0], width=1.0, least=20)]
     columns += [
@@ -106,8 +107,8 @@ def tables(verification: Verification) -> tuple[Table, ...]:
         return (both,)
     heads = ("requirement", "case and place", "experiment", "difference, as seen")
     note = (
-        "Each share is computed: the experiment is repeated without sticking friction, then "
-        "with a fiftieth of the amplitude; the rest is due to the operating point."
+        "The shares of the difference are computed: the experiment is repeated without sticking "
+        "friction, then with a fiftieth of the amplitude. The rest is due to the operating point."
     )
     widths = (1, 1.2, 1.5, 3.5)
     return both, text_table("Experiments behind them", heads, experiments, note, widths=widths)
@@ -147,7 +148,7 @@ def _name(row: VerifiedRequirement) -> str:
 
 
 def _beside(row: VerifiedRequirement) -> bool:
-    """Whether the linear model is clearly worse at a position where no simulation can start."""
+    """Whether the linear result is clearly worse at a position where no simulation can start."""
     if row.stated is None or row.linear is None:
         return False
     return abs(row.stated - row.linear) > BESIDE * abs(row.stated)
@@ -170,10 +171,11 @@ def sensitivity_blocks(sensitivities: Sensitivities) -> list[Block]:
     results = _affected(sensitivities)
     title = f"Sensitive parameters: {sensitivities.name}"
     note = (
-        "Change of each result in per cent if the parameter rises by 1 %, or by the change "
-        "stated beside it, largest first; central differences of "
-        f"{number(100 * sensitivities.step, 2)} %. A {UNSURE} marks values that half the step "
-        f"does not confirm within 10 %. {sensitivities.runs} runs."
+        "Change of each result in per cent if the parameter rises by 1 %, or by the amount in "
+        "the column 'for'. The parameter with the largest effect is first. Changes are computed "
+        f"by central differences with steps of {number(100 * sensitivities.step, 2)} %. A "
+        f"{UNSURE} marks changes that half the step does not confirm within 10 %. "
+        f"{sensitivities.runs} runs."
     )
     columns = [
         Column("parameter", width=1.0, breaks=30, least=24),

@@ -1,4 +1,4 @@
-"""The barrel wall in a report: layers, stresses, criteria, steps to burst, and alternatives.
+"""The barrel wall in a report: layers, stresses, failure criteria, way to burst, alternatives.
 
 Layers are shaded, with their number above the frame; the bore is on the left.
 """
@@ -38,12 +38,12 @@ AT_REST = 5
 """Line style of the stress without pressure: dotted."""
 _AT_REST = {"cold": "no pressure, coldest", "hot": "no pressure, hottest", "": "no pressure"}
 _NEAR = 0.6
-"""A limit is drawn if a curve reaches this share of it."""
+"""A limit is drawn only if a curve reaches at least this share of it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rung:
-    """A bar of a step to burst: name, pressure [Pa], fill, remark, required pressure [Pa]."""
+    """A bar for a step on the way to burst: its pressures [Pa], fill and words."""
 
     name: str
     pressure: float
@@ -105,7 +105,7 @@ def _panel(
     limits: Sequence[float] = (),
     remarks: Sequence[str] = (),
 ) -> Panel:
-    """Curves over the wall with shaded, numbered layers; a limit is drawn if a curve nears it."""
+    """Curves through the wall with shaded, numbered layers, and the limits near the curves."""
     layers = [
         Stretch(
             1e3 * float(radii[0]),
@@ -137,8 +137,8 @@ def _curve(words: str, study: WallStudy, values: Array, style: int) -> Curve:
 def ladder_figure(rungs: Sequence[Rung], working: float, *, width: float = 180.0) -> Ink:
     """Bars of the pressures at which parts of the wall fail, up to burst.
 
-    A red tick marks the required pressure.
-    Drawn, not a chart: each bar has its numbers and a remark beside it.
+    A red tick marks a required pressure. Drawn, not a chart: each bar has its numbers and a remark
+    beside it.
     """
     step, top = 4.8, 5.0
     ink = Ink(width, top + step * len(rungs) + 1.5)
@@ -204,7 +204,8 @@ def wall_figure(layers: Sequence[tuple[str, float, str]], *, width: float = 180.
 
 
 MOST_STEPS = 10
-"""Most steps to burst that are drawn; if there are more, the last and the first nine are drawn."""
+"""Largest number of steps to burst that are drawn; of more steps, the first nine and the last are
+drawn."""
 
 _PLACE = re.compile(r"layup\[(\d+)\] [^\s,]+")
 _SHORT = {
@@ -225,7 +226,7 @@ _DIFFERENCES = {
 
 
 def wall_blocks(evaluation: Evaluation) -> list[Block]:
-    """Every block on the wall; only the drawing if there is no wall study."""
+    """All blocks on the wall; only the drawing if the evaluation has no study of the wall."""
     study = evaluation.wall
     blocks = [_drawing(evaluation)]
     if study is None:
@@ -304,13 +305,13 @@ def _layers(study: WallStudy) -> Block:
         Column("E₂, GPa", "right"),
         Column("G₁₂, GPa", "right"),
         Column("ν₁₂", "right"),
-        Column("allowables at the hottest, MPa (share left)", "left", 2.6),
+        Column("allowables at highest temperature, MPa (share left)", "left", 2.6),
     ]
     note = (
         "From the bore outwards; angles are from the tube axis; ± is a balanced pair. X: "
         "strength along the fibre, Y: across it, S: in shear; t: tension, c: compression. "
-        "Share left: share of the library value that remains after knock-downs for "
-        "temperature, moisture, basis and process."
+        "Share left: allowable as a share of the library value, after knock-downs for "
+        "temperature, moisture, statistical basis and process."
     )
     return Table("Barrel wall: layers", columns, rows, note=note, on="paper")
 
@@ -320,8 +321,9 @@ def _stresses(study: WallStudy) -> Block:
     if study.rest:
         at_rest = " Dotted: stress without pressure, to be added (cure, clamp, autofrettage)."
     note = (
-        f"At supply pressure, {text.trimmed(study.ladder.working / 1e5)} bar, by the exact "
-        f"layered tube, far from its ends; the numbers mark the layers.{at_rest}"
+        f"Stresses at supply pressure ({text.trimmed(study.ladder.working / 1e5)} bar), far from "
+        "the ends of the tube, by the exact theory of layered tubes; the numbers mark the "
+        f"layers.{at_rest}"
     )
     title = "Barrel wall: stress through the wall"
     return Chart(title, stress_panels(study), note, height=60.0)
@@ -333,12 +335,13 @@ def _strength(study: WallStudy) -> Block:
     if study.shares is not None:
         climate = {"cold": ", coldest", "hot": ", hottest"}.get(study.shares.climate, "")
         right = (
-            f" Right: the most severe load ({study.shares.path}{climate}), including "
-            "stress without pressure; negative: compression, or negative shear."
+            f" Right: stress over strength for the most severe load "
+            f"({study.shares.path}{climate}), including stress without pressure; negative: "
+            "compression, or negative shear."
         )
     note = (
-        f"Left: plies by {criterion}, metals by von Mises, in the worst climate; SR is the "
-        f"factor on the supply pressure at which the material first fails.{right}"
+        f"Left: plies by {criterion}, metals by von Mises, in the worst climate. SR (strength "
+        f"ratio) is the factor on the supply pressure at which the material first fails.{right}"
     )
     title = "Barrel wall: strength used through the wall"
     return Chart(title, strength_panels(study), note, height=60.0)
@@ -375,14 +378,14 @@ def _criteria(study: WallStudy) -> Block:
     ]
     key = "; ".join(f"{letter} {name}" for name, letter in letters.items())
     note = (
-        "Strength ratio: factor on the supply pressure at which the ply first fails, with "
-        f"mode and face, including cure stress; {key}; cold, hot: climates. ●: criterion "
-        "of the design; spread: ratio of the largest to the smallest value of the row."
+        "Strength ratio: factor on the supply pressure at which the ply first fails, including "
+        f"cure stress, with failure mode and face. Load paths: {key}; cold, hot: climates. ●: "
+        "criterion of the design. Spread: ratio of the largest to the smallest value in the row."
     )
     if any(row.ratio == 0.0 for row in study.ratios):
-        note += " 0: the ply fails by the stress without pressure."
+        note += " 0: the ply fails without pressure, by its residual stress."
     if any(_woven(study, layer) for layer in range(len(study.layers))):
-        note += " Hashin and Puck are made for unidirectional plies, not for a fabric."
+        note += " The criteria of Hashin and Puck apply to unidirectional plies, not to fabrics."
     if metals:
         note += f" Metals by von Mises: {'; '.join(metals)}."
     return Table(
@@ -398,7 +401,7 @@ def _woven(study: WallStudy, index: int) -> bool:
 
 
 def _place(label: str) -> str:
-    """A location in the wall, converted to the layer numbers of the page."""
+    """A location in the wall, with the layer numbers used on the page."""
     label = label.removeprefix("first ply ")
     return _PLACE.sub(lambda m: f"layer {int(m[1]) + 1}", label)
 
@@ -429,22 +432,22 @@ def _ladder(evaluation: Evaluation, study: WallStudy) -> Block:
     for count, step in steps[: MOST_STEPS - 1] + steps[MOST_STEPS - 1 + left_out :]:
         rungs.append(
             Rung(
-                f"ladder, step {count}",
+                f"failure step {count}",
                 step.pressure,
                 WHITE,
                 f"layer {step.layer + 1} {step.mode}",
             )
         )
     if ladder.burst is not None:
-        place = f"the highest pressure carried; {_place(ladder.path)}"
+        place = f"the highest pressure that the wall carries; {_place(ladder.path)}"
         rungs.append(Rung("burst", ladder.burst, STEEL, place, limits.get("burst_factor")))
     note = ""
     if any(rung.required is not None for rung in rungs):
-        note = "Red: value that a check or requirement demands. "
+        note = "Red: pressure required by a check or requirement. "
     if steps:
         note += (
-            "Steps are by maximum stress, starting from the cure stress; failed plies lose "
-            "their matrix stiffness, yielded metal keeps its stress."
+            "Failure steps are computed by maximum stress, starting from the cure stress. Failed "
+            "plies lose their matrix stiffness; yielded metal keeps its stress."
         )
     if left_out:
         note += f" {left_out} steps are left out."
@@ -471,7 +474,7 @@ def _differences(evaluation: Evaluation, study: WallStudy) -> Block:
         Column("thin against exact", "right", 0.7),
     ]
     used = "thin laminate" if thin else "exact tube"
-    note = f"The design uses the {used}; the thin laminate is a fast mode for thin walls."
+    note = f"The design uses the {used}; the thin laminate is a fast approximation for thin walls."
     if evaluation.design.barrel.autofrettage_pressure is not None:
         note += " It does not include autofrettage."
     rows = [row(difference) for difference in study.differences]
@@ -514,16 +517,16 @@ def _thicknesses(study: WallStudy) -> Block:
         f"{text.trimmed(100 * share, 3)} % at {text.trimmed(1e3 * at, 2)} mm"
         for at, share in settling.shares
     )
-    shell = f"thin shell of radius over thickness {text.number(settling.radius_ratio, 2)}"
+    shell = f"thin shell, radius over thickness {text.number(settling.radius_ratio, 2)}"
     if settling.radius_ratio < 5:
-        shell += ", below 5: a rough figure"
+        shell += ": below 5, so this is a rough value"
     note = (
-        f"Only the thickness of layer {study.main_layer + 1}, which carries most of the "
-        "hoop force, is changed. The piston seal separates high from low pressure; away "
-        "from it the growth changes over the length 1/β = "
-        f"{text.number(1e3 * settling.decay_length, 3)} mm ({shell}): "
-        f"{text.trimmed(100 * settling.at_seal, 3)} % of the full growth acts at the seal, "
-        f"{shares} into the pressurised side."
+        f"Only the thickness of layer {study.main_layer + 1}, which carries most of the hoop "
+        "force, is changed. The piston seal separates high from low pressure, and the bore "
+        "growth decays across it over the length 1/β = "
+        f"{text.number(1e3 * settling.decay_length, 3)} mm ({shell}). The bore grows by "
+        f"{text.trimmed(100 * settling.at_seal, 3)} % of the full growth at the seal; on the "
+        f"pressurised side, it grows by {shares} from the seal."
     )
     title = "Barrel wall: thickness for another bore growth"
     return Table(title, columns, rows, note=note, on="paper")
@@ -569,10 +572,10 @@ def _metals(study: WallStudy) -> Block:
         Column("against this\ndesign", "right"),
     ]
     note = (
-        "The thinnest tube of each metal of the library for the same bore, with the bore "
-        "growth of this design (without axial load) and the required burst pressure, or "
-        "that of this design if it is lower; by Lamé and Faupel, under the same axial "
-        "forces, without a minimum wall for turning."
+        "For each metal of the library: the thinnest tube of the same bore that has at most the "
+        "bore growth of this design (without axial load), and at least the required burst "
+        "pressure (or that of this design, if it is lower). Computed by Lamé and Faupel, under "
+        "the same axial forces, without a minimum wall for turning."
     )
     return Table(
         "Barrel wall: metal barrels for the same duty", columns, rows, note=note, on="paper"

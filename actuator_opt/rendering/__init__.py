@@ -1,1 +1,1 @@
-"""Rendering of pages on paper, on the terminal, as HTML and as CSV, whatever their subject."""
+"""Renders pages of any subject on paper, on the terminal, as HTML and as CSV."""

@@ -1,4 +1,4 @@
-"""Files attached to a PDF: added by an incremental update, and read back."""
+"""Files attached to a PDF: attaches them by an incremental update, and reads them back."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from ..base.errors import Diagnostic, InputError
 from ..base.files import read_bytes, read_json
 
 MOST_BYTES = 50_000_000
-"""Largest attachment (a choice far above any input)."""
+"""Largest accepted attachment in bytes (our choice, far above the size of any input)."""
 MOST_FILES = 16
-"""Maximum number of attachments (a choice: a report has two, an editor may add some)."""
+"""Maximum number of attachments (our choice: a report has two, an editor may add some)."""
 NEAR = 4096
-"""Maximum bytes from a dictionary's type to its start and to its end (our choice; ours need
-200)."""
+"""Maximum distance in bytes from the type entry of a PDF dictionary to its start and to its end
+(our choice; our own reports need 200)."""
 _MARK, _OBJECT = b"/EmbeddedFile", b" obj"
 _STREAM = re.compile(rb">>\s{0,16}stream\r?\n")
 _STEP = 1_000_000
@@ -40,9 +40,9 @@ class Attachment:
 
 
 def embed(pdf: bytes, files: Sequence[tuple[str, str, bytes]], timestamp: int = 0) -> bytes:
-    """The PDF with (name, media type, content) files attached; ISO 32000-1, 7.5.6 and 7.11.4.
+    """Attach files (name, media type, content) to a PDF by ISO 32000-1, 7.5.6 and 7.11.4.
 
-    Serves PDFs with a plain cross-reference table, such as matplotlib's.
+    The PDF must have a plain cross-reference table, as PDFs by matplotlib do.
     """
     start = int(pdf.rsplit(b"startxref", 1)[1].split()[0])
     trailer = pdf.rsplit(b"trailer", 1)[1]
@@ -90,8 +90,9 @@ def extract(pdf: bytes, kinds: Sequence[str]) -> dict[str, bytes]:
     """Attached files by media type, as written by `embed`, the Typst report and most editors.
 
     Streams are located by their own dictionaries, without the cross-reference table. A PDF may be
-    malicious, so it is searched only once, for at most `MOST_FILES` dictionaries of at most `NEAR`
-    bytes to either side, with at most `MOST_BYTES` of content each.
+    malicious, so the search has limits: it passes the file once, reads at most `MOST_FILES`
+    dictionaries within `NEAR` bytes of their type entries, and unpacks at most `MOST_BYTES` of
+    content each.
 
     Parameters
     ----------
@@ -134,11 +135,11 @@ def streams(pdf: bytes) -> Iterator[tuple[bytes, int]]:
 
 
 def _content(pdf: bytes, begin: int, about: bytes) -> bytes:
-    """Content of an embedded file, whose size must equal the stated size."""
+    """Content of an embedded file; its size must equal the stated size."""
     if re.search(rb"/Filter\s*(?:\[\s*)?/FlateDecode\s*\]?", about):
         content, whole = _unpacked(pdf, begin)
     elif b"/Filter" in about:
-        raise InputError("its attachment has an unknown compression")
+        raise InputError("its attachment is compressed by an unknown method")
     else:
         length = re.search(rb"/Length\s+(\d{1,12})(?!\d|\s+\d+\s+R)", about)
         end = begin + int(length[1]) if length else pdf.find(b"endstream", begin)
@@ -173,7 +174,7 @@ def _too_large() -> InputError:
 
 
 def read_attachment(path: Path) -> Attachment:
-    """The input and the command in a report of this program.
+    """The design file and the command that are attached to a report of this program.
 
     Raises
     ------
@@ -199,6 +200,6 @@ def read_attachment(path: Path) -> Attachment:
 
 
 def _no_input(content: bytes) -> str:
-    """Why a PDF has no input: it was written without, or the end of the file is lost."""
+    """Message on why a PDF has no input attached: written without it, or the file is truncated."""
     complete = b"%%EOF" in content[-2048:]
     return "has no input to repeat" if complete else "is truncated and has no input"

@@ -1,7 +1,7 @@
 """Axes of figures: ranges, ticks, frames, and curves with their names.
 
-Readable in black and white: areas differ in lightness, lines in dash, and every curve carries
-its own label.
+Figures can be read in black and white: areas differ in lightness, lines in dash, and every curve
+has its own label.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ Ticks: TypeAlias = Sequence[tuple[float, str]]
 Box: TypeAlias = tuple[float, float, float, float]
 """Left, top, width and height on the paper [mm]."""
 THINNED = 640
-"""Number of values in a thinned curve (our choice: two per 0.3 mm of paper)."""
+"""Number of values to which a dense curve is thinned (our choice: two per 0.3 mm of paper)."""
 SIZE = 6.2
 """Type size of the names of curves [pt]."""
 _MILLISECONDS = 0.1
-"""Time span below which an axis is in milliseconds [s]."""
+"""Time span [s] below which a time axis is in milliseconds."""
 
 
 def ticks(low: float, high: float, count: int = 5) -> list[float]:
@@ -66,17 +66,17 @@ class Axes:
         self.x_range, self.y_range = x_range, y_range
 
     def x(self, value: float) -> float:
-        """Millimetres from the left of the paper."""
+        """Horizontal position of a value: distance from the left edge of the paper [mm]."""
         low, high = self.x_range
         return self.left + (value - low) / (high - low) * self.width
 
     def y(self, value: float) -> float:
-        """Millimetres from the top of the paper."""
+        """Vertical position of a value: distance from the top edge of the paper [mm]."""
         low, high = self.y_range
         return self.top + (high - value) / (high - low) * self.height
 
     def frame(self, title: str, x_label: str) -> None:
-        """Grid, ticks and axis labels; the y label is the title above the axis."""
+        """Draw grid, ticks and axis labels; the y label is the title above the axis."""
         self.frame_at(
             title,
             x_label,
@@ -87,9 +87,9 @@ class Axes:
     def frame_at(
         self, title: str, x_label: str, x_ticks: Ticks, y_ticks: Ticks, *, upright: bool = False
     ) -> None:
-        """Grid, given ticks and axis labels; `upright` also draws vertical grid lines.
+        """Draw grid, given ticks and axis labels; `upright` also draws vertical grid lines.
 
-        Without an x label the x ticks have no numbers, as another frame follows below.
+        Without an x label, the x ticks have no numbers, because a frame below shows them.
         """
         bottom = self.top + self.height
         for value, words in y_ticks:
@@ -191,7 +191,7 @@ def level_ticks(low: float, high: float) -> Ticks:
 
 
 def even_ticks(low: float, high: float, count: int) -> Ticks:
-    """Round ticks with as many decimals as their step needs.
+    """Round ticks, about `count` of them, with as many decimals as their step needs.
 
     >>> even_ticks(54.91, 55.09, 3)
     [(54.95, '54.95'), (55.0, '55.00'), (55.05, '55.05')]
@@ -226,7 +226,7 @@ def log_range(values: Sequence[float], least: float = 0.5) -> tuple[float, float
 
 
 def even_range(values: Sequence[float], *, zero: bool = False) -> tuple[float, float]:
-    """Range of a straight axis, slightly wider than the values; never empty."""
+    """Range of a linear axis, slightly wider than the values; never empty."""
     known = [v for v in values if math.isfinite(v)] or [0.0]
     low, high = min(known), max(known)
     if zero:
@@ -247,7 +247,7 @@ def band(
     high: Sequence[float],
     fill: str = "#d5e6f0",
 ) -> None:
-    """The area between two curves, cut at the frame; empty where a bound has no value."""
+    """Draw the area between two curves, cut at the frame; it has gaps where a bound is missing."""
     bottom, top = axes.y_range
     runs: list[list[tuple[float, float, float]]] = [[]]
     for x, below, above in zip(xs, low, high, strict=True):
@@ -289,7 +289,7 @@ def time_words(span: float, words: str = "time") -> tuple[str, float]:
 
 
 def steady_range(ends: Sequence[float], *, zero: bool = False) -> tuple[float, float]:
-    """`even_range`, wide enough to show a constant value as a straight line."""
+    """Range like `even_range`, but so wide that a constant signal appears as a straight line."""
     low, high = even_range(ends, zero=zero)
     size = max((abs(v) for v in ends), default=0.0)
     least = 1e-6 * size if size > 1e-12 else 1.0

@@ -20,18 +20,18 @@ from .text import STATUS_WORDS
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Chart:
-    """Panels side by side; a sequence of panels is a column.
+    """A block with panels side by side; a sequence of panels forms a column.
 
     Parameters
     ----------
-    title : of the block
-    panels : panels and columns of panels, from the left; an ink (picture) is placed below the
-        panels of its column
-    note : below the chart
-    instead : block for the terminal
-    height : on paper [mm]
-    widths : of the columns, relative; default: equal
-    key : curves named once, above all panels
+    title : title of the block
+    panels : panels and columns of panels, from the left. In a column, a picture (`Ink`) is placed
+        below the panels
+    note : sentences below the chart
+    instead : block that the terminal shows instead
+    height : height on paper [mm]
+    widths : relative widths of the columns; default: equal
+    key : curves whose names are shown once, above all panels
     """
 
     title: str
@@ -49,20 +49,20 @@ class Chart:
 
 
 State: TypeAlias = Literal["", "met", "no_reserve", "missed", "not_checked", "checks", "infeasible"]
-"""Result of a requirement, a check or a whole page; empty if there is nothing to judge."""
+"""State of a requirement, a check or a whole page; empty if there is nothing to judge."""
 Medium: TypeAlias = Literal["both", "paper", "terminal"]
 Align: TypeAlias = Literal["left", "center", "right"]
 
 _PIECES = re.compile(r"(?:[^./=\[]|[./=\[]+(?=[0-9]))*(?:[./=\[]+|$)", re.DOTALL)
 _NAMES = re.compile(r"[^_]*(?:_+|$)")
 _NAME = 18
-"""Length of a name, in letters, that fits into any column."""
+"""Largest number of characters of a name that fits into any column."""
 _WORDS = re.compile(r"\s*\S+\s*|\s+")
 _CONTROL = re.compile(rf"[{CONTROLS}]")
 
 
 def clean(text: str) -> str:
-    """Printable text: control and direction characters as their code point, ``⟨U+0007⟩``."""
+    """Printable text; control and direction characters become code points, ``⟨U+0007⟩``."""
     return _CONTROL.sub(lambda m: f"⟨U+{ord(m[0]):04X}⟩", text)
 
 
@@ -70,11 +70,12 @@ _PAPER = re.compile(
     r"[^\n\t\u0020-\u007e\u00a0-\u02af\u0370-\u052f\u1e00-\u1eff\u2010-\u2029\u202f-\u205e"
     r"\u2070-\u209c\u20a0-\u20b5\u2100-\u2311\u2500-\u26b8\u2701-\u27be\u27e8\u27e9]"
 )
-"""Characters that the typeface lacks (it has Latin, Greek, Cyrillic and technical signs)."""
+"""Pattern of characters that the typeface lacks: all but Latin, Greek, Cyrillic and technical
+signs."""
 
 
 def printable(text: str) -> str:
-    """Text that the typeface can draw; other letters as their code point, ``⟨U+4E2D⟩``."""
+    """Text that the typeface can draw; other characters become code points, ``⟨U+4E2D⟩``."""
     if text.isascii():
         return text
     return _PAPER.sub(lambda m: f"⟨U+{ord(m[0]):04X}⟩", text)
@@ -83,8 +84,8 @@ def printable(text: str) -> str:
 def soft(text: str, longest: int = 14, *, name: int = _NAME) -> str | list[str]:
     """A text whose words of more than `longest` letters may break after ``. / = [``.
 
-    A single name of more than `name` letters may also break after ``_``; if it is still wider than
-    the column, anywhere.
+    A single name of more than `name` letters may also break after ``_``. If it is still wider than
+    the column, it may break anywhere.
 
     >>> soft("materials.steel_42crmo4.density", 22)
     ['materials.', 'steel_42crmo4.', 'density']
@@ -104,7 +105,7 @@ def soft(text: str, longest: int = 14, *, name: int = _NAME) -> str | list[str]:
 def _pieces(word: str, most: int) -> Iterator[str]:
     """Parts of a word between which a line may break.
 
-    It may only break after ``_`` if a name has more than `most` letters.
+    A break after ``_`` is only allowed in names of more than `most` letters.
     """
     for part in filter(None, _PIECES.findall(word)):
         if len(part.rstrip()) <= most:
@@ -129,13 +130,16 @@ class Status:
 
     @property
     def words(self) -> str:
-        """The words."""
+        """The words shown beside the mark."""
         return self.text or STATUS_WORDS[self.state]
 
 
 @dataclass(frozen=True, slots=True)
 class Bar:
-    """A margin as a bar: reserve to the right of the mark, violation to the left; full at 100 %."""
+    """A margin as a bar, full at 100 %; a reserve is to the right of the zero mark.
+
+    A violation is to the left.
+    """
 
     margin: float | None
     met: bool = True
@@ -143,28 +147,29 @@ class Bar:
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """A bar from zero to one."""
+    """A share as a bar from zero to one."""
 
     value: float
 
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """Position of a value between its bounds, from 0 to 1; `at` names a bound it has reached."""
+    """Position of a value between its bounds, from 0 to 1; `at` is the bound that it reached."""
 
     place: float
     at: str = ""
 
 
 FARTHEST = 0.3
-"""Relative change at which the bar of a `Reach` ends; ticks are at a third of it."""
+"""Relative change at which the bar of a `Reach` ends; its ticks are at a third of this."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """Permitted relative change of a value, as a bar; None: permitted over the whole tested range.
+    """Bar for the relative change of a value up to which a result (such as a price) holds.
 
-    `met`: whether the result is valid over the whole change.
+    If `change` is None, the result holds over the whole tested range. `met` is False if the result
+    is inaccurate within this range.
     """
 
     change: float | None
@@ -173,14 +178,14 @@ class Reach:
 
 @dataclass(frozen=True, slots=True)
 class Flag:
-    """Words that are emphasised if `raised`."""
+    """Words in a cell that are emphasised if `raised` is True."""
 
     text: str
     raised: bool
 
 
 Cell: TypeAlias = str | list[str] | Status | Bar | Share | Slot | Reach | Flag
-"""Content of a table cell: a text, a text in pieces between which a line may break, or a mark."""
+"""Content of a table cell: a text, pieces of text between which a line may break, or a mark."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,17 +194,18 @@ class Column:
 
     Parameters
     ----------
-    head : text above the column; its line breaks only apply on paper
-    align : of its cells
+    head : text above the column; its line breaks apply only on paper
+    align : alignment of its cells
     width : "auto", a share of the remaining width (number), or ``"12mm"``; a column with a share
         shrinks on a narrow terminal
-    breaks : words with more letters may break; 0: never
+    breaks : words with more letters than this may break; 0: never
     wraps : whether a cell that is too wide for the terminal is wrapped; otherwise it is cut
-    mono, strong : type on paper; on the terminal strong is bold
-    least : minimum width in letters of a shrinking column on the terminal
+    mono, strong : whether the type on paper is monospaced, and bold; strong is bold on the
+        terminal, too
+    least : minimum width in characters to which the column may shrink on the terminal
     drop : on a narrow terminal, columns with the highest number are dropped first; 0: never
-    style : on the terminal "bold", "dim", a colour, or "state": the colour of the row's state
-    on : medium of the column
+    style : on the terminal: "bold", "dim", a colour, or "state" (the colour of the row's state)
+    on : medium that shows the column
     """
 
     head: str
@@ -216,13 +222,13 @@ class Column:
 
     @property
     def flexible(self) -> bool:
-        """Whether the column shares the remaining width."""
+        """Whether the width of the column is a share of the remaining width."""
         return not isinstance(self.width, str)
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """Cells of a table; the state colours columns with the style "state"."""
+    """A row of a table; its state colours the cells in columns with the style "state"."""
 
     cells: Sequence[Cell]
     state: State = ""
@@ -247,7 +253,7 @@ class Table:
     on: Medium = "both"
 
     def parts(self, widths: Sequence[float], room: float) -> list[Table]:
-        """The table in parts no wider than `room`; `widths` of the columns include their gaps."""
+        """The table in parts no wider than `room`; the `widths` of columns include their gaps."""
         if not self.repeat or sum(widths) <= room:
             return [self]
         first, remaining = list(range(self.repeat)), list(range(self.repeat, len(self.columns)))
@@ -272,7 +278,7 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """A figure drawn in ink, with a title and a note; the terminal shows `instead`."""
+    """A picture (`Ink`) with a title and a note; the terminal shows `instead` in its place."""
 
     title: str
     ink: Ink
@@ -282,7 +288,7 @@ class Drawing:
 
 @dataclass(frozen=True, slots=True)
 class TerminalFigure:
-    """A curve in a few lines of text: points (x, y), a limit line, and words below both ends."""
+    """A curve drawn with characters on the terminal, with a limit line and words at both ends."""
 
     title: str
     points: Sequence[tuple[float, float]]
@@ -294,7 +300,7 @@ class TerminalFigure:
 
 @dataclass(frozen=True, slots=True)
 class Notes:
-    """Sentences under a title; `style` and `headless` apply to the terminal."""
+    """Sentences under a title; `style` and `headless` (no title) apply only to the terminal."""
 
     title: str
     items: Sequence[str]
@@ -306,7 +312,7 @@ class Notes:
 
 @dataclass(frozen=True, slots=True)
 class Listing:
-    """Numbered source text in monospace, only on paper and in HTML."""
+    """A file as text with line numbers, in monospace type; only on paper and in HTML."""
 
     title: str
     text: str
@@ -351,15 +357,15 @@ class Page:
     Parameters
     ----------
     name, kind : title of the page, and kind of page
-    verdict, sentence : the badge, and one or two sentences beside it
+    verdict, sentence : the badge, and the sentences beside it
     tiles : up to five key figures
-    hero : draws the large figure below them, for an available height [mm]
-    blocks : from top to bottom
-    scale : of the large figure, for the title block
+    hero : function that draws the large figure below them, for an available height [mm]
+    blocks : the blocks from top to bottom
+    scale : scale of the large figure, for the title block
     items : numbered parts of the large figure: (number, part, material)
     design : name in the title block; default: `name`
-    least : minimum height of the large figure [mm]; blocks move to the next sheet for it
-    lists_input : whether the design file is listed at the end
+    least : minimum height of the large figure [mm]; if necessary, blocks move to the next sheet
+    lists_input : whether the text of the design file follows at the end
     """
 
     name: str
@@ -383,7 +389,7 @@ def text_table(
     note: str = "",
     widths: Sequence[float | str] = (),
 ) -> Table:
-    """A table of texts: its columns have equal widths or `widths`, and long words break."""
+    """A table of texts whose columns have equal widths, or `widths`; long words may break."""
     columns = [
         Column(head, "left", width, breaks=14)
         for head, width in zip(heads, widths or [1.0] * len(heads), strict=True)
@@ -392,6 +398,6 @@ def text_table(
 
 
 def tile(label: str, words: str, note: str, state: State = "") -> Tile:
-    """A key figure from a text with its number and unit ("12.3 N")."""
+    """A key figure from a text that contains number and unit ("12.3 N")."""
     value, _, unit = words.partition(" ")
     return Tile(label, value, unit, note, state)

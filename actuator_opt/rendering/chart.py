@@ -1,7 +1,7 @@
 """A chart as data: panels with axes, curves, points, limits and shaded maps.
 
-Scales are straight, logarithmic, logarithmic in both directions, or rows by name. A chart contains
-values and words; `chart_layout` finds their positions and `chart_ink` draws them.
+Scales are linear, logarithmic, logarithmic in both directions from zero, or named rows. A chart
+contains values and words; `chart_layout` computes their positions, and `chart_ink` draws them.
 """
 
 from __future__ import annotations
@@ -32,12 +32,14 @@ class Axis:
     Parameters
     ----------
     label : quantity and unit
-    log : logarithmic; values at or below zero are not shown, unless `signed`
-    signed : in both directions from zero; with `log`, logarithmic outside a straight core
-    zero : the axis includes zero
-    range : both ends; default: from the values
-    ticks : values and words; default: round values
-    names : of rows, if the axis has rows instead of values; row k is at the value k, row 0 on top
+    log : whether the axis is logarithmic; values at or below zero are not shown, unless `signed`
+    signed : whether the axis extends in both directions from zero; with `log`, it is linear near
+        zero and logarithmic beyond
+    zero : whether the axis always includes zero
+    range : values at both ends; default: from the values shown
+    ticks : values and their labels; default: round values
+    names : names of rows, if the axis has rows instead of values. Row k is at the value k; row 0 is
+        at the top
     """
 
     label: str = ""
@@ -51,17 +53,17 @@ class Axis:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curve:
-    """A line through values; a value that is not a number interrupts it.
+    """A line through values; it is interrupted where a value is NaN.
 
     Parameters
     ----------
-    words : its name; empty: not named
+    words : name of the curve; empty for none
     xs, ys : values
-    low, high : bounds of a band around it
+    low, high : bounds of a band around the curve
     style : colour and dash by number; default: its index among the curves of the panel
     weight : "thin" for a record over time, "guide" for a grey hairline, "broad" for a pale line
         under the other curves
-    end : words at its right end
+    end : words at the right end of the curve
     dash : dash by number; default: the dash of its style
     """
 
@@ -82,13 +84,13 @@ class Points:
 
     Parameters
     ----------
-    words : their name; empty: not named
+    words : name of the points; empty for none
     xs, ys : values
     low, high : ends of the error bars
-    style : colour by number; default: their index among the points of the panel
-    small : small dots and crosses in the colours of the curves
-    across : error bars are along x instead of y
-    shades : values of the panel's surface, whose shades fill the points
+    style : colour by number; default: the index of these `Points` in the panel
+    small : whether small dots and crosses are drawn, in the colours of the curves
+    across : whether error bars are along x instead of y
+    shades : value of each point on the scale of the panel's shaded map, which gives its fill
     labels : words beside each point
     weight : "guide" for pale dots in the background, "strong" for a ring around a chosen point
     """
@@ -112,14 +114,14 @@ class Level:
 
     Parameters
     ----------
-    value : of y, or of x if `upright`
+    value : value of y, or of x if `upright`
     words : its name
-    sense : "min" or "max" for a limit; it is red, with its forbidden side hatched and its name at
-        the right (above the frame if upright)
-    style : colour and dash by number, for a line that is no limit
-    between : ends along x of a short horizontal line, which has its name beside it; default: as
-        wide as the frame
-    upright : vertical, at a value of x
+    sense : "min" or "max" if the line is a limit. A limit is red, its forbidden side is hatched,
+        and its name is to the right of the frame (above it if `upright`)
+    style : colour and dash by number, if the line is not a limit
+    between : both ends (x) of a short horizontal line, whose name is beside it; default: the line
+        is as wide as the frame
+    upright : whether the line is vertical, at a value of x
     """
 
     value: float
@@ -132,13 +134,13 @@ class Level:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Area:
-    """The area between two curves over x, named at the right of the frame.
+    """The filled area between two curves over x; its name is to the right of the frame.
 
     Parameters
     ----------
     words : its name
     xs, low, high : values
-    fill : by number
+    fill : fill colour by number
     """
 
     words: str
@@ -150,7 +152,7 @@ class Area:
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """A shaded stretch of x; each line of its words stands above the frame where it fits."""
+    """A shaded range of x; each line of its words is above the frame if it fits there."""
 
     start: float
     end: float
@@ -178,9 +180,9 @@ class Panel:
     ----------
     title : quantity and unit of y
     x, y : axes
-    curves, points, levels, surface, stretches : its content
-    note : below the title; inside an empty frame, the reason
-    share : of the height among the panels of a column
+    curves, points, levels, surface, stretches : content of the frame
+    note : words below the title, or in an empty frame, where they state the reason
+    share : relative height among the panels of a column
     areas : filled areas
     """
 
@@ -198,11 +200,13 @@ class Panel:
 
 
 CORE = 0.35
-"""Width of the linear core around zero in decades (our choice: it contains no values)."""
+"""Width in decades of the linear part around zero of an axis that is logarithmic in both directions
+(our choice)."""
 DECADE = 8.0
 """Ratio of largest to smallest magnitude above which a signed axis is logarithmic (our choice)."""
 LARGEST, SMALLEST = 1e150, 1e-100
-"""Larger values are not shown, as their differences overflow; smaller values count as zero."""
+"""Values with larger magnitudes are not shown, as their differences overflow; those with smaller
+magnitudes count as zero."""
 SIZE = 6.5
 """Type size of ticks [pt]."""
 Ranked: TypeAlias = list[tuple[float, str, int]]
@@ -210,14 +214,14 @@ Ranked: TypeAlias = list[tuple[float, str, int]]
 
 
 def known(values: Iterable[float], *, log: bool = False) -> list[float]:
-    """The values that an axis can show."""
+    """The values that an axis can show: finite, and positive if the axis is logarithmic."""
     array = _sized(np.asarray(list(values), dtype=float))
     finite: list[float] = array[array > 0 if log else np.isfinite(array)].tolist()
     return finite
 
 
 def _sized(values: Array) -> Array:
-    """Values limited to what an axis can show: smaller values become zero, larger values NaN."""
+    """Values, of which those too small for an axis become zero, and those too large NaN."""
     sizes = np.abs(values)
     return np.where(sizes <= LARGEST, np.where(sizes < SMALLEST, 0.0, values), np.nan)
 
@@ -267,7 +271,7 @@ class Scale:
 
 
 def scale(axis: Axis, values: Sequence[float], *, exact: bool = False) -> Scale:
-    """The scale of an axis for its values; with `exact`, it ends at the extreme values."""
+    """The scale of an axis for its values; with `exact`, its ends are the extreme values."""
     if axis.names:
         return _rows(axis)
     if axis.signed and (speeds := [abs(value) for value in known(values) if value]):
@@ -347,7 +351,7 @@ def _logarithmic(axis: Axis, values: Sequence[float], exact: bool) -> Scale:
 
 
 def _both_ways(low: float, high: float, ways: Sequence[int]) -> Scale:
-    """Scale that is logarithmic in both directions from zero, with a linear core around zero."""
+    """Scale that is logarithmic in both directions from zero, with a linear part around zero."""
 
     def at(values: Array) -> Array:
         size = np.maximum(np.abs(values), low)  # NaN stays

@@ -1,7 +1,7 @@
 """A chart as ink: curves, points, areas, levels and labels in the frames of the layout.
 
-Legends are above their frame, names of limits and curve ends to its right, without overlaps.
-Curves are cut at the frame. A frame without values states the reason.
+Legends are above their frame. Names of limits and of curve ends are to its right, without overlaps.
+Curves are cut at the frame. In a frame without values, words state the reason.
 """
 
 from __future__ import annotations
@@ -72,18 +72,20 @@ from .ink import (
 STRETCHES = ("#e2e7eb", "#f1f3f5", "#f6efdc")
 """Fills of shaded stretches of x."""
 SWATCH = 2.8
-"""Width of the swatch before the name of an area [mm]."""
+"""Width of the colour sample before the name of an area [mm]."""
 LOOP = 4
-"""Number of values kept of a loop, as a multiple of those of a function of x (our choice)."""
+"""A loop (a curve with several values at an x) keeps this many times as many values as a function
+of x when it is thinned (our choice)."""
 JUMPS = 500
 """Largest number of jumps (x with two values) that a thinned curve keeps."""
 DENSE = 10.0
-"""Values of a curve, or points, drawn per mm of paper (our choice: finer than the pen)."""
+"""Largest number of curve values or points drawn per mm of paper (our choice: finer than the pen).
+"""
 Line: TypeAlias = list[Point]
 
 
 def drawn(chart: Chart, *, width: float = 180.0, height: float | None = None) -> Ink:
-    """The chart in ink; `height` in mm, default: its own."""
+    """The chart as a drawing; `width` and `height` in mm, default: its stated height."""
     tall = chart.height if height is None else height
     ink = Ink(width, tall)
     top = _key(ink, chart.key)
@@ -137,7 +139,7 @@ def titled(chart: Chart, notes: Sequence[str] = (), *, width: float = 180.0) -> 
 
 
 def _column(ink: Ink, column: ColumnLayout, left: float) -> None:
-    """Draw all frames of a column, and the inks below them."""
+    """Draw all frames of a column, and the pictures below them."""
     for frame in column.frames:
         _draw(ink, (left + column.left, frame.top, column.wide, frame.height), frame, left)
     top = column.top
@@ -284,7 +286,7 @@ def _curve(axes: Axes, curve: Curve, index: int, y: Scale, x: Scale) -> list[Lin
 
 
 def _kept(xs: Array, ys: Array, most: int) -> Array:
-    """Indices of the values that are drawn: extremes of every stretch, and jumps."""
+    """Indices of the values that are drawn: the extremes of every short interval, and jumps."""
     steps = np.diff(xs)
     if np.any(steps < 0):  # a loop: any stretch of it may be long on paper
         return np.union1d(*(thinned(values, LOOP * most) for values in (xs, ys)))
@@ -387,7 +389,7 @@ def _bar(axes: Axes, points: Points, k: int, at: Point, y: Scale, x: Scale, colo
 
 
 def _small(ink: Ink, x: float, y: float, style: int) -> None:
-    """A small dot, or a cross for odd styles."""
+    """Draw a small dot, or a cross for odd styles."""
     color = LINES[style % len(LINES)]["stroke"]
     if style % 2 == 0:
         ink.circle(x, y, 0.6, fill=color, stroke=None)
@@ -427,7 +429,7 @@ def _upright(axes: Axes, level: Level, x: Scale) -> None:
 
 
 def _stretches(axes: Axes, stretches: Sequence[Stretch], x: Scale) -> None:
-    """Draw shaded stretches of x, with a white line between neighbours."""
+    """Draw shaded ranges of x, with a white line between neighbours."""
     for part in stretches:
         left, right = sorted(_ends(axes, (part.start, part.end), x))
         fill = STRETCHES[part.shade % len(STRETCHES)]
@@ -547,7 +549,7 @@ def _written(
 ) -> None:
     """Write words on the side where they cross the fewest lines.
 
-    Skip them if other words are on every side.
+    They are left out if other words are on every side.
     """
     wide = text_width(words, 6.0)
     best: tuple[int, float, Anchor, float] | None = None
@@ -570,7 +572,7 @@ def _written(
 
 
 def _level_lines(axes: Axes, frame: Frame, x: Scale) -> Iterator[Line]:
-    """Lines of all levels on paper."""
+    """The lines of all levels, in mm of paper."""
     left, right = axes.left, axes.left + axes.width
     for level in frame.panel.levels:
         place = (x if level.upright else frame.y).place(level.value)
@@ -648,7 +650,7 @@ def _shaded(axes: Axes, frame: Frame, x: Scale) -> list[float]:
 
 
 def _outside_ticks(axes: Axes, x_ticks: Ticks, heights: Ticks, label: str) -> None:
-    """A closed frame with ticks outside and no grid across the bands."""
+    """Draw a closed frame with ticks outside it, and without a grid across the bands."""
     ink, bottom = axes.ink, axes.top + axes.height
     for value, words in heights:
         y = axes.y(value)

@@ -49,7 +49,7 @@ LINES: tuple[dict[str, Any], ...] = (
     {"stroke": BLACK, "pen": 0.35, "dash": (3.2, 0.8)},
     {"stroke": "#4f86a8", "pen": 0.4, "dash": (0.4, 0.5)},
 )
-"""Curves differ in dash as well as in colour."""
+"""Line styles of curves; they differ in dash as well as in colour."""
 MARKS = (
     (BLUE, WHITE), (BLACK, "#9ec3da"), (OCHRE, WHITE), (BLACK, BLUE), (GREEN, WHITE),
     ("#7a5a8c", "#d9c9e3"),
@@ -67,7 +67,7 @@ GAP, ROW, BELOW = 6.0, 3.7, 2.2
 FOOT, APART = 8.4, 1.8
 """Height of ticks and label below a frame, and gap to the title of the next frame [mm]."""
 OVER = 2.8
-"""Height of a line of words directly above a frame, which name a position on x [mm]."""
+"""Height of a line of words directly above a frame; these words name a position on x [mm]."""
 LEAST = 4.0
 """Least height of a frame [mm]."""
 RIGHT, NAMES = 26.0, 36.0
@@ -132,7 +132,7 @@ class Frame:
 
 
 class ColumnLayout:
-    """Panels above each other; those with a common x axis are a group."""
+    """Panels above each other; panels with a common x axis form a group."""
 
     def __init__(self, parts: Sequence[Panel | Ink]) -> None:
         self.frames: list[Frame] = []
@@ -183,7 +183,7 @@ class ColumnLayout:
 
 
 def _overhang(frame: Frame, wide: float) -> tuple[float, float]:
-    """Lengths by which the tick labels of x extend beyond the left and right end of a frame."""
+    """Lengths by which tick labels of x extend beyond the left and right end of a frame [mm]."""
     low, high = frame.x.range
     before = after = 0.0
     for place, words in frame.x.ticks(wide, across=True) if frame.label else ():
@@ -193,7 +193,7 @@ def _overhang(frame: Frame, wide: float) -> tuple[float, float]:
 
 
 def _x_scale(panels: Sequence[Panel]) -> Scale:
-    """The common scale of x; it ends exactly at the values if all panels show functions of x."""
+    """The common scale of x; its ends are the extreme values if all panels show functions of x."""
     axis = panels[-1].x
     values = [
         value
@@ -246,7 +246,7 @@ def frame_of(panel: Panel, x: Scale) -> Frame:
 
 
 def _seen(curve: Curve, values: Values, x: Scale, log: bool) -> list[float]:
-    """Values of a curve, or of a bound of its band, within the range of x."""
+    """Those values of a curve (or of a bound of its band) that are within the range of x."""
     if not len(values):
         return []
     places = x.at(curve.xs)
@@ -262,9 +262,9 @@ def _near(
     *,
     cut: bool = True,
 ) -> list[float]:
-    """Values that lie at most `most` spans beyond the ends of a range.
+    """Values near a range: at most `most` times its width beyond its ends.
 
-    Values farther away are moved to that distance (`cut`), or left out.
+    Values farther away are moved to this distance if `cut`, and else left out.
     """
     low, high = (math.log10(f(ends)) if log else f(ends) for f in (min, max))
     spare = most * ((high - low) or max(abs(high), 1.0))
@@ -275,7 +275,7 @@ def _near(
 
 
 def _why(panel: Panel) -> str:
-    """Why a panel is empty."""
+    """Reason why a panel is empty, in words."""
     if panel.note:
         return panel.note
     if not any(len(xs) for xs in _xs(panel)):
@@ -290,7 +290,7 @@ def y_ticks(frame: Frame) -> Ticks:
 
 
 def _fit_head(frame: Frame, wide: float, right: float) -> None:
-    """Rows of the legend: beside the title if they fit, else below it."""
+    """Place the rows of the legend: beside the title if they fit there, else below it."""
     panel = frame.panel
     note = "" if frame.why else panel.note
     frame.notes = wrap(note, wide + right - 0.5, SMALL) if note else []

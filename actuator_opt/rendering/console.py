@@ -1,4 +1,4 @@
-"""Columns of text for a terminal: measured, cut and coloured by rule, in Unicode or ASCII."""
+"""Text for a terminal: measures, cuts, wraps and colours columns, in Unicode or ASCII."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _BREAK = re.compile(r"[\t\n\r\v\f\u2028\u2029]+")
 
 
 class Style(TypedDict):
-    """Form of a text: colour codes, Unicode signs, columns."""
+    """Settings of a text: whether it has colour codes and Unicode signs, and its width."""
 
     colour: bool
     unicode: bool
@@ -41,7 +41,7 @@ def visible(text: str) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Console:
-    """Capabilities of a terminal."""
+    """A terminal: whether it shows colours and Unicode, and its width in columns."""
 
     colour: bool = False
     unicode: bool = True
@@ -83,7 +83,10 @@ class Console:
         rows: Sequence[Sequence[str]],
         styles: Sequence[Sequence[str]] = (),
     ) -> list[str]:
-        """Lines of a table, `styles` by cell; to fit the terminal, columns shrink, wrap or drop."""
+        """Lines of a table with `styles` for each cell.
+
+        To fit the terminal, columns are shrunk, wrapped or dropped.
+        """
         cells = [[self.say(cell) for cell in row] for row in rows]
         heads = [self.say(column.head.replace("\n", " ")) for column in columns]
         keep = list(range(len(columns)))
@@ -116,7 +119,7 @@ class Console:
         cells: Sequence[str],
         styles: Sequence[str],
     ) -> list[str]:
-        """Lines of a row, as many as its highest cell needs."""
+        """Lines of a row: as many as its longest cell needs."""
         pieces = {k: self._pieces(columns[k], cells[k], sizes[k]) for k in keep}
         lines = []
         for index in range(max(len(piece) for piece in pieces.values())):
@@ -137,7 +140,7 @@ class Console:
         return textwrap.wrap(cell, size, break_long_words=long, break_on_hyphens=False) or [""]
 
     def margin_bar(self, margin: float | None, half: int = 5) -> str:
-        """Reserve to the right of the mark, violation to its left; full at 100 %."""
+        """A margin as a bar, full at 100 %: reserve right of the mark, violation left of it."""
         if margin is None:
             return ""
         size = min(abs(margin), 1.0) * half

@@ -1,6 +1,6 @@
-"""Contours as ink: shaded bands between levels, on a grid or on a mesh of triangles.
+"""Contour plots: shaded bands between levels, on a grid or on a mesh of triangles.
 
-Small values are light, so that a grey print can be read.
+Small values are light and large values dark, so that a grey print can be read.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ _MOST = 11
 
 Name = TypeVar("Name", bound=Hashable)
 Key: TypeAlias = tuple[int, int, int]
-"""A corner (k, k, 0), or the point of the edge (i, j) at a level (i, j, level)."""
+"""Key of a point: a corner k is (k, k, 0); the point on the edge between corners i and j at which a
+level is reached is (i, j, level)."""
 
 
 def levels(low: float, high: float) -> list[float]:
@@ -61,7 +62,7 @@ def bands(
 ) -> None:
     """Draw bands between levels, with a thin line at every level.
 
-    Between grid points, the logarithm of the value is bilinear.
+    Between grid points, the logarithm of the value is interpolated bilinearly.
     """
     from contourpy import FillType, LineType, contour_generator
 
@@ -100,13 +101,13 @@ def _level(value: float) -> str:
 
 
 def corner_values(nodes: np.ndarray, triangles: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Values at the corners: means of the adjacent triangles, weighted by area.
+    """Values at the corners: area-weighted means of the values of the adjacent triangles.
 
     Parameters
     ----------
     nodes : coordinates (x, y) of the corners
-    triangles : three corners each; bodies share no corner
-    values : of the triangles
+    triangles : numbers of the three corners of each triangle; different bodies share no corner
+    values : values of the triangles
     """
     a, b, c = (nodes[triangles[:, k]] for k in range(3))
     area = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
@@ -135,15 +136,15 @@ def mesh_outlines(
 def mesh_bands(
     nodes: np.ndarray, triangles: np.ndarray, values: np.ndarray, levels: Sequence[float]
 ) -> list[list[list[Point]]]:
-    """Outlines of every band between two neighbouring levels, as `mesh_outlines`.
+    """Outlines of the band between each two neighbouring levels, in the form of `mesh_outlines`.
 
-    Values are linear between the corners.
+    Between the corners, values are interpolated linearly.
 
     Parameters
     ----------
-    nodes, triangles : as `corner_values`
-    values : at the corners
-    levels : rising; the lowest and the highest enclose the values
+    nodes, triangles : see `corner_values`
+    values : values at the corners
+    levels : levels in ascending order; the lowest and the highest enclose all values
     """
     aside = 1e-9 * (levels[-1] - levels[0])
     for level in levels:  # a corner exactly on a level would give two points at the same place
@@ -190,7 +191,7 @@ def _place(key: Key, nodes: np.ndarray, values: np.ndarray, levels: Sequence[flo
 
 
 def _rings(polygons: Iterable[Sequence[Name]]) -> list[list[Name]]:
-    """Outlines of polygons of the same orientation; edges that two of them share are removed."""
+    """Common outlines of polygons with equal orientation, without the edges that two share."""
     edges: dict[tuple[Name, Name], bool] = {}
     for polygon in polygons:
         for start, end in zip(polygon, [*polygon[1:], polygon[0]], strict=True):

@@ -1,8 +1,8 @@
-"""Heights of blocks on paper, estimated from the widths of their words.
+"""Heights of blocks on paper, estimated from the widths of the words in them.
 
-`room` is the height of the first sheet that remains for the large figure. The estimate is rather
-too high than too low: a figure may be a few millimetres smaller, but a block must not move to the
-next sheet.
+`room` is the height that remains for the large figure on the first sheet. The estimates are rather
+too high than too low: a figure that is a few millimetres too small does no harm, but blocks must
+not be pushed to the next sheet.
 """
 
 from __future__ import annotations
@@ -32,17 +32,17 @@ from .blocks import (
 from .ink import text_width
 
 SHEET, TILES, FOOT, HEAD = 265.0, 23.0, 24.5, 8.2
-"""Heights inside the margins of the sheet, of the key figures, of the title block, and of the
-title of a block [mm]."""
+"""Heights of a sheet inside its margins, of the key figures, of the title block, and of the title
+of a block [mm]."""
 HALF, FULL = 86.0, 172.0
 """Width of text in half a sheet and in a whole sheet [mm]."""
 LINE, NOTE_LINE = 3.6, 2.75
-"""Height of a line of a table and of the note below it [mm]."""
+"""Heights of a line of a table, and of a line of the note below it [mm]."""
 MARKED = 1.06
-"""Height of a row with a bar, in lines."""
+"""Height of a table row that contains a bar, in lines."""
 FRAME, SPARE = 3.0, 9.0
-"""Height of the frame around the large figure [mm], and measured excess of the estimate on a sheet
-with a large figure and two tables [mm]."""
+"""Height of the frame around the large figure, and measured excess of the estimated over the true
+height of a sheet with a large figure and two tables [mm]."""
 
 
 def joined(cell: Cell) -> str:
@@ -131,7 +131,7 @@ def room(page: Page) -> float:
 
 
 def rest(page: Page, hero: float) -> float:
-    """Height that remains on the first sheet with the blocks and a figure of height `hero` [mm]."""
+    """Height that remains on the first sheet with the blocks and a figure of height `hero`."""
     legend = sum(
         text_width(f"{n} {part}, {material}", 5.8) + 4.0 for n, part, material in page.items
     )
@@ -144,7 +144,7 @@ def _note(words: str, width: float) -> float:
 
 
 def _widths(table: Table) -> list[float]:
-    """Widths of the columns without line breaks [mm]."""
+    """Widths that the columns need without line breaks [mm]."""
     body = [cells_of(row) for row in table.rows]
     widths = []
     for k, column in enumerate(table.columns):

@@ -1,8 +1,8 @@
 """A page as a single HTML file, for dark and light screens and for print.
 
-The large figure and all drawings are SVG, from the same ink as on paper. Colours are variables,
-which a dark screen inverts. The file has no scripts, fonts or addresses, so it can be mailed and
-opens without a network.
+The large figure and all drawings are SVG, from the same ink as on paper. Colours are CSS variables
+with a second set of values for dark screens. The file contains no scripts, no fonts and no links to
+other files, so it can be mailed and opens without a network.
 """
 
 from __future__ import annotations
@@ -43,7 +43,8 @@ from .ink import POINT, Ink, PathMark, TextMark
 from .origin import Origin, ReportFile, with_input
 
 HERO = 110.0
-"""Height of a scalable large figure [mm] (a choice: a laptop shows it without scrolling)."""
+"""Height of a large figure that can be scaled [mm] (our choice: a laptop shows it without
+scrolling)."""
 _MARKS = {
     "met": "✔",
     "no_reserve": "!",
@@ -53,7 +54,8 @@ _MARKS = {
     "infeasible": "✘",
 }
 _GAPS = re.compile(r"([._/=](?=[^\W\d]))")
-"""Places where a word may break: before a letter that follows a separator."""
+"""Positions at which a browser may break a long name: after ``.``, ``_``, ``/`` or ``=`` if a
+letter follows."""
 _STYLE = """
 .ao{--ink:#16202a;--grey:#5b6670;--pale:#c9d0d6;--wash:#f2f4f6;--paper:#fff;--good:#00654a;
 --bad:#a8321a;--amber:#8a5a00;--blue:#0b4f83;color:var(--ink);background:var(--paper);
@@ -130,7 +132,7 @@ def document(page: Page, origin: Origin | None) -> str:
 
 
 def fragment(page: Page, origin: Origin | None = None) -> str:
-    """A page as a piece of HTML, for notebooks; its style only applies to this piece."""
+    """A page as a piece of HTML for notebooks; its CSS rules apply to this piece only."""
     parts = [f"<style>{_STYLE}</style>", '<article class="ao">', *_top(page)]
     if page.tiles:
         parts += ['<div class="tiles">', *map(_tile, page.tiles), "</div>"]
@@ -179,12 +181,12 @@ def _footer(page: Page, origin: Origin | None) -> Iterator[str]:
 
 
 def pieces(blocks: Iterable[Block]) -> str:
-    """Blocks without a page as a piece of HTML."""
+    """Blocks (tables, charts, notes) as a piece of HTML, without verdict, figure and footer."""
     return "\n".join([f"<style>{_STYLE}</style>", '<div class="ao">', *_blocks(blocks), "</div>"])
 
 
 def listing(words: str) -> str:
-    """Terminal text as a piece of HTML."""
+    """Preformatted text, such as that of the terminal, as a piece of HTML."""
     return f"<pre>{_say(words)}</pre>"
 
 
@@ -311,7 +313,7 @@ def _reach(change: float, met: bool) -> str:
 
 
 def svg(ink: Ink, title: str = "") -> str:
-    """A drawing as SVG, in millimetres of paper."""
+    """A drawing as SVG text; its coordinates are millimetres on paper."""
     size = f'viewBox="0 0 {ink.width:g} {ink.height:g}" width="{6 * ink.width:g}"'
     parts = [f'<svg class="drawing" {size} role="img" xmlns="http://www.w3.org/2000/svg">']
     parts.append(f"<title>{_say(title)}</title>" if title else "")

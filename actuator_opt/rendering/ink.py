@@ -1,8 +1,8 @@
 """Ink: a vector canvas in millimetres of paper, y downwards from the top left corner.
 
-Figures and drawings consist of two marks, paths and texts, which all renderers can draw. Widths of
-texts are estimated from the advance widths of the report's typeface, so that labels can be placed
-by rule and tested for overlaps.
+Figures and drawings consist of two kinds of marks, paths and texts, which all renderers can draw.
+Widths of texts are estimated from the advance widths of the report's typeface, so that labels can
+be placed by rule and tested for overlaps.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Anchor: TypeAlias = Literal["left", "center", "right"]
 
 @final
 class PathMark(TypedDict):
-    """Polylines: corners, width of the pen and lengths of the dashes in mm, colours."""
+    """Polylines drawn with one pen: points, pen width and dash lengths (all in mm), and colours."""
 
     path: list[list[list[float]]]
     closed: bool
@@ -30,7 +30,11 @@ class PathMark(TypedDict):
 
 @final
 class TextMark(TypedDict):
-    """A line of text: mid-height of its capitals [mm], type size [pt], clockwise angle."""
+    """A line of text.
+
+    `at` is x, and y at half the height of the capitals [mm]. The type size is in points, the angle
+    in degrees, clockwise.
+    """
 
     text: str
     at: list[float]
@@ -112,10 +116,10 @@ def text_width(text: str, size: float, *, bold: bool = False) -> float:
 
 
 def spread(targets: Sequence[float], gaps: Sequence[float]) -> list[float]:
-    """Positions nearest to the ascending targets, with gaps between neighbours.
+    """Positions as close as possible to ascending targets, but with minimum gaps between them.
 
-    `gaps[i]` is the least distance between positions i and i+1; least squares by pooling
-    adjacent violators.
+    `gaps[i]` is the least distance between positions i and i+1. The pool-adjacent-violators
+    algorithm minimises the sum of the squared distances from the targets.
 
     >>> spread([0.0, 0.0, 10.0], [2.0, 2.0])
     [-1.0, 1.0, 10.0]
@@ -157,7 +161,7 @@ def spread_within(
 def hatch(
     polygons: Iterable[Polygon], *, angle: float, spacing: float
 ) -> list[tuple[Point, Point]]:
-    """Parallel lines inside the polygons (even-odd), at `angle` degrees, `spacing` apart.
+    """Parallel lines inside the polygons (even-odd rule), at `angle` degrees, `spacing` apart.
 
     The phase is fixed to the page, so that the hatches of both halves of a section match.
     """
@@ -193,7 +197,7 @@ def hatch(
 
 
 class Ink:
-    """A drawing of a width and height (mm) that collects marks in drawing order."""
+    """A drawing of given width and height (mm), to which marks are added in drawing order."""
 
     def __init__(self, width: float, height: float) -> None:
         self.width = width
@@ -292,11 +296,11 @@ class Ink:
                 self.marks.append(PathMark(**mark | {"path": path}))
 
     def data(self) -> dict[str, object]:
-        """The drawing as plain data for the template."""
+        """The drawing as plain data for the Typst template."""
         return {"width": self.width, "height": self.height, "marks": self.marks}
 
     def text_boxes(self) -> list[tuple[str, float, float, float, float]]:
-        """Estimated boxes (text, left, top, right, bottom) of unrotated texts, for tests."""
+        """Estimated bounds (text, left, top, right, bottom) of all unrotated texts, for tests."""
         boxes = []
         for mark in self.marks:
             if "text" not in mark or mark["angle"]:

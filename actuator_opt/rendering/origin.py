@@ -11,13 +11,13 @@ from .blocks import Block, Listing, Page
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Input, command and date of a page.
+    """The design file, command and date from which a page was made.
 
     Parameters
     ----------
     source_text, source_name : the design file as read, attached to the PDF
-    command : the command line, printed and attached
-    spec_hash : of the design
+    command : the command line, printed on the page and attached to the PDF
+    spec_hash : hash of the design
     date : ISO date to print, or None
     """
 
@@ -28,7 +28,7 @@ class Origin:
     date: str | None = None
 
     def run(self) -> dict[str, str]:
-        """Data of the run, for the attachment."""
+        """Program version, command, file name, hash and date, as data to attach to the PDF."""
         return {
             "actuator_opt": VERSION,
             "command": self.command,
@@ -51,7 +51,7 @@ class ReportFile:
 
 
 def with_input(page: Page, origin: Origin | None) -> list[Block]:
-    """The blocks of a page, with the listing of the design file at the end, if it has one."""
+    """The blocks of a page; a page that lists its input ends with the text of the design file."""
     blocks = [*page.blocks]
     if page.lists_input and origin is not None:
         blocks.append(Listing(f"Input: {origin.source_name}", origin.source_text))

@@ -49,10 +49,10 @@ from .origin import Origin, ReportFile, with_input
 
 PIXELS_PER_INCH = 150.0
 _SUSPECTS = b"/Suspects false"
-"""Default entry of Typst that makes Poppler warn. It is replaced by as many blanks, so that all
-offsets stay valid."""
+"""PDF entry that Typst writes and that makes Poppler warn. It is overwritten with blanks of the
+same length, so that all byte offsets in the file stay valid."""
 HEAD = 12
-"""Length in letters above which a name in a column head may break after ``_``."""
+"""A name in a column head with more letters than this may be broken after ``_``."""
 TEMPLATE = Path(__file__).with_name("template.typ")
 
 
@@ -71,11 +71,11 @@ def write(
     Parameters
     ----------
     page : to write
-    origin : its input and command, attached to the PDF
+    origin : design file and command of the page, attached to the PDF
     folder, stem : target; the folder is made if missing
-    all_pages : also write ``STEM-page-N.png`` of the later sheets
+    all_pages : whether to write the later sheets, too, as ``STEM-page-N.png``
     format : "pdf" (with PNG), "html", or "both"
-    run : further data of the run, attached
+    run : further facts about the run, attached to the PDF
 
     Returns
     -------
@@ -114,7 +114,7 @@ def write(
 
 
 def plain(page: Page, origin: Origin) -> dict[str, object]:
-    """A page as plain data for the template."""
+    """A page as plain data for the Typst template."""
     hero = page.hero(max(room(page), page.least))
     return {
         "name": soft(page.name),
@@ -154,7 +154,7 @@ def plain(page: Page, origin: Origin) -> dict[str, object]:
 
 
 def plain_blocks(blocks: Sequence[Block], width: float = FULL) -> list[dict[str, object]]:
-    """Blocks for a width on paper [mm], as plain data for the template."""
+    """Blocks, laid out for a width on paper [mm], as plain data for the Typst template."""
     parts = [
         part
         for block in blocks
@@ -254,7 +254,7 @@ def _reach(change: float, met: bool) -> dict[str, object]:
 
 
 def _printable(data: Any) -> Any:
-    """Data with every text changed to what the typeface can draw."""
+    """The data, with characters that the typeface lacks replaced in every text."""
     if isinstance(data, str):
         return printable(data)
     if isinstance(data, dict):
@@ -268,7 +268,7 @@ def _printable(data: Any) -> Any:
 
 
 def _encodable(text: str) -> str:
-    """Text in UTF-8; bytes of a file name in another encoding are escaped."""
+    """A text that UTF-8 can encode; stray bytes of a file name in another encoding are escaped."""
     return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
@@ -327,7 +327,7 @@ def font_folders() -> list[str]:
 
 
 def _remove_later_pages(folder: Path, stem: str, count: int) -> None:
-    """Remove images of later sheets of an earlier report with the same name."""
+    """Remove images of later sheets that an earlier report of the same name has left."""
     index = max(count + 1, 2)
     while (path := folder / f"{stem}-page-{index}.png").is_file():
         path.unlink()

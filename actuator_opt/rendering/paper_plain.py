@@ -1,4 +1,4 @@
-"""A plain report by matplotlib for installations without Typst; a note in it says so."""
+"""A simpler report, drawn by matplotlib where Typst is not installed, with a note that says so."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def render(data: Mapping[str, Any], timestamp: int) -> tuple[bytes, list[bytes]]
 
 
 class _Flow:
-    """Sheets of ink filled from top to bottom."""
+    """Sheets of paper that are filled from top to bottom."""
 
     def __init__(self) -> None:
         self.sheets: list[Ink] = []
@@ -79,7 +79,7 @@ class _Flow:
 
 
 def _joined(cell: Any) -> str:
-    """A cell as a single text."""
+    """All text of a table cell as one string."""
     if isinstance(cell, dict):
         return str(cell.get("text", ""))
     return cell if isinstance(cell, str) else "".join(cell)
@@ -155,7 +155,7 @@ def _block(flow: _Flow, block: Mapping[str, Any]) -> None:
 
 
 def _widths(block: Mapping[str, Any]) -> list[float]:
-    """Column widths (mm): given and natural widths first; shares divide the remaining width."""
+    """Column widths (mm); columns with a share divide the width left by the other columns."""
     columns, rows = block["columns"], block["rows"]
     widths = [0.0] * len(columns)
     room = RIGHT - LEFT

@@ -1,7 +1,7 @@
 """Report sheets of a worked study, and the main program of its script.
 
-Most studies share a sheet (``script_sheet.typ``) with heading, lead and blocks. Other studies have
-a .typ file beside the script.
+Most studies use a common sheet (``script_sheet.typ``) with heading, lead and blocks. Other studies
+have their own .typ file beside the script.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ Study = TypeVar("Study")
 
 SHEET = Path(__file__).with_name("script_sheet.typ")
 _MARK = "// ---- sheet ----"
-"""Line of the template between its definitions and the sheets of a design."""
+"""Line of the report template that separates its definitions, above it, from the sheet of a
+design."""
 
 
 def rounded(study: Numbers, digits: int = 7) -> dict[str, Any]:
@@ -36,7 +37,7 @@ def rounded(study: Numbers, digits: int = 7) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        a number that JSON lacks
+        a number that JSON cannot represent (NaN or infinity)
     """
     text = json.dumps(study, allow_nan=False)
     plain: dict[str, Any] = json.loads(text, parse_float=lambda x: float(f"{float(x):.{digits}g}"))
@@ -55,10 +56,11 @@ def grid_table(
 
     Parameters
     ----------
-    title, note : above and below the table
-    grid : heads, then rows
-    words : columns of words, aligned to the left; negative numbers count from the end
-    widths : of every column, or by column number; columns without a number are "auto"
+    title, note : texts above and below the table
+    grid : row of heads, then the other rows
+    words : numbers of the columns that contain words, which are aligned to the left; negative
+        numbers count from the last column
+    widths : width of every column, or widths by column number; columns not listed are "auto"
     """
     heads, *rows = grid
     text_columns = {k if k >= 0 else k + len(heads) for k in words}
@@ -81,12 +83,12 @@ def study_report(
     blocks: Sequence[Block | Numbers],
     whole: bool = False,
 ) -> Sheets:
-    """A study on the shared sheet.
+    """The report of a study on the common sheet.
 
     Parameters
     ----------
-    script : the study's file
-    study : its numbers, attached as JSON
+    script : file of the study
+    study : numbers of the study, attached to the PDF as JSON
     title, heading : title of the PDF, and printed heading
     lead : paragraphs below the heading
     blocks : from top to bottom; plain data is also allowed
@@ -105,7 +107,10 @@ def study_report(
 
 
 def study_sheets(script: str | Path, study: Numbers, data: Numbers) -> Sheets:
-    """A study on the sheets of the .typ file beside its script, filled with `data`."""
+    """The report of a study on the sheets of the .typ file beside its script.
+
+    `data` fills the sheets.
+    """
     return _compiled(Path(script).with_suffix(".typ"), study, _plain(data))
 
 
@@ -147,12 +152,12 @@ def run_script(
 
     Parameters
     ----------
-    script : its file
-    description : of the command
-    compute : computes the study, with `quick=` if the script has this option
-    printed : text for the terminal
-    page : the report
-    quick : help of the option ``--quick``; empty: no such option
+    script : file of the study
+    description : description of the command, for its help
+    compute : function that computes the study; it takes `quick=` if the script has this option
+    printed : function that returns the text for the terminal
+    page : function that returns the report
+    quick : help text of the option ``--quick``; if empty, the script has no such option
     """
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--out", type=Path, help="folder for the report")

@@ -1,7 +1,8 @@
-"""Columns of data as files: CSV, at once or row by row, and Apache Parquet.
+"""Write columns of data to files: CSV (all at once or row by row) and Apache Parquet.
 
-Parquet stores numbers in double precision (null if missing), texts by dictionaries and flags as
-booleans. Every field has its name, label and unit. A file gets its final name when it is complete.
+Parquet stores numbers in double precision (null if missing), texts with dictionary encoding, and
+flags as booleans. Its metadata give the name, label and unit of every field. A file has a temporary
+name until it is complete.
 """
 
 from __future__ import annotations
@@ -29,8 +30,8 @@ from .origin import ReportFile
 class Series:
     """A column: its head with the unit, and its values (numbers, text, None where missing).
 
-    `digits` is the number of significant digits; whole numbers have all digits. `form`, if given,
-    replaces it by a format: ``"5f"`` gives five decimals.
+    Numbers have `digits` significant digits; whole numbers have all their digits. If a format
+    `form` is given, it applies instead; ``"5f"``, for example, gives five decimals.
     """
 
     head: str
@@ -83,9 +84,9 @@ def _cell(value: Any, form: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class FileColumn:
-    """A column of a file that grows: its head, the kind of its cells, and their meaning.
+    """A column of a file that is written row by row: its head, kind of cells, and label.
 
-    `name` is a PATH or a metric; numbers have a `unit`.
+    `name` is the PATH or metric in the column; columns of numbers have a `unit`.
     """
 
     head: str
@@ -107,7 +108,7 @@ Values: TypeAlias = Array | Coded
 
 
 class CsvFile(AbstractContextManager["CsvFile"]):
-    """A CSV file that grows by rows under a temporary name, and is renamed when complete."""
+    """A CSV file that is written row by row under a temporary name, and renamed when complete."""
 
     def __init__(self, fields: Sequence[FileColumn], path: Path) -> None:
         self.fields, self.path = fields, path
@@ -155,13 +156,13 @@ GROUP = 32_768
 
 
 class ParquetFile(AbstractContextManager["ParquetFile"]):
-    """A Parquet file that grows by rows.
+    """A Parquet file that is written in groups of rows.
 
     Parameters
     ----------
-    fields : its columns
+    fields : columns of the file
     about : metadata of the file
-    path : of the file
+    path : path of the file
 
     Raises
     ------
@@ -208,7 +209,7 @@ class ParquetFile(AbstractContextManager["ParquetFile"]):
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Write the remaining rows, unless the work failed, and close the writer."""
+        """Write the remaining rows and close the writer; after an error, write nothing more."""
         try:
             if error is None:
                 self._write()

@@ -35,7 +35,7 @@ from .heights import cells_of, joined
 from .text import number, trimmed
 
 _DOTS = ((0x01, 0x02, 0x04, 0x40), (0x08, 0x10, 0x20, 0x80))
-"""Bits of a braille cell, by column, then row."""
+"""Bit of every dot in a braille character, by column, then row."""
 
 
 def curve(
@@ -49,7 +49,7 @@ def curve(
 ) -> list[str]:
     """Lines of a plot of (x, y) points with an optional horizontal limit.
 
-    `ends` are the words below its first and last x; without them x is in mm.
+    `ends` are the labels below the first and the last point; by default these are its x in mm.
     """
     points = [(x, y) for x, y in points if math.isfinite(x) and math.isfinite(y)]
     if len(points) < 2 or points[-1][0] <= points[0][0]:
@@ -150,7 +150,7 @@ PAINTS: dict[str, str] = {
     "not_checked": "dim",
     "infeasible": "red bold",
 }
-"""Colours of states."""
+"""Colour and font weight of every verdict state."""
 MARKS: dict[str, tuple[str, str]] = {
     "": ("", ""),
     "met": ("✔", "ok"),
@@ -160,9 +160,9 @@ MARKS: dict[str, tuple[str, str]] = {
     "not_checked": ("○", "-"),
     "infeasible": ("✘", "INFEASIBLE"),
 }
-"""Marks of states, in Unicode and in ASCII."""
+"""Mark of every verdict state, in Unicode and in ASCII."""
 WIDE = 110
-"""Terminal width (columns) from which margin bars are long."""
+"""Smallest terminal width (columns) at which the bars of margins have their full length."""
 
 
 def text(page: Page, **style: Unpack[Style]) -> str:
@@ -171,7 +171,7 @@ def text(page: Page, **style: Unpack[Style]) -> str:
     Parameters
     ----------
     page : to show
-    style : colour codes, Unicode signs, columns
+    style : whether to use colour codes and Unicode signs, and the width in columns
     """
     console = Console(**style)
     head = "\n".join(heading(page.name, page.verdict, page.sentence, console))
@@ -186,7 +186,7 @@ def blocks_text(blocks: Sequence[Block], **style: Unpack[Style]) -> str:
 
 
 def heading(name: str, verdict: Verdict, sentence: str, console: Console) -> list[str]:
-    """Name and verdict, lines of the verdict, cautions, and the sentence."""
+    """Top of a page: name, verdict with its reasons, cautions, and a summary sentence."""
     mark = f"{MARKS[verdict.state][0]} " if console.unicode and verdict.state else ""
     state = console.paint(console.say(mark + verdict.text.lower()), *PAINTS[verdict.state].split())
     lines = [f"{console.paint(console.say(name), 'bold')}  {state}"]
@@ -232,7 +232,7 @@ def _figure(figure: TerminalFigure, console: Console) -> str:
 
 
 def _tables(table: Table, console: Console) -> str:
-    """A table; if it is too wide and repeats its first columns, in parts."""
+    """A table; one that may repeat its first columns is split into parts if it is too wide."""
     if not table.repeat:
         return _table(table, console)
     cells = [[_cell(cell, console) for cell in cells_of(row)] for row in table.rows]
@@ -258,7 +258,7 @@ def _table(table: Table, console: Console) -> str:
 
 
 def _paint(column: Column, cell: Cell, state: State) -> str:
-    """Colour and weight of a cell."""
+    """Colour and font weight of a cell."""
     if isinstance(cell, Status):
         return PAINTS[cell.state]
     if isinstance(cell, Bar):

@@ -99,7 +99,7 @@ def number(value: float | None, digits: int = 4, *, signed: bool = False) -> str
 
 
 def fixed(value: float, places: int) -> str:
-    """A number with a fixed number of decimals, for columns that add up.
+    """A number with a fixed number of decimals, for columns with a total.
 
     >>> fixed(-1234.5678, 2), fixed(43210.0, 1)
     ('−1234.57', '43\u202f210.0')
@@ -113,7 +113,7 @@ def fixed(value: float, places: int) -> str:
 
 
 def decimals(value: float, digits: int) -> int:
-    """Decimals that show `digits` significant digits of a value.
+    """Number of decimals with which a value has `digits` significant digits.
 
     >>> decimals(205.2, 5), decimals(0.0, 5)
     (2, 4)
@@ -163,12 +163,12 @@ def with_unit(text: str, unit: str) -> str:
 
 
 def metric(name: str) -> Quantity:
-    """The declared quantity of a metric; a user's undeclared metric is a plain ratio."""
+    """The quantity of a metric; a user's own metric without a declared one is a pure ratio."""
     return of_metric(name)
 
 
 def input_quantity(name: str) -> Quantity:
-    """The declared quantity of an input; an undeclared input is a plain ratio."""
+    """The quantity of an input; an input without a declared quantity is a pure ratio."""
     quantity = quantities.INPUTS.get(name) or METRICS.get(name)
     return quantity or Quantity(name, "", "ratio", "", name)
 
@@ -192,7 +192,7 @@ def value_text(quantity: Quantity, value: float | None, digits: int = 4) -> str:
 
 
 def margin_text(margin: float | None, *, met: bool = True) -> str:
-    """A relative margin in per cent: 0 for an active limit, never 0 for a violation.
+    """A relative margin in per cent; 0 means an active limit, and a missed limit never shows 0.
 
     >>> margin_text(0.031), margin_text(-1e-9), margin_text(-0.0002, met=False)
     ('+3.1 %', '0.0 %', '−0.02 %')
@@ -212,7 +212,7 @@ def margin_text(margin: float | None, *, met: bool = True) -> str:
 def margin_of(
     quantity: Quantity, limit: float | None, margin: float | None, *, met: bool = True
 ) -> str:
-    """A margin in per cent of its limit; for a limit of 0, the difference in its unit.
+    """A margin in per cent of its limit; for a limit of 0, the absolute margin with its unit.
 
     >>> margin_of(metric("pressure_loss"), 2.0, 0.031), margin_of(metric("bore_growth"), 0.0, -3e-5)
     ('+3.1 %', '−30.0 µm')
@@ -262,7 +262,7 @@ def plain(text: str) -> str:
 
 
 def sentence(words: str) -> str:
-    """Words with a capital letter and a full stop; a name such as pressure_a is unchanged.
+    """Words as a sentence, with capital letter and full stop; a name (pressure_a) stays unchanged.
 
     >>> sentence("optimum found"), sentence("pressure_a: left out")
     ('Optimum found.', 'pressure_a: left out.')
@@ -282,7 +282,7 @@ _PLACES = (
 
 
 def brief(case: str | None, place: str | None) -> str:
-    """Load case and position; positions on the stroke are shortened.
+    """Load case and position as a short text.
 
     >>> brief("stance", "retracting, 25 % of the stroke"), brief(None, "weakest position")
     ('stance, retract, 25 %', 'weakest')

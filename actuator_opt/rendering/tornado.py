@@ -1,4 +1,4 @@
-"""A tornado: bars of the changes at the two ends of each input, the largest first."""
+"""Tornado diagram: bars show how a result changes at both ends of each input, largest first."""
 
 from __future__ import annotations
 
@@ -10,22 +10,25 @@ from .axes import Axes, fitted, ticks
 from .ink import BLACK, BLUE, GREY, RED, Ink
 
 MOST = 16
-"""Maximum number of rows, the largest first."""
+"""Maximum number of inputs shown; those with the smallest changes are left out."""
 ROW = 5.0
 """Height of a row (mm): two bars of 1.8 mm."""
 LABELS, FIGURES = 64.0, 34.0
-"""Width of the names at the left and of the changes in per cent at the right (mm)."""
+"""Widths of the columns with the names, at the left, and with the changes in figures, at the right
+(mm)."""
 LIGHT = "#9ec3da"
-"""Fill of the lower end; the upper end is dark, which a grey print also shows."""
+"""Fill of the bars for lower ends of inputs. Bars for upper ends are dark, so a grey print also
+shows the difference."""
 BEYOND = 1.4
-"""Greatest ratio of the axis range with predictions to the range of the re-solved changes."""
+"""Predictions may widen the axis by at most this factor on the range of the re-solved changes."""
 
 
 @dataclass(frozen=True, slots=True)
 class TornadoBar:
-    """An input, with the changes (display units) at its upper end and at its lower end.
+    """An input, with the changes of the result (display units) at its upper and at its lower end.
 
-    A prediction is drawn as a stroke. `words` at the right are red if the end has no design.
+    A predicted change is drawn as a short line. `words` are printed at the right, in red if no
+    design exists at that end of the input.
     """
 
     name: str
@@ -46,7 +49,8 @@ def bars(
 ) -> Ink:
     """Bars of changes about a centre, dark for the upper end and light for the lower end.
 
-    Drawn, not a chart: each bar has its name and both changes in figures beside it.
+    The figure is an ink drawing instead of a chart, so that each input can have its name and both
+    changes in figures beside its bars.
 
     Parameters
     ----------
@@ -54,7 +58,7 @@ def bars(
     axis, centre : words under the axis and above the centre
     ends : names of the upper and the lower end
     columns : heads of the words at the right; default: the names of the ends
-    predicted : whether the key has the strokes of predictions
+    predicted : whether the legend explains the short lines of predicted changes
     """
     solved = [change for row in rows for change in row.changes if change is not None]
     predictions = [change for row in rows for change in row.predicted if change is not None]
@@ -93,7 +97,7 @@ def _heads(
     columns: tuple[str, str],
     predicted: bool,
 ) -> None:
-    """The key of the bars above the names, and the heads of the columns at the right."""
+    """The legend of the bars, above the names, and the heads of the columns at the right."""
     y = axes.top - 6.5
     for x, fill, words in ((0.0, BLUE, ends[0]), (17.0, LIGHT, ends[1])):
         ink.box(x, y - 0.9, 4.0, 1.8, fill=fill, pen=0.1)

@@ -1,4 +1,4 @@
-"""A mounted seal: sizes by key of the design file, contact with the counterface, and outline.
+"""Sizes of a seal in the design file, its contact with the counterface, and its outline.
 
 The contact comprises line load, width, peak pressure and profile. Outlines are polygons [m] of the
 seal without pressure: x runs from the sealed side of the groove, r from the counterface into the
@@ -17,7 +17,7 @@ from ..models import contact_profile
 
 
 class Size(NamedTuple):
-    """A size of a seal, as a key of the design file.
+    """A dimension of a seal that a design file may state.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class Size(NamedTuple):
 
 
 class SizeField(NamedTuple):
-    """A size that a seal type has.
+    """A size of a seal type, with its default.
 
     Parameters
     ----------
@@ -113,9 +113,10 @@ class SealContact:
     line_load : normal force per length of circumference [N/m]
     width : contact width [m]
     peak : highest contact pressure above the outer pressure [Pa]
-    profile : static contact pressure above the outer pressure [Pa] at t = x/b, 0 on the sealed side
-    excess : excess of the profile over the oil pressure [Pa]; without an excess the sealed
-        pressure opens the contact, and the profile shows bare touch
+    profile : function that returns the static contact pressure above the outer pressure [Pa] at t =
+        x/b; x is the distance from the sealed side, b the width
+    excess : excess of the contact pressure over the oil pressure [Pa]; if it is not positive, the
+        sealed pressure opens the contact, and the profile is that of a contact that just touches
     profile_width : width of the profile [m]: the contact width, or less if the load is too small
     """
 
@@ -136,7 +137,7 @@ def shaped(
     excess_law: Callable[..., Array],
     profile_law: Callable[..., Array],
 ) -> SealContact:
-    """A contact with a pressure profile of given shape, scaled to carry the load."""
+    """A contact whose pressure profile has a given shape and is scaled to carry the load."""
     ends = {"sealed_pressure": pressure, "outer_pressure": 0.0}
     excess = excess_law(line_load=load, width=width, **ends)
 
@@ -179,7 +180,7 @@ def box(left: float, right: float, low: float, high: float) -> Polygon:
 
 
 def stadium(middle: float, low: float, high: float, section: float) -> Polygon:
-    """Outline of a round section compressed to the height high - low; a circle if uncompressed.
+    """Outline of a round section squeezed to the height high - low; a circle if it has more space.
 
     >>> points = stadium(0.0, 0.0, 0.8, 1.0)
     >>> f"{max(x for x, _ in points) - min(x for x, _ in points):.4f}"
@@ -198,6 +199,6 @@ def stadium(middle: float, low: float, high: float, section: float) -> Polygon:
 
 
 def round_ring(middle: float, low: float, high: float, section: float) -> tuple[Shape, ...]:
-    """A round ring between two heights, mounted and free."""
+    """Outlines of a round ring: squeezed between two heights, and free."""
     free = stadium(middle, high - section, high, section)
     return Shape("elastomer", stadium(middle, low, high, section)), Shape("free", free)

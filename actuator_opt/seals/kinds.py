@@ -17,4 +17,5 @@ TYPES: Kinds[SealType] = kinds_in(
 )
 
 SIZES = tuple(dict.fromkeys((*SHARED, *(x.size for kind in TYPES.values() for x in kind.fields))))
-"""All seal sizes of a design file: first those that types share, then those of single types."""
+"""All seal sizes of a design file: first those that several types share, then those of one type
+only."""

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from ..finite_elements.result import SealSolution
 
 ON_LIMIT = 1e-6
-"""Tolerance on the squeeze range of a law, for an optimum that lies on its limit."""
+"""Tolerance on the squeeze range of a contact law, so that an optimum at the end of the range
+causes no warning."""
 
 
 def law_inputs(seal: SealSizes) -> dict[str, Array]:
@@ -32,7 +33,7 @@ def law_inputs(seal: SealSizes) -> dict[str, Array]:
 
 
 def contact(seal: SealSizes) -> SealContact:
-    """Contact by the contact law of the ring, no wider than the groove."""
+    """Contact of the ring by its contact law; its width is limited to that of the groove."""
     law, inputs, pressure = seals.LAWS[seal.law], law_inputs(seal), seal["pressure"]
     width = gland.limited_width(
         contact_width=law.contact_width(**inputs), groove_width=seal["groove_width"]
@@ -55,7 +56,7 @@ def contact(seal: SealSizes) -> SealContact:
 
 
 def round_piece(section: Array, depth: Array) -> SealPart:
-    """The part of a round ring in its groove."""
+    """A round ring in its groove: section area, and depth of its centre."""
     return SealPart((0.25 * math.pi) * section * section, depth / 2)
 
 
@@ -68,7 +69,7 @@ def groove(sizes: Mapping[str, Array]) -> SealGroove:
 
 
 def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
-    """Outline of a round ring from the counterface to the bottom of the groove."""
+    """Outline of a round ring, squeezed between the counterface and the bottom of the groove."""
     return round_ring(room.middle, 0.0, room.depth, sizes["section"])
 
 
@@ -79,8 +80,8 @@ def law_warnings(seal: SealSizes) -> Iterable[str]:
     hardness = float(np.max(seal["hardness"]))
     if not modulus_law.hardness_range[0] <= hardness <= modulus_law.hardness_range[1]:
         yield (
-            f"{hardness:g} Shore A, but the {modulus_law.name} law is valid from "
-            f"{modulus_law.hardness_range[0]:g} to {modulus_law.hardness_range[1]:g}"
+            f"{hardness:g} Shore A, but the {modulus_law.name} law for the modulus is valid from "
+            f"{modulus_law.hardness_range[0]:g} to {modulus_law.hardness_range[1]:g} Shore A"
         )
     ratio = float(np.max(np.abs(seal["pressure"] / seal["youngs_modulus"])))
     low, high = law.squeeze_range
@@ -90,13 +91,13 @@ def law_warnings(seal: SealSizes) -> Iterable[str]:
     if not (low - ON_LIMIT <= remaining and nominal <= high + ON_LIMIT):
         squeeze = nominal if nominal > high else remaining
         yield (
-            f"squeeze {100 * squeeze:.3g} %, but the {law.name} law was compared with data from "
-            f"{100 * low:.0f} to {100 * high:.0f} %"
+            f"squeeze {100 * squeeze:.3g} %, but the {law.name} contact law was only compared with "
+            f"data from {100 * low:.0f} to {100 * high:.0f} % squeeze"
         )
     if ratio > law.pressure_range[1]:
         yield (
-            f"pressure is {ratio:.1f} times Young's modulus, but the {law.name} law was compared "
-            f"with data up to {law.pressure_range[1]:g}"
+            f"pressure is {ratio:.1f} times Young's modulus, but the {law.name} contact law was "
+            f"only compared with data up to {law.pressure_range[1]:g} times"
         )
 
 

@@ -19,17 +19,17 @@ AXIAL_PLAY = 1.1
 
 @dataclass(frozen=True, slots=True)
 class SealSizes:
-    """Numbers of a seal by name, SI, and the names of its laws.
+    """Dimensions and properties of a seal by name, SI, and the names of its laws.
 
     Parameters
     ----------
-    numbers : those of the design file (`section`, `squeeze`, every size of the type) and
-        `gland_depth`, `groove_width`, `diameter` of the counterface, `youngs_modulus` of the
-        squeezed part, sealed `pressure` and remaining `squeeze_left`; `hardness` if needed;
-        `face_modulus` and `face_poissons_ratio` of the sliding face if the type has `face`;
-        floats, or arrays that broadcast
+    numbers : floats, or arrays that broadcast. From the design file: `section`, `squeeze` and every
+        size of the type. In addition: `gland_depth`, `groove_width`, `diameter` of the counterface,
+        `youngs_modulus` of the squeezed part, sealed `pressure`, and `squeeze_left`, the squeeze
+        that remains under pressure; `hardness` if needed; `face_modulus` and `face_poissons_ratio`
+        of the sliding face if the type has `face`
     law : contact law of a round ring (`models.seals.LAWS`)
-    hardness_model : law of its modulus (`models.elastomer.MODULUS_LAWS`)
+    hardness_model : law that gives its modulus from its hardness (`models.elastomer.MODULUS_LAWS`)
     on_rod : whether the counterface is a rod, not a bore
     """
 
@@ -43,7 +43,7 @@ class SealSizes:
 
 
 class SizeFault(NamedTuple):
-    """A size that contradicts others: its key, the fault, the remedy."""
+    """A size that contradicts other sizes: its key, what is wrong, and the remedy."""
 
     key: str
     message: str
@@ -51,7 +51,7 @@ class SizeFault(NamedTuple):
 
 
 class SealPart(NamedTuple):
-    """A part in a groove, of the seal compound: free section [m^2], depth of its centre [m]."""
+    """A piece of seal compound in a groove: free section area [m^2], depth of its centre [m]."""
 
     area: Array
     depth: Array
@@ -65,7 +65,7 @@ class SealGroove(NamedTuple):
     depth : depth from the counterface at nominal squeeze [m]
     ring_width : axial width of the seal [m]
     width : default groove width [m]
-    pieces : parts in the groove
+    pieces : pieces of the seal compound in the groove
     """
 
     depth: Array
@@ -75,7 +75,7 @@ class SealGroove(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Space for a seal between its back-up rings: positions of its axial ends, and depth [m]."""
+    """Space for a seal between its back-up rings: axial positions of both ends, and depth [m]."""
 
     start: float
     end: float
@@ -92,9 +92,10 @@ class Elements(NamedTuple):
 
     Parameters
     ----------
-    solve : contacts of a seal of floats, from groove width without back-up rings [m] and
-        increasing sealed pressures [Pa]; imports its libraries itself
-    note : mesh dependence of the contact peak
+    solve : function that computes the contacts of a seal whose numbers are floats, from the groove
+        width without back-up rings [m] and increasing sealed pressures [Pa]; it imports its own
+        libraries
+    note : remark for the user on how far the contact peak depends on the mesh
     """
 
     solve: Callable[[SealSizes, float, Sequence[float]], SealSolution]
@@ -109,23 +110,27 @@ class SealType:
     ----------
     name : name in a design file
     title : title in reports
-    help : meaning of the name
-    fields : its sizes; a design must not state others
-    faults : function that yields contradictions between stated sizes (floats by key)
-    groove : groove for `section`, `squeeze` and the required sizes, floats or arrays by key
-    contact : contact for the numbers of a seal
-    outline : mounted outline for floats by key, in its space
-    round_ring : whether the squeezed part is a round ring: its contact follows from a law of
-        `LAWS`, its modulus from its hardness, and both have a range of squeeze and hardness
-    modulus_by : source of the modulus of the squeezed part: always hardness, if the compound
-        states the modulus of a plastic ring; else stated, or by hardness
-    face : whether its contact depends on the elastic constants of the sliding face
-    o_ring_gland : whether it is alone in a standard O-ring gland: fill, stretch and section are
-        checked, sizes and compounds of O-rings apply
-    model : function of its line load, cited as its model; None: its law of `LAWS`
-    contact_model : the same in words; {law} is replaced by the name of the law
-    warnings : doubts about the contact for the numbers of a seal
-    elements : finite-element solution, or None
+    help : explanation of the name, for the JSON Schema
+    fields : sizes that a design may state for this type
+    faults : function that yields the contradictions between sizes (floats by key)
+    groove : function that computes the groove from `section`, `squeeze` and the required sizes
+        (floats or arrays by key)
+    contact : function that computes the contact of a seal
+    outline : function that draws the outline of the mounted seal, from sizes (floats by key) and
+        the available space
+    round_ring : whether the squeezed part is a round ring. Its contact then follows from a law of
+        `LAWS` and its modulus from its hardness; each law is valid for a range of squeeze or
+        hardness
+    modulus_by : source of the modulus of the squeezed part. "hardness": always its hardness, as the
+        modulus that the compound states is that of a plastic ring; "stated": the stated modulus or,
+        if there is none, the hardness
+    face : whether the contact depends on the elastic constants of the sliding face
+    o_ring_gland : whether the seal is an O-ring alone in a standard gland; gland fill, stretch and
+        section are then checked, and the standard sizes and compounds of O-rings apply
+    model : function that computes the line load, for reports to cite; None if a law of `LAWS` does
+    contact_model : description of this model for reports; {law} is replaced by the name of the law
+    warnings : function that yields reasons to doubt the contact of a seal
+    elements : finite-element solution; None if the type has none
     """
 
     name: str
@@ -163,7 +168,7 @@ class SealType:
     def sizes(
         self, stated: Mapping[str, Array], *, section: Array, gland_depth: Array
     ) -> dict[str, Array]:
-        """All sizes of the type: stated value, else default; required sizes must be stated.
+        """All sizes of the type; a size that is not stated has its default, if it has one.
 
         Parameters
         ----------

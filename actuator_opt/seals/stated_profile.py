@@ -29,7 +29,7 @@ class PressureProfile(Protocol):
 
 
 def contact(tables: Sequence[PressureProfile], pressure: Array) -> SealContact:
-    """Interpolate stated profiles between neighbouring pressures, at equal shares t of the width.
+    """Interpolate between the profiles stated for the two neighbouring sealed pressures.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def contact(tables: Sequence[PressureProfile], pressure: Array) -> SealContact:
 
 
 def _share(pressure: Array, pressures: Sequence[float], index: int) -> Array:
-    """Weight of a profile at a pressure: 1 at its own, falling to 0 at its neighbours'."""
+    """Weight of a profile: 1 at its own sealed pressure, 0 at or beyond those of its neighbours."""
     table_pressure = pressures[index]
     rising: Array = 1.0
     falling: Array = 1.0

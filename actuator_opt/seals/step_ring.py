@@ -40,14 +40,14 @@ TAPER_DEFAULT = math.radians(6.0)
 """Default angle of the taper beside the land [rad] (our choice)."""
 
 LAND_SHARE = 0.5
-"""Default ratio of land to ring width (our choice)."""
+"""Default ratio of land width to ring width (our choice)."""
 
 ROOM = 0.1
 """Share of the ring width by which the O-ring, and so the groove, may be wider than the ring."""
 
 ENERGISER_ELEMENTS = 96
-"""Number of elements around the O-ring. With 64, the line load of some load steps is too small by
-8 %, or they do not converge."""
+"""Number of elements around the O-ring. With 64, some load steps do not converge, and others give a
+line load that is 8 % too small."""
 
 EDGE = 0.15e-3
 """Radius of the edges of the land in finite elements [m]. Our choice, for the broken edges of a
@@ -115,7 +115,7 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
 
 
 def faults(sizes: Mapping[str, float]) -> Iterable[SizeFault]:
-    """Faults of an O-ring wider than its ring, and of land or relief that do not fit the ring."""
+    """Faults of an O-ring wider than the step ring, and of land and relief too wide for it."""
     width, section = sizes.get("width"), sizes.get("section")
     if width is None or section is None:
         return
@@ -131,7 +131,7 @@ def faults(sizes: Mapping[str, float]) -> Iterable[SizeFault]:
     if land <= width < (land + relief) * (1 - 1e-9):
         yield SizeFault(
             "relief",
-            f"{_text(relief)}: relief and land are wider than the ring ({_text(width)})",
+            f"{_text(relief)}: relief and land together are wider than the ring ({_text(width)})",
             f"write at most {_text(width - land)}",
         )
 

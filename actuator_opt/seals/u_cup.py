@@ -1,4 +1,4 @@
-"""A U-cup: two lips on a heel, spread by the pressure."""
+"""A U-cup: two lips on a heel; the pressure spreads the lips."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from .seal_type import (
 )
 
 LAND_SHARE = 0.1
-"""Default ratio of land to lip length (our choice)."""
+"""Default ratio of land width to lip length (our choice)."""
 
 _text = INPUTS["length"].text
 
@@ -75,7 +75,7 @@ def groove(sizes: Mapping[str, Array]) -> SealGroove:
 
 
 def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
-    """Outline of two lips, open to the sealed side; the heel fills the groove up to a clearance."""
+    """Outline of two lips, open to the sealed side, on a heel that leaves an axial clearance."""
     start, end, depth = room
     length, thick = sizes["width"], min(sizes["thickness"], 0.42 * depth)
     interference = max(
@@ -109,7 +109,7 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
 
 
 def lip_faults(width: float, thickness: float) -> Iterable[SizeFault]:
-    """Fault of a lip that is not longer than thick, so that the beam model does not apply."""
+    """Fault of a lip shorter than it is thick, for which the beam model does not apply."""
     if width < thickness:
         yield SizeFault(
             "width",
@@ -119,7 +119,7 @@ def lip_faults(width: float, thickness: float) -> Iterable[SizeFault]:
 
 
 def faults(sizes: Mapping[str, float]) -> Iterable[SizeFault]:
-    """Faults of lips that are not longer than thick, or have no space between them."""
+    """Faults of lips that are shorter than thick, or have no space between them."""
     width, thickness, section = (sizes.get(key) for key in ("width", "thickness", "section"))
     if width is None or thickness is None or section is None:
         return
@@ -127,7 +127,7 @@ def faults(sizes: Mapping[str, float]) -> Iterable[SizeFault]:
     if 2 * thickness >= section:
         yield SizeFault(
             "thickness",
-            f"{_text(thickness)}: two lips fill the section ({_text(section)})",
+            f"{_text(thickness)}: two lips of this thickness fill the section ({_text(section)})",
             f"write less than {_text(section / 2)}",
         )
 
@@ -156,7 +156,7 @@ TYPE = SealType(
     face=True,
     o_ring_gland=False,
     model=lip_seal.line_load,
-    contact_model="lip as a short clamped tube",
+    contact_model="lip modelled as a short clamped tube",
     warnings=no_warnings,
     elements=None,
 )

@@ -24,7 +24,7 @@ PRESSURES = INPUTS["pressure"]
 
 
 def ends_of(scenario: Scenario, plant: Plant) -> str:
-    """Kind of the far end of the lines, such as a valve, a motor or a closed end."""
+    """Component at the far ends of the lines, by name: a valve or closed ends, for example."""
     if scenario.ends is not None:
         return scenario.ends
     return "valve" if plant.valve is not None else plant.design.ports.end
@@ -33,7 +33,7 @@ def ends_of(scenario: Scenario, plant: Plant) -> str:
 def start_of(scenario: Scenario, plant: Plant, records: Records) -> InitialState:
     """Initial position and pressures.
 
-    By default a closed valve holds the load at these pressures.
+    By default, the pressures are those at which a closed valve holds the load.
     """
     initial, motor_load, load = scenario.initial, scenario.motor, scenario.load
     place = None if initial.position is None else position_at(initial.position, plant.stroke)
@@ -117,7 +117,7 @@ def _command(circuit: Circuit, measured: Feedback) -> Expression:
 def _driven(
     circuit: Circuit, valve_signal: Expression, pressures: tuple[Expression, Expression]
 ) -> valve.Port:
-    """Add valve and supply; return the valve's flows at given port pressures."""
+    """Add valve and supply; return the flows of the valve for these pressures at its ports."""
     data = circuit.plant.valve
     if data is None:
         message = "the design has no valve"
@@ -223,7 +223,7 @@ def _chambers(
     position: Symbol,
     speed: Symbol,
 ) -> Expression:
-    """Add both chambers, including the line volumes counted with them.
+    """Add both chambers, each including the line volume that is lumped into it.
 
     Return the pressure force.
     """

@@ -1,8 +1,8 @@
 """Amplitude and phase at one frequency for records with drift, and the dynamic stiffness.
 
-Mean, drift and oscillation are fitted together. Detrending first would remove a part of the
-oscillation that depends on its phase: up to 6/(pi n)^2 of it over n cycles, or 2.4 % over 5 cycles
-[derived].
+Mean, drift and oscillation are fitted together. Subtracting the drift first would also remove a
+part of the oscillation, depending on its phase. Over n cycles this part is up to 6/(pi n)^2, or 2.4
+% for 5 cycles [derived].
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from .integrate import sampled
 FEWEST_SAMPLES = 5
 """Smallest number of samples: four unknowns, and a fifth sample to estimate the scatter."""
 RESOLVED = 1e-12
-"""Share of the largest position below which an oscillation counts as rounding (our choice)."""
+"""Oscillation amplitude, as a share of the largest position, below which it counts as rounding
+error (our choice)."""
 
 
 class HarmonicFit(NamedTuple):
@@ -168,24 +169,26 @@ def windows(*, time: Array, frequency: float, cycles: int) -> tuple[slice, ...]:
     """
     (t,) = sampled(time=time)
     if not frequency > 0 or cycles < 1:
-        message = f"windows of {cycles} cycles at {frequency:g} Hz"
+        message = f"no windows of {cycles} cycles at {frequency:g} Hz exist"
         raise InputError(Diagnostic(message, "give a positive frequency and 1 cycle or more"))
     step = (t[-1] - t[0]) / (len(t) - 1)
     length = cycles / frequency
     count = floor((t[-1] - t[0] + step) / length + 1e-6)
     if count < 1:
-        message = f"{t[-1] - t[0]:.3g} s are shorter than {cycles} cycles of {frequency:g} Hz"
+        message = (
+            f"a record of {t[-1] - t[0]:.3g} s is shorter than {cycles} cycles of {frequency:g} Hz"
+        )
         raise InputError(Diagnostic(message, "take fewer cycles"))
     edges = t[0] + length * np.arange(count + 1) - 1e-3 * step  # each edge is the start of a window
     places = np.searchsorted(t, edges)
     if np.min(np.diff(places)) < FEWEST_SAMPLES:
-        message = f"a window of {length:.3g} s holds fewer than {FEWEST_SAMPLES} samples"
+        message = f"a window of {length:.3g} s contains fewer than {FEWEST_SAMPLES} samples"
         raise InputError(Diagnostic(message, "take more cycles"))
     return tuple(slice(int(a), int(b)) for a, b in pairwise(places))
 
 
 class _Design(NamedTuple):
-    """Columns of a fit, their pseudo-inverse, and half the duration of the record."""
+    """Matrix of a least-squares fit, its pseudo-inverse, and half the record duration [s]."""
 
     columns: np.ndarray
     inverse: np.ndarray
@@ -193,11 +196,11 @@ class _Design(NamedTuple):
 
 
 def _design(t: np.ndarray, frequency: float) -> _Design:
-    """Columns [1, (t - t_mid)/half, cos wt, sin wt], all of order one."""
+    """Matrix with the columns [1, (t - t_mid)/half, cos wt, sin wt], all of order one."""
     span = t[-1] - t[0]
     step = span / (len(t) - 1)
     if not frequency > 0 or (span + step) * frequency < 1 - 1e-6:
-        message = f"{span:.3g} s are shorter than one cycle of {frequency:g} Hz"
+        message = f"a record of {span:.3g} s is shorter than one cycle of {frequency:g} Hz"
         raise InputError(Diagnostic(message, "give a longer record or a higher frequency"))
     if 2 * step * frequency >= 1:
         message = f"samples every {step:.3g} s do not resolve {frequency:g} Hz"

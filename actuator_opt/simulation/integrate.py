@@ -1,13 +1,14 @@
 """Integration in time, which restarts where an input jumps or a switch changes state.
 
-An integrator covers a smooth section. It returns the states at the samples or raises `Stuck`. LSODA
-switches between stiff and non-stiff steps and uses the exact Jacobian. Radau serves as an
-independent check.
+Each call of an integrator covers a section without jumps. It returns the states at the sample times
+or raises `Stuck`. LSODA switches between stiff and non-stiff steps and uses the exact Jacobian.
+Radau serves as an independent check.
 
 CVODES of SUNDIALS is called through CasADi (extra `fast`) and runs without Python code. The
-expressions of a system become CasADi symbols, each operation only once; CasADi derives the exact
-Jacobian. No compiler is needed. If CVODES fails, another integrator takes over that section or
-reports why it cannot. For a servo, CVODES takes about half the time of LSODA at the same error.
+expressions of a system are translated to CasADi, with each shared operation only once; CasADi
+derives the exact Jacobian. No compiler is needed. If CVODES fails, another integrator takes over
+that section or reports why it cannot. For a servo, CVODES takes about half the time of LSODA at the
+same error.
 """
 
 from __future__ import annotations
@@ -40,8 +41,8 @@ RELATIVE: Final = {"lsoda": 1e-6, "radau": 1e-8, "cvodes": 1e-7}
 
 
 CHUNK = 200
-"""Number of samples between two checks of the switches (our choice: samples after a switch change
-are discarded)."""
+"""Number of samples between two checks of the switches (our choice: few enough, as the samples
+after a switch change are computed in vain)."""
 
 
 MOST = 100_000
@@ -49,12 +50,12 @@ MOST = 100_000
 
 
 Advance = Callable[[Array, Array, tuple[bool, ...], int], Array]
-"""Function that returns the states, as (times, states), at given times. Its last argument is the
-maximum number of steps between two times."""
+"""Function that returns the states at given times, one row per time, for given initial states and
+flags. Its last argument is the maximum number of steps between two times."""
 
 
 class Stuck(Unsolvable):
-    """An integration that failed; gives the time and the state there."""
+    """Error of a failed integration; contains the time of the failure and the states then."""
 
     def __init__(self, time: float, state: Array, message: str, remedy: str) -> None:
         super().__init__(Diagnostic(f"at {time:.6g} s: {message}", remedy))
@@ -81,7 +82,7 @@ def _reason(error: Exception) -> str:
 
 
 def _longest(compiled: Compiled, times: Array) -> float:
-    """Longest step that still resolves the records among the inputs; 0 for no limit."""
+    """Longest step that does not skip samples of the input records; 0 for no limit."""
     bends = compiled.bends
     first, last = np.searchsorted(bends, times[0]), np.searchsorted(bends, times[-1], "right")
     if first == last:
@@ -115,7 +116,7 @@ def lsoda(compiled: Compiled, relative: float, evaluations: list[int]) -> Advanc
                 raise Stuck(latest[0], latest[1], _reason(error), REMEDY) from None
         if report["message"] != "Integration successful.":
             if max_steps < MOST:
-                raise Stuck(latest[0], latest[1], "no step is small enough", REMEDY)
+                raise Stuck(latest[0], latest[1], "no time step is small enough", REMEDY)
             # near rest LSODA may miss that the equations are stiff
             return stiff(times, y, m, max_steps)
         evaluations[0] += int(report["nfe"][-1])
@@ -147,7 +148,7 @@ def radau(compiled: Compiled, relative: float, evaluations: list[int]) -> Advanc
             raise Stuck(latest[0], latest[1], _reason(error), REMEDY) from None
         evaluations[0] += int(solution.nfev)
         if not solution.success:
-            raise Stuck(latest[0], latest[1], "no step is small enough", REMEDY)
+            raise Stuck(latest[0], latest[1], "no time step is small enough", REMEDY)
         return _checked(times, solution.y.T)
 
     return advance
@@ -163,7 +164,7 @@ _EVEN = 1e-8
 
 
 _BUFFERED = 1
-"""Index of the first buffer in the memory of a CasADi function."""
+"""Memory index of the buffer of a CasADi function, for reading its statistics."""
 
 
 def library() -> Any:
@@ -240,7 +241,7 @@ def cvodes(compiled: Compiled, relative: float, evaluations: list[int]) -> Advan
     Raises
     ------
     InputError
-        CasADi is missing or a record is looked up
+        CasADi is missing, or the equations contain a record
     """
     fallback = lsoda(compiled, RELATIVE["lsoda"], evaluations)
     casadi = library()
@@ -295,7 +296,7 @@ def interruptible() -> Iterator[None]:
 
 
 class _Integrator:
-    """CVODES for a section of `CHUNK` samples; samples that are not needed have a step of zero."""
+    """CVODES for `CHUNK` samples; for fewer samples, the remaining steps have zero length."""
 
     def __init__(
         self, casadi: Any, equations: dict[str, Any], relative: float, max_steps: int
@@ -318,19 +319,19 @@ class _Integrator:
     def __call__(
         self, start: float, stop: float, count: int, states: Array, m: tuple[bool, ...]
     ) -> Array:
-        """States at evenly spaced samples after the start."""
+        """States at `count` evenly spaced times, after `start` up to `stop`."""
         self.begin[:], self.parameters[0], self.parameters[1:] = states, start, m
         self.steps[:count], self.steps[count:] = (stop - start) / count, 0.0
         self.call()
         return self.states[:count]
 
     def evaluations(self) -> int:
-        """Rate evaluations in the last call."""
+        """Number of evaluations of the rates in the last call."""
         return int(self.function.stats(_BUFFERED)["nfevals"])
 
 
 def _equations(casadi: Any, compiled: Compiled) -> dict[str, Any]:
-    """Rates of the states per sample, in the form that CVODES needs.
+    """Rates of the states, per sample interval instead of per second, as CVODES needs them.
 
     Each state is in units of its tolerance, because CVODES has a single tolerance for all.
     """
@@ -369,13 +370,14 @@ MOST_CHANGES = 20_000
 APART = 1e-9
 """Largest difference between times that count as equal [s] (our choice)."""
 FEW = 2_000
-"""Maximum steps between two samples in a first attempt, which may go past a switch change."""
+"""Maximum steps between two samples in a first attempt, which may continue past a switch change,
+where the equations are no longer valid."""
 TRIES = 12
-"""Number of ever shorter sections in which a switch change is searched for before the integration
-counts as failed."""
+"""Number of ever shorter sections in which the first switch change is searched for, if the
+integration over the full section fails."""
 PARTS, LEVELS = 16, 5
-"""Number of parts into which an interval with a suspected switch change is divided, and how many
-times a part is divided again."""
+"""Number of parts into which an interval is divided if a switch may change in it, and how many
+times such a part may be divided again."""
 _LOCATED = 1e-12
 
 
@@ -390,13 +392,13 @@ class Event:
 
 @dataclass(slots=True)
 class Trajectory:
-    """States at samples. At a jump there are two samples: with the flags before and after it."""
+    """States over time. At a jump there are two samples, with the flags before and after it."""
 
     time: Array
     states: Array
-    """(states, samples)"""
+    """One row per state, one column per sample."""
     flags: Array
-    """(flags, samples)"""
+    """One row per flag, one column per sample."""
     events: tuple[Event, ...] = ()
     evaluations: int = 0
     restarts: int = 0
@@ -433,7 +435,8 @@ def integrate(
     ----------
     compiled : the equations
     duration : simulated time [s]
-    sample_time : of the result [s]; the method chooses its own internal steps
+    sample_time : interval between the samples of the result [s]; the method chooses its own
+        internal steps
     method : "lsoda", "radau" or "cvodes" (extra ``fast``)
     relative : relative tolerance of a step; None for that of the method
 
@@ -476,7 +479,7 @@ def integrate(
 
 
 def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> tuple[bool, ...]:
-    """Flags at a time at which the integration restarts; switches keep their state."""
+    """Flags after a restart of the integration; switches keep their state, if they have one yet."""
     instants = tuple(t + APART >= instant for instant in compiled.instants)
     if before:
         return instants + before[len(instants) :]
@@ -485,7 +488,7 @@ def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> 
 
 
 def _margins(run: _Run, t: Array, states: Array, m: tuple[bool, ...]) -> tuple[Array, Array]:
-    """Guard of every switch and its rate of change, each as (switches, samples)."""
+    """Margin of every guard before its switch changes, and its rate; each (switches, samples)."""
     signs = np.where(m[len(run.compiled.instants) :], 1.0, -1.0)[:, None]
     margin = _at_switches(run.compiled, run.compiled.guards, t, states, m) * signs
     return margin, _at_switches(run.compiled, run.compiled.guard_rates, t, states, m) * signs
@@ -498,7 +501,7 @@ def _at_switches(
     states: Array,
     m: tuple[bool, ...],
 ) -> Array:
-    """Values of a function of every switch at samples, as (switches, samples)."""
+    """Guards, or their rates, of every switch at all samples, as (switches, samples)."""
     count = len(compiled.system.switches)
     if not count:
         return np.empty((0, len(t)))
@@ -511,7 +514,7 @@ def _at_switches(
 def _segment(
     run: _Run, times: Array, is_stored: Array, y: Array, m: tuple[bool, ...]
 ) -> tuple[Array, tuple[bool, ...]]:
-    """Integrate over times without an input jump; store only the samples marked in `is_stored`."""
+    """Integrate between two jumps of the inputs; store only the samples marked in `is_stored`."""
     first, last = len(run.compiled.instants), len(times) - 1
     begin, start, store_first = 0, float(times[0]), True
     while begin < last:
@@ -539,7 +542,7 @@ def _segment(
         name = run.compiled.system.switches[switch].name
         run.events.append(Event(name, time, bool(m[first + switch])))
         if len(run.events) > MOST_CHANGES:
-            remedy = "increase the damping of the part that switches"
+            remedy = "increase the damping of the component that switches"
             raise Stuck(time, state, f"{name} switches back and forth endlessly", remedy)
         y, start, store_first = state, time, True
         begin += k + (time >= times[begin + k + 1])
@@ -554,7 +557,7 @@ switch."""
 def _section_to_change(
     run: _Run, times: Array, y: Array, m: tuple[bool, ...]
 ) -> tuple[Array, Array, SwitchChange | None]:
-    """States up to the first switch change, after which the present equations may fail."""
+    """States at least up to the first switch change, after which the integration may fail."""
     try:
         states = run.advance(times, y, m, FEW)
         return times, states, _first_change(run, times, states, m)
@@ -596,7 +599,7 @@ def _first_change(
 
 
 def _suspects(times: Array, margin: Array, slope: Array) -> Array:
-    """Intervals in which a guard changes sign: at the end, or on the cubic through both ends."""
+    """Whether each guard changes sign in each interval, judged by a cubic from end to end."""
     step = np.diff(times)
     (a, b), (c, d) = (
         (margin[:, :-1], margin[:, 1:]), (slope[:, :-1] * step, slope[:, 1:] * step),
@@ -649,7 +652,7 @@ METHODS: Final[dict[Method, Callable[[Compiled, float, list[int]], Advance]]] = 
     "lsoda": lsoda, "radau": radau, "cvodes": cvodes,
 }  # fmt: skip
 LAST = 0.1
-"""Final share of a record that counts as steady (our choice)."""
+"""Share of a record, at its end, in which motion counts as steady (our choice)."""
 
 
 def sampled(*, time: Array, fewest: int = 2, **channels: Array) -> tuple[np.ndarray, ...]:

@@ -1,4 +1,4 @@
-"""Linear model of a circuit about a point, with its loop opened at the valve signal."""
+"""Linear model of a circuit about an operating point; the loop is opened at the valve signal."""
 
 from __future__ import annotations
 
@@ -25,25 +25,27 @@ from .integrate import LAST, last_mean, sampled
 TOUCH = 1e-9
 """Small spool offset from its centre [V]; its sign selects which pair of edges is open."""
 SIZE = 1e5
-"""Size of a state in units of its tolerance, as scale for the equation solver (our choice)."""
+"""Typical size of a state, in units of its tolerance; it scales the unknowns of the equation solver
+(our choice)."""
 RESTING = 1.0
 """Rate of a state that counts as zero, in tolerances per second (our choice)."""
 PLACES = ("position", "shaft angle")
-"""States that change even in steady motion."""
+"""Names of the states that change even in steady motion."""
 CREEP = 1e-3
 """Growth rate of a real pole that counts as slow creep, relative to the slowest oscillation (our
 choice). Near an equilibrium the load may drift a little."""
 STILL = 1e-3
-"""Size of a pole that counts as zero [rad/s] (our choice: a time constant of a quarter of an
-hour)."""
+"""Magnitude up to which a pole counts as zero [rad/s] (our choice: a time constant of a quarter of
+an hour)."""
 SLOWER = 1e-3
 """Frequency at which the steady rate is evaluated, relative to the slowest non-zero pole. The
 relative error is the square of this value."""
 ROUNDING = 1e-6
-"""Real part of an oscillating pole, relative to its size, that counts as rounding error."""
+"""Real part of an oscillating pole, relative to its magnitude, up to which it counts as rounding
+error."""
 POINTS = 2000
-"""Number of frequencies, from two decades below the slowest pole to one decade above the
-fastest."""
+"""Number of frequencies in a response, which covers two decades below the slowest pole to one
+decade above the fastest."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +102,7 @@ class OpenLoop:
 
     @property
     def steady_rate(self) -> float:
-        """Rate of the measured value in steady state, per signal: the limit of s L(s) at s = 0."""
+        """Steady rate of the measured value per volt of signal: the limit of s L(s) at s = 0."""
         size = np.abs(self.poles)
         omega = float(np.min(size[size > STILL])) * SLOWER
         return float((1j * omega * self.at(np.array(omega))).real)
@@ -116,7 +118,7 @@ class LoopsAtPoint(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Linear:
-    """Linear model of a circuit about any state."""
+    """Linear model of a circuit, which can be taken about any state."""
 
     circuit: Circuit
     names: tuple[str, ...]
@@ -130,7 +132,7 @@ class Linear:
     def of(cls, circuit: Circuit) -> Linear:
         """Build from a circuit assembled with ``linear=True``.
 
-        States that are only integrals are omitted.
+        States on which no other equation depends are left out.
         """
         system = circuit.system
         states = [state for state in system.states if not state.integral]
@@ -165,10 +167,10 @@ class Linear:
     def about(self, **states: float) -> LoopsAtPoint:
         """Open loops for both spool directions; the valve holds the load at the given states.
 
-        Where the spool rests on one side to hold the load, the loop of that direction is taken at
-        equilibrium. For the other direction, and for both directions without a load, the spool is
-        taken at its centre, which it passes when the load drifts. If the valve cannot hold the
-        load, the given states are used.
+        To hold a load, the spool rests on one side of its centre. The loop of that direction is
+        taken at this equilibrium. In the other direction, and in both if there is no load, the loop
+        is taken with the spool just off its centre, which it passes when the load drifts. If the
+        valve cannot hold the load, the given states are used.
         """
         at_rest = {name: 0.0 for name in ("speed", "shaft_speed") if self._known(name)}
         centre = self.circuit.centre
@@ -191,16 +193,16 @@ class Linear:
         return LoopsAtPoint(loops, equilibrium is not None)
 
     def steady(self, guess: float, **states: float) -> tuple[Array, float] | None:
-        """State and signal in steady motion, for some given states.
+        """Find all states and the valve signal in steady motion, for some given states.
 
         Parameters
         ----------
         guess : signal near the solution [V]
-        states : by name, SI; the position is that of the start unless given
+        states : given states by name, SI; unless given, the position is that of the start
 
         Returns
         -------
-        None if no such state exists
+        states and signal [V]; None if no steady motion exists
         """
         from scipy.optimize import root
 
@@ -235,7 +237,7 @@ class Linear:
         return point(solution.x) if np.max(np.abs(remainder)) < RESTING else None
 
     def _guesses(self) -> Iterator[float]:
-        """Signals from the centre at which the search for an equilibrium starts."""
+        """Distances from the centring signal at which the search for an equilibrium starts [V]."""
         valve = self.circuit.plant.valve
         assert valve is not None
         return (share * valve.signal for share in (0.0, 0.3, -0.3))
@@ -253,7 +255,7 @@ class Linear:
 
 @dataclass(frozen=True, slots=True)
 class Ultimate:
-    """Ultimate gain of a proportional loop, at which it begins to oscillate, and the period."""
+    """Gain at which a proportional loop begins to oscillate, and the period of the oscillation."""
 
     gain: float
     period: float
@@ -331,8 +333,8 @@ class LoopMargins:
     """Margins of a loop with its controller."""
 
     gain: float
-    """Gain margin: the factor on the gain at which the loop oscillates. Above 1, the loop is
-    stable."""
+    """Gain margin: the factor on the gain at which the loop begins to oscillate. A factor above 1
+    means that the loop is stable."""
     phase: float | None
     """Phase margin [rad]; None if the loop gain never exceeds one."""
     stable: bool
@@ -377,56 +379,59 @@ def margins(loop: OpenLoop, law: ControllerLaw) -> LoopMargins:
 def least(loops: Sequence[OpenLoop]) -> tuple[Ultimate, OpenLoop]:
     """The loop with the smallest ultimate gain.
 
-    A loop that is unstable when open counts as zero.
+    For a loop that is unstable even without control, the ultimate gain counts as zero.
     """
     pairs = [(Ultimate(0.0, inf) if loop.unstable else ultimate(loop), loop) for loop in loops]
     return min(pairs, key=lambda pair: pair[0].gain)
 
 
 MARGIN = {"p": 2.0, "pi": 3.0}
-"""Gain margin for tuning by margins (our choice). A P controller gets the design's
-default, which is half the ultimate gain. An integral part costs phase, so its margin is larger."""
+"""Gain margin for tuning by margins, by control law (our choice). A P controller gets half the
+ultimate gain, the default for a design. An integral part reduces the phase, so a PI controller gets
+a larger margin."""
 PHASE = radians(60.0)
-"""Phase margin that counts as sufficient (our choice)."""
+"""Phase margin that suffices with an integral part, even if it is larger without (our choice)."""
 MARGIN_SHARE = 0.9
-"""Share of the proportional loop's margins that must remain with an integral part (our choice)."""
+"""Share of the proportional loop's margins that must remain when an integral part is added (our
+choice)."""
 NO_GAIN = 1e-9
-"""Factor that replaces a zero proportional gain if there is an integral or derivative part."""
+"""Factor on the proportional gain that replaces a factor of zero, so that an integral or derivative
+part can be expressed relative to it."""
 UNHELD = "the valve cannot hold the load"
 CAUSES = "lower the load or the piston's leakage, raise supply.pressure or the valve's flow"
 
 
 @dataclass(frozen=True, slots=True)
 class Tuned:
-    """Gains of the controller and how they were obtained."""
+    """Gains of the controller, and the way in which they were obtained."""
 
     gains: ControllerGains
     origin: str
     ultimate: Ultimate
     margins: LoopMargins
-    """Margins of the linear loop with these gains, including the scenario's factors on them."""
+    """Margins of the linear loop with these gains, multiplied by the scenario's factors."""
     unit: str
     notes: tuple[str, ...] = ()
     unheld: str = ""
-    """Point at which the valve cannot hold the load, as text. If not empty, the margins are
-    meaningless."""
+    """Text that names the point at which the valve cannot hold the load, if any; the margins are
+    then meaningless."""
 
 
 def tune(
     scenario: Scenario, plant: Plant, records: Records, *, previous: Tuned | None = None
 ) -> Tuned | None:
-    """Gains of a scenario's controller; gains of `previous` are kept and only get new margins.
+    """Gains of a scenario's controller; if `previous` is given, its gains with new margins.
 
     The linear loop has no sticking friction. The valve holds the initial load, even if the scenario
-    starts at other pressures. The loop is evaluated at the start and at every end of the reference,
-    for both spool directions. A speed loop is also evaluated at steady speed. The smallest ultimate
-    gain is used for tuning.
+    starts at other pressures. The loop is evaluated for both spool directions, at the start and,
+    for a position loop, wherever the reference comes to rest. A speed loop is also evaluated at
+    steady speed. The smallest ultimate gain is used for tuning.
 
     Raises
     ------
     InputError
-        a law without a tuning rule; a loop that no gain makes oscillate; a loop that oscillates
-        even when open; a load that the valve cannot hold
+        a control law without a tuning rule; a loop that no gain makes oscillate; a loop that
+        oscillates even without control; a load that the valve cannot hold
     """
     control, loop = scenario.control, loop_of(scenario.control)
     if control is None or loop is None:
@@ -471,7 +476,7 @@ def tune(
 
 
 def _with_held_load(scenario: Scenario) -> Scenario:
-    """The scenario, but with initial pressures that hold its load."""
+    """A copy of the scenario that starts at the pressures at which the valve holds the load."""
     initial = scenario.initial.model_copy(update={"pressure_a": None, "pressure_b": None})
     return scenario.model_copy(update={"initial": initial})
 
@@ -496,7 +501,7 @@ def _loops(
 
 
 def _places(parts: Sequence[SignalSegment], start: float, stroke: float) -> list[float]:
-    """Initial position of a position reference, and the position after each of its parts."""
+    """Initial position of a position reference, and its position after each of its steps."""
     places, position = {start}, start
     for segment in sorted(parts, key=lambda segment: segment.start or 0.0):
         position += steady_value([segment])
@@ -514,9 +519,9 @@ def _loop_in_motion(linear: Linear, name: str, value: float) -> list[OpenLoop]:
 def _gains_by_rule(
     control: Controller, loop: Loop, limit: Ultimate, worst: OpenLoop
 ) -> tuple[ControllerGains, str, tuple[str, ...]]:
-    """Gains by a tuning rule for the ultimate gain and period, with their origin and notes."""
+    """Gains that a tuning rule gives for the ultimate gain and period, name of the rule, notes."""
     if worst.unstable:
-        message = "the open circuit oscillates by itself"
+        message = "the circuit oscillates even without the outer control loop"
         remedy = "lower speed_feedback and pressure_feedback, or add leakage across the piston"
         raise InputError(Diagnostic(message, remedy, path="control"))
     if not isfinite(limit.gain) or limit.gain <= 0:
@@ -576,11 +581,11 @@ def _integral_time(loop: OpenLoop, law: ControllerLaw, shortest: float, period: 
 
 
 BAND = 0.02
-"""Half width of the settling band, as a share of the step: the usual 2 %."""
+"""Half the width of the settling band, as a share of the step: the usual 2 %."""
 
 
 class StepMetrics(NamedTuple):
-    """Key values of a step response; times count from its first sample."""
+    """Key values of a step response; times are measured from its first sample."""
 
     rise_time: float | None
     """Time from 10 to 90 % of the step [s]; None if the response does not reach 90 %."""
@@ -596,7 +601,8 @@ class StepMetrics(NamedTuple):
     peak_time: float
     """Time of the peak [s]."""
     decay: float | None
-    """Next overshoot divided by the largest; None if there is no next overshoot."""
+    """Next overshoot after the largest, divided by the largest; None if there is no next
+    overshoot."""
 
 
 def step_metrics(
@@ -604,9 +610,10 @@ def step_metrics(
 ) -> StepMetrics:
     """Rise, settling, overshoot and steady-state error of a sampled step response.
 
-    Samples are joined by straight lines. Band and overshoot refer to the target, as shares of the
-    step. A response that settles elsewhere thus has an error but no settling time. The response
-    must also stay in the band for the last tenth of the record.
+    Samples are joined by straight lines. The settling band lies about the target, not about the
+    final value. A response that comes to rest elsewhere thus has a steady-state error but no
+    settling time. A response also has none if it is in the band for less than the last tenth of the
+    record. Band and overshoot are shares of the step.
 
     Parameters
     ----------
@@ -643,7 +650,9 @@ def step_metrics(
         message = f"a step from {start:g} to {target:g}"
         raise InputError(Diagnostic(message, "give different values for start and target"))
     if not 0 < band < 1:
-        raise InputError(Diagnostic(f"band {band:g} of the step", "give one between 0 and 1"))
+        raise InputError(
+            Diagnostic(f"settling band {band:g} of the step", "give one between 0 and 1")
+        )
     t = t - t[0]
     normalised = (x - start) / (target - start)
     early, late = _time_at(t, normalised, 0.1), _time_at(t, normalised, 0.9)
@@ -675,7 +684,7 @@ def _crossing(t: np.ndarray, values: np.ndarray, at: int, level: float) -> float
 
 
 def _settling_time(t: np.ndarray, error: np.ndarray, band: float) -> float | None:
-    """Time after which the error stays in the band; None if that is less than the last tenth."""
+    """Time after which the error stays in the band; None if only in less than the last tenth."""
     beyond = np.flatnonzero(np.abs(error) > band)
     if not beyond.size:
         return 0.0
@@ -687,7 +696,7 @@ def _settling_time(t: np.ndarray, error: np.ndarray, band: float) -> float | Non
 
 
 def _decay(beyond: np.ndarray) -> float | None:
-    """Next overshoot divided by the first sample, which is the largest overshoot."""
+    """Next overshoot divided by the largest, which is the first sample of `beyond`."""
     back = np.flatnonzero(beyond < 0)
     if beyond[0] <= 0 or not back.size:
         return None

@@ -38,20 +38,22 @@ class EnergyFlow:
 
 @dataclass(frozen=True, slots=True)
 class Balance:
-    """Errors of the mass and energy balance of a simulation, relative to the throughput."""
+    """Relative errors of the mass and energy balance of a simulation."""
 
     mass: float
-    """Largest error of any volume: |content - net inflow|, divided by the content."""
+    """Largest error in any volume: |change of content - net inflow|, divided by the largest
+    content."""
     energy: float
-    """Largest |stored energy - net inflow|, divided by all energy that crosses the boundary."""
+    """Largest |change of stored energy - net inflow|, divided by all energy that enters, leaves or
+    is stored."""
     flows: tuple[EnergyFlow, ...]
     stored: tuple[EnergyFlow, ...]
-    """Change of each stored energy."""
+    """Change of each stored energy during the simulation."""
 
 
 @dataclass(frozen=True, slots=True)
 class Second:
-    """Comparison with a second integrator that solves the same equations."""
+    """Comparison with a second integration method that solves the same equations."""
 
     method: str
     max_difference: float
@@ -65,7 +67,7 @@ class Second:
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """Dynamic stiffness within a time window of whole cycles."""
+    """Dynamic stiffness in one time window, which contains whole cycles."""
 
     time: float
     position: float
@@ -77,7 +79,7 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class HarmonicLoad:
-    """Dynamic stiffness at the frequency of the scenario's sinusoidal load."""
+    """Dynamic stiffness at the frequency of the sinusoidal load, in successive time windows."""
 
     frequency: float
     windows: tuple[Window, ...]
@@ -97,7 +99,7 @@ class Servo:
 
 @dataclass(frozen=True, slots=True)
 class RequirementResult:
-    """A requirement on the simulation, with its result."""
+    """A requirement of the scenario, compared with the simulated value."""
 
     metric: str
     sense: str
@@ -109,7 +111,7 @@ class RequirementResult:
 
     @property
     def state(self) -> State:
-        """Whether the requirement is missed, met, or met without a reserve."""
+        """The requirement is "missed", "met", or met without a reserve ("no_reserve")."""
         if not self.met:
             return "missed"
         return "no_reserve" if without_reserve(self.margin, self.limit) else "met"
@@ -127,8 +129,9 @@ class SignalLabel:
 class Simulation(Displayed):
     """Results of a simulated scenario.
 
-    `time` may contain the same time twice: before and after a jump. `values` are the results by the
-    names of `quantities.RESULTS`. A result that does not apply is None, and `why` gives the reason.
+    At a jump, `time` contains the same time twice: before and after the jump. `values` are the
+    results by the names of `quantities.RESULTS`. A result that does not apply is None, and `why`
+    gives the reason.
     """
 
     scenario: Scenario
@@ -279,25 +282,29 @@ def _finite(value: float) -> float | None:
 
 
 RISE = 4
-"""Smallest number of samples during the rise for reliable results (our choice)."""
+"""Step response results are reliable if the rise lasts at least this number of sample intervals
+(our choice)."""
 NOT_HERE = "does not apply to this scenario"
 NO_STEP = "the reference has no step"
-NO_MOTION = "the reference does not move on"
+NO_MOTION = "the reference does not keep moving"
 NO_SINE = "no sinusoidal load acts on the rod"
 NO_STOP = "the piston does not reach a stop"
 EXPECTED = (NOT_HERE, NO_STEP, NO_MOTION, NO_SINE, NO_STOP)
-"""Reasons for missing results that are obvious from the scenario and are not reported."""
+"""Reasons for missing results that are obvious from the scenario and therefore not reported."""
 _STEP = ("rise_time", "settling_time", "overshoot", "steady_state_ratio")
 
 
 def reference(scenario: Scenario) -> tuple[Loop | None, Sequence[SignalSegment]]:
-    """The control loop of a scenario and the parts of its reference."""
+    """The control loop of a scenario, and the pieces of its reference signal."""
     loop = loop_of(scenario.control)
     return loop, () if loop is None else getattr(scenario.control, loop)
 
 
 def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Servo | None:
-    """Response to the first step of the reference, up to its next change; None without a step."""
+    """Response to the first step of the reference, until the reference changes again.
+
+    None if it has no step.
+    """
     loop, parts = reference(scenario)
     steps = [part for part in parts if part.shape == "step"]
     if loop is None or not steps or not all(SHAPES[part.shape].settles for part in parts):
@@ -329,7 +336,7 @@ def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Serv
 def harmonic_load(
     scenario: Scenario, time: Array, signals: Mapping[str, Array]
 ) -> tuple[HarmonicLoad | None, str]:
-    """Dynamic stiffness along the stroke under a sinusoidal load, or why it is missing."""
+    """Dynamic stiffness under a sinusoidal load in each time window, or why it is missing."""
     if "position" not in signals:
         return None, NO_SINE
     load = scenario.load
@@ -371,7 +378,10 @@ def _window(time: Array, position: Array, force: Array, frequency: float) -> Win
 
 
 def _step_results(step: Servo, spacing: float) -> tuple[dict[str, float | None], dict[str, str]]:
-    """Step response results at a sample spacing [s], and reasons for the missing ones."""
+    """Results of a step response, and reasons for missing results.
+
+    `spacing` is the sample time [s].
+    """
     metrics = step.metrics
     error = abs(metrics.steady_state_error) / abs(step.target - step.start)
     if metrics.rise_time is not None and metrics.rise_time < RISE * spacing:
@@ -404,7 +414,7 @@ def values(
     still: str,
     records: Records,
 ) -> tuple[dict[str, float | None], dict[str, str]]:
-    """Every result of `quantities.RESULTS`; one that does not apply is None, with a reason."""
+    """Every result of `quantities.RESULTS`; a result that does not apply is None, with a reason."""
     results: dict[str, float | None] = dict.fromkeys(RESULTS)
     why = dict.fromkeys(RESULTS, NOT_HERE)
     why |= dict.fromkeys(_STEP, NO_STEP)
@@ -421,7 +431,7 @@ def values(
     if "position" in signals:
         results["hold_drift"] = _drift(scenario, records, time, signals)
         why["hold_drift"] = (
-            "signal, reference or load still cause motion in the last tenth of the time"
+            "valve signal, reference or load still cause motion in the last tenth of the time"
         )
         speed = _stop_speed(time, signals["speed"], events)
         results["stop_speed"], why["stop_speed"] = speed, NO_STOP
@@ -436,7 +446,7 @@ def values(
         work = -(energies.get("load", 0.0) + energies.get("joint", 0.0))
         net = energies["supply"] + energies.get("return line", 0.0)
         results["efficiency"] = work / net if work > 0 and net > 0 else None
-        why["efficiency"] = "no work was done on the load"
+        why["efficiency"] = "the actuator did no net work on the load"
         if scenario.supply.accumulator is not None:
             results["efficiency"] = None
             why["efficiency"] = "the accumulator supplies part of the work"
@@ -452,7 +462,11 @@ def values(
 
 
 def _settled_from(parts: Sequence[SignalSegment], duration: float) -> float:
-    """Time after one period of the slowest sine; without a sine, the start of the reference."""
+    """Time at which the following error is first evaluated.
+
+    This is one period of the slowest sine after the start of the reference, or its start if it has
+    no sine, but at most 90 % of the duration.
+    """
     tones = frequencies(parts)
     begin = min(part.start for part in parts)
     return min(begin + (1 / min(tones) if tones else 0.0), 0.9 * duration)
@@ -510,7 +524,7 @@ def requirements(
 
 
 def balance(circuit: Circuit, run: Trajectory) -> Balance:
-    """Mass and energy balance of a simulation, evaluated from its states."""
+    """Mass and energy balance of a simulation, computed from its states."""
     audit, system = circuit.audit, circuit.system
     at = {state.symbol.index: k for k, state in enumerate(system.states)}
 
@@ -541,7 +555,7 @@ def balance(circuit: Circuit, run: Trajectory) -> Balance:
 
 
 def _values(system: System, expressions: list[object], run: Trajectory) -> list[Array]:
-    """Values of expressions of the states at every sample."""
+    """Values at every sample of expressions in the states."""
     unpack = system.unpack([state.symbol for state in system.states], "y")
     values = vectorised("stored", "t, y, m", unpack, expressions)(
         run.time, run.states, tuple(run.flags)
@@ -550,14 +564,14 @@ def _values(system: System, expressions: list[object], run: Trajectory) -> list[
 
 
 EXPLAINING = ("position", "speed", "shaft_speed", "pressure_a", "pressure_b", "pressure_supply")
-"""Signals that help to explain a failed integration."""
+"""Signals whose values at the time of failure are reported if an integration fails."""
 OUT = 0.1
-"""Travel past the end of the stroke, as a share of the stroke, above which the end stops have
-failed (our choice)."""
+"""Travel past the end of the stroke, as a share of the stroke, above which the model of the end
+stops counts as overloaded (our choice)."""
 
 
 def failed(stuck: Stuck, compiled: Compiled, plant: Plant) -> Unsolvable:
-    """Error for a failed integration: the actuator's state at that time and the likely remedy."""
+    """Error for a failed integration, with the actuator's state at that time and a remedy."""
     flags = np.zeros((len(compiled.system.flags), 1), dtype=bool)
     signals = compiled.signals(np.array([stuck.time]), stuck.state[:, None], list(flags))
     words = [
@@ -578,7 +592,10 @@ def _outside(signals: Mapping[str, Array], plant: Plant) -> str:
     position = float(signals["position"][0])
     beyond = max(-position, position - plant.stroke)
     if plant.design.linkage is not None and beyond > 0:
-        return "the joint reaches its dead centre beyond the stop: lower its load"
+        return "beyond the end stop, the joint reaches its dead centre: lower its load"
     if beyond > OUT * plant.stroke:
-        return "the piston is beyond its stops: lower the load, or stiffen them (stop_travel)"
+        return (
+            "the piston is beyond its stops: lower the load, or stiffen the stops (smaller "
+            "stop_travel)"
+        )
     return ""

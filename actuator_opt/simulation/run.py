@@ -29,23 +29,24 @@ from .result import Second, SignalLabel, Simulation
 from .system import Compiled
 
 SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "cvodes": "radau", "radau": "lsoda"}
-"""The second integrator that checks each method."""
+"""For each integration method, the second method that checks it."""
 COMPARED = (
     "position", "speed", "pressure_a", "pressure_b", "shaft_speed", "shaft_angle", "spool",
     "flow_a", "flow_b",
 )  # fmt: skip
-"""Signals that are compared between the two integrators."""
+"""Signals that are compared between the two methods."""
 TORN = -0.8e5
-"""Gauge pressure below which cavitation is reported [Pa] (our choice: air is released at higher
+"""Gauge pressure below which cavitation is reported [Pa] (our choice; oil releases air at higher
 pressures already)."""
 COARSE = 1e-3
 """Sample time above which peaks of the oil pressure may be missed [s] (our choice: an eighth of a
 period at 125 Hz)."""
 SETTLED = 0.02
-"""Relative difference between the initial pressure of a pump line and its equilibrium above which
-it is reported (our choice)."""
+"""Relative difference between the initial pressure of a pump line and its equilibrium pressure,
+above which a note reports it (our choice)."""
 WARN_PLANE = 0.02
-"""Error of the friction plane fitted over the pressures above which it is reported."""
+"""Relative error of the plane fitted to the friction over the pressures, above which a note reports
+it."""
 
 
 def simulate(
@@ -61,15 +62,15 @@ def simulate(
     Parameters
     ----------
     scenario : inputs over time
-    subject : the design, with the values that the scenario sets
+    subject : the design, in which the values that the scenario sets are already changed
     records : columns of the files that the scenario's signals name
-    verify : integrate again by another method and compare the results
+    verify : whether to integrate again by another method and compare the results
     method : integration method
 
     Raises
     ------
     InputError
-        a missing valve or gain, or a law without a tuning rule
+        a missing valve or gain, or a control law without a tuning rule
     Unsolvable
         the integration fails; the message gives the time
     """
@@ -94,7 +95,7 @@ def run(
     spec: str = "",
     begin: float | None = None,
 ) -> Simulation:
-    """Simulate a scenario for a plant and known gains.
+    """Simulate a scenario for a plant and known controller gains.
 
     The other parameters are as in `simulate`.
     """
@@ -149,7 +150,7 @@ def _checked_by(
     signals: dict[str, Array],
     method: Method,
 ) -> Second:
-    """Integrate again by another method; each difference is relative to the signal's span."""
+    """Integrate again by another method; differences are shares of the span of each signal."""
     other = integrate(compiled, duration=scenario.duration, sample_time=step, method=method)
     again = compiled.signals(other.time, other.states, other.flags)
     grid, at = _single_instants(first.time)
@@ -181,7 +182,7 @@ def _single_instants(time: Array) -> tuple[Array, Array]:
 def _notes(
     circuit: Circuit, tuned: Tuned | None, signals: Mapping[str, Array], step: float
 ) -> tuple[str, ...]:
-    """Notes on a simulation for its reader."""
+    """Notes on a simulation for its user."""
     scenario, actuator = circuit.scenario, circuit.plant
     return (
         *recorded_notes(scenario, circuit.records),
@@ -196,7 +197,7 @@ def _notes(
 
 
 def _controller_notes(tuned: Tuned | None) -> Iterator[str]:
-    """Notes of the tuning, and a note if the loop is unstable or has no valid margins."""
+    """Notes from tuning the controller; a note if the loop is unstable or has no valid margins."""
     if tuned is None:
         return
     yield from tuned.notes
@@ -204,33 +205,34 @@ def _controller_notes(tuned: Tuned | None) -> Iterator[str]:
         yield f"{UNHELD}{tuned.unheld}: the margins of the linear loop are meaningless; {CAUSES}"
     elif not tuned.margins.stable:
         yield (
-            f"the linear loop is unstable: gain margin {tuned.margins.gain:.2f}; it "
-            "oscillates until limited by the valve or the friction"
+            f"the linear loop is unstable: gain margin {tuned.margins.gain:.2f}; its "
+            "oscillation grows until the valve or the friction limits it"
         )
 
 
 def _simplifications(scenario: Scenario, actuator: Plant) -> Iterator[str]:
-    """Notes on simplified friction and on port accumulators, which the simulation leaves out."""
+    """Notes on simplified friction, and on port accumulators, which are left out."""
     friction, seals = scenario.friction, actuator.seals
     if friction.coulomb is None and friction.model != "none" and scenario.motor is None:
         error = max(seals.coulomb.error, seals.static.error)
         if error > WARN_PLANE:
             yield (
-                "friction is interpolated over the pressures with an error of up to "
+                "friction is interpolated between chamber pressures with an error of up to "
                 f"{100 * error:.1f} %"
             )
         films = [place for place in ("piston", "rod") if actuator.films[place]]
         if films:
             yield (
-                f"the {' and '.join(films)} seal's oil film is simulated as dry friction with "
-                "its coefficient: state friction.coulomb and viscous for its running friction"
+                f"the oil film of the {' and '.join(films)} seal is simulated as dry friction with "
+                "the seal's friction coefficient: to simulate the friction of the film, state "
+                "friction.coulomb and friction.viscous"
             )
     if actuator.design.ports.accumulators:
         yield "accumulators at the ports (ports.accumulators) are left out of the simulation"
 
 
 def _limits(scenario: Scenario, actuator: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
-    """Notes on cavitation, excess pressure and load cylinder travel, which nothing limits."""
+    """Notes on cavitation, excess pressure and excess travel, which the model does not limit."""
     where = "chamber" if scenario.motor is None else "pipe"
     for name in ("pressure_a", "pressure_b"):
         if name not in signals:
@@ -250,8 +252,8 @@ def _limits(scenario: Scenario, actuator: Plant, signals: Mapping[str, Array]) -
         x = signals["position"]
         if float(np.max(np.abs(x - x[0]))) > 0.5 * bench.stroke:
             yield (
-                "the load cylinder leaves its stroke, as its model starts in the middle and "
-                "has no stops"
+                "the load cylinder leaves its stroke: in the model it starts at mid-stroke and "
+                "has no end stops"
             )
 
 
@@ -260,7 +262,7 @@ def _coarse_samples(step: float, signals: Mapping[str, Array]) -> Iterator[str]:
     if step > COARSE and "pressure_a" in signals:
         yield (
             f"peaks and step results are taken from samples that are {1e3 * step:.3g} ms apart; "
-            "for closer values state a shorter sample_time"
+            "for more accurate values state a shorter sample_time"
         )
 
 
@@ -288,7 +290,7 @@ def _pump_not_in_equilibrium(scenario: Scenario, actuator: Plant) -> Iterator[st
     if abs(equilibrium - initial) > SETTLED * initial:
         yield (
             f"the supply line starts at {text(initial)} (supply.pressure), but pump and relief "
-            f"valve settle near {text(equilibrium)}: set supply.pressure to that value"
+            f"valve are in equilibrium near {text(equilibrium)}: set supply.pressure to that value"
         )
 
 

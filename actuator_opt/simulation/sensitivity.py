@@ -1,8 +1,9 @@
 """Sensitivity of a scenario's results to its parameters: central differences, ranked by effect.
 
-The controller keeps its gains, unless a parameter of `control` itself is changed. An effect refers
-to a change of 1 % in the parameter, or of 1 K in a temperature. Each difference is computed again
-with half the step. If the two disagree, noise or a jump dominates, and the value is marked.
+The controller keeps its gains, unless the changed parameter belongs to the block `control`. An
+effect refers to a change of 1 % in the parameter, or of 1 K in a temperature. Each difference is
+computed again with half the step. If the two disagree, numerical noise or a jump dominates, and the
+effect is marked as not reliable.
 """
 
 from __future__ import annotations
@@ -30,9 +31,10 @@ from .result import Simulation
 from .run import run
 
 STEP = 0.02
-"""Relative step of a parameter (our choice: well above the error of a run)."""
+"""Relative step of a parameter (our choice: its effect is well above the error of a simulation)."""
 AGREE = 0.1
-"""Relative difference up to which the results with the whole and with half the step agree."""
+"""Relative difference up to which the effects computed with the full and with half the step count
+as equal."""
 NOTHING = 0.05
 """Change of a result, in per cent per 1 % of a parameter, that counts as zero (our choice)."""
 DESIGN = (
@@ -43,9 +45,9 @@ DESIGN = (
     "valve.leakage_flow", "valve.natural_frequency", "valve.damping_ratio", "control.gain",
     "load.mass", "load.inertia",
 )  # fmt: skip
-"""Values of a design that are varied by default."""
+"""PATHs of the design values that are varied by default."""
 LEAST = {"hold_drift": 1e-7, "overshoot": 1e-5, "steady_state_ratio": 1e-5, "following_error": 1e-7}
-"""Values of results below which they count as rounding [SI] (our choice)."""
+"""Values of some results below which they count as rounding error [SI] (our choice)."""
 _TIMES = ("start", "end", "phase", "frequency")
 _APART = ("duration", "sample_time", "requirements", "analysis", "set")
 
@@ -55,7 +57,7 @@ class Effect:
     """Effect of a 1 % change of a parameter (1 K for a temperature)."""
 
     percent: float | None
-    """Change of the result in per cent; None if the result is zero."""
+    """Change of the result in per cent of its value; None if the result is zero."""
     change: float
     """Change of the result [SI]."""
     reliable: bool
@@ -87,7 +89,7 @@ class ParameterEffects:
 
 @dataclass(frozen=True, slots=True)
 class Sensitivities(Displayed):
-    """Effects of all parameters, in order of decreasing effect."""
+    """Effects of all parameters, the parameter with the largest effect first."""
 
     name: str
     results: Mapping[str, float]
@@ -144,7 +146,8 @@ def sensitivities(
     Parameters
     ----------
     scenario, subject : inputs over time, and the design
-    names : PATHs in design or scenario; default: `DESIGN` and all numbers that the scenario states
+    names : PATHs of the parameters, in design or scenario; default: those of `DESIGN`, and all
+        numbers that the scenario states
     step : relative step of a parameter
     results : names of `quantities.RESULTS`; default: all results of the scenario
     records : columns of the files that the scenario's signals name
@@ -158,7 +161,7 @@ def sensitivities(
     """
     begin = perf_counter()
     if not 0 < step < 0.5:
-        message = f"step {step:g} of a parameter"
+        message = f"relative step {step:g} of a parameter"
         raise InputError(Diagnostic(message, "give a share between 0 and 0.5, such as 0.02"))
     bench = _Bench.of(scenario, subject, {} if records is None else records)
     base = bench.base()
@@ -167,7 +170,7 @@ def sensitivities(
     skipped: dict[str, str] = {}
     for target in steps("varying each parameter", [*bench.targets(names)]):
         if target.value == 0:
-            skipped[target.path] = "it is 0, so a relative step has no effect"
+            skipped[target.path] = "its value is 0, so a relative step does not change it"
             continue
         try:
             ranked.append(bench.parameter(target, reference, step))
@@ -212,7 +215,8 @@ class _Target:
 
 
 _Slope: TypeAlias = tuple[float | None, float]
-"""Change of a result per unit of a parameter: in per cent of the result, and in SI."""
+"""Change of a result for a change of a parameter by 1 % or 1 K: in per cent of the result, and in
+SI."""
 
 
 @dataclass(slots=True)
@@ -227,7 +231,7 @@ class _Bench:
 
     @classmethod
     def of(cls, scenario: Scenario, subject: PreparedDesign, records: Records) -> _Bench:
-        """Build with the controller gains of the unchanged scenario."""
+        """Tune the controller for the unchanged scenario; keep its gains for all simulations."""
         return cls(scenario, subject, records, tune(scenario, plant(subject), records))
 
     def base(self) -> Simulation:
@@ -249,7 +253,7 @@ class _Bench:
             yield self._target(paths.spell(loc, self.scenario))
 
     def _target(self, name: str) -> _Target:
-        """The number with this PATH: in the scenario, else in the design."""
+        """The number with this PATH in the scenario or, if it has none, in the design."""
         design = self.subject.design
         try:
             resolved = paths.resolve(name, self.scenario, RESULTS, Scenario)
@@ -269,7 +273,7 @@ class _Bench:
     def parameter(
         self, target: _Target, reference: Mapping[str, float], step: float
     ) -> ParameterEffects:
-        """Effects of one parameter: two simulations, and two more if a result changes."""
+        """Effects of one parameter, from two simulations, and two more if any result changes."""
         full_step = self._slopes(target, reference, step)
         moving = {name for name, slope in full_step.items() if _moves(slope, _least(name, step))}
         half_step = self._slopes(target, reference, 0.5 * step) if moving else full_step
@@ -287,7 +291,7 @@ class _Bench:
     def _slopes(
         self, target: _Target, reference: Mapping[str, float], step: float
     ) -> dict[str, _Slope]:
-        """Change of the results per unit of a parameter, where both simulations have a result."""
+        """Change of each result per unit of a parameter, if both simulations have this result."""
         units = step / 0.01
         high, low = (
             self._values(target, target.value + sign * units * target.amount) for sign in (1, -1)
@@ -320,18 +324,18 @@ class _Bench:
 
 
 def _least(name: str, step: float) -> float:
-    """Change of a result per unit of a parameter below which it counts as rounding [SI]."""
+    """Change of a result, per 1 % or 1 K, below which it counts as rounding error [SI]."""
     return LEAST.get(name, 0.0) * 0.01 / step
 
 
 def _moves(slope: _Slope, least: float) -> bool:
-    """Whether the change of a result exceeds rounding."""
+    """Whether the change of a result exceeds rounding errors."""
     percent, change = slope
     return abs(change) > least if percent is None else abs(percent) > NOTHING
 
 
 def _same(slope: _Slope, other: _Slope, least: float) -> bool:
-    """Whether two changes per unit agree, or are both zero."""
+    """Whether the effects with the full and with half the step agree, or are both zero."""
     if not (_moves(slope, least) or _moves(other, least)):
         return True
     index = 1 if slope[0] is None else 0
@@ -345,7 +349,7 @@ def _absolute(quantity: Quantity) -> bool:
 
 
 def _put(node: Any, loc: Loc, value: float) -> Any:
-    """A section of a file with another number at a location."""
+    """A copy of a section of a file, with the number at one location replaced."""
     key, remaining_path = loc[0], loc[1:]
     old = child(node, key)
     new: Any = _put(old, remaining_path, value) if remaining_path else value

@@ -1,9 +1,10 @@
 """A system of ordinary differential equations under construction, and its compiled form.
 
-Components add states, rates and signals as expressions of the same symbols. They call the
-models of `actuator_opt.models` with these symbols, so the simulation has no formulas of its own.
-Jumps are represented by flags, which are constant between two restarts of the integration. A flag
-is true after a given time, or it is a switch: true while an expression, its guard, is positive.
+Components add states, rates and signals as expressions in the same symbols. They call the models of
+`actuator_opt.models` with these symbols instead of numbers, so the simulation has no formulas of
+its own. Jumps are represented by flags, which are constant between two restarts of the integration.
+There are two kinds of flags. Instants are true after a given time. Switches are true while an
+expression, the guard of the switch, is positive.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ from ..base.symbolic import Expression, Graph, Namespace, Symbol, function, jaco
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 
 LOOSE = 1e-4
-"""Tolerance of an integral relative to its scale (our choice: the other states determine the step
-size)."""
+"""Tolerance of an integral relative to its scale (our choice: so wide that the other states
+determine the step size)."""
 PRESSURE = 1.0
 """Error tolerance of a pressure [Pa]."""
 EMPTY = -40.0
@@ -83,12 +84,12 @@ class System:
     instants: list[Instant] = field(default_factory=list)
     signals: list[Signal] = field(default_factory=list)
     pressure_states: dict[int, Symbol] = field(default_factory=dict)
-    """States behind the pressures, by index of the pressure's symbol."""
+    """State from which each pressure is computed, by index of the pressure's symbol."""
     bends: list[float] = field(default_factory=list)
-    """Times at which a record changes its slope. No integration step is longer than the interval
-    between them."""
+    """Times at which the slope of an input record changes. No integration step is longer than the
+    interval between them."""
     notes: list[str] = field(default_factory=list)
-    """Notes for the reader of the result: assumptions and simplifications that had an effect."""
+    """Notes for the user: assumptions and simplifications that affect the result."""
 
     @property
     def time(self) -> Symbol:
@@ -96,7 +97,7 @@ class System:
         return self.graph.variable("t")
 
     def state(self, name: str, initial: float, *, tolerance: float) -> Symbol:
-        """Add a state; its equation is set by `rate`."""
+        """Add a state, whose time derivative `rate` sets later."""
         symbol = self.graph.variable(f"y_{len(self.states)}")
         self.states.append(SystemState(name, symbol, float(initial), tolerance))
         return symbol
@@ -128,7 +129,7 @@ class System:
     def integral(self, name: str, rate: Expression, *, scale: float) -> Symbol:
         """Add the integral of an expression over time, from zero.
 
-        Its error does not limit the steps.
+        Its error does not limit the size of the integration steps.
         """
         symbol = self.state(name, 0.0, tolerance=LOOSE * scale)
         self.states[-1].rate, self.states[-1].integral = rate, True
@@ -147,20 +148,20 @@ class System:
     def switch(self, name: str, guard: Expression) -> Symbol:
         """A flag that is true while the guard is positive.
 
-        The times of its changes are computed.
+        The integration computes the times at which it changes.
         """
         flag = f"s_{len(self.switches)}"
         self.switches.append(Switch(name, flag, guard))
         return self.graph.flag(flag)
 
     def signal(self, name: str, label: str, quantity: Quantity, value: Expression) -> None:
-        """Add an output signal; a later one of the same name replaces it."""
+        """Add an output signal; it replaces an earlier signal of the same name."""
         self.signals = [signal for signal in self.signals if signal.name != name]
         self.signals.append(Signal(name, label, quantity, value))
 
     @property
     def flags(self) -> list[str]:
-        """Names of the flags: first those that depend on time, then the switches."""
+        """Names of the flags: first the instants, then the switches."""
         return [instant.flag for instant in self.instants] + [
             switch.flag for switch in self.switches
         ]
@@ -178,9 +179,9 @@ class System:
 
 @dataclass(frozen=True, slots=True)
 class Compiled:
-    """Functions of a system: ``f(t, y, m)`` with a vector y and a tuple m of flags.
+    """Functions ``f(t, y, m)`` of a system: t is the time, y the states, m the flags.
 
-    Flags are ordered as `instants`, followed by `switches`.
+    The flags are in the order of the `instants`, followed by the switches.
     """
 
     system: System
@@ -188,7 +189,7 @@ class Compiled:
     slopes: Callable[[float, Array, tuple[bool, ...]], Array]
     """Jacobian of the rates, row by row."""
     guards: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
-    """Guards of all switches at many samples: y is (states, samples)."""
+    """Guards of all switches at many samples; y has a row per state and a column per sample."""
     guard_rates: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
     """Time derivatives of the guards."""
     signal_values: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
@@ -197,7 +198,7 @@ class Compiled:
     tolerances: Array
     instants: tuple[float, ...]
     bends: Array
-    """Times at which a record changes its slope, each only once."""
+    """Times at which the slope of an input record changes, in ascending order."""
 
     @classmethod
     def of(cls, system: System) -> Compiled:
@@ -233,7 +234,7 @@ class Compiled:
         )
 
     def signals(self, t: Array, y: Array, m: Sequence[Array]) -> dict[str, Array]:
-        """Values of every signal at samples; y is (states, samples), m has a row for every flag."""
+        """Values of every signal at samples; y has one row per state, m one per flag."""
         with np.errstate(all="ignore"):
             values = self.signal_values(t, y, tuple(m))
         return {

@@ -1,4 +1,4 @@
-"""Properties of a design for evaluating its test records: areas, mass, forces, stiffness."""
+"""Properties of a design that the evaluation of its test records needs, such as areas and mass."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ class Bench:
 
     Parameters
     ----------
-    design : the actuator tested
-    growth : radial growth of the bore at the piston seal per chamber pressure [m/Pa]
+    design : the design of the tested actuator
+    growth : radial growth of the bore at the piston seal per unit chamber pressure [m/Pa]
     mass : moving mass inside the force sensor: rod, piston, fastening [kg]
     rings, wipers : sealing rings and wipers in the first load case
-    springs : stiffness budget
+    springs : stiffness budget, part by part
     oil_pressures : pressures of chambers A and B in the first load case [Pa]
     temperature : oil temperature [K]
     bulk_modulus : bulk modulus [Pa] of the oil with air, as a function of gauge pressure, at the
@@ -63,10 +63,10 @@ class Bench:
     def areas(self, highest_pressure: Array) -> tuple[Array, Array]:
         """Return cap and rod-end piston areas, with the bore grown by the higher chamber pressure.
 
-        A_1 = pi (D/2 + u)^2 and A_2 = A_1 - pi d^2/4, with bore D, rod diameter d and the growth u
-        at the piston seal, because the pressure acts on the area that the seal closes. Without a
-        piston seal the rod is a plunger, and the areas are pi d^2/4 and zero. Gauge pressure [Pa];
-        areas [m^2].
+        A_1 = pi (D/2 + u)^2 and A_2 = A_1 - pi d^2/4, with bore D and rod diameter d. The radial
+        growth u is that at the piston seal, because the pressure acts on the area inside the seal.
+        Without a piston seal the rod is a plunger, and the areas are pi d^2/4 and zero. Gauge
+        pressure [Pa]; areas [m^2].
         """
         if self.plunger:
             area = forces.piston_area(bore=self.rod_diameter)
@@ -78,17 +78,17 @@ class Bench:
         )
 
     def normal_forces(self, pressure_1: Array, pressure_2: Array) -> list[tuple[Ring, Array]]:
-        """Return every ring with its normal force [N] at chamber pressures: line load f times pi D.
+        """Return every ring with its normal force [N], line load times circumference.
 
-        The first of several rings in series seals the pressure; the others are only squeezed. Gauge
-        pressures [Pa], arrays of any shape.
+        Of several rings in series, the first seals the pressure; the others are only squeezed. The
+        arguments are the gauge pressures in both chambers [Pa], arrays of any shape.
         """
         return [(ring, force) for ring, _, force in self._rubbing(pressure_1, pressure_2)]
 
     def _rubbing(
         self, pressure_1: Array, pressure_2: Array
     ) -> Iterator[tuple[Ring, SealContact, Array]]:
-        """Yield every ring with its contact and the normal force of all rings in series [N]."""
+        """Yield every ring, its contact, and the normal force [N] of all such rings in series."""
         for ring in self._loaded(pressure_1, pressure_2):
             contact = seal_contact(ring)
             load = contact.line_load
@@ -111,15 +111,15 @@ class Bench:
         return sum((friction for _, friction in self._coulomb(pressure_1, pressure_2)), wiped)
 
     def _coulomb(self, pressure_1: Array, pressure_2: Array) -> Iterator[tuple[Ring, Array]]:
-        """Yield every ring with the Coulomb friction of all rings in series [N]."""
+        """Yield every ring with the Coulomb friction [N] of all such rings in series."""
         for ring, contact, force in self._rubbing(pressure_1, pressure_2):
             yield ring, ring.element.friction_law.coefficient(ring.sizes, contact) * force
 
     def sliding(self, speed: Array, pressure_1: Array, pressure_2: Array) -> tuple[Array, Array]:
-        """Return level and viscous part [N] of the friction, without side load on guides.
+        """Return dry and viscous part [N] of the sliding friction, without side load on guides.
 
-        The level is Coulomb friction plus the excess of breakaway friction that remains at the
-        speed [m/s]. Gauge pressures [Pa].
+        The dry part is Coulomb friction plus the share of the extra breakaway friction that remains
+        at this speed [m/s]. Gauge pressures [Pa].
         """
         level = sum((float(wiper.friction) for wiper in self.wipers), 0.0 * speed)
         viscous = 0.0 * speed
@@ -129,7 +129,7 @@ class Bench:
         return level, viscous
 
     def contact_pressure(self, pressure_1: float, pressure_2: float) -> float:
-        """Return the normal force of the rings that seal the pressure, per contact area [Pa]."""
+        """Return the mean contact pressure [Pa] of the rings that seal the pressure."""
         rings = [ring for ring in self._loaded(pressure_1, pressure_2) if _leads(ring)]
         pairs = [(float(ring["diameter"]), seal_contact(ring)) for ring in rings]
         force = sum(diameter * float(contact.line_load) for diameter, contact in pairs)
@@ -152,7 +152,7 @@ class Bench:
         )
 
     def _loaded(self, pressure_1: Array, pressure_2: Array) -> list[Ring]:
-        """Return the rings at chamber pressures; the first on piston and rod seals the pressure."""
+        """Return the rings under given chamber pressures; the first ring of each seal is loaded."""
         p1, p2 = (
             np.maximum(pressure, 0.0) for pressure in np.broadcast_arrays(pressure_1, pressure_2)
         )
@@ -173,8 +173,9 @@ class Bench:
     def stiffness(self, position: Array, pressure_1: Array, pressure_2: Array) -> Array:
         """Return the stiffness with closed ports at every sample [N/m]; NaN for a plunger.
 
-        The arguments are arrays (samples,): position of the piston from the cap end [m], gauge
-        pressures [Pa]. The bulk modulus of the oil with air is taken at each chamber's pressure.
+        The arguments are arrays with one value per sample: position of the piston from the cap end
+        [m] and gauge pressures [Pa]. The bulk modulus of the oil with air is taken at the pressure
+        of each chamber.
         """
         place = np.clip(position, 0.0, self.stroke)[None, :]
         if self.plunger:
@@ -199,7 +200,7 @@ class Bench:
 
 
 def _leads(ring: Ring) -> bool:
-    """Whether a ring is the first of its series and so seals the pressure."""
+    """Whether a ring is the first of its seal, which seals the pressure."""
     return ring.groove.path == f"seals.{ring.name}."
 
 

@@ -1,4 +1,4 @@
-"""Oil films of seals in series over pressure and speed, each solved from the previous solution."""
+"""Oil films of one seal or two in series over pressure and speed; each solution starts the next."""
 
 from __future__ import annotations
 
@@ -19,14 +19,15 @@ from ..models import friction
 from ..seals.contact import SealContact
 
 Stroke = Literal["out", "in"]
-"""Direction in which the counterface moves past the seal: out of the sealed chamber, or into it."""
+"""Direction in which the counterface (rod or bore) moves past the seal: out of the sealed chamber,
+or into it."""
 
 
 def drives(place: Place) -> Stroke:
-    """Return the direction of the counterface past a seal while the oil drives the actuator.
+    """Return the direction in which the counterface moves past a seal if oil drives the actuator.
 
-    A driven piston moves away from the pressure that it seals, so the bore moves in past the piston
-    seal. The bore moves out if a load overruns the actuator.
+    A piston that oil drives moves away from the sealed pressure. Relative to its seal, the bore
+    thus moves into the sealed chamber. If a load overruns the actuator, it moves out.
     """
     return "in" if place == "piston" else "out"
 
@@ -37,9 +38,9 @@ class Sealing:
 
     Parameters
     ----------
-    rings : the rings, each with the pressure on its outer side; plain floats
+    rings : the rings, each with the pressure on its outer side; all numbers are floats
     outward : whether the counterface moves towards the outer side
-    growth : growth of the counterface per pressure on it [m/Pa]
+    growth : radial growth of the counterface per unit pressure [m/Pa]
     """
 
     rings: tuple[Ring, ...]
@@ -47,11 +48,11 @@ class Sealing:
     growth: float = 0.0
 
     def grown(self, pressure: float) -> float:
-        """Return the growth of the counterface at a pressure difference [m]."""
+        """Return the radial growth of the counterface [m] at a pressure difference [Pa]."""
         return self.growth * (pressure + float(self.rings[-1]["outer_pressure"]))
 
     def row(self, pressure: float, speed: float, **changes: float) -> FilmRow:
-        """Return film inputs at a pressure and speed; `changes` are for the first ring."""
+        """Return the inputs of the film model; `changes` replace numbers of the first ring."""
         grown = self.grown(pressure)
         rings = []
         for ring in self.rings:
@@ -66,7 +67,7 @@ class Sealing:
 
 
 def sealing(base: Base, place: Place, case: int) -> Sealing:
-    """Return the rings of piston or rod, with oil and outer pressure of a driven load case."""
+    """Return the rings of piston or rod, with oil and outer pressure as in a load case."""
     rings = tuple(floats(ring, case) for ring in of_place(base.rings, place))
     pressure = float(of_case(base.state.driven_pressure, case))
     growth = 0.0
@@ -90,14 +91,14 @@ class FilmMap:
 
     Parameters
     ----------
-    pressures, speeds : pressure differences to the outer side (p,) [Pa], speeds (v,) [m/s]
-    parts : friction of every ring (p, v, rings) [N]
+    pressures, speeds : sealed pressures above the outer pressure (p,) [Pa], speeds (v,) [m/s]
+    parts : friction of each ring (p, v, rings) [N]
     between : pressure between two rings, above the outer pressure (p, v) [Pa]; NaN for a single
         ring
-    thickness : mean film of every ring (p, v, rings) [m]
+    thickness : mean film thickness of each ring (p, v, rings) [m]
     viscous : share of oil shear in the friction (p, v)
-    breakaway : dry breakaway friction of all rings (p,) [N]; two rings share the pressure as in the
-        film at the lowest speed
+    breakaway : dry breakaway friction, sum of all rings (p,) [N]; two rings share the pressure as
+        they do at the lowest speed
     why : points without a film, each with the reason
     """
 
@@ -117,11 +118,11 @@ class FilmMap:
 
     @property
     def damping(self) -> Array:
-        """Return the secant damping, friction over speed (p, v) [N s/m]."""
+        """Return the secant damping, friction divided by speed (p, v) [N s/m]."""
         return self.friction / self.speeds
 
     def at(self, pressure: float, speed: float) -> tuple[int, int]:
-        """Return the indices of a pressure and a speed in the tables."""
+        """Return the indices of the tabulated pressure and speed nearest to given values."""
         return (
             int(np.argmin(np.abs(self.pressures - pressure))),
             int(np.argmin(np.abs(self.speeds - speed))),
@@ -131,7 +132,7 @@ class FilmMap:
 def film_map(
     sealing: Sealing, pressures: Sequence[float], speeds: Sequence[float], **changes: float
 ) -> FilmMap:
-    """Solve the films at every pressure and speed; `changes` replace inputs of the first ring."""
+    """Solve the films at every pressure and speed; `changes` replace numbers of the first ring."""
     shape = len(pressures), len(speeds)
     count = len(sealing.rings)
     parts, thickness = np.full((2, *shape, count), nan)
@@ -174,7 +175,7 @@ def film_map(
 
 
 def ring_friction(solved: Solved) -> tuple[float, ...]:
-    """Return the friction of every ring [N]; NaN without a film."""
+    """Return the friction of each ring [N]; NaN without a film."""
     if solved.why:
         return (nan,) * len(solved.row.rings)
     return tuple(float(friction) for friction in solved.row.frictions(solved.values))

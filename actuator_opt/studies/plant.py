@@ -1,4 +1,4 @@
-"""The plant of a simulation: values of a design's equations of motion, SI.
+"""The plant of a simulation: the numbers of a design in its equations of motion, SI.
 
 Oil properties are taken at the temperature of the first load case.
 """
@@ -23,11 +23,12 @@ from ..models import end_stop, lines, linkage
 from .bench import Bench, bench, first_case
 
 LEAST_AIR = 1e-4
-"""Free air content above which the air, by its expansion, limits a vacuum. Our choice: 0.01 %."""
+"""Free air content above which the expansion of the air limits a vacuum. Our choice: 0.01 %."""
 
 CAVITY = 1e-6
-"""Volume share of a cavity that limits a vacuum in oil with less air. It exists only below
-atmospheric pressure. Our choice: at 0.05 bar absolute it takes 0.006 % of the volume."""
+"""Content of the vapour cavity that limits a vacuum in oil with less air, as a share of the volume.
+The cavity exists only below atmospheric pressure. Our choice: at 0.05 bar absolute it takes 0.006 %
+of the volume."""
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Chamber pressures at which the friction is fitted, as shares of the supply pressure."""
 
@@ -40,7 +41,8 @@ class Oil:
     bulk_modulus: float
     """Tangent bulk modulus of the pure oil at zero gauge pressure."""
     slope: float
-    """Increase of the bulk modulus per pressure; for a Tait law, the secant to supply pressure."""
+    """Increase of the bulk modulus per unit pressure; for a Tait law, the mean value up to supply
+    pressure."""
     air_content: float
     polytropic_index: float
     density: float
@@ -50,7 +52,7 @@ class Oil:
 
     @property
     def cavity(self) -> float:
-        """Return the cavity content below atmospheric pressure; zero if air limits the vacuum."""
+        """Return the content of the cavity in a vacuum; zero if air limits the vacuum."""
         return CAVITY if self.air_content < LEAST_AIR else 0.0
 
     @property
@@ -71,17 +73,18 @@ class ValveData:
     rated: float
     leakage_supply: float
     leakage_tank: float
-    """All coefficients are of a metering edge, fully open or (leakage) centred [m^3/s/sqrt(Pa)]."""
+    """`rated` is the flow coefficient of a fully open metering edge. `leakage_supply` and
+    `leakage_tank` are those of the edges of a centred spool [m^3/s/sqrt(Pa)]."""
     signal: float
     natural_frequency: float
     damping_ratio: float
     offset: float = 0.0
-    """Signal that centres the spool."""
+    """Signal that centres the spool [V]."""
 
 
 @dataclass(frozen=True, slots=True)
 class LineData:
-    """The lines of one chamber in two parts: before and after a throttle, else two halves."""
+    """The lines of one chamber in two parts: up to and beyond a throttle, or else two halves."""
 
     near_volume: float = 0.0
     near_wall: float = 0.0
@@ -93,14 +96,14 @@ class LineData:
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """A force fitted to chamber pressures: c0 + c1 |p_A - p_B| + c2 p_B + c3 max(p_A, p_B) [N]."""
+    """A force as a function of pressures: c0 + c1 |p_A - p_B| + c2 p_B + c3 max(p_A, p_B) [N]."""
 
     constant: float
     difference: float = 0.0
     rod_side: float = 0.0
     higher: float = 0.0
     error: float = 0.0
-    """Largest deviation from the friction law of the seals, relative to its largest value."""
+    """Largest deviation from the friction law of the seals, relative to the largest friction."""
 
     def at(self, pressure_a: Array, pressure_b: Array) -> Array:
         """Return the force at chamber pressures [Pa]."""
@@ -126,8 +129,8 @@ class Plant:
     """Properties of a design in its equations of motion, SI.
 
     At position x from the cap end, with stroke s, the chamber volumes are A_A x + dead volume and
-    A_B (s - x) + dead volume, without lines. `walls` is the expansion of barrel and rod per
-    pressure, without oil and lines.
+    A_B (s - x) + dead volume, without lines. `walls` is the volume by which the elastic walls of
+    the chambers give way per unit pressure, without oil and lines.
     """
 
     design: Design
@@ -140,7 +143,7 @@ class Plant:
     flexibility: float
     """Compliance of rod and mount in series [m/N]."""
     mass: float
-    """Mass of load, rod, piston and fastening, without a joint's inertia."""
+    """Mass of load, rod, piston and fastening, without the inertia of a joint [kg]."""
     leakage: float
     oil: Oil
     supply_pressure: float
@@ -155,7 +158,7 @@ class Plant:
     films: dict[str, bool]
     """Whether the piston and rod seals run on an oil film in the design."""
     oil_damping: float
-    """Damping by oil shear in gaps, at the piston [N s/m]."""
+    """Damping by oil shear in pipes and annular gaps, referred to the piston [N s/m]."""
     stop_stiffness: float
     closed_length: float
 
@@ -197,7 +200,7 @@ class Plant:
 def plant(subject: PreparedDesign) -> Plant:
     """Return the plant of a design, at the temperature of its first load case.
 
-    Seals with an oil film count as dry, with their friction coefficient.
+    Seals that run on an oil film in the design are simulated dry, with their friction coefficient.
     """
     v = subject.values()
     done = compute(subject, v)
@@ -335,7 +338,7 @@ def _numbers(v: Values, section: Any, at: str) -> dict[str, float] | None:
 
 
 def _seals(v: Values, own: Bench, supply: float) -> SealData:
-    """Return friction as a function of the pressures, fitted to the friction law of the seals."""
+    """Return the friction: planes over both pressures, fitted to the friction law of the seals."""
     p_a, p_b = (pressure.ravel() for pressure in np.meshgrid(*2 * (supply * np.array(SHARES),)))
     loads = [(ring, force) for ring, force in own.normal_forces(p_a, p_b)]
     coulomb = own.coulomb(p_a, p_b)
@@ -353,7 +356,7 @@ def _seals(v: Values, own: Bench, supply: float) -> SealData:
 
 
 def _falling(ring: Ring) -> Array:
-    """Return the breakaway friction in excess of Coulomb friction, relative to it [-]."""
+    """Return breakaway friction minus Coulomb friction, as a share of Coulomb friction [-]."""
     return ring.element.friction_law.breakaway(ring.sizes, 1.0) - 1.0
 
 

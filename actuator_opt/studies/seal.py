@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RingPoint:
-    """One ring at an operating point; arrays are along the contact, empty without a film.
+    """One ring at an operating point; arrays run along the contact, and are empty without a film.
 
     Parameters
     ----------
@@ -42,12 +42,14 @@ class RingPoint:
     contact : load per length, width and peak pressure
     modulus : lowest, assumed and highest Young's modulus of the squeezed part [Pa]
     x : distance from the sealed side [m]
-    static, oil, asperity : pressures, absolute [Pa]
+    static, oil, asperity : static contact pressure, oil pressure and asperity pressure, absolute
+        [Pa]
     film : film thickness, the distance between the mean planes [m]
-    viscous, asperity_friction : friction by oil shear and asperities, whole circumference [N]
+    viscous, asperity_friction : friction due to oil shear and due to asperities, over the whole
+        circumference [N]
     coefficient_friction : friction from the friction coefficient, without a film [N]
     breakaway : breakaway friction with all oil squeezed out [N]
-    load_residual, mass_residual : relative errors of the film's balances of load and mass
+    load_residual, mass_residual : relative errors of the film solution in load and oil mass
     """
 
     ring: Ring
@@ -68,11 +70,11 @@ class RingPoint:
 
 @dataclass(frozen=True, slots=True)
 class SealPoint:
-    """The seals of piston or rod at one speed, pressure and stroke direction.
+    """The rings of a piston or rod seal at one speed, pressure and stroke direction.
 
     Parameters
     ----------
-    stroke : direction of the counterface past the seal: out of the sealed chamber, or in
+    stroke : direction of the counterface past the seal, out of the sealed chamber or into it
     speed, pressure, temperature : speed [m/s], sealed pressure above the outer pressure [Pa], oil
         temperature [K]
     rings : the rings, from the sealed side outwards
@@ -125,7 +127,7 @@ class SealPoint:
 
     @property
     def damping(self) -> float:
-        """Return the secant damping, friction over speed [N s/m]."""
+        """Return the secant damping, friction divided by speed [N s/m]."""
         return float(damping.secant(friction=self.friction, speed=self.speed))
 
 
@@ -142,7 +144,7 @@ class SqueezeRow:
 
 
 class DoubleStroke(NamedTuple):
-    """Oil that passes a rod seal on both strokes at one pressure [m^3]; NaN without a film.
+    """Oil that passes a rod seal in one double stroke at one pressure [m^3]; NaN without a film.
 
     The values are: oil carried out on the outstroke, oil drawn back on the instroke (negative if
     the instroke leaks too), and the net oil left outside.
@@ -156,7 +158,7 @@ class DoubleStroke(NamedTuple):
 class LuGre(NamedTuple):
     """Bristle stiffness [N/m] and damping [N s/m], and the speed up to which the model is passive.
 
-    Above that speed [m/s] the bristle damping must be tapered.
+    Above that speed [m/s] the bristle damping must be reduced, or the model could generate energy.
     """
 
     stiffness: float
@@ -172,14 +174,16 @@ class SealStudy(Displayed):
     ----------
     place : piston or rod
     out, back : the operating point on outstroke and instroke, at one speed and pressure
-    outer_pressure : gauge pressure on the outer side [Pa]; for a piston, of the chamber it moves to
+    outer_pressure : gauge pressure on the outer side [Pa]; for a piston seal, in the chamber
+        towards which the piston moves
     stroke : stroke of the actuator [m]
     clearance : radial clearance behind the seal [m]
-    growth : growth of the bore at the piston seal under the pressure [m]; 0 at the rod
-    squeezes : squeeze by tolerance, temperature and pressure
-    curves : friction over speed at three pressures
+    growth : radial growth of the bore at the piston seal under this pressure [m]; 0 at the rod
+    squeezes : range of the squeeze due to tolerances, at several temperatures and pressures
+    curves : friction over speed at three pressures, if requested
     map : friction over speed and pressure, if requested
-    elements : finite-element contacts of the first ring, first as mounted; empty if not requested
+    elements : finite-element contacts of the first ring: as mounted, then under pressure; empty if
+        not requested
     """
 
     design: Design
@@ -341,10 +345,10 @@ HARDNESS_SCATTER = 5.0
 """Hardness scatter of a compound between batches, Shore A (usual delivery tolerance)."""
 
 SLOWEST = 1e-6
-"""Lowest speed of a seal study, m/s: 0.1 mm in 100 s."""
+"""Lowest permitted speed of a seal study, m/s: 0.1 mm in 100 s."""
 
 HARDEST = 98.0
-"""Upper limit of the scattered hardness, Shore A."""
+"""Upper limit of hardness plus scatter, Shore A; at 100 no law gives a modulus."""
 
 CURVE_SPEEDS = tuple(float(v) for v in np.geomspace(1e-4, 1.0, 17))
 CURVE_SHARES = (0.02, 0.5, 1.0)
@@ -365,22 +369,22 @@ def study(
     mapped: bool = False,
     elements: tuple[MountedContact, ...] = (),
 ) -> SealStudy:
-    """Study the seals of piston or rod at one point, and around it.
+    """Study the seals of piston or rod at one operating point; if requested, over a range.
 
     Parameters
     ----------
-    subject : a design whose rings on piston or rod all use a film
+    subject : a design in which all rings of this piston or rod seal use the oil film
     speed, pressure : speed of the counterface [m/s], sealed pressure above the outer pressure [Pa].
-        The default is from the moving load case with the highest pressure, which also sets outer
-        pressure and oil
-    curves : compute friction over speed at three pressures
-    mapped : compute a map over speed and pressure
+        The defaults are those of the load case with the highest pressure among those with motion,
+        which also sets outer pressure and oil
+    curves : whether to compute friction against speed at three pressures
+    mapped : whether to compute a map over speed and pressure
     elements : contacts from `with_elements`, stored in the result
 
     Raises
     ------
     InputError
-        no speed, or a pressure or squeeze for which the contact has no solution
+        no speed, a negative pressure, or a pressure beyond the stated contact profiles
     """
     v = subject.values()
     evaluation = base(subject, v)
@@ -473,7 +477,7 @@ def _within(seal_row: Sequence[Ring], place: Place, pressure: float) -> None:
 
 
 def _case(ring: Ring, speed: float | None) -> int:
-    """Return the load case of the study: the moving case with the highest pressure."""
+    """Return the load case of the study: of the cases with motion, that of highest pressure."""
     pressures, speeds = (
         np.atleast_2d(np.asarray(ring[name], dtype=float))[:, 0] for name in ("pressure", "speed")
     )
@@ -517,7 +521,8 @@ def modulus_range(ring: Ring) -> tuple[float, float, float]:
 
 
 STATED_FACTOR = 1.5
-"""Factor by which a stated modulus scatters, as for the polyurethane of the rod-seal studies."""
+"""Factor by which a stated modulus scatters up and down, as for the polyurethane of published
+rod-seal studies."""
 
 
 def _bounds(solved: Solved) -> tuple[float, float]:
@@ -541,7 +546,7 @@ def _bounds(solved: Solved) -> tuple[float, float]:
 
 
 def _face_factor(ring: Ring) -> tuple[float, float, float]:
-    """Return lowest, assumed and highest modulus of the sliding face, relative to the assumed."""
+    """Return lowest, assumed and highest modulus of the sliding face; the assumed modulus is 1."""
     if ring.element.seal_type.modulus_by == "hardness":  # the face is plastic, its modulus stated
         return 1 / STATED_FACTOR, 1.0, STATED_FACTOR
     low, value, high = modulus_range(ring)
@@ -577,7 +582,7 @@ def _ring_point(ring: Ring, solved: Solved, index: int) -> RingPoint:
 def _squeezes(
     subject: PreparedDesign, evaluation: Base, seal_row: Sequence[Ring], growth: float
 ) -> Sequence[SqueezeRow]:
-    """Return squeeze ranges at coldest, case and hottest temperature, without and with pressure."""
+    """Return squeeze ranges at several temperatures, each without and with supply pressure."""
     design, v = subject.design, subject.values()
     temperatures = [float(np.max(evaluation.state.temperature))]
     if design.environment is not None:

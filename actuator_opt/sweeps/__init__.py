@@ -1,4 +1,4 @@
-"""Sweeps: evaluate many designs in chunks; store them in a database or keep only the best."""
+"""Sweeps: evaluate many designs chunk by chunk; store all in a database, or keep the best."""
 
 from __future__ import annotations
 

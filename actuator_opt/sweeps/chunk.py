@@ -1,4 +1,4 @@
-"""Evaluate one chunk of a sweep, in groups of designs that differ only in numbers."""
+"""Evaluate one chunk of a sweep; designs that differ only in numbers are evaluated together."""
 
 from __future__ import annotations
 
@@ -27,22 +27,24 @@ from .plan import Plan, SweepPoints
 from .screen import Engine, Scores, rounded_up, screen
 
 BATCH = 1024
-"""Designs evaluated at once when only the best of a chunk are wanted."""
+"""Number of designs that are evaluated at once if only the best of a chunk are wanted."""
 
 LEAST_SCREENED = 2048
-"""Smallest number of designs for which a screen saves time; it takes some 20 ms to build."""
+"""Smallest number of designs for which a screen (see `sweeps.screen`) saves time; building one
+takes some 20 ms."""
 
 NO_ANSWER = "not computable for these dimensions"
 MARGIN, MISSED, FEASIBLE = "least_margin", "governing_limit", "feasible"
-"""Columns after the metrics: least margin, number of the limit with it, whether all limits are
-met."""
+"""Names of the columns after the metrics: least margin of all limits, number of the limit with this
+margin, and whether all limits are met."""
 
 
 @dataclass(frozen=True)
 class Chunk:
-    """Rows of consecutive points from `first` on; `computed` is how many were newly computed.
+    """Results of consecutive points of a sweep, one row per point, starting with point `first`.
 
-    A reduced chunk only has the rows of the points numbered `places`, as no other point can be
+    `computed` is the number of rows that were computed instead of read from a database. A reduced
+    chunk only has the rows of the points with the numbers `places`, because no other point can be
     among the best.
     """
 
@@ -53,11 +55,11 @@ class Chunk:
     feasible: Array
     places: Array | None = None
     damaged: int = 0
-    """Rows computed again because they are damaged in the database."""
+    """Number of rows that were computed again because they are damaged in the database."""
 
     @property
     def ranked(self) -> Array:
-        """Whether each row may be among the best: feasible, with a value of the objective."""
+        """Whether each row may be among the best: it is feasible and has an objective."""
         ranked: Array = self.feasible & ~np.isnan(self.objective)
         return ranked
 
@@ -69,7 +71,7 @@ class Chunk:
 
 @dataclass
 class Study:
-    """A design with the axes of its sweep; it computes the rows of any of its points."""
+    """A design with the axes of its sweep; computes the row of results for any point."""
 
     design: Design
     plan: Plan
@@ -79,7 +81,8 @@ class Study:
     more: tuple[str, ...] = ()
     """Metrics to compute in addition to those that rank designs."""
     engine: Engine = "numpy"
-    """Array library of the screen, which excludes designs that cannot be among the best."""
+    """Array library for the screen, the function that excludes designs that cannot be among the
+    best."""
     goal: Goal = field(init=False)
     designs: Designs = field(init=False)
     _screens: dict[tuple[object, ...], Scores | None] = field(default_factory=dict, repr=False)
@@ -98,7 +101,7 @@ class Study:
         )
         paths = [axis.path for axis in self.plan.numeric]
         self.order = sorted(range(len(paths)), key=paths.__getitem__)
-        """Numeric axes in the order of the columns: sorted by PATH."""
+        """Indices of the numeric axes in the order of the columns, which are sorted by PATH."""
         self.columns = (
             *(
                 NumberColumn(paths[k], quantity_of(paths[k], self.design).si_unit)
@@ -114,12 +117,16 @@ class Study:
         return self.__dict__ | {"_screens": {}}
 
     def chunk(self, first: int, count: int, places: Array | None = None) -> Chunk:
-        """Return the rows of consecutive points, or only of those numbered in `places`."""
+        """Return the rows of consecutive points, or only of those with the indices `places`."""
         points = self.plan.points(first, count)
         return self.evaluated(first, points if places is None else points.some(places))
 
     def evaluated(self, first: int, points: SweepPoints, keep_best: int | None = None) -> Chunk:
-        """Return the rows of points; with `keep_best`, stop after that many valid best designs."""
+        """Return the rows of points.
+
+        A feasible design also counts as failed if the reader of design files would reject it. With
+        `keep_best`, feasible designs are checked from the best on, until that many are valid.
+        """
         n = len(points.variant)
         rows = np.full((n, len(self.columns)), np.nan)
         rows[:, : len(points.numbers)] = points.numbers[self.order].T
@@ -143,8 +150,8 @@ class Study:
     def reduced(self, first: int, count: int, limit: float, keep: int) -> Chunk:
         """Return the rows that may be among the `keep` best, with an objective below `limit`.
 
-        Points are evaluated in order of promise, until no other point can improve on the best
-        `keep`.
+        Points are evaluated in the order of their estimated objective, until no other point can
+        improve on the best `keep`.
         """
         points = self.plan.points(first, count)
         scores = self._scores(points, limit)
@@ -162,7 +169,7 @@ class Study:
         return self._joined(first, parts, len(scores), keep)
 
     def _scores(self, points: SweepPoints, limit: float) -> Array:
-        """Return each point's estimated objective: infinite if excluded, -inf if unknown."""
+        """Return the estimated objective of each point: inf if excluded, -inf if unknown."""
         scores = np.full(len(points.variant), -np.inf)
         apart = self.designs.apart
         varied = [k for k, axis in enumerate(self.plan.numeric) if axis.path not in apart]
@@ -191,7 +198,7 @@ class Study:
     def _screen(self, variant: int, fixed: Mapping[str, float]) -> Scores | None:
         """Return a screen for designs that differ only in numbers, if there are enough of them.
 
-        There is none if the user's own metrics matter, as these are not closed expressions.
+        None if the user has added metrics, as these are not closed expressions.
         """
         axes = [axis for axis in self.plan.numeric if axis.path not in self.designs.apart]
         group_size = self.plan.count / self.plan.variants / self.designs.apart_count
@@ -213,9 +220,9 @@ class Study:
     def _contradictions(
         self, chunk: Chunk, points: SweepPoints, enough: int | None
     ) -> dict[int, str]:
-        """Return the faults of feasible rows that the design reader would reject.
+        """Return the faults of feasible rows whose designs the reader of design files would reject.
 
-        Rows are checked in order, the best first, until `enough` are valid.
+        Rows are checked from the best on, until `enough` valid rows are found.
         """
         faults: dict[int, str] = {}
         feasible = np.flatnonzero(chunk.feasible)
@@ -250,7 +257,7 @@ class Study:
         return self._quantities[metric]
 
     def place(self, name: str) -> int:
-        """Return the column of a varied number, a metric or a verdict."""
+        """Return the number of the column with this name (a PATH, a metric or a verdict)."""
         return next(k for k, column in enumerate(self.columns) if column.name == name)
 
     @property
@@ -270,14 +277,14 @@ class Study:
 
     @property
     def hash(self) -> str:
-        """Return a hash of the design, materials, custom metrics, models and axes."""
+        """Return a hash of the design, materials, models, custom metrics and varied PATHs."""
         sources = [_source(plugin) for plugin in self.plugins]
         paths = sorted(axis.path for axis in self.plan.axes)
         text = json.dumps([spec_hash(self.designs.made({})), sources, paths, self.columns])
         return hashlib.sha256(text.encode()).hexdigest()[:32]
 
     def keys(self, first: int, count: int) -> list[bytes]:
-        """Return a hash of the values of every point of a chunk."""
+        """Return the database keys of the points of a chunk, which are hashes of their values."""
         points = self.plan.points(first, count)
         data = np.ascontiguousarray(points.numbers[self.order].T, dtype="<f8").tobytes()
         width = 8 * len(points.numbers)
@@ -294,12 +301,12 @@ class Study:
 
 
 def key_head(texts: Mapping[str, str]) -> hashlib.blake2b:
-    """Return the part of a key that depends on texts; the row's numbers follow it."""
+    """Return the hash of the texts of a point; updating it with the numbers gives the key."""
     return hashlib.blake2b(json.dumps(dict(texts), sort_keys=True).encode(), digest_size=16)
 
 
 def _source(plugin: Plugin) -> str:
-    """Return the source of a custom metric, so that a change makes a new study."""
+    """Return the source code of a custom metric, so that a changed metric makes a new study."""
     try:
         return inspect.getsource(plugin.function)
     except (OSError, TypeError):

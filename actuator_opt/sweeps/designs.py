@@ -1,4 +1,4 @@
-"""Prepare the designs of a sweep: some numbers vary as arrays, others need a new design."""
+"""Prepare the designs of a sweep: most numbers vary as arrays, others need a new design each."""
 
 from __future__ import annotations
 
@@ -21,22 +21,23 @@ from ..evaluation.plugin import Plugin, with_own
 from .plan import Plan, SweepAxis, SweepPoints
 
 CACHED = 64
-"""Prepared designs that a process caches."""
+"""Number of prepared designs that a process keeps in memory."""
 
 VARIANTS = 8
-"""Maximum number of text combinations in which a number is checked."""
+"""Whether a number can vary as an array is checked in at most this number of text combinations."""
 
 AT_ONCE = 4096
 """Maximum number of designs in one model call; more would take memory without saving time."""
 
 SHARES = (0.0, 1.0, 0.5, 0.25, 0.75)
-"""Points of a range, as shares of its width, tried until two of them give a valid design."""
+"""Test points in a range, as shares of its width; they are tried until two of them give a valid
+design."""
 
 MOST_TESTED = 32
-"""Maximum number of listed values that are checked; longer lists are thinned evenly."""
+"""Maximum number of values of a list that are tested; from longer lists, every n-th value."""
 
 AGREE = 1e-9
-"""Relative tolerance when results of an array are compared with those of single designs."""
+"""Relative tolerance in comparing the results of an array with those of single designs."""
 
 
 class _Variation(NamedTuple):
@@ -48,10 +49,11 @@ class _Variation(NamedTuple):
 
 @dataclass
 class Designs:
-    """The designs of a plan, prepared when needed.
+    """The designs of a sweep plan, each prepared when it is needed.
 
-    `apart` are numbers that need a new design for each value, such as temperatures that change
-    strengths. A number that no model reads in any of the checked combinations raises `InputError`.
+    `apart` are the PATHs of numbers that need a new design for each value, such as temperatures
+    that change strengths. A number raises `InputError` if no model reads it in any combination of
+    texts.
     """
 
     design: Design
@@ -59,7 +61,7 @@ class Designs:
     plugins: tuple[Plugin, ...] = ()
     apart: tuple[str, ...] = field(init=False)
     contradicts: bool = field(init=False, default=False)
-    """Whether some value of an axis contradicts the design, by the rules of the reader."""
+    """Whether the reader of design files rejected any tested value as a contradiction."""
     _subjects: dict[tuple[object, ...], PreparedDesign | str] = field(
         default_factory=dict, repr=False
     )
@@ -92,8 +94,9 @@ class Designs:
     def _same_extremes(self) -> bool:
         """Whether the lowest and highest temperature stay the same over the sweep.
 
-        Strengths are prepared at these two temperatures. Both rise with every temperature of the
-        design, so they are constant if they agree at both ends of the ranges.
+        Strengths are prepared at these two temperatures. Neither falls if a temperature of the
+        design rises, so both are constant if they are the same with all temperatures at their lower
+        and with all at their upper ends.
         """
         temperatures = {a.path: a.ends for a in self.plan.numeric if self._is_temperature(a)}
         all_extremes = []
@@ -128,14 +131,14 @@ class Designs:
         checks = [self._varies_in(axis, self.plan.texts(int(variant))) for variant in variants]
         varies = all(check.varies for check in checks)
         if varies and len(variants) == count and not any(check.read for check in checks):
-            remedy = "vary another number, or check that the design uses the part it belongs to"
+            remedy = "vary another number, or check that the design uses the part that it describes"
             raise InputError(
                 Diagnostic("no model of this design uses this number", remedy, path=axis.path)
             )
         return varies
 
     def _varies_in(self, axis: SweepAxis, texts: Mapping[str, str]) -> _Variation:
-        """Whether an array of the `_test_values` gives the same results as setting each value."""
+        """Whether an array of all `_test_values` gives the same results as setting each in turn."""
         separate: dict[float, Many] = {}
         for value, mandatory in _test_values(axis):
             if len(separate) >= 2 and not mandatory:
@@ -159,7 +162,7 @@ class Designs:
         return _Variation(agrees, axis.path in combined.read)
 
     def alike(self, points: SweepPoints) -> Iterator[tuple[Array, int, dict[str, float]]]:
-        """Group points by prepared design: point numbers, combination of texts, `apart` values."""
+        """Group points by prepared design; yield indices, text combination and `apart` values."""
         paths = [axis.path for axis in self.plan.numeric]
         separate_axes = [k for k, path in enumerate(paths) if path in self.apart]
         if not separate_axes and self.plan.variants == 1:
@@ -177,7 +180,7 @@ class Designs:
     def groups(
         self, points: SweepPoints
     ) -> Iterator[tuple[Array, PreparedDesign | str, dict[str, Array]]]:
-        """Yield the points of each prepared design with the arrays that vary.
+        """Yield the points of each prepared design, with the arrays of its varied numbers.
 
         For an invalid design, yield the reason instead of the design.
         """
@@ -194,7 +197,7 @@ class Designs:
                 yield places, subject, varied
 
     def _prepared(self, variant: int, fixed: dict[str, float]) -> PreparedDesign | str:
-        """Return a prepared design, or the reason why it is invalid; the last few are cached."""
+        """Return a prepared design, or why it is invalid; the last `CACHED` designs are kept."""
         key = (variant, *fixed.values())
         if key not in self._subjects:
             if len(self._subjects) >= CACHED:
@@ -207,10 +210,10 @@ class Designs:
 
 
 def _test_values(axis: SweepAxis) -> Iterator[tuple[float, bool]]:
-    """Yield test values of an axis, and whether each must be tested; of the others, two suffice.
+    """Yield test values of an axis, and whether each must be tested; of all others, two suffice.
 
-    All values of a short list must be tested, and so must zero, where a design may differ in kind
-    (no speed, no angle).
+    All values of a short list must be tested. Zero must be tested too, because it may make another
+    kind of design (no speed, no angle).
     """
     assert axis.values is not None
     low, high = axis.values[[0, -1]]

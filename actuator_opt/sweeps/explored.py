@@ -1,4 +1,4 @@
-"""Read the rows of a stored sweep, with margins of all limits and sections of all designs."""
+"""Read the rows of a stored sweep; add margins of all limits and drawn sections of all designs."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from .chunk import Study, key_head
 from .plan import Plan, SweepAxis, SweepPoints
 
 BEST = 100
-"""Number of best feasible designs that thinning always keeps."""
+"""Number of best feasible designs that are kept even if rows are thinned out."""
 
 VARIANTS = 1_000_000
-"""Maximum number of text combinations (our choice, far above what sweeps use)."""
+"""Maximum number of combinations of texts (our choice, far above those of real sweeps)."""
 
 
 @dataclass(frozen=True)
 class RowGroup:
-    """Rows that share a prepared design, and the drawn sections of their designs."""
+    """Rows that share a prepared design, with the section drawings of their designs."""
 
     places: Array
     shapes: Shapes
@@ -41,9 +41,10 @@ class RowGroup:
 
 @dataclass(frozen=True)
 class Explored:
-    """Rows (rows, columns) of a study in SI, in the order of the axes.
+    """Rows of a study, one row per design, SI.
 
-    `variant` is the number of each row's text combination; `margins` is (limits, rows).
+    `numbers` is (rows, columns), with the varied numbers first. `variant` is the index in
+    `variants` of the text combination of each row. `margins` is (limits, rows).
     """
 
     kept: StoredRows
@@ -55,11 +56,11 @@ class Explored:
     margins: Array
     groups: tuple[RowGroup, ...]
     best: Array
-    """Objective, to be minimised."""
+    """Objective of each row, to be minimised."""
     most: int
     """Number of rows above which only every n-th row is read."""
     origin: str = "Study"
-    """Name of the source of the rows."""
+    """Name for the source of the rows, as shown to the user."""
     shown: tuple[str, ...] = ()
     """Metrics shown first on the x and y axis; empty for the default."""
     damaged: int = 0
@@ -67,7 +68,7 @@ class Explored:
 
     @property
     def kind(self) -> str:
-        """Return the name of this kind of data."""
+        """Return the kind of the data: "designs" or "sweep"."""
         return "designs" if self.shown else "sweep"
 
     @property
@@ -93,15 +94,15 @@ def explored(
     Parameters
     ----------
     path : database of sweeps
-    study : its number, or its hash; default: the newest
-    most : maximum number of rows; of larger studies, every n-th row by key is read, and the best
-        feasible rows
+    study : number or hash of the study in the database; default: the newest
+    most : maximum number of rows; of larger studies, only every n-th row in the order of keys is
+        read, and the best feasible rows in addition
     plugins : the user's metrics and constraints, as in the sweep
 
     Raises
     ------
     InputError
-        if file or study are missing, or rows are of other models, materials or custom metrics
+        if file or study are missing, or other models, materials or custom metrics made the rows
     """
     with reading(path, VERSION) as reader:
         stored = reader.study(reader.number(study) if isinstance(study, str) else study)
@@ -157,7 +158,7 @@ def explored_designs(
 
     Parameters
     ----------
-    design : common design, without free variables
+    design : the design that all have in common, without free variables
     points : numbers of each design, by PATH (SI)
     plugins : the user's metrics and constraints
     origin, shown : as in `Explored`
@@ -191,10 +192,10 @@ def explored_designs(
 def _evaluated(
     study: Study, variant: Array, numbers: Array
 ) -> tuple[tuple[MetricLimit, ...], Array, tuple[RowGroup, ...]]:
-    """Return the limits, the margin of each in every row, and the sections.
+    """Return the limits, the margin of each limit in every row, and the drawn sections.
 
-    Rows that need separate prepared designs, for example for temperatures, share sections if their
-    dimensions are equal.
+    Rows whose designs are prepared separately, for example due to temperatures, still share section
+    drawings if their dimensions are equal.
     """
     paths = [axis.path for axis in study.plan.numeric]
     limits: dict[str, MetricLimit] = {}
@@ -242,8 +243,8 @@ def _variants(stored: StoredRows, path: Path) -> tuple[dict[str, str], ...]:
 def _study(stored: StoredRows, plugins: tuple[Plugin, ...], path: Path, ends: Array) -> Study:
     """Return the study that made the rows, from the design stored in the database.
 
-    Its plan has the varied texts, and the varied numbers in column order, each between the `ends`
-    that it has in the rows. It contains no points.
+    The plan of the study has the varied texts, and the varied numbers in column order, each with
+    its `ends` in the rows. The plan contains no points.
     """
     metrics = with_own(plugins)
     try:
@@ -266,15 +267,15 @@ def _study(stored: StoredRows, plugins: tuple[Plugin, ...], path: Path, ends: Ar
 
 
 def _other_models(path: Path) -> InputError:
-    message = "its rows come from other materials, or from custom metrics"
-    remedy = "add --plugin FILE.py as in the sweep, or run the sweep again"
+    message = "its rows were computed with other materials or models, or with custom metrics"
+    remedy = "add --plugin FILE.py as in that sweep, or run the sweep again"
     return InputError(Diagnostic(message, remedy, str(path)))
 
 
 def _thinned(
     reader: Reader, stored: StoredRows, study: Study, count: int, most: int
 ) -> tuple[list[bytes], Array, int]:
-    """Return rows spread evenly over the study, its best rows, and the number of valid rows."""
+    """Return keys and numbers of evenly spread rows and the best rows; count the valid rows."""
     step = -(-count // most)
     keys: list[bytes] = []
     numbers: list[Array] = []
@@ -317,7 +318,7 @@ def _text_numbers(
     variants: tuple[dict[str, str], ...],
     path: Path,
 ) -> Array:
-    """Return the number of each row's text combination, identified by the row's key."""
+    """Return the index of the text combination of each row, found from the key of the row."""
     data = np.ascontiguousarray(numbers[:, : len(study.order)], dtype="<f8")
     heads = [key_head(texts) for texts in variants]
     text_numbers = np.empty(len(keys), dtype=np.int64)

@@ -1,4 +1,4 @@
-"""Field over a grid of two numbers: metrics and margins at its nodes, and zero-margin lines."""
+"""Metrics and margins over a grid of two varied numbers, with lines of zero margin."""
 
 from __future__ import annotations
 
@@ -16,16 +16,17 @@ from .chunk import Study
 from .plan import Plan, SweepPoints
 
 FINEST = 161
-"""Maximum number of nodes per axis (our choice: one per mm of paper); finer grids are thinned."""
+"""Maximum number of nodes per axis (our choice: one per mm of paper); of a finer grid, only some
+nodes are used."""
 
 FAR = 2.0
-"""Margins beyond +-200 % are clipped (our choice)."""
+"""Margins are clipped to +-200 % (our choice)."""
 
 NOTHING = -1.0
-"""Margin assigned to a wall of negative thickness."""
+"""Margin below which a wall or clearance counts as negative."""
 
 STEPS = 12
-"""Maximum iterations of the search for zero on an edge of the grid."""
+"""Maximum number of iterations in the search for zero margin on an edge of the grid."""
 
 CLOSE = 1e-9
 """Margin treated as zero."""
@@ -33,7 +34,7 @@ CLOSE = 1e-9
 
 @dataclass(frozen=True)
 class Boundary:
-    """Zero line of one limit of a study, which is `number` in its `binding`; in SI.
+    """Zero line of one limit, SI; `number` is the index of the limit in `Study.binding`.
 
     `lines` are (n, 2) points of zero margin. `missed` are the areas where the limit is missed, each
     as a list of closed lines.
@@ -46,12 +47,12 @@ class Boundary:
 
 @dataclass(frozen=True)
 class Field:
-    """Nodes of a grid (first axis, second axis), in SI.
+    """Values at the nodes of a grid (first axis, second axis), SI.
 
-    `rows` are those of the sweep, (nodes, nodes, columns), NaN where a design failed. `margins` are
-    (limits, nodes, nodes), NaN without a value. `failed` marks nodes without a design, because of a
-    fault or a negative wall. `room`, (limits,), is the tolerance within which a limit counts as
-    met. `thinned` states whether the sweep had more nodes.
+    `rows` are the rows of the sweep, (nodes, nodes, columns), NaN where a design failed. `margins`
+    are (limits, nodes, nodes), NaN without a value. `failed` marks nodes without a valid design,
+    because of a fault or a negative wall. `room`, (limits,), is the tolerance within which a limit
+    counts as met. `thinned` states whether nodes of the sweep were left out.
     """
 
     study: Study
@@ -69,7 +70,7 @@ class Field:
         return values
 
     def boundaries(self) -> Iterator[Boundary]:
-        """Yield the lines of every limit that is met at some nodes and missed at others."""
+        """Yield the zero line of every limit that is met at some nodes and missed at others."""
         from contourpy import FillType, LineType, contour_generator
 
         for number, margins in enumerate(self.margins):
@@ -98,8 +99,8 @@ class Field:
     def _on_zero(self, number: int, table: Array, curves: Sequence[Array]) -> list[Array]:
         """Return curves with their points moved to zero margin.
 
-        Points move along the edge between a met and a missed node. They are not moved if every
-        value needs a newly prepared design.
+        Points move along the grid edge between a node that meets the limit and a node that misses
+        it. They are not moved if a varied number needs a newly prepared design for every value.
         """
         if self.study.designs.apart or not curves:
             return list(curves)
@@ -119,7 +120,11 @@ class Field:
     def _edge(
         self, table: Array, point: Array
     ) -> tuple[list[float], list[float], list[float]] | None:
-        """Return ends and margins of the grid edge under a point, if its margin changes sign."""
+        """Return ends and margins of the grid edge under a point.
+
+        None if the point is a node or inside a cell, or if the margin has the same sign at both
+        ends.
+        """
         nodes = (self.xs, self.ys)
         places = []
         for axis, value in zip(nodes, point, strict=True):
@@ -136,7 +141,7 @@ class Field:
         return [self.xs[i], self.ys[j]], [self.xs[k], self.ys[m]], ends
 
     def _zeros(self, number: int, low: Array, high: Array, ends: Array) -> Array:
-        """Return points of zero margin between ends of opposite sign, by the Illinois method."""
+        """Return the points of zero margin on grid edges, by the Illinois method."""
         a, b = np.zeros(len(low)), np.ones(len(low))
         f, g = ends[:, 0].copy(), ends[:, 1].copy()
         t, active = np.where(f == 0, 0.0, 1.0), (f != 0) & (g != 0)
@@ -179,10 +184,10 @@ def require_grid(plan: Plan) -> None:
     """
     for axis in plan.named:
         message = f"a contour needs numbers, but {axis.path} takes names"
-        raise UsageError(Diagnostic(message, "set it with --set, and vary two numbers"))
+        raise UsageError(Diagnostic(message, "set this PATH with --set, and vary two numbers"))
     if len(plan.axes) != 2:
         message = f"a contour needs exactly two --vary, not {len(plan.axes)}"
-        raise UsageError(Diagnostic(message, "set the others with --set"))
+        raise UsageError(Diagnostic(message, "set the other PATHs with --set"))
     if plan.method != "grid":
         message = f"a contour needs a grid, not --method {plan.method}"
         raise UsageError(Diagnostic(message, "omit --method and write PATH=A..B:N"))
@@ -194,7 +199,7 @@ def require_grid(plan: Plan) -> None:
 
 
 def _cut_away(study: Study, margins: Array) -> Array:
-    """Return the nodes with a negative wall or clearance; other limits have no margin there."""
+    """Return the nodes with a negative wall or clearance; delete the other margins there."""
     shapes = np.array([limit.origin == "geometry" for limit in study.binding])
     cut_away: Array = (margins[shapes] < NOTHING).any(axis=0)
     for number in np.flatnonzero(~shapes):
@@ -203,7 +208,7 @@ def _cut_away(study: Study, margins: Array) -> Array:
 
 
 def field(study: Study) -> Field:
-    """Evaluate again the grid of a sweep of two numbers, at most `FINEST` nodes per axis."""
+    """Evaluate the grid of a sweep of two numbers again, with at most `FINEST` nodes per axis."""
     require_grid(study.plan)
     values = [axis.numbers() for axis in study.plan.axes]
     wide = len(values[1])

@@ -1,7 +1,7 @@
-"""Compute the points of a sweep from their numbers: full factorial, Sobol, Latin hypercube.
+"""Points of a sweep, each computed from its number: full factorial, Sobol, Latin hypercube.
 
-Only the axes are stored; each point is computed from its number. A sweep of any size takes the same
-memory, can start anywhere and gives the same points in any number of processes.
+Only the axes are stored. A sweep of any size thus takes the same memory, can start at any point and
+has the same points in any number of processes.
 """
 
 from __future__ import annotations
@@ -35,9 +35,10 @@ DESCRIPTIVE = frozenset({"name", "notes", "reproduces", "waivers", "objective"})
 
 @dataclass(frozen=True)
 class SweepAxis:
-    """One PATH with its values: numbers (SI), or texts, each of which makes another design.
+    """A varied PATH with its values: numbers (SI), or texts such as names of materials.
 
-    A range has two `values` and `count` steps; `count` is None where the method chooses the points.
+    Each text needs its own design. A range has its two ends as `values`, and `count` points;
+    `count` is None if the sweep method chooses the points.
     """
 
     path: str
@@ -48,7 +49,7 @@ class SweepAxis:
 
     @property
     def listed(self) -> bool:
-        """Whether the axis lists its values instead of spanning a range."""
+        """Whether the axis has a list of values instead of a range."""
         return not self.range
 
     @property
@@ -86,8 +87,8 @@ class SweepAxis:
 def read_axis(text: str, design: Design, metrics: Metrics = None) -> SweepAxis:
     """Return the axis for a user's text: ``PATH=A..B:N`` or ``PATH=a,b,c``.
 
-    Numbers without a unit take the unit of the last number; without any unit they are SI. `metrics`
-    are the names that the design may use; they include the user's own.
+    Numbers without a unit take the unit of the last number; if this has none, all are SI. `metrics`
+    are the metrics that the design may use, including the user's own.
 
     Raises
     ------
@@ -111,7 +112,9 @@ def read_axis(text: str, design: Design, metrics: Metrics = None) -> SweepAxis:
     steps = _steps(text, count)
     ends = [_number(path, end, design, metrics) for end in _with_unit([first, last])]
     if ends[0] == ends[1]:
-        raise UsageError(Diagnostic(f"--vary {shown(text)}: both ends are equal", FORM))
+        raise UsageError(
+            Diagnostic(f"--vary {shown(text)}: both ends of the range are equal", FORM)
+        )
     return SweepAxis(path, np.array(ends), range=True, count=steps)
 
 
@@ -127,7 +130,7 @@ def _steps(text: str, count: str | None) -> int | None:
 
 
 def _with_unit(texts: list[str]) -> list[str]:
-    """Return the values; bare numbers take the unit of the last value."""
+    """Return the values with units: numbers without a unit take that of the last value."""
     try:
         unit = units.split(texts[-1])[1]
     except units.UnitError:
@@ -143,8 +146,8 @@ def _number(path: str, text: str, design: Design, metrics: Metrics) -> float:
         raise InputError(Diagnostic(message, "list its values: PATH=a,b,c"))
     if not _is_number(path, text, value, design, metrics):
         message = (
-            f"{shown(text)} has another unit or type than the value of the design, so "
-            "it cannot have a range"
+            f"{shown(text)} has another unit or type than the value in the design, so "
+            "it cannot be the end of a range"
         )
         remedy = "list the values: PATH=a,b,c, or set one such value with --set first"
         raise InputError(Diagnostic(message, remedy, path=path))
@@ -152,7 +155,7 @@ def _number(path: str, text: str, design: Design, metrics: Metrics) -> float:
 
 
 def _is_number(path: str, text: str, value: float, design: Design, metrics: Metrics) -> bool:
-    """Whether a number fully describes a value: 50 % of a stroke is not 0.5 m."""
+    """Whether a number in SI fully describes a value; for 50 % of a stroke, 0.5 does not."""
     design_with_text = _design_with(design, path, text, metrics)
     return design_with_text == _design_with(design, path, repr(float(value)), metrics)
 
@@ -172,7 +175,7 @@ def _design_with(design: Design, path: str, text: str, metrics: Metrics) -> Desi
 
 
 def _bare(text: str) -> float | None:
-    """Return a number without a unit, which is SI; None for any other text."""
+    """Return the number that a text without a unit states; None for any other text."""
     try:
         number, unit = units.split(text)
     except units.UnitError:
@@ -182,9 +185,13 @@ def _bare(text: str) -> float | None:
 
 def _listed(path: str, parts: list[str], design: Design, metrics: Metrics) -> SweepAxis:
     if not all(parts):
-        raise UsageError(Diagnostic(f"--vary {path}: an empty value", FORM))
+        raise UsageError(Diagnostic(f"--vary {path}: one of the values is empty", FORM))
     if len(parts) > MOST_LISTED:
-        raise UsageError(Diagnostic(f"--vary {path}: {len(parts)} values", "write a range"))
+        raise UsageError(
+            Diagnostic(
+                f"--vary {path}: {len(parts)} values are too many for a list", "write a range"
+            )
+        )
     parts = _with_unit(parts)
     values = [_value(path, part, design, metrics) for part in dict.fromkeys(parts)]
     if len(set(values)) < len(parts):  # finds duplicates such as 20 mm and 2 cm
@@ -204,24 +211,24 @@ def _listed(path: str, parts: list[str], design: Design, metrics: Metrics) -> Sw
 Method = Literal["grid", "sobol", "lhs"]
 METHODS = get_args(Method)
 MOST = 2**30
-"""Maximum number of points for the sampled methods: that of a 30-bit Sobol sequence."""
+"""Maximum number of points of a Sobol or Latin hypercube sweep: that of a 30-bit Sobol sequence."""
 
 MOST_GRID = 10**12
 """Maximum number of grid points (our choice: some days of computing if only the best are kept)."""
 
 BITS = 30
-"""Bits of a Sobol coordinate."""
+"""Number of bits of a Sobol coordinate."""
 
 DIGITS = 12
-"""Number of low bits of a Sobol point's number for which a table is used."""
+"""Number of low bits in the number of a Sobol point that are looked up in a table."""
 
 ROUNDS = 6
-"""Rounds of the permutation of a Latin hypercube."""
+"""Number of Feistel rounds in the permutation of a Latin hypercube."""
 
 
 @dataclass(frozen=True)
 class SweepPoints:
-    """Points of a sweep: index of each point's text combination, and numbers (axes, n)."""
+    """Points of a sweep: index of the text combination of each point, and numbers (axes, n)."""
 
     variant: Array
     numbers: Array
@@ -233,9 +240,9 @@ class SweepPoints:
 
 @dataclass(frozen=True)
 class Plan:
-    """Axes with the points to visit.
+    """Axes of a sweep, with method and number of its points.
 
-    Each text of a `named` axis makes another design; the other axes vary numbers.
+    Each text of a `named` axis needs its own design; the other axes vary numbers.
     """
 
     axes: tuple[SweepAxis, ...]
@@ -282,7 +289,7 @@ class Plan:
         return SweepPoints(variant, numbers)
 
     def _grid(self, index: Array) -> list[Array]:
-        """Return the value or its number on every axis; the last axis runs fastest."""
+        """Return values, or indices of listed values, for every axis; the last changes fastest."""
         sizes = tuple(axis.size for axis in self.axes)
         places = np.unravel_index(index, sizes)
         return [
@@ -305,7 +312,7 @@ class Plan:
 
 
 def plan(axes: Sequence[SweepAxis], *, method: Method, count: int | None, seed: int = 0) -> Plan:
-    """Return the points of a sweep.
+    """Plan the points of a sweep.
 
     Parameters
     ----------
@@ -317,8 +324,8 @@ def plan(axes: Sequence[SweepAxis], *, method: Method, count: int | None, seed: 
     Raises
     ------
     UsageError
-        if the method is unknown, there is no axis, a PATH occurs twice, or steps or count are
-        missing
+        if the method is unknown, there is no axis, a PATH occurs twice, or the number of steps or
+        of points is missing
     """
     if method not in METHODS:
         raise UsageError(Diagnostic(f"--method {method}: unknown", f"use {', '.join(METHODS)}"))
@@ -334,7 +341,8 @@ def plan(axes: Sequence[SweepAxis], *, method: Method, count: int | None, seed: 
         if count is not None:
             raise UsageError(
                 Diagnostic(
-                    "-n: the steps of a grid determine its number of points", "write PATH=A..B:N"
+                    "-n: the steps of a grid already determine its number of points",
+                    "write PATH=A..B:N",
                 )
             )
         for axis in axes:
@@ -353,10 +361,11 @@ def plan(axes: Sequence[SweepAxis], *, method: Method, count: int | None, seed: 
 
 
 def _sobol(index: Array, dimension: int, count: int, seed: int) -> Array:
-    """Return scrambled Sobol points (dimension, n) by number [Sobol1967] [Owen1998].
+    """Return scrambled Sobol points (dimension, n) for their numbers [Sobol1967] [Owen1998].
 
-    Point k is the exclusive or of the first point and a direction number for each nonzero binary
-    digit of the Gray code of k, which is k ^ k/2. The lower `DIGITS` digits come from a table.
+    Each nonzero binary digit in the Gray code of k, which is k ^ k/2, has a direction number. Point
+    k is the exclusive or of the first point and these direction numbers. The points for the lower
+    `DIGITS` digits come from a table.
     """
     table, digits = _sobol_parts(dimension, max(count - 1, 1).bit_length(), seed)
     low, high = index & (len(table) - 1), index >> DIGITS
@@ -371,7 +380,7 @@ def _sobol(index: Array, dimension: int, count: int, seed: int) -> Array:
 
 @lru_cache(maxsize=4)
 def _sobol_parts(dimension: int, bits: int, seed: int) -> tuple[Array, Array]:
-    """Return the first points, and direction numbers of Gray code digits from `DIGITS` - 1 on."""
+    """Return a table of the first points, and direction numbers from digit `DIGITS` - 1 on."""
     from scipy.stats import qmc
 
     engine = qmc.Sobol(dimension, scramble=True, bits=BITS, rng=np.random.default_rng(seed))
@@ -386,11 +395,11 @@ def _sobol_parts(dimension: int, bits: int, seed: int) -> tuple[Array, Array]:
 
 
 def _latin(index: Array, dimension: int, count: int, seed: int) -> Array:
-    """Return a Latin hypercube [McKay1979]: each of n equal parts of every axis is used once.
+    """Return points of a Latin hypercube: each of n equal parts of every axis has one [McKay1979].
 
-    On each axis, point k is in the part given by a permutation of k, which needs no table: a
-    Feistel network over the next power of four is repeated until the result is in range
-    [Black2002].
+    On each axis, a permutation of k gives the part in which point k lies. It needs no table: a
+    Feistel network, which permutes the numbers below the next power of four, is applied to k until
+    the result is in range [Black2002].
     """
     points = np.empty((dimension, len(index)))
     for axis in range(dimension):
@@ -404,7 +413,7 @@ def _latin(index: Array, dimension: int, count: int, seed: int) -> Array:
 
 
 def _permuted(index: Array, count: int, keys: Array) -> Array:
-    """Permute numbers below `count` (at most 2^32)."""
+    """Return the permuted numbers, all below `count` (at most 2^32)."""
     half = max(math.ceil(math.log2(max(count, 2)) / 2), 1)
     mask, shift = np.uint32(2**half - 1), np.uint32(half)
     place = _rounds(index, keys, mask, shift)
@@ -427,7 +436,7 @@ def _rounds(place: Array, keys: Array, mask: np.uint32, shift: np.uint32) -> Arr
 
 
 def _mixed_half(x: Array) -> Array:
-    """Mix 32 bits (the finaliser of MurmurHash3 [Appleby2011])."""
+    """Hash 32-bit numbers (with the finaliser of MurmurHash3 [Appleby2011])."""
     x = x ^ (x >> np.uint32(16))
     x *= np.uint32(0x85EBCA6B)
     x ^= x >> np.uint32(13)
@@ -437,7 +446,7 @@ def _mixed_half(x: Array) -> Array:
 
 
 def _mixed(x: Array) -> Array:
-    """Mix 64 bits (the finaliser of SplitMix64 [Steele2014])."""
+    """Hash 64-bit numbers (with the finaliser of SplitMix64 [Steele2014])."""
     x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     mixed: Array = x ^ (x >> np.uint64(31))

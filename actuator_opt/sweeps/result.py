@@ -1,6 +1,6 @@
-"""Results of a sweep, and the rows to draw, which are thinned evenly to a bounded number.
+"""Results of a sweep; of the rows for figures, only a limited number is kept, evenly spread.
 
-The Pareto lines of the figures are exact.
+The Pareto lines of the figures are exact, as they take all rows into account.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from ..version import VERSION
 from .chunk import Chunk, Study
 
 MOST_POINTS = 4096
-"""Maximum number of rows for figures, separately for feasible and other designs (our choice: print
-resolves no more). If there are more, every second row is dropped."""
+"""Maximum number of rows that are kept for figures, separately for feasible and other designs (our
+choice: print resolves no more). Whenever there are more, every second row is dropped."""
 
 
 LONGEST = 65_536
-"""Maximum number of points in a Pareto line (our choice: 1 MB each)."""
+"""Maximum number of points in a Pareto line (our choice: 1 MB per line)."""
 
 
 LESS_IS_BETTER = -1
@@ -33,9 +33,11 @@ MORE_IS_BETTER = 1
 
 
 def better(study: Study, metric: str) -> int:
-    """Return which direction of a metric is better, by objective, limits or worst value.
+    """Return whether a larger or smaller value of a metric is better.
 
-    The result is 1 if more is better, -1 if less is, and 0 if there are limits on both sides.
+    This follows from the objective, else from the limits, else from the definition of the metric.
+    The result is 1 if larger is better, -1 if smaller is, and 0 if the metric has limits on both
+    sides.
     """
     goal = study.goal
     if metric in goal.weights:
@@ -48,7 +50,7 @@ def better(study: Study, metric: str) -> int:
 
 
 def front(first: Array, second: Array) -> Array:
-    """Return the indices of the non-dominated points, ordered by `first`; less is better.
+    """Return the indices of the non-dominated points in the order of `first`; less is better.
 
     A point is dominated if another point is no worse in both values and better in at least one. Of
     equal points, the first is kept.
@@ -65,7 +67,7 @@ def front(first: Array, second: Array) -> Array:
 
 @dataclass
 class Pool:
-    """Every k-th row of a stream, at most `MOST_POINTS` in total."""
+    """Collects every k-th row of a sweep; k grows so that at most `MOST_POINTS` rows are kept."""
 
     seen: int = 0
     step: int = 1
@@ -73,7 +75,7 @@ class Pool:
     rows: Array = field(default_factory=lambda: np.empty((0, 0)))
 
     def add(self, variants: Array, rows: Array) -> None:
-        """Add rows with their combinations of names."""
+        """Add rows with the indices of their text combinations."""
         at = np.arange((-self.seen) % self.step, len(rows), self.step)
         self.seen += len(rows)
         if not len(at):
@@ -85,16 +87,16 @@ class Pool:
             self.variants, self.rows = self.variants[::2], self.rows[::2]
 
     def thinned(self, most: int) -> tuple[Array, Array, int]:
-        """Return variants and rows, thinned evenly to at most `most` rows, and the step."""
+        """Return at most `most` evenly spread rows, their text combinations, and the step k."""
         step = max(1, -(-len(self.rows) // most))
         return self.variants[::step], self.rows[::step], self.step * step
 
 
 @dataclass
 class Sample:
-    """Feasible and other rows, collected as a sweep runs; failed designs are omitted.
+    """Feasible and infeasible rows, collected while a sweep runs, without failed designs.
 
-    `watch` are metrics; every pair has a Pareto line over all feasible designs.
+    `watch` are metrics. For each pair of them, a Pareto line over all feasible designs is kept.
     """
 
     watch: tuple[str, ...] = ()
@@ -122,9 +124,9 @@ class Sample:
                 self._fronts[pair] = _extended(study, pair, self._fronts.get(pair), feasible_rows)
 
     def front(self, study: Study, pair: tuple[str, str]) -> tuple[Array, bool]:
-        """Return the Pareto line (2, n) of two metrics (SI), and whether it covers every design.
+        """Return the Pareto line (2, n) of two metrics (SI), and whether it is complete.
 
-        Empty where the better direction of a metric is unknown.
+        Empty if it is unknown whether more or less of a metric is better.
         """
         for order in (pair, pair[::-1]):
             if order in self._fronts:
@@ -173,13 +175,14 @@ class Swept(Displayed):
     computed: int = 0
     reused: int = 0
     damaged: int = 0
-    """Rows computed again because the database holds them damaged."""
+    """Number of rows that were computed again because they are damaged in the database."""
     failed: int = 0
     feasible: int | None = 0
-    """Number of feasible designs; None if only the best are kept, as most are then not
+    """Number of feasible designs; None if only the best are kept, because most designs are then not
     evaluated."""
     screened: int = 0
-    """In a reduced sweep, designs excluded by the screen or by better designs of their chunk."""
+    """Number of designs that a reduced sweep excluded, by its screen or for better designs in the
+    same chunk."""
     best: list[Best] = field(default_factory=list)
     failures: dict[str, int] = field(default_factory=dict)
     """Number of failed designs, by reason."""
@@ -187,7 +190,7 @@ class Swept(Displayed):
     """Number of infeasible designs, by the limit that they miss most."""
     seconds: float = 0.0
     sample: Sample = field(default_factory=Sample)
-    """Rows for drawing."""
+    """Rows for figures."""
 
     def metrics(self, best: Best) -> dict[str, float | None]:
         """Return the metrics of one of the best designs (SI); None without a value."""
@@ -206,11 +209,11 @@ class Swept(Displayed):
         return {path: numbers[path] for path in paths}
 
     def limit(self, keep: int) -> float:
-        """Return the objective that another design must improve on to join the best."""
+        """Return the objective below which a further design is among the best."""
         return self.best[-1].objective if len(self.best) >= keep else np.inf
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the JSON form (CONTRACT): counts, and the best designs in SI."""
+        """Return the JSON form (see CONTRACT): counts, and the best designs in SI."""
         return {
             "name": self.study.design.name,
             "version": VERSION,
@@ -241,7 +244,7 @@ class Swept(Displayed):
             self.missed[name] = self.missed.get(name, 0) + int(times)
 
     def add(self, chunk: Chunk, keep: int) -> None:
-        """Add a chunk to the counts."""
+        """Add the rows of a chunk to counts, best designs and figures."""
         self.computed += chunk.computed
         self.damaged += chunk.damaged
         self.reused += max(len(chunk.rows.numbers) - chunk.computed, 0)

@@ -33,7 +33,7 @@ from .result import Sample, Swept
 Task = TypeVar("Task")
 
 PATIENCE = "10s"
-"""Time that a scheduler has to answer."""
+"""Time within which a Dask scheduler must answer."""
 
 
 RETRIES = 5
@@ -41,13 +41,13 @@ RETRIES = 5
 
 
 WAITING = 3
-"""Tasks queued for each thread of the cluster."""
+"""Number of tasks in the queue for each thread of the cluster."""
 
 
 def on_cluster(
     address: str, study: Study, work: Callable[[Study, Task], Chunk], tasks: Iterable[Task]
 ) -> Iterator[Chunk]:
-    """Yield the results of tasks run on a cluster, in order.
+    """Run tasks on a cluster; yield their results in the order of the tasks.
 
     Every task contains the study, so workers may leave and join at any time.
 
@@ -96,13 +96,13 @@ def _unpacked(blob: bytes) -> tuple[Any, Any]:
 
 
 def _remote_chunk(blob: bytes, task: Any) -> Any:
-    """Run a task on a worker."""
+    """Run a task on a worker of the cluster."""
     study, work = _unpacked(blob)
     return work(study, task)
 
 
 class MissingRows(NamedTuple):
-    """Keys and point numbers of the rows that the database lacks; None if it lacks all."""
+    """Rows of a chunk that the database lacks: keys, and indices (None if it lacks all rows)."""
 
     first: int
     keys: list[bytes]
@@ -112,7 +112,7 @@ class MissingRows(NamedTuple):
 
 
 def missing_rows(base: Database, study: Study, first: int, count: int) -> MissingRows:
-    """Return the keys of a chunk whose rows are missing or damaged."""
+    """Return the rows of a chunk that are missing or damaged in the database."""
     keys = study.keys(first, count)
     indices, damaged = base.missing(keys)
     some = None if len(indices) == len(keys) else np.array(indices, dtype=np.intp)
@@ -120,7 +120,7 @@ def missing_rows(base: Database, study: Study, first: int, count: int) -> Missin
 
 
 def stored_rows(base: Database, study: Study, first: int, count: int) -> tuple[StoredNumbers, int]:
-    """Return the stored rows of a chunk, NaN where missing, and their number."""
+    """Return the stored rows of a chunk, NaN where missing, and the number of missing rows."""
     keys = study.keys(first, count)
     points = study.plan.points(first, count)
     numbers = np.full((len(keys), len(study.columns)), np.nan)
@@ -135,31 +135,34 @@ def stored_rows(base: Database, study: Study, first: int, count: int) -> tuple[S
 
 
 CHUNK = 4096
-"""Points of a chunk, which is one database transaction and one message between processes."""
+"""Number of points in a chunk, which is stored in one transaction and sent between processes as one
+message."""
 
 REDUCED = 65_536
-"""Points of a chunk when only the best are kept."""
+"""Number of points in a chunk if only the best designs are kept."""
 
 SECTIONS = 16
-"""Number of places in a sweep that are examined if no design is feasible."""
+"""Number of places in a sweep at which designs are evaluated to find the limits that they miss, if
+no design is feasible."""
 
 SMALL_CHUNK = 8
-"""Points of a chunk if each needs a new design, which may have to calculate oil-film tables."""
+"""Number of points in a chunk if each needs a new design, for which oil-film tables may have to be
+calculated."""
 
 LOCAL_SECONDS = 0.5
-"""Seconds of work below which starting more processes does not save time."""
+"""Remaining computing time [s] below which starting more processes does not save time."""
 MASKS = hasattr(signal, "pthread_sigmask")
-"""Whether the system can delay a signal."""
+"""Whether the operating system can delay an interrupt signal."""
 
 
 class ChunkTask(NamedTuple):
-    """Points to compute: all points of a chunk, or some."""
+    """Points of a chunk to compute: all, or only those with the indices `some`."""
 
     first: int
     size: int
     some: Array | None = None
     limit: float | None = None
-    """Objective that a design must improve on, when only the best are kept."""
+    """If only the best designs are kept, the objective below which a design is among them."""
     keep: int = 0
     """Number of best designs to keep."""
 
@@ -179,12 +182,12 @@ def sweep(
     Parameters
     ----------
     study : the design and the points
-    store : database from which rows are read, and to which they are written
+    store : database from which existing rows are read, and to which new rows are written
     keep : number of best feasible designs to keep
     workers : number of processes; default: one per core
     scheduler : address of a Dask scheduler, used instead of local processes
     each : function that is called with every chunk, in order
-    watch : metrics; the Pareto line of every pair, over all designs, is kept
+    watch : metrics; for every pair, the Pareto line of all designs is kept
 
     Raises
     ------
@@ -219,14 +222,14 @@ def sweep(
 
 
 def _chunk_size(study: Study) -> int:
-    """Return the number of points of a chunk: fewer if most need a new design, which takes long."""
+    """Return the number of points of a chunk; it is small if most points need a new design."""
     if study.designs.apart_count > CACHED:
         return SMALL_CHUNK
     return CHUNK if study.full else REDUCED
 
 
 def _explain(swept: Swept) -> None:
-    """Count missed limits at some places of the sweep, if too few designs were evaluated."""
+    """Count the missed limits at some places of a sweep, in place of those counted before."""
     count, size = swept.study.plan.count, CHUNK // SECTIONS
     swept.missed = {}
     starts = range(0, count, size)
@@ -250,7 +253,7 @@ def swept_again(
     Raises
     ------
     InputError
-        if the file is missing, has other models, or the sweep is missing or incomplete
+        if the file is missing or was made with other models, or if it lacks rows of the sweep
     """
     began = time.perf_counter()
     swept = Swept(study, study.plan.count, sample=Sample(tuple(watch)))
@@ -280,7 +283,7 @@ def _computed(
     scheduler: str | None,
     tasks: Iterable[ChunkTask],
 ) -> Iterator[Chunk]:
-    """Yield the chunks of tasks, in order."""
+    """Compute the chunks of tasks, on a cluster or on this machine; yield them in order."""
     if scheduler is not None:
         yield from on_cluster(scheduler, study, _chunk, tasks)
         return
@@ -310,7 +313,7 @@ def _computed(
 def _local_chunks(
     study: Study, chunks: int, tasks: Iterator[ChunkTask], *, patient: bool
 ) -> Iterator[Chunk]:
-    """Yield chunks computed in this process: all of them, or until more processes save time."""
+    """Compute chunks in this process: all if `patient`, else until more processes save time."""
     for count, task in enumerate(tasks, start=1):
         began = time.perf_counter()
         chunk = _chunk(study, task)
@@ -324,7 +327,7 @@ def _local_chunks(
 
 
 _STUDY: list[Study] = []
-"""The study that a pool process works on."""
+"""The study for which a process of the pool computes chunks."""
 
 
 def _begin(study: Study) -> None:
@@ -338,9 +341,9 @@ def _begin(study: Study) -> None:
 def _end_with_parent() -> None:
     """End this process when its parent process ends, for whatever reason.
 
-    It waits until the parent's end of a pipe closes, which works without system signals. A forked
-    process also inherits the pipes of earlier processes, so the process that started last ends
-    first.
+    The process waits until the parent's end of a pipe closes, which works without system signals. A
+    forked process also inherits the pipes of processes that started before it, so the process that
+    started last ends first.
     """
     parent = multiprocessing.parent_process()
     if parent is not None:
@@ -377,7 +380,7 @@ def _stored(
     computed: Callable[[Iterable[ChunkTask]], Iterator[Chunk]],
     path: Path,
 ) -> Iterator[Chunk]:
-    """Yield chunks from stored rows, and store the rows newly computed."""
+    """Yield all chunks, computing and storing those rows that the database lacks."""
     with opened(
         path,
         study=study.hash,

@@ -1,8 +1,8 @@
-"""Screen of a sweep: closed expressions exclude most designs early.
+"""Screen of a sweep: fast closed expressions exclude most designs before full evaluation.
 
-The models run once with symbols. Objective and limits that become closed expressions of the varied
-numbers are compiled for NumPy, or JAX where installed. Designs that pass are evaluated in full, so
-a screen never changes the result.
+The models run once with symbols instead of numbers. The objective and those limits that become
+closed expressions of the varied numbers are compiled for NumPy, or for JAX if it is chosen and
+installed. Designs that pass are evaluated in full, so a screen never changes the result.
 """
 
 from __future__ import annotations
@@ -32,11 +32,13 @@ ENGINES: tuple[Engine, ...] = get_args(Engine)
 
 
 Scores: TypeAlias = Callable[[Array, Array], Array]
-"""Function that estimates objectives (n,) of numbers (axes, n); infinite for excluded designs."""
+"""Function that estimates the objective of each design, (n,), from its numbers (axes, n). Excluded
+designs get inf. The second argument is the objective that a design must not exceed."""
 
 
 LEAST_BATCH = 1024
-"""Smallest batch of a compiled function; larger batches double in size, each compiled once."""
+"""Smallest batch of designs for a compiled function. Larger batches double in size, so that the
+function is compiled only once for each size."""
 
 
 def usable_engine(name: str, *, reduced: bool) -> Engine:
@@ -67,7 +69,7 @@ def array_library(engine: Engine) -> Any:
 
 
 def fused(scores: Scores) -> Scores:
-    """Wrap a function of JAX arrays for NumPy arrays, compiled in double precision."""
+    """Compile a function of JAX arrays in double precision; the result takes NumPy arrays."""
     import jax
 
     compiled = jax.jit(scores)
@@ -83,18 +85,19 @@ def fused(scores: Scores) -> Scores:
 
 
 ROOM = 2 * TOLERANCE
-"""A design is excluded if it violates a limit by more than this, which exceeds rounding errors."""
+"""A design is excluded if its relative margin to a limit is below minus this value, which exceeds
+rounding errors."""
 
 CLOSE = 1e-9
-"""Relative tolerance of the objective, which also exceeds rounding errors."""
+"""Relative tolerance in comparing objectives, which also exceeds rounding errors."""
 
 TEST_POINTS = 512
-"""Number of random points that show which limits exclude most designs."""
+"""Number of random designs with which the limits that exclude most designs are found."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """Compiled values of some limits, with their bounds and senses (1 for a lower bound)."""
+    """Compiled expressions of some limits, with their bounds and signs (1 for a lower bound)."""
 
     compiled: Any
     bounds: Array
@@ -122,9 +125,10 @@ class Screen:
     library: Any = np
 
     def scores(self, numbers: Array, limit: Array) -> Array:
-        """Return the estimated objective, (n,): infinite where a limit or `limit` is missed.
+        """Return the estimated objective of each design, (n,).
 
-        It is minus infinity where the estimate is not finite.
+        It is inf for a design that misses a limit or whose objective exceeds `limit`, and -inf if
+        the estimate is not a number.
         """
         scores = self.bounded_objective(numbers, limit) + np.zeros(numbers.shape[1])
         for stage in self.stages:
@@ -136,7 +140,7 @@ class Screen:
         return scores
 
     def bounded_objective(self, numbers: Array, limit: Array) -> Array:
-        """Return the objective, (n,) or one value for all designs: infinite if above `limit`."""
+        """Return the objective, (n,) or one value for all designs; it is inf if above `limit`."""
         arrays = self.library
         with np.errstate(all="ignore"):
             objective, *others = self.objective(numbers)
@@ -146,7 +150,7 @@ class Screen:
         return arrays.where(objective > rounded_up(limit), np.inf, objective)
 
     def scores_at_once(self, numbers: Array, limit: Array) -> Array:
-        """Return `scores`, but check every limit of every design, as compiled code must."""
+        """Return `scores`, but check every limit for every design, as compiled code must."""
         scores = self.bounded_objective(numbers, limit)
         for stage in self.stages:
             for missed in stage.missed(numbers):
@@ -155,7 +159,7 @@ class Screen:
 
 
 def rounded_up(objective: Array) -> Array:
-    """Return an objective plus a rounding tolerance; only designs above this are surely worse."""
+    """Return an objective plus a rounding tolerance; designs above the sum are certainly worse."""
     return objective + CLOSE * abs(objective)
 
 
@@ -164,8 +168,8 @@ def screen(
 ) -> Scores | None:
     """Return a screen for designs whose numbers at `paths` vary between `ends` (axes, 2).
 
-    Return None if the objective is no closed expression of these numbers, or if a number cannot
-    vary as an array.
+    None if the objective is no closed expression of these numbers, or if a number cannot vary as an
+    array.
     """
     variables = {
         path: Variable(lower=float(low), upper=float(high), start=float((low + high) / 2))
@@ -213,7 +217,7 @@ def _limits(
 
 
 def _decisive(limits: Limits, points: Array) -> list[int]:
-    """Return a few limits that exclude every point that all limits together exclude."""
+    """Return the indices of a few limits that exclude every point which any limit excludes."""
     missed = np.stack(
         [np.broadcast_to(limit_missed, points.shape[1]) for limit_missed in limits.missed(points)]
     )

@@ -1,7 +1,8 @@
-"""Distributions of inputs; estimates of probabilities and indices with confidence bounds.
+"""Distributions of inputs; probabilities and sensitivity indices with confidence bounds.
 
-Distributions are quantile functions, which map cumulative probability to value. Probabilities and
-variance-based sensitivity indices are estimated from points of the unit cube.
+A distribution is represented by its quantile function, which gives the value at a cumulative
+probability. Probabilities and variance-based sensitivity indices are estimated from points of the
+unit cube; their coordinates are the cumulative probabilities of the inputs.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ LEVEL = 0.95
 """Confidence level of all bounds."""
 
 Outputs = Callable[[Vector], Vector]
-"""Function for outputs (k, n) at points (d, n) of the unit cube."""
+"""Function that returns the outputs (k, n) at points (d, n) of the unit cube."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,11 +52,11 @@ def exact(hits: int, count: int) -> Rate:
 
 
 SUMMED = 2000
-"""Up to this number of draws, bounds are summed directly, as SciPy is slow to load."""
+"""Up to this number of draws, bounds are computed by direct summation, as SciPy is slow to load."""
 
 
 def _least(hits: int, count: int) -> float:
-    """Return the hit probability at which `hits` or more of `count` draws have a 2.5 % chance."""
+    """Return the hit probability for which `hits` or more of `count` draws are 2.5 % likely."""
     tail = (1 - LEVEL) / 2
     if count > SUMMED:
         from scipy.special import betaincinv
@@ -75,9 +76,9 @@ def _least(hits: int, count: int) -> float:
 def replicated(hits: Vector, points: int) -> Rate:
     """Return the share of hits in independent replicates of `points` quasi-random points each.
 
-    Bounds use Student's t over the replicates [Owen2013]. If replicates have on average fewer than
-    one miss or one hit, their scatter gives no information. The bounds are then the wider bounds of
-    independent draws.
+    The bounds follow from the scatter of the replicates by Student's t [Owen2013]. If there are
+    fewer misses, or fewer hits, than replicates, their scatter gives no information. The bounds are
+    then those of independent draws, which are wider.
     """
     total, replicates = int(hits.sum()), len(hits)
     pooled = exact(total, points * replicates)
@@ -88,12 +89,12 @@ def replicated(hits: Vector, points: int) -> Rate:
 
 
 def half_width(values: Vector) -> float:
-    """Return half the 95 % confidence interval of the mean of independent replicates."""
+    """Return half the width of the 95 % confidence interval of the mean of replicates."""
     return _student(len(values)) * float(np.std(values, ddof=1))
 
 
 def _student(count: int) -> float:
-    """Return half the 95 % interval of a mean, divided by the values' standard deviation."""
+    """Return half the width of the 95 % interval of a mean, for values of standard deviation 1."""
     from scipy.special import stdtrit
 
     return float(stdtrit(count - 1, (1 + LEVEL) / 2)) / float(np.sqrt(count))
@@ -114,10 +115,10 @@ class Indices:
 
     Parameters
     ----------
-    first, total : (d, k); NaN where an output does not vary
-    first_half, total_half : half of their 95 % confidence intervals
+    first, total : first-order and total indices (d, k); NaN if the output does not vary
+    first_half, total_half : half the width of their 95 % confidence intervals (d, k)
     variance : variance of each output (k,)
-    dropped : share of the rows that are dropped, as some output has no value
+    dropped : share of the rows that are left out, because some output has no value
     """
 
     first: Vector
@@ -129,24 +130,26 @@ class Indices:
 
 
 TOGETHER = 2048
-"""Maximum number of points in one call, for which several columns are joined."""
+"""Maximum number of points in one call; up to it, the points for several inputs are joined."""
 REPLICATES = 8
-"""Number of independent randomisations from which each interval of an index follows."""
+"""Number of independent randomisations, from whose scatter the confidence intervals of indices
+follow."""
 
 
 def indices(outputs: Outputs, dimension: int, *, rows: int, seed: int) -> Indices:
     """Return the first-order and total indices of every output.
 
     The first-order index of input i is E[f(B) (f(AB_i) - f(A))] / V [Saltelli2010], its total index
-    E[(f(A) - f(AB_i))^2] / 2V [Jansen1999], with the variance V of the output f. A and B are halves
-    of one scrambled Sobol sequence in 2d dimensions; AB_i is A with column i of B. Confidence
-    intervals follow from `REPLICATES` randomisations.
+    E[(f(A) - f(AB_i))^2] / 2V [Jansen1999], with the variance V of the output f. A and B are the
+    first and the last d coordinates of one scrambled Sobol sequence in 2d dimensions; AB_i is A
+    with coordinate i taken from B. Confidence intervals follow from `REPLICATES` randomisations of
+    the sequence.
 
     Parameters
     ----------
-    outputs : function for outputs (k, n) at points (d, n)
+    outputs : function that returns the outputs (k, n) at points (d, n)
     dimension : number of inputs d
-    rows : number of points, summed over all replicates; each takes (d + 2) evaluations
+    rows : number of points in total; each takes (d + 2) evaluations of the design
     seed : seed of the randomisations
     """
     power = max(3, round(np.log2(max(rows, 1) / REPLICATES)))
@@ -178,10 +181,10 @@ def indices(outputs: Outputs, dimension: int, *, rows: int, seed: int) -> Indice
 def _replicate_moments(
     outputs: Outputs, points: Vector, dimension: int, replicate: int
 ) -> tuple[Vector, int]:
-    """Return the variances of one randomisation, and the number of dropped rows.
+    """Return the variances of one randomisation, and the number of rows left out.
 
-    The variances (2 d + 1, k) are the first-order and total parts of each input, then the variance
-    of each output.
+    The variances (2 d + 1, k) are the first-order parts due to each input, then the total parts due
+    to each input, and finally the variance of the output.
     """
     first, second = points[:dimension], points[dimension:]
     a, b = outputs(first), outputs(second)
@@ -232,7 +235,7 @@ class Distribution:
     deviation: float = 0.0
 
     def at(self, share: Vector) -> Vector:
-        """Return the quantiles at the given cumulative probabilities.
+        """Return the values at the given cumulative probabilities.
 
         Normal and lognormal distributions are truncated at 5 standard deviations.
 
@@ -280,13 +283,13 @@ def normal_quantile(share: Vector) -> Vector:
 def about(
     shape: str, stated: Mapping[str, Any], value: float, within: tuple[float, float]
 ) -> Distribution:
-    """Return the distribution of an entry of the design file, centred on a nominal value.
+    """Return the distribution that a design file states, centred on a nominal value.
 
     Parameters
     ----------
-    shape, stated : as in the design file, SI
+    shape, stated : shape and parameters as in the design file, SI
     value : nominal value
-    within : valid range; draws outside it are set to its bounds
+    within : valid range; draws outside it are set to the nearest bound
     """
     low, high = limits(shape, stated, value)
     if shape == "normal":

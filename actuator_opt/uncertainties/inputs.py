@@ -1,11 +1,12 @@
-"""Collect the uncertain inputs of a design from its file, tests, libraries and practice.
+"""Collect the uncertain inputs of a design, with their distributions.
 
-The sources in order of precedence are: an entry of ``uncertainty``; 95 % bounds of ``measured``
-(normal distribution); scatter that a library states for a property; ISO 286 and common practice for
-diameters, walls, angles and air content. A coefficient of variation means a normal distribution, a
-tolerance a uniform distribution, and a factor a uniform distribution of the logarithm, since bounds
-give no more information [JCGM100]. Values already evaluated at their worst are not drawn: strengths
-keep their allowables, and glands the limits of their tolerances.
+The sources, in order of precedence, are: an entry of the block ``uncertainty``; the 95 % bounds in
+the block ``measured`` (normal distribution); the scatter that a library states for a property; ISO
+286 and common practice for diameters, walls, angles and air content. Scatter given as a coefficient
+of variation means a normal distribution, a tolerance a uniform distribution, and a factor a uniform
+distribution of the logarithm, since bounds give no more information [JCGM100]. Values that are
+already evaluated at their worst do not vary: strengths stay at their allowables, and glands at the
+limits of their tolerances.
 """
 
 from __future__ import annotations
@@ -33,9 +34,9 @@ from ..optimisation.problem import Vector
 from .estimate import Distribution, about
 
 GUARANTEED = ("limit", "minimum", "maximum", "A", "B", "S")
-"""Bases of values that are already lower bounds."""
+"""Statistical bases of material values that are already bounds, so that they do not vary."""
 OWN = ("friction_coefficient", "breakaway_ratio", "stribeck_speed")
-"""Seal properties that a design may state; otherwise those of the compound apply."""
+"""Seal properties that a design may state; otherwise the values of the compound apply."""
 NORMAL_95 = 1.959964
 _ANYTHING = (-np.inf, np.inf)
 
@@ -50,8 +51,8 @@ class Input:
     quantity : its quantity
     value : nominal value in the design, SI
     distribution : distribution of its draws
-    origin : design, measured, library or practice
-    why : source of its scatter
+    origin : kind of source: "design", "measured", "library" or "practice"
+    why : source of the scatter, in words
     confidence : confidence in that source
     """
 
@@ -82,7 +83,7 @@ def inputs(subject: PreparedDesign) -> tuple[Input, ...]:
     Raises
     ------
     InputError
-        if no model reads an entry of ``uncertainty``, or its samples leave the valid range
+        if no model reads an entry of ``uncertainty``, or its draws would leave the valid range
     """
     paths_read = read_by_models(subject)
     candidates = (
@@ -102,7 +103,7 @@ def inputs(subject: PreparedDesign) -> tuple[Input, ...]:
 
 
 def read_by_models(subject: PreparedDesign) -> set[str]:
-    """Return the PATHs that models read, and factors on moduli that follow from hardness."""
+    """Return the PATHs that models read, including factors on moduli that follow from hardness."""
     factors = {f"materials.{name}.{_FACTOR}": np.ones(2) for name in _compounds(subject)}
     values = subject.values(factors)
     compute(subject, values)
@@ -144,7 +145,7 @@ def _measured(subject: PreparedDesign) -> Iterator[Input]:
 
 
 def _library(subject: PreparedDesign) -> Iterator[Input]:
-    """Yield inputs whose scatter a library states, for materials and seals."""
+    """Yield the properties of materials and seals for which a library states scatter."""
     for name, material in subject.materials.items():
         for key, entry in material.properties.items():
             if "strength" not in key and entry.basis not in GUARANTEED:
@@ -174,7 +175,7 @@ def _property(subject: PreparedDesign, path: str, entry: Property, name: str) ->
 
 
 def _shape(spread: Spread, value: float) -> tuple[str, dict[str, float]]:
-    """Return a library's scatter as a distribution shape with its parameters."""
+    """Return the distribution shape, with its parameters, for scatter that a library states."""
     if spread.kind == "cv":
         return "normal", {"cv": spread.size}
     if spread.kind == "tolerance":
@@ -190,9 +191,9 @@ def _compounds(subject: PreparedDesign) -> list[str]:
 
 
 def _moduli(subject: PreparedDesign) -> Iterator[Input]:
-    """Yield a factor on each seal compound's modulus, for the spread between hardness laws.
+    """Yield a factor on the modulus of each seal compound, as laws for it from hardness differ.
 
-    It is log-uniform between the laws' smallest and largest modulus.
+    Its logarithm is uniform; its bounds give the smallest and the largest modulus of these laws.
     """
     laws: dict[str, set[str]] = {}
     for place in ("piston", "rod"):
@@ -209,7 +210,7 @@ def _moduli(subject: PreparedDesign) -> Iterator[Input]:
         stated = {"lower": min(ratios), "upper": max(ratios)}
         distribution = about("loguniform", stated, 1.0, _ANYTHING)
         references = " and ".join(law.reference for law in MODULUS_LAWS.values())
-        why = f"published laws for modulus from hardness differ: {references}"
+        why = f"published laws for the modulus at a hardness differ: {references}"
         quantity = quantity_of(path, subject.design)
         value = subject.numbers.get(path, 1.0)
         yield Input(path, quantity, value, distribution, "library", why, "verified")
@@ -219,7 +220,7 @@ def _moduli(subject: PreparedDesign) -> Iterator[Input]:
 
 
 def _practice(subject: PreparedDesign) -> Iterator[Input]:
-    """Yield inputs with commonly assumed scatter: diameters, walls, ply angles and air content."""
+    """Yield inputs with scatter from practice: diameters, walls, ply angles, air content."""
     table: Mapping[str, str] = tables()["scatter_of_dimensions"]
     origin = citation(table["source"])
     classes = {
@@ -261,14 +262,14 @@ TOLERANCE = 1e-6
 
 
 def chunks(points: Vector) -> Iterator[Vector]:
-    """Yield points (d, n) in chunks."""
+    """Yield points (d, n) in chunks of up to `CHUNK` points."""
     for first in range(0, points.shape[1], CHUNK):
         yield points[:, first : first + CHUNK]
 
 
 @dataclass(frozen=True, slots=True)
 class ModelDraws:
-    """Input values (d, n), limit margins (m, n) and metrics (k, n) of n draws."""
+    """Input values (d, n), margins of all limits (m, n) and metrics (k, n) for n draws."""
 
     values: Vector
     margins: Vector
@@ -276,7 +277,7 @@ class ModelDraws:
 
     @property
     def met(self) -> Vector:
-        """Return which limits are met (m, n); a limit without a value counts as missed."""
+        """Return which draws meet which limits (m, n); a limit without a value counts as missed."""
         return np.asarray(self.margins >= -TOLERANCE)
 
 
@@ -305,17 +306,17 @@ class UncertainModel:
             and (limit.origin != "check" or nominal.computed.metrics.get(limit.metric))
         )
         self.own = np.array([limit.origin != "check" for limit in self.limits], dtype=bool)
-        """Which limits are requirements of the design, including those of its load cases."""
+        """Whether each limit is a requirement, of the design or of a load case, and not a check."""
         _require_metrics(self.metrics, nominal.computed)
         self._wanted = {limit.metric for limit in self.limits} | set(self.metrics)
 
     @property
     def nominal(self) -> ModelDraws:
-        """Return the nominal design."""
+        """Return margins and metrics of the nominal design."""
         return self.where(np.array([[entry.value] for entry in self.inputs]).reshape(-1, 1))
 
     def at(self, shares: Vector) -> ModelDraws:
-        """Return the design at the given quantiles (d, n) of its inputs."""
+        """Return margins and metrics at cumulative probabilities (d, n) of the inputs."""
         quantiles = [
             entry.distribution.at(row) for entry, row in zip(self.inputs, shares, strict=True)
         ]
@@ -334,7 +335,7 @@ class UncertainModel:
 
     @np.errstate(all="ignore")
     def where(self, values: Vector) -> ModelDraws:
-        """Return the design at the given input values (d, n), SI."""
+        """Return margins and metrics at the given input values (d, n), SI."""
         count = values.shape[1]
         varied = {entry.path: row for entry, row in zip(self.inputs, values, strict=True)}
         numbers = self.subject.values(varied)
@@ -354,7 +355,7 @@ def _stacked(arrays: Sequence[Vector], count: int) -> Vector:
 
 
 def _margin(limit: MetricLimit, computed: MetricArrays, numbers: Values, count: int) -> Vector:
-    """Return the least margin of a limit (n,) over load cases and locations; NaN if unknown."""
+    """Return the least margin of a limit over load cases and places (n,); NaN without a value."""
     least = np.full(count, np.inf)
     has_value = False
     for row in rows_of(limit, computed, numbers):
@@ -371,10 +372,11 @@ def _require_metrics(metrics: Sequence[str], computed: MetricArrays) -> None:
 
 
 def without_drawn_basis(subject: PreparedDesign, inputs: Sequence[Input]) -> PreparedDesign:
-    """Return the design without the knock-down for statistical basis of drawn strengths.
+    """Return the design without the basis knock-down of those strengths that are drawn.
 
-    This knock-down, from mean to allowable, accounts for scatter, which drawing the strength
-    already does. Knock-downs for temperature, moisture and process still apply.
+    The basis knock-down reduces a mean strength to an allowable. It accounts for scatter, as
+    drawing the strength already does. Knock-downs for temperature, moisture and process still
+    apply.
     """
     drawn_paths = {uncertain.path for uncertain in inputs}
     factors = dict(subject.factors)

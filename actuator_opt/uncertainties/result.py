@@ -21,7 +21,7 @@ class LimitYield:
     Parameters
     ----------
     name, metric, sense, limit : name, metric, sense and value (SI) of the limit
-    required : whether it is a requirement; otherwise it belongs to the check list
+    required : whether the limit is a requirement; otherwise it belongs to the check list
     margin : margin of the nominal design; None without a value
     rate : probability of meeting the limit
     margins : margins at the 1, 5, 50, 95 and 99 % quantiles of the draws; None without a value
@@ -48,10 +48,10 @@ class LimitYield:
 
 @dataclass(frozen=True, slots=True)
 class Index:
-    """Share of an output's variance due to one input, alone (first) or with interactions (total).
+    """Share of an output's variance due to an input: alone (first), with interactions (total).
 
-    Each of `first` and `total` has half of its 95 % confidence interval. They are None if the
-    output is constant.
+    `first_half` and `total_half` are half the widths of the 95 % confidence intervals. All are None
+    if the output is constant.
     """
 
     path: str
@@ -88,7 +88,7 @@ class Swing:
 
     @property
     def size(self) -> float:
-        """Return the distance between both ends; infinite if either has no value."""
+        """Return the difference between both values; infinite if either is missing."""
         if self.at_5 is None or self.at_95 is None:
             return float("inf")
         return abs(self.at_95 - self.at_5)
@@ -109,7 +109,7 @@ class StoredDraws:
 
 
 LEAST = "least margin"
-"""Name of the output that contains the least margin of all requirements."""
+"""Name of the output that is the least margin of all requirements."""
 
 
 @dataclass(frozen=True)
@@ -122,13 +122,14 @@ class Uncertainty(Displayed):
     inputs : uncertain inputs
     count, method, seed : number, method and seed of the draws
     rate : probability of meeting all requirements
-    rate_checks : probability of also meeting the check list
+    rate_checks : probability of meeting all requirements and the whole check list
     limits : results for each requirement, then each check
-    nominal : outputs of the nominal design, by name; a margin has the name of its limit
-    units : metrics among the outputs, with their SI unit
+    nominal : outputs of the nominal design, by name; the margin of a limit has the name of the
+        limit
+    units : SI units of the metrics among the outputs, by name
     indices, swings : sensitivity indices and tornado entries, by input and output
-    index_rows, dropped : number of rows used for the indices, and share of rows without a value
-    kept : draws stored for tables and figures
+    index_rows, dropped : size of the sample for the indices, and share of it without a value
+    kept : draws that are stored for tables and figures
     notes : notes on what the yield covers
     """
 
@@ -210,8 +211,8 @@ class Uncertainty(Displayed):
             rows.append([limit.name, margin, *(f"{100 * x:.2f} %" for x in bounds)])
         rate = self.rate
         headline = (
-            f"yield {100 * rate.value:.2f} % ({100 * rate.lower:.2f} to {100 * rate.upper:.2f} "
-            f"%) of {self.count} draws"
+            f"yield {100 * rate.value:.2f} % (95 % bounds: {100 * rate.lower:.2f} to "
+            f"{100 * rate.upper:.2f} %) from {self.count} draws"
         )
         return "\n".join([headline, "", aligned(rows, right=(1, 2, 3, 4))])
 

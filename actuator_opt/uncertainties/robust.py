@@ -1,10 +1,10 @@
 """Robust optima: meet all limits with a stated probability.
 
-The design is optimised repeatedly. At each optimum, draws of the uncertain inputs give the margins
-of all limits. Each limit then needs a reserve, which is the distance from its nominal margin to a
-quantile of the drawn margins. The design is optimised again with these reserves until they
-converge. The failure probability allowed for a single limit is adjusted to how often any limit
-fails. Independent draws then verify the last design.
+The design is optimised repeatedly. At each optimum, random draws of the uncertain inputs show how
+the margin of every limit scatters. Each limit then needs a reserve, which is its nominal margin
+minus a low quantile of its drawn margins. The design is optimised again with these reserves until
+they converge. In doing so, the failure probability allowed for a single limit is adjusted until any
+limit fails as often as permitted. Further independent draws then verify the last design.
 """
 
 from __future__ import annotations
@@ -28,27 +28,30 @@ from .inputs import TOLERANCE, UncertainModel, inputs, read_by_models
 from .study import draw
 
 Search = Callable[[PreparedDesign, bool], Optimisation]
-"""Function that finds an ordinary optimum of a design; the flag requests what each limit costs."""
+"""Function that optimises a design without draws. Its flag requests how much each limit costs."""
 
 LEAST, MOST = 0.5, 0.9999
-"""Range of probabilities that a user may request."""
+"""Range of yields that a user may request."""
 ROUNDS = 12
 """Maximum number of optimisation rounds."""
 REFUSALS = 3
-"""Maximum number of times that infeasible reserves are reduced to those of the nearest design."""
+"""Maximum number of times that reserves which no design can provide are reduced to those of the
+nearest design."""
 STILL = 2e-3
 """Relative change of the objective that counts as converged."""
 FAR = 1.0
-"""If a drawn margin exceeds this, the limit is far from active and needs no reserve. The reserve of
-a life, for example, could otherwise exceed the margin of every other design."""
+"""If even the low quantile of the drawn margins exceeds this, the limit is far from active and
+needs no reserve. For a service life, for example, the reserve could otherwise exceed the margins of
+all other designs."""
 AIM, ROOM = 0.85, 0.15
-"""Share of the allowed failures at which the search aims, and its tolerance. With this distance,
-the bounds from the verifying draws lie above the requested yield."""
+"""Share of the allowed failures at which the search aims, and the relative tolerance on it. The
+search aims at fewer failures than allowed so that the confidence bounds of the verifying draws lie
+above the requested yield."""
 
 
 @dataclass(frozen=True, slots=True)
 class _DesignDraws:
-    """Drawn margins of one design, with the reserves that follow from them."""
+    """Drawn margins of one design, and the reserves that follow from them."""
 
     model: UncertainModel
     covered: Array
@@ -61,7 +64,7 @@ class _DesignDraws:
         return float((self.margins[self.covered] >= -TOLERANCE).all(axis=0).mean())
 
     def reserves(self, level: float) -> dict[str, float]:
-        """Return the reserve of each limit with which it fails with probability `level`."""
+        """Return, by limit, the reserve with which this limit fails with probability `level`."""
         reserves = {}
         for row in np.flatnonzero(self.covered):
             margins = np.where(np.isnan(self.margins[row]), -np.inf, self.margins[row])
@@ -80,8 +83,8 @@ def robust(
     Parameters
     ----------
     subject : the prepared design
-    target : probability, 0.5 to 0.9999
-    search : function that finds an ordinary optimum
+    target : requested yield, 0.5 to 0.9999
+    search : function that optimises a design without draws
     seed : seed of the draws; the same seed gives the same design
 
     Raises
@@ -102,14 +105,17 @@ def robust(
 
 
 def require(target: float) -> None:
-    """Reject a probability outside the range that the draws can verify."""
+    """Reject a requested yield outside the range that draws can verify."""
     if not LEAST <= target <= MOST:
         message = f"a yield of {target:g} is outside the valid range"
         raise UsageError(Diagnostic(message, f"write {LEAST:g} to {MOST:g}, e.g. 0.99"))
 
 
 def _without_choices(subject: PreparedDesign, ordinary: Optimisation) -> PreparedDesign:
-    """Return the design with choices fixed as in its ordinary optimum, and only inputs in use."""
+    """Return the design with its choices fixed as in the ordinary optimum.
+
+    Uncertain inputs that the fixed design does not use are removed.
+    """
     if not subject.design.choices:
         return subject
     design = ordinary.design.model_copy(update={"choices": {}})
@@ -133,13 +139,13 @@ class _FailureLevel:
         self.last: tuple[float, float] | None = None
 
     def near(self, failure_rate: float) -> bool:
-        """Whether the failure rate is near the target, or below it at the largest allowed level."""
+        """Whether the failure rate is near the aim, or below it at the largest possible level."""
         return abs(failure_rate - self.aim) <= ROOM * self.aim or (
             failure_rate < self.aim == self.value
         )
 
     def follow(self, failure_rate: float) -> None:
-        """Set the level expected to give the target failure rate: a secant step in logarithms."""
+        """Set the level that should give the failure rate `aim`, by a secant step in logarithms."""
         failure_rate = max(failure_rate, 1e-3 * self.aim)
         slope = 1.0
         if self.last is not None and self.last[0] != self.value:
@@ -150,7 +156,7 @@ class _FailureLevel:
 
 
 class _RobustSearch:
-    """Repeated optimisation, each with reserves from draws at the previous optimum."""
+    """Repeated optimisation; each uses reserves from draws at the previous optimum."""
 
     def __init__(
         self,
@@ -216,10 +222,11 @@ class _RobustSearch:
             reserves = draws.reserves(level.value)
 
     def _nearer(self, nearest: _DesignDraws, level: float) -> dict[str, float]:
-        """Return the reserves that the least infeasible design can provide.
+        """Return reserves for the next search, after one that found no feasible design.
 
-        Its draws may still meet the target, if one limit fails more often and others less often
-        than the level. Reserves up to the design's own margins are then enough.
+        The draws at the least infeasible design, `nearest`, may still meet the target, if one limit
+        fails more often and others fail less often than the level. Reserves no larger than the
+        margins of this design are then enough.
         """
         reserves = nearest.reserves(level)
         if nearest.rate < self.target:
@@ -230,7 +237,7 @@ class _RobustSearch:
     def _keep(
         self, optimisation: Optimisation, draws: _DesignDraws, reserves: dict[str, float]
     ) -> None:
-        """Keep this design if its yield is better than before, or its objective at equal yield."""
+        """Keep this design if it is better than the kept design: in yield, or else in objective."""
         sign = -1.0 if optimisation.design.objective.maximise is not None else 1.0
 
         def rank(candidate: Optimisation, draws: _DesignDraws) -> tuple[float, float]:
@@ -242,11 +249,11 @@ class _RobustSearch:
             self.best, self.draws, self.reserves = optimisation, draws, reserves
 
     def result(self) -> Optimisation:
-        """Return the final design, with the cost of each limit, verified by independent draws."""
+        """Return the final design, verified by independent draws, with the cost of each limit."""
         optimisation, reserves, draws = self._last()
         if self.ordinary.choices is not None:
             choices = self.ordinary.choices
-            words = f"{choices.sentence}; all choices were compared without margins for scatter"
+            words = f"{choices.sentence}; the options were compared without margins for scatter"
             optimisation = replace(optimisation, choices=replace(choices, sentence=words))
         count = round(float(np.clip(200 / self.allowed, 10_000, 400_000)))
         rate = _covered_rate(draws.model, self.covered, count, self.seed)
@@ -277,7 +284,7 @@ class _RobustSearch:
         return replace(optimisation, robust=outcome, sentence=sentence, remedy=remedy)
 
     def _last(self) -> tuple[Optimisation, dict[str, float], _DesignDraws]:
-        """Return the final design with its reserves: the best feasible, else the nearest design."""
+        """Return the best feasible design, or else the nearest, with its reserves and draws."""
         if self.draws.rate >= self.target:
             self.infeasible = {}
         reserves = self.infeasible or self.reserves
@@ -292,16 +299,16 @@ class _RobustSearch:
         return optimisation, reserves, draws
 
     def _proven(self, certificate: Certificate) -> Certificate:
-        """Return the certificate with a remark that it does not cover the reserves."""
+        """Return the certificate with the remark that its bound does not include the reserves."""
         if certificate.lower_bound is None:
             return certificate
-        words = "the bound is for the limits themselves, without margins added for scatter"
+        words = "the bound applies to the limits themselves, without margins added for scatter"
         if self.ordinary.choices is not None:
             words += ", and for the chosen options only"
         return replace(certificate, sentence=f"{certificate.sentence}; {words}")
 
     def _shortfalls(self) -> str:
-        """Name the limits whose required reserve most exceeds the margin of the last design."""
+        """Name the limits whose required reserve most exceeds the margin of the kept design."""
         margins = dict(zip(self.names, self.draws.nominal, strict=True))
         shortfalls = sorted((margins[x] - reserve, x) for x, reserve in self.infeasible.items())
         limits_named = [
@@ -326,30 +333,30 @@ class _RobustSearch:
         remarks = ""
         if self.ordinary.choices is not None:
             remarks = (
-                "; the choices are those of the optimum without margins for scatter: try others "
-                "with --set"
+                "; the chosen options are those of the optimum without margins for scatter: try "
+                "other options with --set"
             )
         if outcome.left_out:
             missed = ", ".join(outcome.left_out)
             remarks += (
-                "; the yield does not cover these limits, which the optimum misses even "
+                "; the yield does not include these limits, which the optimum misses even "
                 f"without scatter: {missed}"
             )
         if self.infeasible:
             return (
-                f"{_no_design_meets(optimisation)} the limits with the margins that scatter "
-                f"needs for a yield of {_percent(self.target)}: {self._shortfalls()}. The "
+                f"{_no_design_meets(optimisation)} the limits with the margins that a yield of "
+                f"{_percent(self.target)} requires because of scatter: {self._shortfalls()}. The "
                 f"design shown meets all limits in {yield_text} of {outcome.samples} "
                 f"independent draws; without margins for scatter {quantity.label} is {before} "
                 f"at a yield of {_percent(outcome.nominal_rate)}{remarks}. The suggested "
-                "changes assume these margins, which grow when a limit is relaxed, so apply "
-                "the changes and optimise again"
+                "changes assume these margins. As the required margins grow when a limit is "
+                "relaxed, apply the changes and optimise again"
             )
         if not outcome.reached:
             return (
                 f"the margins added for scatter did not converge in {len(outcome.rounds) - 1} "
                 f"rounds: all limits are met in {yield_text} of {outcome.samples} independent "
-                f"draws, not {_percent(self.target)}; {cost}{remarks}"
+                f"draws, less than the {_percent(self.target)} requested; {cost}{remarks}"
             )
         remark = "" if self.converged else ", though the margins added for scatter did not converge"
         return (
@@ -365,7 +372,7 @@ def _no_design_meets(optimisation: Optimisation) -> str:
 
 
 def _solved(optimisation: Optimisation) -> bool:
-    """Whether an optimum has the requested sizes and meets all limits with their reserves."""
+    """Whether an optimisation succeeded: all limits met with their reserves, in requested sizes."""
     infeasible = optimisation.status == "infeasible" or optimisation.status.startswith("limit_inf")
     usable = optimisation.status != "undefined" and not optimisation.status.startswith(
         "interrupted"

@@ -22,7 +22,7 @@ from .result import LEAST, Index, LimitYield, StoredDraws, Swing, Uncertainty, n
 
 
 def _notes(subject: PreparedDesign, uncertain_inputs: Sequence[Input]) -> Iterator[str]:
-    """Yield notes on which inputs are drawn, and which are not."""
+    """Yield notes on which inputs scatter in the study, and which do not."""
     drawn_paths = {entry.path for entry in uncertain_inputs}
     strengths = sorted(path for path in drawn_paths if "strength" in path)
     if not uncertain_inputs:
@@ -35,9 +35,9 @@ def _notes(subject: PreparedDesign, uncertain_inputs: Sequence[Input]) -> Iterat
         "knock-downs, so the yield is conservative for material strength"
         if not strengths
         else (
-            "these strengths scatter, without the knock-down for their basis, which "
-            f"covers the same scatter: {', '.join(strengths)}; all other strengths stay at "
-            "their allowables"
+            "these strengths scatter, so the knock-down for their statistical basis, which "
+            f"covers the same scatter, is left out: {', '.join(strengths)}; all other "
+            "strengths stay at their allowables"
         )
     )
     yield (
@@ -50,14 +50,14 @@ def _notes(subject: PreparedDesign, uncertain_inputs: Sequence[Input]) -> Iterat
         if twice and place.startswith("seals.") and subject.numbers.get(f"{place}.{twice}", 0.0):
             yield (
                 f"{path} scatters, but {place}.{twice}, at its worst value, already covers "
-                f"the same scatter: set {place}.{twice} to 0"
+                f"the same scatter: to count it only once, set {place}.{twice} to 0"
             )
     yield "all inputs scatter independently, even properties of the same material"
     practice = [entry.path for entry in uncertain_inputs if entry.origin == "practice"]
     if practice:
         yield (
             "scatter assumed from common practice, without a verified source: "
-            f"{', '.join(practice)}; state your own under uncertainty"
+            f"{', '.join(practice)}; state your own values in the block uncertainty"
         )
     if films_asked(subject.design):
         yield (
@@ -69,12 +69,13 @@ def _notes(subject: PreparedDesign, uncertain_inputs: Sequence[Input]) -> Iterat
 COUNT = 10_000
 """Default number of draws for the yield."""
 ROWS = 1024
-"""Default number of rows for the indices; each takes (inputs + 2) evaluations."""
+"""Default size of the base sample for the sensitivity indices; each point takes (inputs + 2)
+evaluations."""
 BLOCKS = 16
-"""Number of randomisations of quasi-random draws."""
+"""Number of independent randomisations of quasi-random draws."""
 MOST_KEPT = 16_384
-"""Maximum number of draws stored for quantiles, figures and tables; a part of independent draws
-gives unbiased results."""
+"""Maximum number of draws that are stored for quantiles, figures and tables. As the draws are
+independent, a part of them gives unbiased results."""
 ENDS = (0.05, 0.95)
 """Cumulative probabilities at which the tornado evaluates an input."""
 POINTS = (0.01, 0.05, 0.5, 0.95, 0.99)
@@ -97,14 +98,14 @@ def uncertainty(
     subject : the prepared design
     count : number of draws for the yield
     seed : the same seed gives the same draws
-    quasi_random : draw scrambled Sobol points in `BLOCKS` randomisations
-    rows : number of rows for the indices; 0 for no indices
+    quasi_random : whether to draw scrambled Sobol points, in `BLOCKS` randomisations
+    rows : size of the base sample for the sensitivity indices; 0 to omit them
     metrics : metrics to evaluate in addition to the margins; default: those of the objective
 
     Raises
     ------
     InputError
-        if an entry of ``uncertainty`` is invalid, or the design does not have a metric
+        if an entry of ``uncertainty`` is invalid, or one of `metrics` does not apply to the design
     """
     began = time.perf_counter()
     uncertain_inputs = inputs(subject)
@@ -142,14 +143,14 @@ def uncertainty(
 
 @dataclass(frozen=True, slots=True)
 class HitCounts:
-    """Numbers of draws that meet each limit, all requirements and all limits, (m + 2, blocks)."""
+    """Numbers of draws (m + 2, blocks) that meet each limit, all requirements, and all limits."""
 
     hits: Vector
     per_block: int
     kept: StoredDraws
 
     def rates(self) -> list[Rate]:
-        """Return the probability for each row of counts."""
+        """Return the probability that follows from each row of counts."""
         if self.hits.shape[1] == 1:
             return [exact(int(row[0]), self.per_block) for row in self.hits]
         return [replicated(row, self.per_block) for row in self.hits]
@@ -169,7 +170,7 @@ def draw(
     ----------
     model : design with its uncertain inputs
     count : number of draws
-    seed, stream : two streams of one seed are independent
+    seed, stream : seed and number of the stream; two streams of one seed are independent
     blocks : number of randomisations of quasi-random points; 1 for independent draws
     keep : maximum number of draws to store
     """
@@ -226,7 +227,7 @@ def _limits(
 
 
 def quantiles(margins: Vector) -> Vector:
-    """Return the quantiles of margins at `POINTS`; a draw without a value counts as the lowest."""
+    """Return the quantiles of margins at `POINTS`; a draw without a value counts as the worst."""
     ordered = np.where(np.isnan(margins), -np.inf, margins)
     return np.quantile(ordered, POINTS, method="inverted_cdf")
 
@@ -247,7 +248,7 @@ def _indices(
 
 
 def _swings(model: UncertainModel, outputs: Sequence[str]) -> tuple[Swing, ...]:
-    """Return every output with one input at each of its `ENDS`, all others nominal."""
+    """Return every output with one input after another at its `ENDS`, and the others nominal."""
     if not model.inputs:
         return ()
     values = np.repeat(
@@ -266,8 +267,8 @@ def _swings(model: UncertainModel, outputs: Sequence[str]) -> tuple[Swing, ...]:
 
 
 DRAWS = 500
-"""Number of draws of the estimate (our choice: its bounds are within 4.5 % of the yield, and it
-takes a few per cent of a search's time)."""
+"""Number of draws for the estimate (our choice: its bounds are then within 4.5 % of the yield, and
+it takes a few per cent of the time of an optimisation)."""
 
 
 def quick_yield(subject: PreparedDesign, evaluation: Evaluation, *, seed: int = 0) -> YieldEstimate:
@@ -281,15 +282,15 @@ def quick_yield(subject: PreparedDesign, evaluation: Evaluation, *, seed: int = 
 
     Returns
     -------
-    the estimate; it has a reason instead of a value if the nominal design misses a requirement,
-    draws are slow, or the block ``uncertainty`` is invalid
+    the estimate. It contains a reason instead of a value if the nominal design misses a
+    requirement, if draws take too long, or if the block ``uncertainty`` is invalid
     """
     if not evaluation.met:
         return YieldEstimate(why="the design itself misses a requirement")
     if not {row.metric for row in evaluation.requirements} <= set(subject.quantities):
-        return YieldEstimate(why="the functions of its custom metrics are missing")
+        return YieldEstimate(why="the Python functions of the design's custom metrics are missing")
     if films_asked(subject.design):
-        return YieldEstimate(why="solving the oil films of its seals takes too long")
+        return YieldEstimate(why="solving the oil films of the seals takes too long")
     try:
         model = UncertainModel(subject, inputs(subject))
         counts = draw(model, DRAWS, seed)

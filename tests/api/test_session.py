@@ -204,7 +204,7 @@ def test_a_prediction_says_where_it_ends(steel):
     beyond = steel.predict({price.path: price.value + 2 * (low - price.value)})
     assert inside.valid
     assert not beyond.valid
-    assert beyond.why == f"after 50 % of the change {price.changes[0]}"
+    assert beyond.why == f"after 50 % of the change, {price.changes[0]}"
     nothing = steel.predict({price.path: price.value})
     assert (nothing.objective, nothing.valid) == (steel.optimum.objective_value, True)
 

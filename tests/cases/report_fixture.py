@@ -413,7 +413,7 @@ def checks() -> tuple[Check, ...]:
             0.22,
             "stance",
             "liner",
-            "our choice: 1.5 on the yield strength of every metal part",
+            "our choice: factor 1.5 against yield of every metal part",
         ),
         Check(
             "proof pressure (yield or first ply)",
@@ -494,7 +494,7 @@ def checks() -> tuple[Check, ...]:
             "common practice, pressure lines",
         ),
         Check(
-            "natural frequency at the load mass",
+            "natural frequency with load mass",
             "not_checked",
             "no limit stated: add requirements.natural_frequency",
             "natural_frequency",
@@ -632,7 +632,7 @@ def sensitivities() -> tuple[Sensitivity, ...]:
         ),
         row(
             "requirements.buckling_factor.min",
-            "buckling load over largest push load",
+            "buckling load divided by largest push load",
             "",
             1.0,
             3.5,

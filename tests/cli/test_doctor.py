@@ -76,7 +76,10 @@ def test_missing_old_and_broken_packages(monkeypatch):
     assert said["numpy"].value == f"{version} is installed, >=99 is needed"
     assert said["scipy"].status == "fault"
     extra = rows["extra", "maths"]
-    assert (extra.status, extra.remedy) == ("missing", "for it: pip install 'actuator-opt[maths]'")
+    assert (extra.status, extra.remedy) == (
+        "missing",
+        "to add it: pip install 'actuator-opt[maths]'",
+    )
 
     def broken(name):
         raise ImportError(f"{name}: wrong ELF class\nmore")

@@ -69,7 +69,7 @@ def test_canonical_spelling(written, spelled):
         ("Cylinder.Bore", 'did you mean "cylinder.bore"?'),
         ("bore", ""),
         ("cylinder", "add one of .bore, .stroke"),
-        ("cylinder.bore.x", "name just that"),
+        ("cylinder.bore.x", "write only this"),
         ("barrel.layup.thickness", "write barrel.layup[0]."),
         ("barrel.layup[7].thickness", "0, 1, 2"),
         ("load_cases[stanse].force", 'did you mean "stance"?'),

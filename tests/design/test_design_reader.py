@@ -154,7 +154,7 @@ EXPECTED = [
     ((25, 7), "head", 'need a block, not "12 mm"', "material, length"),
     ((30, 14), "seals.piston.squeeze", '"no" is not a number', "12 %"),
     ((32, 15), "seals.rod.compound", "need a text, not a list", "one value"),
-    ((34, 14), "seals.rod.squeeze", "0.5 %: outside the range of the law", "2 % to 40 %"),
+    ((34, 14), "seals.rod.squeeze", "0.5 %: outside the range of the contact law", "2 % to 40 %"),
     ((36, 5), "load_cases[0].force", "missing", "joint_torque"),
     ((38, 11), "load_cases[1].name", "also the name of entry 0", "own name"),
     ((40, 12), "load_cases[1].force", 'unknown unit "x10 kN"', "kN"),
@@ -321,7 +321,7 @@ def test_groove_depth():
     assert "its diameter is 26.08 mm" in fault.message
     both = faults(wide.replace("    diameter: 10 mm", "    diameter: 12 mm"))
     assert [f.path for f in both] == ["seals.piston.section", "seals.rod.section"]
-    assert "10.92 mm core" in both[0].message
+    assert "core with a diameter of 10.92 mm" in both[0].message
 
 
 def test_lines_need_a_wall():

@@ -138,7 +138,7 @@ def test_laminated_rod():
 BALANCE = "      angle: 20 deg\n      thickness: 0.8 mm\n"
 FAULTS = [
     # text, path of the single fault, the text at its place, part of message, part of remedy
-    (laminated(LAYUP), "rod.fitting", "rod:", "needs bonded end fittings", "adhesive, length"),
+    (laminated(LAYUP), "rod.fitting", "rod:", "needs bonded end fittings", "adhesive and length"),
     (laminated(HOLLOW + LAYUP + FITTING), "rod.inner_diameter", "inner_diameter: 4 mm",
      "follows from", "remove the line"),
     (changed((HOLLOW, LAYUP + FITTING)), "variables.rod.inner_diameter", "rod.inner_diameter:",

@@ -49,7 +49,7 @@ CASES = [
     (f"{O_RING}, back_up: one, back_up_thickness: 1 mm", "back_up_material", "missing"),
     (f"{O_RING}, back_up: one, back_up_material: back_up_ptfe", "back_up_thickness", "missing"),
     (f"{O_RING}, back_up_thickness: 1 mm", "back_up_thickness", "no back-up ring"),
-    (f"{O_RING}, {WIPER}", "wiper", "a piston has no wiper"),
+    (f"{O_RING}, {WIPER}", "wiper", "a piston needs no wiper"),
     (f"{O_RING}, friction: film, count: 2", "count", "one ring or a pair"),
     (f"{O_RING}, count: 1.5", "count", "whole number"),
     (f"{O_RING}, friction: film, secondary: {{{O_RING}}}", "secondary.friction", "while"),

@@ -117,7 +117,7 @@ def test_a_u_cup_has_no_o_ring_gland():
         text[text.index("  rod:\n    type:") :],
     )
     cup = tail.replace("type: o_ring", "type: u_cup", 1)
-    assert any("this is a u_cup" in fault["message"] for fault in refused(head + cup))
+    assert any("this seal is a u_cup" in fault["message"] for fault in refused(head + cup))
 
 
 def of(text, **asked):
@@ -418,7 +418,7 @@ def test_sizes_that_meet_nothing_say_so():
     assert result.evaluation.met
     rounding = result.rounding
     assert (rounding.met, rounding.evaluation, result.best) == (False, None, result.design)
-    assert "designs of standard sizes meets all requirements" in rounding.sentence
+    assert "designs with standard sizes meets all requirements" in rounding.sentence
     assert "the nearest design, cylinder.bore 20.1 mm, misses force[stance]" in rounding.sentence
     # 20.1 mm at 210 bar, less 5 bar on the ring: at most 6.55 kN of the 7 kN asked, 6.4 % missed
     missed = float(rounding.sentence.split(" by ")[1].split()[0])

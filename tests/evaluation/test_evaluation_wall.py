@@ -186,7 +186,7 @@ def test_a_joint_without_preload_is_closed_at_proof(tmp_path):
     path = _file(tmp_path, *TIED, ("  preload: 15 kN\n", ""))
     result = ao.evaluate(ao.read(path))
     assert result.metrics["joint_factor"].value == pytest.approx(1.0)
-    assert any("no tie-rod preload stated" in text for text in result.warnings)
+    assert any("no tie-rod preload is stated" in text for text in result.warnings)
 
 
 def test_tie_rods_carry_what_the_barrel_does_not(tmp_path):

@@ -289,7 +289,7 @@ def test_wrong_input_is_one_line(store, tmp_path):
         ([str(other["torn"])], "its rows are damaged"),
         ([str(other["columns"])], "study 1 is damaged"),
         ([str(other["spelt"])], "does not name the columns"),
-        ([str(other["other"])], "come from other materials"),
+        ([str(other["other"])], "computed with other materials"),
         ([str(other["failed"])], "every design failed"),
         ([str(store), "--study", "7"], "has no study 7"),
         ([str(store), "--out", str(store / "page")], "is a file"),

@@ -110,5 +110,5 @@ def test_a_seal_without_elements_says_so(tmp_path):
     )
     path = tmp_path / "cup.yaml"
     path.write_text(head + cup + tail[end:], encoding="utf-8")
-    with pytest.raises(ao.ActuatorError, match="no finite elements for a u_cup"):
+    with pytest.raises(ao.ActuatorError, match="finite elements are not available for a u_cup"):
         seal(path, place="rod", finite_elements=True)

@@ -103,7 +103,7 @@ def test_an_unused_column_without_a_unit_is_no_fault():
     """T and v, and p2 of a plunger: left out and noted; a needed one is a fault as before."""
     record = parse_record("t [s],x [mm],T,v\n0,1,20,3\n1,2,20,4\n")
     assert set(record.channels) == {"x"}
-    assert 'columns without a unit, left out: "T", "v"' in record.notes
+    assert 'columns left out because they have no unit: "T", "v"' in record.notes
     (line,) = refused("t [s],x [mm],p1\n0,1,20\n1,2,20\n")
     assert 'column "p1" states no unit' in line
     assert "--units SI" in line

@@ -518,23 +518,23 @@ def test_the_cutoff_advised_is_one_that_works():
 @pytest.mark.parametrize(
     ("choices", "says"),
     [
-        ({"cutoff": 0.0}, 'a cut-off of 0 Hz; give a frequency above zero: --cutoff "30 Hz"'),
-        ({"cutoff": -1.0}, "a cut-off of -1 Hz"),
-        ({"cutoff": math.nan}, "a cut-off of nan Hz"),
-        ({"cutoff": math.inf}, "a cut-off of inf Hz"),
+        ({"cutoff": 0.0}, 'the cut-off is 0 Hz; give a frequency above zero: --cutoff "30 Hz"'),
+        ({"cutoff": -1.0}, "the cut-off is -1 Hz"),
+        ({"cutoff": math.nan}, "the cut-off is nan Hz"),
+        ({"cutoff": math.inf}, "the cut-off is inf Hz"),
         ({"cutoff": 600.0}, "1000 samples per second are too few for a cut-off of 600 Hz"),
         ({"cutoff": 0.01}, "the record lasts 10 s, too short for a filter at 0.01 Hz; give 6e+02"),
-        ({"order": 0}, "a filter of order 0; give a whole number from 1 to 10"),
-        ({"order": -2}, "a filter of order -2"),
-        ({"order": 11}, "a filter of order 11"),
-        ({"order": 2.5}, "a filter of order 2.5"),
-        ({"order": math.nan}, "a filter of order nan"),
-        ({"order": math.inf}, "a filter of order inf"),
+        ({"order": 0}, "the order of the filter is 0; give a whole number from 1 to 10"),
+        ({"order": -2}, "the order of the filter is -2"),
+        ({"order": 11}, "the order of the filter is 11"),
+        ({"order": 2.5}, "the order of the filter is 2.5"),
+        ({"order": math.nan}, "the order of the filter is nan"),
+        ({"order": math.inf}, "the order of the filter is inf"),
         (
             {"pressure_lag": math.nan},
-            "a lag of the pressures of nan s; give a lag from -0.1 to 0.1 s",
+            "the lag of the pressures is nan s; give a lag from -0.1 to 0.1 s",
         ),
-        ({"pressure_lag": 3.0}, "a lag of the pressures of 3 s"),
+        ({"pressure_lag": 3.0}, "the lag of the pressures is 3 s"),
     ],
 )
 def test_faults_of_the_filter(choices, says):
@@ -628,7 +628,7 @@ def test_spectrum_warns_of_motion_beyond_the_cutoff(width):
     # v^2 of 1 mm at 40 Hz over that of both sines
     lost = 0.04**2 / (0.04**2 + 0.04**2)
     assert found.kept == pytest.approx(1 - lost, abs=0.02)
-    assert "above the cut-off; raise --cutoff" in found.says(motion.cutoff)
+    assert "above the cut-off, so fast motion is lost: raise --cutoff" in found.says(motion.cutoff)
     assert "within the cut-off" in found.says(60.0) or "between them" in found.says(60.0)
 
 

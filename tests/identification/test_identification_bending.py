@@ -232,7 +232,7 @@ def test_bending_both_ways_loses_what_friction_takes(phase, cycles, count, slope
     assert 0 <= found.hysteresis == pytest.approx(2 * friction / (1 + friction), abs=0.02)
     assert found.slope.value == pytest.approx(slope, rel=0.02)
     assert found.deflections[1] <= 1e-3
-    assert any("is bent both ways" in one for one in found.doubts)
+    assert any("is bent in both directions" in one for one in found.doubts)
 
 
 def test_a_loop_that_wins_work_has_no_hysteresis():

@@ -136,7 +136,7 @@ def test_absolute_pressures_become_gauge_and_say_so(unit, factor):
     expected = [200 * factor - ATMOSPHERE, 300 * factor - ATMOSPHERE]
     np.testing.assert_allclose(record["p1"], expected, rtol=1e-13)
     assert record.notes == (
-        "p1 is an absolute pressure and was converted to gauge with the standard atmosphere of "
+        "p1 is an absolute pressure; it was converted to gauge with the standard atmosphere of "
         "1.01325 bar",
     )
 
@@ -233,11 +233,11 @@ def test_columns_named_by_the_caller(header, columns):
         ("t [s],x\n0,1\n", {}, 'r.csv:1: column "x" states no unit; write e.g. "x [mm]"'),
         ("t [s],x [bar]\n0,1\n", {}, 'column "x": bar is a pressure, need a length'),
         ("t [s],p1 [baz]\n0,1\n", {}, 'column "p1": unknown unit "baz"; use one of'),
-        ("t [s],p1 [bar],p1 [bar]\n0,1,2\n", {}, "are both p1; rename or delete one"),
+        ("t [s],p1 [bar],p1 [bar]\n0,1,2\n", {}, "both name the channel p1; rename or delete one"),
         (
             "t [s],p1 [bar],PA [bar]\n0,1,2\n",
             {},
-            'both p1; choose a column with --column "p1=NAME"',
+            'both name the channel p1; choose a column with --column "p1=NAME"',
         ),
         ("t [s],x [mm]\n0,1\n\n1\n", {}, "r.csv:4: 1 cells, but the header has 2 columns"),
         ("t [s],x [mm]\n0,1\n1,2,3\n", {}, "r.csv:3: 3 cells, but the header has 2 columns"),

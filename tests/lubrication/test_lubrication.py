@@ -265,7 +265,7 @@ def test_random_points_converge():
         ({"surface": Surface(0.8e-6, 1e11, 1e-6)}, "presses the asperities flat"),
         ({"surface": Surface(0.8e-6, 1e14, 1e-6, 1.5)}, "rod share 1.5"),
         ({"cavitation_pressure": 2e5}, "outer pressure 101000 Pa absolute is below"),
-        ({"static_pressure": np.ones(3)}, "static pressure of shape"),
+        ({"static_pressure": np.ones(3)}, "static pressure has the shape"),
         ({"static_pressure": np.linspace(-1e6, 1e6, 9)}, "static pressure -1e\\+06 Pa"),
         ({"outer_cavitation": 1.2}, "outer cavitation 1.2"),
     ],

@@ -425,7 +425,7 @@ def test_limits_of_squeeze_hold_its_data(law):
     widest = INPUTS["squeeze"]
     for value in (low - 0.01, high + 0.01):
         (fault,) = faults(block(o_ring.TYPE, law=law.name, squeeze=f"{100 * value:g} %"))
-        of_law = f"outside the range of the law {law.name}" in fault.message
+        of_law = f"outside the range of the contact law {law.name}" in fault.message
         assert of_law is (widest.lower <= value <= widest.upper)
 
 

@@ -112,7 +112,7 @@ def test_a_wider_band_settles_sooner():
     ("changes", "line"),
     [
         ({"target": 0.0}, "a step from 0 to 0; give different values for start and target"),
-        ({"band": 0.0}, "band 0 of the step; give one between 0 and 1"),
+        ({"band": 0.0}, "settling band 0 of the step; give one between 0 and 1"),
         ({"response": [0.0, 1.0]}, r"response has shape \(2,\), but time \(3,\)"),
         ({"response": [0.0, math.nan, 1.0]}, "response of sample 1 is nan; remove the sample"),
         ({"time": [0.0, 2.0, 1.0]}, "time decreases after sample 1; sort the samples"),
@@ -223,8 +223,14 @@ def test_standard_error_of_the_stiffness_is_its_scatter():
             {"position": np.full(101, 0.08)},
             "the position does not oscillate at 5 Hz; give",
         ),
-        ({"frequency": 0.4}, "1 s are shorter than one cycle of 0.4 Hz; give a longer record"),
-        ({"frequency": -5.0}, "1 s are shorter than one cycle of -5 Hz; give a longer record"),
+        (
+            {"frequency": 0.4},
+            "a record of 1 s is shorter than one cycle of 0.4 Hz; give a longer record",
+        ),
+        (
+            {"frequency": -5.0},
+            "a record of 1 s is shorter than one cycle of -5 Hz; give a longer record",
+        ),
         (
             {"frequency": 50.0},
             "samples every 0.01 s do not resolve 50 Hz; give more than two samples",
@@ -269,9 +275,13 @@ def test_windows_of_a_stroke_show_its_stiffness():
 @pytest.mark.parametrize(
     ("frequency", "cycles", "line"),
     [
-        (1.0, 5, "2 s are shorter than 5 cycles of 1 Hz; take fewer cycles"),
-        (1.0, 0, "windows of 0 cycles at 1 Hz; give a positive frequency and 1 cycle or more"),
-        (40.0, 1, "a window of 0.025 s holds fewer than 5 samples; take more cycles"),
+        (1.0, 5, "a record of 2 s is shorter than 5 cycles of 1 Hz; take fewer cycles"),
+        (
+            1.0,
+            0,
+            "no windows of 0 cycles at 1 Hz exist; give a positive frequency and 1 cycle or more",
+        ),
+        (40.0, 1, "a window of 0.025 s contains fewer than 5 samples; take more cycles"),
     ],
 )
 def test_windows_that_do_not_fit_are_one_clear_line(frequency, cycles, line):

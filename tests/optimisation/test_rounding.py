@@ -432,7 +432,7 @@ def test_json_and_saved_design(tmp_path):
     assert rounding["objective"]["continuous"] == before
     assert data["shown"]["design"] == "rounded"
     assert data["shown"]["sizes"] == "whole plies"
-    assert "the design of whole plies" in data["shown"]["sentence"]
+    assert "the design with whole plies" in data["shown"]["sentence"]
     assert rounding["cost"] >= 0
     assert all(row["met"] for row in rounding["evaluation"]["requirements"])
     saved = run("evaluate", file, "--json").json
@@ -455,7 +455,13 @@ def test_terminal(tmp_path):
     words = ("--starts", "1", "--out", tmp_path)
     shown = run("optimise", "-", *words, "--whole-plies", stdin=two_layers().encode())
     assert shown.code == 0
-    for word in ("Whole plies: mass", "rounding costs", "plies", "proof", "designs tried"):
+    for word in (
+        "Whole plies: mass",
+        "rounding costs",
+        "plies",
+        "not proven",
+        "designs were tried",
+    ):
         assert word in " ".join(shown.out.split()), word
     assert "--whole-plies" not in shown.err
     plain = run("optimise", "-", *words, stdin=two_layers().encode())
@@ -510,7 +516,7 @@ def test_plies_too_coarse_for_the_requirements(tmp_path):
     rounding = data["rounding"]
     assert (rounding["met"], rounding["evaluation"], rounding["feasible"]) == (False, None, 0)
     assert rounding["tried"] >= 2
-    assert "designs of whole plies meets all requirements" in rounding["outcome"]
+    assert "designs with whole plies meets all requirements" in rounding["outcome"]
     assert rounding["remedy"]
     assert not file.exists()
     (fault,) = data["errors"]
@@ -522,7 +528,7 @@ def test_plies_too_coarse_for_the_requirements(tmp_path):
     assert shown.code == 1
     assert "Whole plies: no design found" in shown.out
     head = " ".join(shown.out.split("stiffness_barrel")[0].split())
-    assert "designs of whole plies meets all requirements" in head
+    assert "designs with whole plies meets all requirements" in head
     assert "which is not the design to build" in head
     assert "requirements met " not in head.split(";")[0].replace("continuous: ", "")
 
@@ -552,7 +558,7 @@ def test_page_one_is_the_design_that_is_built(simple):
     assert mass["note"].startswith(f"continuous {text.number(1e3 * simple.objective_value)} g, +")
     assert data["verdict"]["lines"][0].startswith("whole plies: ")
     said = "".join(data["sentence"])
-    assert "design of whole plies" in said.replace("\u200b", "")
+    assert "design with whole plies" in said.replace("\u200b", "")
     assert "the design to build" in said
     assert "before rounding" in quality(simple)
 

@@ -377,8 +377,8 @@ def test_values_of_other_senses_are_not_compared(base):
     first, second = (e.metrics["end_stop_pressure"] for e in found.evaluations)
     assert (first.sense, second.sense) == ("max", "min")
     assert (
-        "end_stop_pressure: the worst value is the smallest for B and the largest for A"
-        in " ".join(ao.comparison_json(found)["notes"])
+        "end_stop_pressure: cannot be compared, because the worst value is the smallest for B, "
+        "but the largest for A" in " ".join(ao.comparison_json(found)["notes"])
     )
     limit = "friction_running:\n    max: 500 N"
     assert limit in SMALL

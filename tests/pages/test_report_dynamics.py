@@ -258,14 +258,14 @@ def test_the_part_that_buys_most_is_named_with_what_it_buys():
     gain = sum(parts.values()) / halved - 1
     said = stiffness_page.gain_sentence(curve)
     assert f"{name} matters most" in said
-    assert f"would make the actuator {100 * gain:.0f} % stiffer" in said
+    assert f"the actuator would be {100 * gain:.0f} % stiffer" in said
 
 
 def test_ports_case_and_a_published_topology_are_named():
     """The figure says ports closed and its case; another topology than ours is named as such."""
     evaluation = fixture.build_evaluation()
     note = stiffness_blocks(evaluation)[0]["note"]
-    assert note.startswith("Case stance, ports closed. Per chamber")
+    assert note.startswith("Load case stance, ports closed. Computed per chamber")
     stiffness = evaluation.design.stiffness
     for topology, words in (
         ("aalto_as_published", "As published in [AaltoThesis], not per chamber"),
@@ -498,7 +498,8 @@ def test_a_swinging_loop_is_no_response():
     assert "The closed loop is unstable." in texts(ink_of(found["Position loop, open"]))
     closed = texts(ink_of(found["Position loop, closed"]))
     assert any(
-        t.startswith("The closed loop is unstable, so this is not its response.") for t in closed
+        t.startswith("The closed loop is unstable, so these curves are not its response.")
+        for t in closed
     )
 
 

@@ -282,5 +282,5 @@ def test_the_terminal_names_width_and_peak(width):
     law = closed_form(ring.ring)
     for value in (1e3 * float(law.width), 1e-6 * float(law.peak)):
         assert f"closed form {value:.3g}"[:16] in said
-    assert "by finite elements: at 210 bar width" in said
+    assert "by finite elements at 210 bar: width" in said
     assert seal.contact_rows(one)[0][-1] == "finite elements"

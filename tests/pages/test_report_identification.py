@@ -223,7 +223,7 @@ def test_what_has_no_value_says_why_in_its_place():
     """Figures of a record without models hold the reasons; both sides stay filled."""
     words = " ".join(mark["text"] for mark in drawn("bare").marks if "text" in mark)
     assert "No Stribeck curve: no steady sliding" in words
-    assert "no secant damping." in words
+    assert "No secant damping: the record has no steady sliding" in words
     data = paged("bare")
     assert data["verdict"]["text"] == "NO MODEL"
     assert list(tables(data)) == ["Channels of the record"]
@@ -417,7 +417,7 @@ def test_a_map_needs_levels_of_pressure_one_way():
     for kind in ("plateaus", "sine", "plunger", "bare"):
         assert figures.pressure_levels(case.identified(kind).points) == []
     words = " ".join(mark["text"] for mark in drawn("levels").marks if "text" in mark)
-    assert "upwards: pressure, bar; circles: measured" in words
+    assert "vertical axis: pressure, bar; circles: measured" in words
 
 
 def test_the_map_is_shaded_by_the_measured_damping():

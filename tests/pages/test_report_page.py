@@ -139,7 +139,7 @@ def test_the_infeasibility_card_reads_as_advice():
     assert [text_of(cell) for cell in bounds["rows"][0]] == [
         "variables.seals.piston.section.lower", "1.78 mm", "0.50 %", "1.6 mm", "−10.1 %",
     ]  # fmt: skip
-    assert "15.4 % of the limits" in bounds["note"]
+    assert "15.4 % of their values" in bounds["note"]
     assert "evidence, not proof" in text_of(proof["items"][0])
 
 

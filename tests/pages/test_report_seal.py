@@ -247,7 +247,7 @@ def test_both_rings_of_a_pair_stand_in_their_order():
     order = ["sealed side", "guide", "seal: step ring", "secondary seal: u cup", "wiper"]
     places = [at[words] for words in [*order, "outer side"]]
     assert places == sorted(places)
-    assert any(words.startswith("between: ") for words in at)
+    assert any(words.startswith("between the rings: ") for words in at)
 
 
 # ---- figures ----
@@ -514,7 +514,7 @@ def test_a_film_that_fails_is_a_sentence_and_no_figure():
     found = blocks(one)
     assert not any(b["title"].endswith("oil film") for b in found)
     table = next(b for b in found if ": at " in b["title"])
-    assert f"No film on the outstroke: {one.out.why}" in table["note"]
+    assert f"No oil film on the outstroke: {one.out.why}" in table["note"]
     friction = next(row for row in table["rows"] if row[0] == "friction, film")
     assert friction[1] == "–"
     assert float(one.out.rings[0].contact.line_load) == 0
@@ -540,8 +540,8 @@ def test_notes_tell_model_from_input():
     """The sheet says what its film model cannot know and what was never measured."""
     said = " ".join(seal.notes(studied("tandem", "rod")))
     for words in (
-        "literature orders of magnitude",
-        "at rest too",
+        "orders of magnitude from the literature",
+        "even at rest",
         "proportional",
         "not the damping",
     ):

@@ -267,7 +267,7 @@ def test_energies_that_powers_do_not_confirm_are_doubted():
     assert "supply" not in simulation_energy.over_time(wrong)
     page = subject.page(wrong)
     assert page.verdict.text == "SIMULATED, IN DOUBT"
-    assert "The sampled powers add up to energies that differ" in words_of(page)
+    assert "Energies summed from the sampled powers differ" in words_of(page)
 
 
 # ---- words ----
@@ -300,7 +300,7 @@ def test_scenarios_are_told_in_words():
     assert "constant supply 210 bar, return 5 bar, LuGre friction, 1 s." in said
     assert "Load: 2000 N." in said
     bench = subject.description(case.simulated("bench"))
-    assert "the valve alone, ports at 35 bar and 35 bar" in bench
+    assert "the valve alone, with its ports at 35 bar and 35 bar" in bench
     assert "Valve signal: −10 V, ramp of 20 V from 0 to 2 s." in bench
     found = case.simulated("open")
     pulse = found.scenario.signal[0]
@@ -337,9 +337,10 @@ def test_trust_tells_the_second_integrator():
     found = replace(case.simulated("step"), requirements=())
     assert "Radau on the same equations" in subject.second_words(found)
     apart = Second("radau", 0.2, "position", 0.3, {"position": 0.2})
-    assert "by at most 0.2 of their span, most in position of the piston at 0.3000 s" in (
-        subject.second_words(replace(found, second=apart))
-    )
+    assert (
+        "by at most 0.2 of their range; the difference is largest for position of the piston at "
+        "0.3000 s"
+    ) in subject.second_words(replace(found, second=apart))
     assert subject.verdict(replace(found, second=apart)).state == "checks"
     assert "Not compared" in subject.second_words(replace(found, second=None))
 
@@ -657,7 +658,7 @@ def test_the_terminal_shows_the_numbers_of_the_page():
         mark = {"met": "✔", "missed": "✘", "": ""}[one.state]
         wanted = (one.label, value, one.limit, one.margin, mark)
         assert any(all(cell in line for cell in wanted) for line in lines), one.name
-    for words in ("P on the position", "Balances: mass within", "% of the step"):
+    for words in ("P on the position", "Errors of the balances: oil mass", "% of the step"):
         assert words in text
     assert any("⡠" in line or "⠊" in line for line in lines)
     plain = shown(subject.page(found), 160, unicode=False)

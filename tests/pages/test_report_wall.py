@@ -161,7 +161,7 @@ def test_ladder_names_layers_as_the_page_does():
 def test_a_fabric_carries_its_warning():
     """Hashin and Puck on a woven ply are marked as outside what they were made for."""
     note = blocks_of(evaluated("elasswad_knee.yaml"))["strength ratios by every criterion"]["note"]
-    assert "not for a fabric" in note
+    assert "not to fabrics" in note
     plain = blocks_of(evaluated("puck"))["strength ratios by every criterion"]["note"]
     assert "fabric" not in plain
 

@@ -76,7 +76,7 @@ def test_missing_samples_of_an_input_are_told(replay):
     found = ao.simulate(replay(lines))
     assert found.notes[0] == (
         'column "x" of in.csv (control.position[0]): 7 samples are missing in 2 places, first from '
-        "0.03 to 0.033 s, last from 0.08 to 0.082 s, interpolated linearly"
+        "0.03 to 0.033 s, last from 0.08 to 0.082 s; the signal is interpolated there"
     )
     whole = ao.simulate(replay(course()))
     assert found.signals["reference"][-1] == whole.signals["reference"][-1] == pytest.approx(0.042)
@@ -86,8 +86,8 @@ def test_an_input_that_ends_early_is_held_and_told(replay):
     """Its last value stands to the end, and so nothing asks for motion there: the creep is told."""
     found = ao.simulate(replay(course(end=0.15)))
     assert found.notes[0] == (
-        'column "x" of in.csv (control.position[0]) ends at 0.15 s, the scenario at 0.2 s: its '
-        "last value is kept"
+        'column "x" of in.csv (control.position[0]) ends at 0.15 s, the scenario at 0.2 s: in '
+        "between the signal keeps its last value"
     )
     assert found.signals["reference"][-1] == pytest.approx(0.042)
     assert found.values["hold_drift"] is not None
@@ -100,7 +100,7 @@ def test_an_input_that_ends_early_is_held_and_told(replay):
 def test_an_input_that_begins_late_is_told(replay):
     """Its first value holds from the beginning."""
     found = ao.simulate(replay(course()[10:]))
-    assert "begins at 0.01 s: its first value holds until then" in found.notes[0]
+    assert "begins at 0.01 s: before that, the signal has its first value" in found.notes[0]
 
 
 def test_a_record_acts_until_its_last_change():
@@ -340,9 +340,7 @@ def test_a_record_of_a_million_samples_is_thinned_for_a_fit():
     assert overlay(made, wide).residuals["pressure_a"].count == 1_000_000
     own = plant(trial().actuator.subject())
     found = fit(trial().scenario, own, {}, wide, ("air_content",))
-    assert (
-        "pressure_a: the fit uses one in every 250 samples, to keep to at most 4000" in found.doubts
-    )
+    assert "pressure_a: the fit uses only one in 250 samples, at most 4000 in total" in found.doubts
     assert found.values["air_content"] == pytest.approx(0.005, rel=0.1)
 
 

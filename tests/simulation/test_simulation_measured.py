@@ -257,9 +257,9 @@ def test_overlay_says_where_record_and_scenario_do_not_meet():
     })  # fmt: skip
     notes = overlay(run(scene, own, {}, None), record).notes
     assert any("position starts at 90 mm in the record, but at 80 mm" in one for one in notes)
-    assert any("state sample_time" in one for one in notes)
-    assert "not simulated here: shaft_speed" in notes
-    assert "no overlap in time: pressure_b" in notes
+    assert any("state a shorter sample_time" in one for one in notes)
+    assert "measured, but not simulated: shaft_speed" in notes
+    assert "measured only outside the simulated time: pressure_b" in notes
 
 
 def test_overlay_refuses_what_has_nothing_in_common():
@@ -270,7 +270,7 @@ def test_overlay_refuses_what_has_nothing_in_common():
     with pytest.raises(InputError, match=r"covers 9 to 9\.5 s, the scenario 0 to 0\.5 s"):
         overlay(made, late)
     time, signals = measured_signals()
-    with pytest.raises(InputError, match="none of its channels is simulated"):
+    with pytest.raises(InputError, match="none of the record's channels is simulated"):
         overlay(made, AlignedRecord({"shaft_speed": (time, signals["speed"])}))
 
 
@@ -492,7 +492,9 @@ def test_a_model_that_lacks_something_says_so():
     own = replace(own, valve=replace(own.valve, natural_frequency=55.0))
     found = fit(scene, own, {}, bench(4), ("air_content",))
     assert "position" in found.missed
-    assert any("differs from the record by more than its noise" in one for one in found.doubts)
+    assert any(
+        "differs from the record by more than the sensor noise" in one for one in found.doubts
+    )
 
 
 def test_pairs_that_hide_in_each_other_are_named():

@@ -128,7 +128,7 @@ def test_oil_films_are_said_to_run_dry():
     from actuator_opt.simulation.run import run
 
     notes = run(scenario(duration=0.01), own, {}, None).notes
-    assert any("rod seal's oil film" in note for note in notes)
+    assert any("oil film of the rod seal" in note for note in notes)
 
 
 def test_two_steps_at_once_are_one():

@@ -212,7 +212,7 @@ def test_the_bristles_of_sticking_seals_are_a_spring_beside_the_oil():
 
 
 def test_shares_make_up_the_difference():
-    """Friction, size of the swing and operating point together lead from one tier to the other."""
+    """Friction, amplitude and operating point together lead from one tier to the other."""
     told = [one for one in sticking().rows if one.shares]
     assert {"bandwidth", "gain_margin", "dynamic_stiffness"} <= {one.metric for one in told}
     for one in told:
@@ -233,7 +233,7 @@ def test_what_only_friction_holds_is_told():
     limit = {"dynamic_stiffness": Limit(min=11.5e6)}
     (found,) = verify(scenario("lugre", requirements={}), knee(requirements=limit)).rows
     assert found.met
-    assert "met only because of friction; without friction the value is 10" in found.why
+    assert "met only because of seal friction; without it, the value is 10" in found.why
 
 
 def test_every_dynamic_requirement_and_the_scenario_have_a_row():

@@ -101,8 +101,8 @@ def test_axes_as_written():
         ("cylinder.bore=18..40 mm:x", "x steps"),
         ("cylinder.bore=18..40 mm:1", "1 steps"),
         ("cylinder.bore=18..40 mm:", "nothing steps"),
-        ("cylinder.bore=20 mm..20 mm:3", "both ends are equal"),
-        ("cylinder.bore=20 mm,,30 mm", "an empty value"),
+        ("cylinder.bore=20 mm..20 mm:3", "both ends of the range are equal"),
+        ("cylinder.bore=20 mm,,30 mm", "one of the values is empty"),
         ("cylinder.bore=20 mm,20 mm", "a value is given twice"),
         ("cylinder.bore=20 mm,2 cm", "a value is given twice"),
         (
@@ -132,7 +132,12 @@ def test_what_is_no_axis_is_said_in_one_line(text, words):
     [
         ([], "grid", None, "nothing to vary"),
         ([numbers("p", 0, 1)], "grid", None, "has no steps"),
-        ([numbers("p", 0, 1, 3)], "grid", 5, "the steps of a grid determine its number of points"),
+        (
+            [numbers("p", 0, 1, 3)],
+            "grid",
+            5,
+            "the steps of a grid already determine its number of points",
+        ),
         ([numbers("p", 0, 1)], "lhs", None, "number of points missing"),
         ([numbers("p", 0, 1)], "sobol", 0, "-n 0"),
         ([numbers("p", 0, 1)], "sobol", 2**31, "1 to 1073741824"),

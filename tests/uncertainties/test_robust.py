@@ -138,7 +138,7 @@ def test_choices_are_those_of_the_plain_optimum_and_said_so():
     assert found.choices.best == plain.choices.best
     assert found.best.rod.material == found.choices.best["rod.material"].split()[0]
     assert found.choices.sentence.endswith("without margins for scatter")
-    assert "choices are those of the optimum without margins" in found.robust.sentence
+    assert "options are those of the optimum without margins" in found.robust.sentence
     assert found.robust.reached
 
 

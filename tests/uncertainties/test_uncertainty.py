@@ -304,7 +304,7 @@ def test_strengths_stand_at_their_allowables_unless_stated():
         exact = factor / knocked if own else factor
         assert changed.factors[name, key, cold] == pytest.approx(exact, rel=1e-14)
     notes = ao.uncertainty(ao.read(case.block(stated)), count=20, rows=0).notes
-    assert any("without the knock-down for their basis" in words for words in notes)
+    assert any("the knock-down for their statistical basis" in words for words in notes)
 
 
 def test_what_is_taken_at_its_worst_is_not_drawn_twice():

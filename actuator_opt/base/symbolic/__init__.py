@@ -1,8 +1,8 @@
 """Expressions traced from models: derivatives, and generated code.
 
-A `Symbol` is an array-API value, so a model called with symbols returns the expression of its
-formula. The expression becomes plain Python (`code`), its exact derivatives (`derivative`), or
-the input of another engine.
+A `Symbol` behaves like an array-API value, so a model that is called with symbols returns its
+formula as an expression. The expression is then turned into plain Python (`code`), differentiated
+exactly (`derivative`), or passed to another engine.
 """
 
 from .expression import Expression, Graph, Namespace, Symbol, function, jacobian, vectorised

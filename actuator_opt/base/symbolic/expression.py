@@ -1,9 +1,9 @@
 """Symbols: values that record the operations applied to them.
 
-Equal operations on equal operands share a node; operations on numbers are evaluated at once.
-Every node has bounds of its value (a square is not negative, a limited signal keeps its limits).
-Comparisons whose result follows from the bounds vanish, so a model's guards cost nothing where they
-cannot act.
+Equal operations on equal operands share a node; operations on numbers are evaluated at once. Every
+node has bounds of its value (a square is not negative, a limited signal keeps its limits). A
+comparison whose result follows from the bounds is removed, so a model's guards cost nothing where
+they cannot act.
 """
 
 from __future__ import annotations
@@ -89,9 +89,10 @@ _RISING: Final[dict[str, tuple[float, Callable[[float], float]]]] = {
 
 
 def at_end(function: Callable[[float], float], value: float) -> float:
-    """Value of a function at an end of its operand's range; infinite if there is none.
+    """Value of a function at an end of its operand's range; infinite where it is undefined.
 
-    Towards the edge of the domain a logarithm tends to -infinity, a negative power to +infinity.
+    Towards the edge of its domain, a logarithm tends to -infinity and a negative power to
+    +infinity.
     """
     try:
         return function(value)
@@ -102,7 +103,7 @@ def at_end(function: Callable[[float], float], value: float) -> float:
 
 
 def _wider(low: float, high: float) -> Bounds:
-    """Bounds widened by the rounding errors of functions, which differ between libraries."""
+    """Widen bounds by the rounding errors of functions, which differ between libraries."""
     return low - ROUNDING * abs(low), high + ROUNDING * abs(high)
 
 
@@ -119,7 +120,7 @@ def _of_wave(op: str, low: float, high: float) -> Bounds:
     room = ROUNDING * (1 + max(abs(low), abs(high)))
 
     def passes(place: float) -> bool:
-        """Whether the interval contains an angle, plus a whole number of turns."""
+        """Whether the interval contains this angle plus any whole number of turns."""
         turn = 2 * math.pi
         return math.ceil((low - place) / turn - room) <= math.floor((high - place) / turn + room)
 
@@ -141,7 +142,7 @@ def _hull(*values: float) -> Bounds:
 
 
 def _of_choice(condition: Any, yes: Any, no: Any) -> Bounds:
-    """Bounds of a choice; if its condition compares the branches, it is a minimum or maximum."""
+    """Bounds of a choice; a condition that compares the branches makes it a minimum or maximum."""
     (a, b), (c, d) = bounds_of(yes), bounds_of(no)
     if getattr(condition, "op", None) in ("lt", "le"):
         less, more = condition.args
@@ -176,14 +177,14 @@ _FUNCTIONS: dict[str, Callable[[float], float]] = {
 
 @dataclass(slots=True)
 class Graph:
-    """Nodes of one trace in order of creation, so operands precede results."""
+    """The nodes of one traced model in order of creation, so that operands precede results."""
 
     nodes: list[Symbol] = field(default_factory=list)
     known: dict[tuple[Any, ...], Symbol] = field(default_factory=dict)
     tables: list[Callable[..., Any]] = field(default_factory=list)
     """Tabulated functions of time, such as measured inputs."""
     slopes: dict[int, int] = field(default_factory=dict)
-    """Index of a tabulated function whose slope this function is."""
+    """By the index of a tabulated function, the index of its slope in `tables`."""
     truth: Callable[[Symbol], bool] | None = None
     """Decides a truth value that a model asks for; given for exact graphs only, whose operations
     are those of NumPy (NaN and rounding included) and are never simplified."""
@@ -529,7 +530,7 @@ def apply(name: str, value: Any) -> Any:
 
 
 def atan2(first: Any, second: Any) -> Any:
-    """Polar angle of a point."""
+    """Polar angle of the point (second, first)."""
     first, second = _number(first), _number(second)
     if not isinstance(first, Symbol) and not isinstance(second, Symbol):
         return math.atan2(first, second)
@@ -556,7 +557,7 @@ def is_boolean(symbol: Symbol) -> bool:
 
 
 def needed(outputs: Sequence[Any], known: Iterable[Symbol] = ()) -> list[Symbol]:
-    """Nodes that the outputs depend on, operands first; operands of `known` nodes are omitted."""
+    """Nodes on which the outputs depend, operands first; operands of `known` nodes are omitted."""
     seen: set[int] = {symbol.index for symbol in known}
     symbols: list[Symbol] = []
     stack = [out for out in outputs if isinstance(out, Symbol)]
@@ -575,10 +576,11 @@ Slopes: TypeAlias = dict[int, Any]
 
 
 def jacobian(outputs: Sequence[Any], variables: Sequence[Symbol]) -> list[list[Any]]:
-    """Derivatives of outputs (rows) with respect to variables (columns); 0.0 where independent.
+    """Derivatives of outputs (rows) by variables (columns); 0.0 for independent outputs.
 
-    The derivative of a choice is that of the selected branch, and of a tabulated function its given
-    slope. Flags have none. The slope of a root at zero is set to zero; its true slope is infinite.
+    The derivative of a choice is that of the selected branch; that of a tabulated function is the
+    slope given with it. Flags have no derivative. The derivative of a square root at zero is set to
+    zero, although it is infinite.
     """
     known: dict[int, Slopes] = {variable.index: {k: 1.0} for k, variable in enumerate(variables)}
     for node in needed(outputs):
@@ -613,7 +615,7 @@ def _scaled(factor: Any) -> Callable[..., Any]:
 
 
 def _steep(value: Any) -> Any:
-    """Replace a zero root by infinity, so that the slope formula, 1/(2 root), gives zero."""
+    """Replace a square root of 0 by infinity, so that its derivative, 1/(2 root), is zero."""
     return choose(less(0.0, value), value, math.inf)
 
 
@@ -636,9 +638,9 @@ _RULES: dict[str, Callable[..., Callable[..., Any]]] = {
     "sin": lambda node, a: _scaled(xp.cos(a)),
     "cos": lambda node, a: _scaled(-xp.sin(a)),
 }
-"""Rule for every operation: its derivative from the derivatives of its operands."""
+"""For every operation, the rule that gives its derivative from the derivatives of its operands."""
 DEEPEST = 12
-"""Deepest nesting of operations in a line of code; deeper operations get their own line."""
+"""Deepest nesting of operations in a line of generated code; deeper operations get own lines."""
 _OPERATORS = {"add": "+", "sub": "-", "mul": "*", "div": "/", "lt": "<", "le": "<="}
 _LOGIC = {"and": ("and", "&"), "or": ("or", "|")}
 
@@ -652,8 +654,8 @@ def function(
     ----------
     name : name of the function
     arguments : arguments of the function, ``"t, y, m"``
-    unpack : code of every variable and flag by name: ``{"x": "y[0]"}``; a key of several names,
-        ``"a, b"``, unpacks them together
+    unpack : code for every variable and flag by name, such as ``{"x": "y[0]"}``; a key with several
+        names, ``"a, b"``, unpacks them together
     outputs : expressions to compute
     """
     scope: dict[str, Any] = {f"_{key}": getattr(math, key) for key in _MATH}
@@ -712,7 +714,7 @@ def _compiled(
 def _lines(
     nodes: Sequence[Symbol], outputs: Sequence[Any], known: Mapping[Symbol, str], many: bool
 ) -> list[str]:
-    """Write a line for every node that is used twice or nested deeply, then the return line."""
+    """Lines of code: one for every node that is used twice or nested deeply, then the return."""
     uses: dict[int, int] = {}
     for node in nodes:
         for operand in node.operands:

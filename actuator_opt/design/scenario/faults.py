@@ -27,7 +27,7 @@ from .model import (
 )
 
 _SLACK = 1e-9
-"""Relative tolerance of times."""
+"""Relative tolerance for comparisons of times."""
 _time = quantities.SCENARIOS["instant"].text
 _short = quantities.SCENARIOS["sample_time"].text
 _hertz = quantities.INPUTS["frequency"].text
@@ -54,7 +54,7 @@ def part_lists(
 
 
 def _parts(view: FileView) -> Iterator[tuple[Loc, str, type[Section]]]:
-    """Location, shape and section of every part with a known shape."""
+    """Location, shape and section type of every part of a signal whose shape is known."""
     for place, section in part_lists().items():
         for index in range(len(view.items(*place))):
             shape = view.text(*place, index, "shape")
@@ -63,7 +63,7 @@ def _parts(view: FileView) -> Iterator[tuple[Loc, str, type[Section]]]:
 
 
 def shapes(view: FileView) -> Iterator[Fault]:
-    """Check that each part has the keys that its shape needs, and no others."""
+    """Check that each part of a signal has the keys that its shape needs, and no others."""
     for loc, shape, section in _parts(view):
         shape_kind, keys = SHAPES[shape], entries(section)
         for key in shape_kind.needed:
@@ -79,7 +79,7 @@ def shapes(view: FileView) -> Iterator[Fault]:
 
 
 def order(view: FileView) -> Iterator[Fault]:
-    """Check that each part ends after its start, and starts before the scenario ends."""
+    """Check that each part of a signal ends after its start and starts before the scenario ends."""
     duration = view.number("duration")
     for loc, shape, _ in _parts(view):
         start, end = view.number(*loc, "start"), view.number(*loc, "end")
@@ -96,7 +96,7 @@ def order(view: FileView) -> Iterator[Fault]:
 
 
 def sampling(view: FileView) -> Iterator[Fault]:
-    """Check that the run and every period of its sines have a reasonable number of samples."""
+    """Check that the number of samples is reasonable, for the run and for each period of a sine."""
     duration, stated = view.number("duration"), view.number("sample_time")
     if duration is None or (stated is None and view.has("sample_time")):
         return
@@ -105,13 +105,13 @@ def sampling(view: FileView) -> Iterator[Fault]:
     if sample < finest * (1 - _SLACK):
         yield Fault(
             ("sample_time",),
-            f"{_short(sample)}: more than {MOST_SAMPLES / 1e6:g} million samples",
+            f"{_short(sample)}: gives more than {MOST_SAMPLES / 1e6:g} million samples",
             f"write at least {_short(_rounded(finest, math.ceil))}, or shorten duration",
         )
     elif sample > coarsest * (1 + _SLACK):
         yield Fault(
             ("sample_time",),
-            f"{_short(sample)}: fewer than {FEWEST_SAMPLES} samples in {_time(duration)}",
+            f"{_short(sample)}: gives fewer than {FEWEST_SAMPLES} samples in {_time(duration)}",
             f"write at most {_short(_rounded(coarsest, math.floor))}",
         )
     else:
@@ -119,7 +119,7 @@ def sampling(view: FileView) -> Iterator[Fault]:
 
 
 def _sines(view: FileView, duration: float, sample: float, stated: bool) -> Iterator[Fault]:
-    """Yield a fault for sines that the sample time cannot resolve; of several, for the fastest."""
+    """Yield a fault for the fastest sine if the sample time is too long to resolve it."""
     waves: list[tuple[float, Loc]] = []
     for loc, shape, _ in _parts(view):
         frequency = view.number(*loc, "frequency")
@@ -133,10 +133,10 @@ def _sines(view: FileView, duration: float, sample: float, stated: bool) -> Iter
         return
     if needed < duration / MOST_SAMPLES * (1 - _SLACK):
         message = (
-            f"{_hertz(frequency)} over {_time(duration)}: "
+            f"a sine of {_hertz(frequency)} during {_time(duration)} "
             f"would need more than {MOST_SAMPLES / 1e6:g} million samples"
         )
-        yield Fault(loc, message, "lower it, or shorten duration")
+        yield Fault(loc, message, "lower the frequency, or shorten duration")
         return
     good = _short(_rounded(needed, math.floor))
     message = f"sample time too coarse: {_hertz(frequency)} needs {good} or less"
@@ -147,7 +147,7 @@ def _sines(view: FileView, duration: float, sample: float, stated: bool) -> Iter
 
 
 def _rounded(value: float, way: Callable[[float], int]) -> float:
-    """Round a time up or down to three digits."""
+    """Round a time to three digits, with `way` (up or down)."""
     step = 10.0 ** (math.floor(math.log10(value)) - 2)
     return way(value / step * (1 + (_SLACK if way is math.floor else -_SLACK))) * step
 
@@ -159,7 +159,7 @@ REFERENCES: Mapping[str, str] = {
     "shaft_speed": "shaft_speed_gain",
     "shaft_angle": "shaft_angle_gain",
 }
-"""Reference of every control loop, with the name of its gain."""
+"""Name of the gain for each reference that a control loop can have."""
 STEP_RESULTS = ("rise_time", "settling_time", "overshoot", "steady_state_ratio")
 """Results derived from the response to a single step."""
 
@@ -170,15 +170,15 @@ def stated(view: FileView, *loc: str) -> bool:
 
 
 def stated_references(view: FileView) -> list[str]:
-    """References that the control states."""
+    """Names of the references that the block `control` states."""
     return [name for name in REFERENCES if stated(view, "control", name)]
 
 
 def drives(view: FileView) -> Iterator[Fault]:
-    """Check that either signal or control drives the valve, and that the lines end at the valve."""
+    """Check that only one of `signal` and `control` drives the valve, and that it is connected."""
     driven = [name for name in ("signal", "control") if stated(view, name)]
     if len(driven) == 2:
-        message = "a signal beside control: both would drive the valve"
+        message = "both signal and control are stated, and both would drive the valve"
         yield Fault(("signal",), message, "keep one of them", at_key=True)
     ends = view.text("ends")
     if ends == "valve" or ends not in entries(Scenario)["ends"].choices:
@@ -193,7 +193,7 @@ def drives(view: FileView) -> Iterator[Fault]:
 
 
 def reference(view: FileView) -> Iterator[Fault]:
-    """Check that control has exactly one reference, for a motion that exists."""
+    """Check that control has exactly one reference, of the rod or, with a motor, of the shaft."""
     if not isinstance(child_at(view.tree, ("control",)), dict):
         return
     references = stated_references(view)
@@ -206,15 +206,18 @@ def reference(view: FileView) -> Iterator[Fault]:
     if not references or references[0].startswith("shaft") == view.has("motor"):
         return
     if view.has("motor"):
-        message = "a motor has no rod to move"
+        message = "with a motor there is no rod to move"
         remedy = "write shaft_speed or shaft_angle, or remove motor"
     else:
-        message, remedy = "no motor, so no shaft", "add motor, or write position or speed"
+        message, remedy = (
+            "without a motor there is no shaft",
+            "add motor, or write position or speed",
+        )
     yield Fault(("control", references[0]), message, remedy, at_key=True)
 
 
 def tuning(view: FileView) -> Iterator[Fault]:
-    """Check that exactly the gain and the times that the tuning needs are stated."""
+    """Check that the control states the gain and times that its tuning needs, and no others."""
     references, law, tuning_kind = (
         stated_references(view),
         view.text("control", "law"),
@@ -231,10 +234,10 @@ def tuning(view: FileView) -> Iterator[Fault]:
         if not view.has("control", gain):
             continue
         if loop is not None and name != loop:
-            message = f"gain of a {name} loop, but the reference is a {loop}"
+            message = f"this is the gain of a {name} loop, but the reference is a {loop}"
             yield Fault(("control", gain), message, f"write {REFERENCES[loop]}", at_key=True)
         elif tuning_kind != "stated":
-            message = f"stated, but determined by tuning ({tuning_kind})"
+            message = f"stated, although tuning ({tuning_kind}) calculates it"
             remedy = 'remove it, or write "tuning: stated"'
             yield Fault(("control", gain), message, remedy, at_key=True)
     times = [f"{part}_time" for part in control_law.parts]
@@ -263,7 +266,7 @@ def _unread(view: FileView, law: ControlLaw, tuning_kind: str) -> Iterator[Fault
 
 
 def step_results(view: FileView) -> Iterator[Fault]:
-    """Check that results of a step response are required only with a stepping reference."""
+    """Check that requirements on a step response have a reference with a step."""
     step_requirements = [name for name in STEP_RESULTS if view.has("requirements", name)]
     references = stated_references(view)
     if not step_requirements or len(references) > 1:
@@ -311,7 +314,7 @@ def supply(view: FileView) -> Iterator[Fault]:
         remedy = f'{how_to_add("flow", keys["flow"])}, or a block "pump:"'
         yield Fault(("supply", "flow"), f"missing: a {kind} needs this or pump", remedy)
     if kind == "fixed_pump" and flow and pump:
-        message = "pump beside flow: both define the delivery"
+        message = "both pump and flow are stated, and both define the delivery"
         yield Fault(("supply", "pump"), message, "keep one of them", at_key=True)
     delivered, relief_flow = (
         view.number("supply", *loc) for loc in (("flow",), ("relief", "rated_flow"))
@@ -332,14 +335,16 @@ def supply(view: FileView) -> Iterator[Fault]:
 
 
 def cushion(view: FileView) -> Iterator[Fault]:
-    """Check that a cushion reduces the flow area of the oil."""
+    """Check that a cushion reduces the flow area of the oil, but not to zero."""
     loc = ("stops", "cushion")
     opened, closed = view.number(*loc, "open_area"), view.number(*loc, "end_area")
     if opened is not None and closed is not None and closed >= opened:
         message = f"{_area(closed)}: not smaller than open_area ({_area(opened)})"
         yield Fault((*loc, "end_area"), message, f"write less than {_area(opened)}")
     elif closed == 0:
-        message = f"{_area(closed)}: the piston would never reach its stop"
+        message = (
+            f"{_area(closed)}: the oil could not escape, and the piston would never reach its stop"
+        )
         yield Fault((*loc, "end_area"), message, "write the area of the remaining gap")
 
 
@@ -358,7 +363,7 @@ def load_cylinder(view: FileView) -> Iterator[Fault]:
 
 
 def friction(view: FileView) -> Iterator[Fault]:
-    """Check that a friction curve states Coulomb friction, and breakaway friction is not below."""
+    """Check that stated friction includes Coulomb friction, and breakaway friction is not below."""
     model = view.text("friction", "model")
     friction_model = FRICTIONS.get(model or "")
     if friction_model is not None:
@@ -385,23 +390,27 @@ def friction(view: FileView) -> Iterator[Fault]:
 
 
 def motor(view: FileView) -> Iterator[Fault]:
-    """Check that no data of the cylinder are stated if a motor replaces it."""
+    """Check that a scenario with a motor, which replaces the cylinder, states no cylinder data."""
     if not view.has("motor"):
         return
     where = "with a motor in place of the cylinder"
     if view.has("held_ports"):
-        message = "held_ports beside motor: no oil flows to the motor"
+        message = "with both held_ports and motor, no oil would flow to the motor"
         yield Fault(("held_ports",), message, "keep one of them", at_key=True)
     yield from without_effect(view, (), ("stops", "friction"), where)
     yield from without_effect(view, ("initial",), ("position", "speed"), where)
     yield from without_effect(
-        view, ("load",), entries(ScenarioLoad), where, "state the load of the motor under motor"
+        view,
+        ("load",),
+        entries(ScenarioLoad),
+        where,
+        'state the motor\'s load in the block "motor:"',
     )
     yield from without_effect(view, ("control",), ["speed_feedback"], where)
 
 
 def held_ports(view: FileView) -> Iterator[Fault]:
-    """Check that no load is stated if the valve has held ports."""
+    """Check that a scenario of the valve alone (held ports) states no load and no actuator."""
     if not view.has("held_ports") or view.has("motor"):  # both: a separate fault
         return
     where, idle = "with held ports", ("control", "stops", "friction", "initial")
@@ -410,7 +419,7 @@ def held_ports(view: FileView) -> Iterator[Fault]:
     ends = view.text("ends")
     if ends != "valve" and ends in entries(Scenario)["ends"].choices:
         remedy = 'write "valve", or remove held_ports'
-        yield Fault(("ends",), f"{ends}: held_ports apply to the valve", remedy)
+        yield Fault(("ends",), f"{ends}: held_ports needs the lines to end at the valve", remedy)
 
 
 CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
@@ -449,7 +458,7 @@ def design_faults(scenario: Scenario, design: Design) -> Iterator[Fault]:
 
 
 def _missing_components(scenario: Scenario, design: Design) -> Iterator[Fault]:
-    """Check that components that the scenario uses exist in the design."""
+    """Yield a fault for each component that the scenario uses and the design lacks."""
     needs_valve = {
         ("signal",): bool(scenario.signal),
         ("control",): scenario.control is not None,
@@ -463,8 +472,8 @@ def _missing_components(scenario: Scenario, design: Design) -> Iterator[Fault]:
         remedy = f"add valve to the design, or remove {'.'.join(missing[0])}"
         yield Fault(missing[0], "the design has no valve", remedy, at_key=True)
     if scenario.ends == "reducing_valve" and design.ports.reducing_valve is None:
-        remedy = "add ports.reducing_valve to the design, or write another end"
-        yield Fault(("ends",), "reducing_valve: missing in the design", remedy)
+        remedy = "add ports.reducing_valve to the design, or change ends"
+        yield Fault(("ends",), "reducing_valve: the design has no reducing valve", remedy)
     if scenario.load.torque and getattr(design, "linkage", None) is None:
         remedy = "add linkage to the design, or write load.force"
         yield Fault(("load", "torque"), "the design has no linkage", remedy, at_key=True)

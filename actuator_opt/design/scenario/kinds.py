@@ -1,8 +1,8 @@
-"""Kinds that a scenario may name: shapes of signals, and components around the design.
+"""Choices that a scenario may name: shapes of signals, and components around the design.
 
 A shape is an entry of `SHAPES` with its name, keys, value over time and report text. A component
-(supply, seal friction, port end, control law) declares its name and keys here and its equations in
-`simulation.components`; without equations it fails at import (`kinds.per_kind`).
+(supply, seal friction, port end, control law) is declared here with its name and keys. Its
+equations are in `simulation.components`; if they are missing, the import fails (`kinds.per_kind`).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class SupplyType:
     ----------
     name, help : name in a scenario, and its meaning
     needed, unread : required keys, and keys without effect
-    pumps : whether a pump delivers into a volume with its pressure as a state
+    pumps : whether a pump delivers into a volume whose pressure is a state variable
     words : text for a report
     """
 
@@ -61,15 +61,16 @@ class SealFriction:
 
 @dataclass(frozen=True, slots=True)
 class PortEnd:
-    """End of the cylinder's ports.
+    """Connection of the cylinder's ports, or of the lines at them.
 
     Attributes
     ----------
     name, help : name in a scenario, and its meaning
     words : text for a report; None if the text of the supply suffices
-    shut : whether the end is closed
-    holds : whether the end has constant pressure
-    at_cylinder : whether the end is at the cylinder, before a throttle
+    shut : whether the line is closed
+    holds : whether the pressure is held constant
+    at_cylinder : whether the connection is directly at the cylinder, so that a throttle in the line
+        has no effect
     """
 
     name: str
@@ -139,7 +140,7 @@ FRICTIONS = kinds(
     ),
     SealFriction(
         "stribeck",
-        "friction curve over speed, smooth through zero",
+        "friction as a curve over speed, smooth through zero speed",
         unread=("bristle_travel", "bristle_damping"),
         words="Stribeck friction",
     ),
@@ -172,7 +173,7 @@ ENDS = kinds(
     ),
     PortEnd(
         "closed",
-        "lines closed at their far end",
+        "lines closed at the end away from the cylinder",
         words="ports closed",
         shut=True,
         holds=False,
@@ -180,7 +181,7 @@ ENDS = kinds(
     ),
     PortEnd(
         "blocked",
-        "closed at the cylinder, before a throttle",
+        "ports closed at the cylinder, ahead of any throttle",
         words="ports blocked",
         shut=True,
         holds=False,
@@ -203,7 +204,7 @@ ENDS = kinds(
         at_cylinder=False,
     ),
 )
-"""All ends of the lines by name."""
+"""All connections of the ports by name."""
 
 
 LAWS = kinds(
@@ -216,11 +217,11 @@ LAWS = kinds(
 
 
 Records = Mapping[tuple[str, str], tuple[Array, Array]]
-"""Time [s] and values [SI] of every file column that a part names; NaN where missing."""
+"""Time [s] and values [SI] by (file, column) that a part names; missing samples are NaN."""
 
 
 class SignalPart(Protocol):
-    """Values of a part that shapes read: times [s], frequency [Hz], phase [rad]."""
+    """Values that a shape reads from a part of a signal: times [s], frequency [Hz], phase [rad]."""
 
     start: float
     end: float | None
@@ -232,17 +233,17 @@ class SignalPart(Protocol):
 
 
 class Clock(Protocol):
-    """Time in a system of equations, and the time-dependent terms that signals use."""
+    """Symbols for time in a system of equations, and time-dependent terms that signals use."""
 
     @property
     def time(self) -> Any:
-        """The time [s], an expression."""
+        """Symbolic expression for the time [s]."""
 
     def after(self, instant: float) -> Any:
-        """Whether the time is after `instant`, at which the integrator restarts."""
+        """Whether the time is after `instant`; the integrator restarts there."""
 
     def sine(self, angle: Any) -> Any:
-        """Sine of an angle [rad], given as expression."""
+        """Sine of an angle [rad] that is given as an expression."""
 
     def samples(self, time: Array, values: Array) -> Any:
         """Interpolate samples linearly, constant before the first and after the last."""
@@ -256,15 +257,15 @@ class SignalShape:
     ----------
     name, help : name in a scenario, and its meaning
     needed, read : required keys, and optional keys
-    instead : shape to suggest for a key without effect
-    course : expression for the value over the time of a clock
-    initial : value at time zero
+    instead : for a key that this shape does not use, the shape to suggest
+    course : function that returns the expression for the value over time
+    initial : function that returns the value at time zero
     lasts : whether the signal keeps its final value
     moves_on : whether the signal changes gradually, so that a following error is defined
     settles : whether the signal becomes constant, so that the response to a superposed step is
     defined
-    changes_after : whether the signal changes after a time [s]
-    words : text for a report, from the texts of height and times
+    changes_after : function that returns whether the signal changes after a time [s]
+    words : function that returns the text for a report, from the texts of height and times
     """
 
     name: str
@@ -287,7 +288,10 @@ def height(part: SignalPart) -> float:
 
 
 def sampled(part: SignalPart, records: Records) -> tuple[Array, Array] | None:
-    """Time [s] and values of a recorded part without missing samples; None without a record."""
+    """Time [s] and values of a recorded part, without its missing samples.
+
+    None if `records` lacks the column.
+    """
     column = records.get((part.file or "", part.column or ""))
     if column is None:
         return None
@@ -305,7 +309,7 @@ def _end(part: SignalPart) -> float:
 
 
 def _turns_at(*names: str) -> Callable[[SignalPart, float, Records], bool]:
-    """Function: whether any of these times of a part is after a given time."""
+    """Return a function: whether one of these times of a part is after a given time."""
 
     def after(part: SignalPart, moment: float, records: Records) -> bool:
         instants = (_end(part) if name == "end" else part.start for name in names)
@@ -440,7 +444,7 @@ SHAPES = kinds(
     ),
     SignalShape(
         "sine",
-        "amplitude value at frequency, from start to end",
+        "sine with amplitude value and this frequency, from start to end",
         ("value", "frequency"),
         ("start", "end", "phase"),
         instead={},
@@ -456,7 +460,7 @@ SHAPES = kinds(
     ),
     SignalShape(
         "record",
-        "a column of a CSV file, linear between its samples",
+        "a column of a CSV file, interpolated linearly between its samples",
         ("file", "column"),
         ("start", "scale"),
         instead={},
@@ -473,7 +477,7 @@ SHAPES = kinds(
 
 
 class Label(Text):
-    """A free text that has its own example."""
+    """A free text, with the example that messages show."""
 
     def __init__(self, help: str, example: str, longest: int = 200) -> None:
         super().__init__(help, longest)
@@ -518,10 +522,10 @@ Law: TypeAlias = Annotated[str, choice_of("law of the controller", LAWS)]
 Tuning: TypeAlias = Annotated[
     Literal["margins", "ziegler_nichols", "stated"],
     Choice(
-        "how gain and times are found; margins: from the stability limit of the linear model and "
-        "a gain margin, at the position and in the direction with the lowest limit; "
-        "ziegler_nichols: by the table of Ziegler and Nichols from the same limit; stated: all "
-        "values are stated"
+        "how the gain and the times of the controller are found; margins: the stability limit of "
+        "the linear model divided by a gain margin, for the position and direction with the "
+        "lowest limit; ziegler_nichols: by the table of Ziegler and Nichols, from the same limit; "
+        "stated: the scenario states all values"
     ),
 ]
 Friction: TypeAlias = Annotated[str, choice_of("friction model of the seals", FRICTIONS)]
@@ -535,6 +539,7 @@ Ends: TypeAlias = Annotated[
 CushionEnd: TypeAlias = Annotated[
     Literal["both", "cap", "rod"],
     Choice(
-        "which ends have a cushion; both: both ends; cap: end of retraction; rod: end of extension"
+        "where there is a cushion; both: at both ends; cap: at full retraction; "
+        "rod: at full extension"
     ),
 ]

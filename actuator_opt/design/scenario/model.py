@@ -1,6 +1,6 @@
 """The Scenario: signals and events that act on a design over time, as typed sections in SI.
 
-A signal is a list of parts that are added.
+A signal is the sum of the parts in its list.
 """
 
 from __future__ import annotations
@@ -16,25 +16,30 @@ from .kinds import FileName, Label, StartPosition
 
 
 class SignalSegment(Section):
-    """A part of a signal; the parts of a list are added."""
+    """A part of a signal; the signal is the sum of the parts in its list."""
 
     shape: kinds.Shape
     start: Annotated[
         float,
-        Of("instant", "start time; for a record, the scenario time at which its own time is 0"),
+        Of(
+            "instant",
+            "start time; for a record, the scenario time at which the record's own time is 0",
+        ),
     ] = 0.0
     end: Annotated[float | None, Of("instant", "end time")] = None
     frequency: Annotated[float | None, Of("frequency", "frequency of a sine")] = None
     phase: Annotated[float, Of("phase", "phase of a sine at its start")] = 0.0
     file: Annotated[
-        str | None, FileName("CSV file of a record, beside the scenario", "record.csv")
+        str | None, FileName("CSV file of a record, in the folder of the scenario", "record.csv")
     ] = None
-    column: Annotated[str | None, Label("column of a record, by its header", "force")] = None
+    column: Annotated[
+        str | None, Label("header of the record's column in the CSV file", "force")
+    ] = None
     scale: Annotated[float, Of("factor", "factor that multiplies a record")] = 1.0
 
 
 class ValveSignal(SignalSegment):
-    """A part of the valve signal."""
+    """A part of the signal that drives the valve."""
 
     value: Annotated[
         float | None, Of("signal_value", "height of this part, or amplitude of a sine")
@@ -100,7 +105,7 @@ Parts = Annotated[tuple[ValveSignal, ...], Field(max_length=100)]
 
 
 class Initial(Section):
-    """Initial state: at rest unless a speed is stated; by default, pressures balance the load."""
+    """Initial state; by default the rod is at rest and the pressures balance the load."""
 
     position: Annotated[Position | None, StartPosition()] = None
     """Default: mid-stroke."""
@@ -116,16 +121,23 @@ class Machine(Section):
     setting: Annotated[float, Of("displacement_setting", "displacement setting")] = 1.0
     slip: Annotated[float, Of("slip_coefficient", "coefficient C_s of laminar slip")]
     coulomb: Annotated[
-        float, Of("coulomb_coefficient", "coefficient C_f of friction in proportion to pressure")
+        float,
+        Of(
+            "coulomb_coefficient",
+            "coefficient C_f of the friction that is proportional to pressure",
+        ),
     ]
     viscous: Annotated[
-        float, Of("viscous_coefficient", "coefficient C_v of friction in proportion to speed")
+        float,
+        Of("viscous_coefficient", "coefficient C_v of the friction that is proportional to speed"),
     ]
-    constant_torque: Annotated[float, Of("constant_torque", "torque loss T_c at any speed")] = 0.0
+    constant_torque: Annotated[
+        float, Of("constant_torque", "torque loss T_c, the same at any speed and pressure")
+    ] = 0.0
 
 
 class PumpMachine(Machine):
-    """A pump with a driven shaft."""
+    """A pump whose shaft is driven at a constant speed."""
 
     shaft_speed: Annotated[float, Of("drive_speed", "speed of the shaft")]
 
@@ -135,9 +147,9 @@ class ReliefValve(Section):
 
     pressure: Annotated[float, Of("pressure_drop", "cracking pressure above the tank pressure")]
     override: Annotated[
-        float, Of("pressure_drop", "pressure rise above cracking at the rated flow")
+        float, Of("pressure_drop", "pressure rise from cracking to the rated flow")
     ] = 10e5
-    rated_flow: Annotated[float, Of("rated_flow", "flow with fully open valve")]
+    rated_flow: Annotated[float, Of("rated_flow", "flow through the fully open valve")]
 
 
 class SupplyAccumulator(Section):
@@ -163,10 +175,12 @@ class ValveSupply(Section):
         float | None, Of("rated_flow", "flow of a fixed pump, or largest flow of a controlled pump")
     ] = None
     pump: PumpMachine | None = None
-    """Pump with Wilson's model, instead of a constant `flow`."""
+    """Pump with losses by Wilson's model, instead of a constant `flow`."""
     relief: ReliefValve | None = None
     gain: Annotated[float | None, Of("pump_gain", "controller gain of a controlled pump")] = None
-    time_constant: Annotated[float | None, Of("time_constant", "lag of a controlled pump")] = None
+    time_constant: Annotated[
+        float | None, Of("time_constant", "time constant of the lag of a controlled pump")
+    ] = None
     accumulator: SupplyAccumulator | None = None
     line: SupplyLine | None = None
 
@@ -179,7 +193,11 @@ class Cushion(Section):
     open_area: Annotated[float, Of("orifice_area", "flow area when the spear enters")]
     end_area: Annotated[float, Of("orifice_area", "remaining flow area at the stop")]
     exponent: Annotated[
-        float, Of("stribeck_exponent", "exponent by which the flow area falls over the travel")
+        float,
+        Of(
+            "stribeck_exponent",
+            "exponent of the curve by which the flow area falls along the travel",
+        ),
     ] = 1.0
 
 
@@ -190,7 +208,7 @@ class Stops(Section):
         float,
         Of(
             "damping_factor",
-            "damping of a stop, divided by the root of its stiffness times the moving mass",
+            "damping of a stop, divided by sqrt(stiffness of the stop x moving mass)",
         ),
     ] = 0.5
     cushion: Cushion | None = None
@@ -217,8 +235,8 @@ class ScenarioFriction(Section):
         float | None,
         Of(
             "bristle_damping",
-            "bristle damping sigma_1; default: sqrt(sigma_0 m) of bristle stiffness and moving "
-            "mass, reduced with speed so that friction adds no energy",
+            "bristle damping sigma_1; default: sqrt(sigma_0 m), with bristle stiffness sigma_0 and "
+            "moving mass m, reduced with speed so that friction adds no energy",
         ),
     ] = None
 
@@ -227,14 +245,14 @@ class Motor(Section):
     """A hydraulic motor that replaces the cylinder, between two pipes."""
 
     machine: Machine
-    inertia: Annotated[float, Of("inertia", "inertia of motor and load")]
+    inertia: Annotated[float, Of("inertia", "inertia of motor and load together")]
     pipe_volume: Annotated[float, Of("oil_volume", "oil volume of each pipe")]
     damping: Annotated[float, Of("shaft_damping", "damping of the load")] = 0.0
     torque: Annotated[tuple[TorqueSignal, ...], Field(max_length=100)] = ()
 
 
 class HeldPorts(Section):
-    """Only the valve, on a test bench that keeps its port pressures constant."""
+    """The valve alone, on a test bench that keeps its port pressures constant."""
 
     pressure_a: Annotated[float, Of("pressure", "gauge pressure at port A")]
     pressure_b: Annotated[float, Of("pressure", "gauge pressure at port B")]
@@ -244,8 +262,12 @@ class Drive(Section):
     """An external drive that moves the rod through a spring, such as a stiff test machine."""
 
     position: Annotated[tuple[PositionSignal, ...], Field(min_length=1, max_length=100)]
-    stiffness: Annotated[float, Of("load_stiffness", "spring between machine and load")]
-    damping: Annotated[float, Of("load_damping", "damper between machine and load")] = 0.0
+    stiffness: Annotated[
+        float, Of("load_stiffness", "stiffness of the spring between test machine and load")
+    ]
+    damping: Annotated[
+        float, Of("load_damping", "damping of the damper between test machine and load")
+    ] = 0.0
 
 
 class LoadCylinder(Section):
@@ -256,14 +278,16 @@ class LoadCylinder(Section):
 
     bore: Annotated[float, Of("bore", "inner diameter")]
     rod_diameter: Annotated[float, Of("rod_diameter", "diameter of both rods")]
-    stroke: Annotated[float, Of("stroke", "travel of its piston")]
-    dead_volume: Annotated[float, Of("volume", "oil volume of each chamber with its line")] = 0.0
+    stroke: Annotated[float, Of("stroke", "travel of the load cylinder's piston")]
+    dead_volume: Annotated[
+        float, Of("volume", "oil volume of each chamber's line and dead space")
+    ] = 0.0
     supply_pressure: Annotated[float, Of("working_pressure", "gauge")]
     return_pressure: Annotated[float, Of("pressure", "gauge")] = 0.0
     valve: Valve
     signal: Annotated[tuple[ValveSignal, ...], Field(max_length=100)] = ()
     force: Annotated[
-        float, Of("force_value", "initial mean force on the rod, positive outwards")
+        float, Of("force_value", "mean force on the rod at the start, positive outwards")
     ] = 0.0
 
 
@@ -273,14 +297,19 @@ class ScenarioLoad(Section):
     force: Annotated[tuple[ForceSignal, ...], Field(max_length=100)] = ()
     torque: Annotated[tuple[TorqueSignal, ...], Field(max_length=100)] = ()
     """Torque on the joint of the design's linkage."""
-    stiffness: Annotated[float, Of("load_stiffness", "stiffness of a spring to ground")] = 0.0
-    damping: Annotated[float, Of("load_damping", "damping to ground")] = 0.0
+    stiffness: Annotated[
+        float, Of("load_stiffness", "stiffness of a spring between load and ground")
+    ] = 0.0
+    damping: Annotated[float, Of("load_damping", "damping between load and ground")] = 0.0
     drive: Drive | None = None
     cylinder: LoadCylinder | None = None
 
 
 class Controller(Section):
-    """A continuous controller of the valve signal, for one of four references."""
+    """A continuous controller that sets the valve signal so that the motion follows its reference.
+
+    The reference is one of four: position, speed, shaft speed or shaft angle.
+    """
 
     position: Annotated[tuple[PositionSignal, ...], Field(max_length=100)] = ()
     speed: Annotated[tuple[SpeedSignal, ...], Field(max_length=100)] = ()
@@ -289,7 +318,8 @@ class Controller(Section):
     law: kinds.Law = "p"
     tuning: kinds.Tuning = "margins"
     margin: Annotated[
-        float | None, Of("margin", "gain margin for tuning by margins; default: 2, or 3 for law pi")
+        float | None,
+        Of("margin", 'gain margin for "tuning: margins"; default: 2 for law p, 3 for law pi'),
     ] = None
     position_gain: Annotated[float | None, Of("position_gain", "gain of a position loop")] = None
     speed_gain: Annotated[float | None, Of("speed_gain", "gain of a speed loop")] = None
@@ -312,11 +342,15 @@ class Controller(Section):
     derivative_time: Annotated[float | None, Of("time_constant", "T_d")] = None
     filter_time: Annotated[float, Of("time_constant", "filter time T_f of the derivative")] = 1e-3
     speed_feedback: Annotated[
-        float, Of("speed_gain", "gain of an inner speed loop, subtracted from the signal")
+        float,
+        Of("speed_gain", "gain of an inner speed loop; its output is subtracted from the signal"),
     ] = 0.0
     pressure_feedback: Annotated[
         float,
-        Of("pressure_gain", "gain on changes of the load pressure, subtracted from the signal"),
+        Of(
+            "pressure_gain",
+            "gain of a feedback of load-pressure changes, which is subtracted from the signal",
+        ),
     ] = 0.0
     pressure_time: Annotated[
         float, Of("time_constant", "time constant of the high-pass filter for pressure changes")
@@ -325,10 +359,14 @@ class Controller(Section):
 
 
 class Analysis(Section):
-    """Settings for the evaluation of the signals."""
+    """Settings for the analysis of the simulated signals."""
 
     window_cycles: Annotated[
-        float, Of("cycles_per_window", "sine cycles per window of the dynamic stiffness")
+        float,
+        Of(
+            "cycles_per_window",
+            "number of sine cycles in each window over which dynamic stiffness is evaluated",
+        ),
     ] = 5.0
 
 
@@ -337,12 +375,12 @@ class Scenario(Section):
 
     name: Annotated[str, Label("title of the scenario", "step response")]
     notes: Annotated[str, Text("free text for the report", 20000, multiline=True)] = ""
-    design: Annotated[str, FileName("the design file, beside the scenario", "knee.yaml")]
+    design: Annotated[str, FileName("the design file, in the folder of the scenario", "knee.yaml")]
     set: dict[str, str] = {}  # noqa: RUF012 (pydantic copies it)
-    """Changed values of the design, by PATH."""
+    """Values of the design that the scenario changes, by PATH."""
     duration: Annotated[float, Of("duration", "simulated time")]
     sample_time: Annotated[
-        float | None, Of("sample_time", "sample time of the signals; default: 2000 samples")
+        float | None, Of("sample_time", "sample time of the signals; default: duration / 2000")
     ] = None
     initial: Initial = Initial()
     supply: ValveSupply = ValveSupply()

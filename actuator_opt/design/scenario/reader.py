@@ -1,6 +1,6 @@
-"""Read scenario files, like design files, and the design they name; write a start file.
+"""Read scenario files and the design that each names; write a start file.
 
-The start file of `init --scenario` is a commented step under load for a design.
+The start file of `init --scenario` is an example with comments: a step under load for a design.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ class LoadedScenario:
     scenario: Scenario
     source: FileSource
     folder: Path
-    """Folder of the named files: that of the scenario file."""
+    """Folder of the scenario file, to which names of other files are relative."""
     changes: tuple[Override, ...] = ()
-    """Changed values of the design; those of the command line come last."""
+    """Values of the design that the scenario changes; those of the command line come last."""
 
     @property
     def design_file(self) -> Path:
@@ -124,8 +124,8 @@ def read_design_of(
     Raises
     ------
     InputError
-        with all faults of the design, those of changed values at their location in the scenario;
-        otherwise with all contradictions between design and scenario
+        with all faults of the design; faults of changed values are at their location in the
+        scenario. If the design is valid, with all contradictions between design and scenario
     """
     path = loaded.design_file
     try:
@@ -139,7 +139,7 @@ def read_design_of(
 
 
 def _at_its_name(fault: Diagnostic, loaded: LoadedScenario) -> Diagnostic:
-    """Move a fault of a whole design file to the line of the scenario that names the file."""
+    """Report a fault of a whole design file at the line of the scenario that names the file."""
     path = str(loaded.design_file)
     if fault.file != path or fault.line is not None:
         return fault
@@ -147,11 +147,12 @@ def _at_its_name(fault: Diagnostic, loaded: LoadedScenario) -> Diagnostic:
 
 
 WIDE: Final = 1.5
-"""In an evenly sampled record, a step this many times the normal step is a gap (our choice)."""
+"""In an evenly sampled record, a time step longer than this many normal steps is a gap (our
+choice)."""
 REGULAR: Final = 0.9
-"""A record is evenly sampled if at least this share of its steps is equal (our choice)."""
+"""A record is evenly sampled if at least this share of its time steps is equal (our choice)."""
 ROUNDED: Final = 1e-9
-"""Relative tolerance of times."""
+"""Relative tolerance for comparisons of times."""
 
 
 class SampleGap(NamedTuple):
@@ -165,7 +166,7 @@ class SampleGap(NamedTuple):
 
 
 def recorded_parts(scenario: Scenario) -> Iterator[tuple[str, SignalSegment, str]]:
-    """PATH, part and dimension of the values of every recorded part."""
+    """Yield PATH, part and physical dimension of every signal part that is a record."""
     for loc, section in part_lists().items():
         kind = entries(section)["value"].kind
         assert isinstance(kind, Of)
@@ -175,7 +176,7 @@ def recorded_parts(scenario: Scenario) -> Iterator[tuple[str, SignalSegment, str
 
 
 def recorded_notes(scenario: Scenario, records: Records) -> Iterator[str]:
-    """Times at which a recorded signal has no data: before, after and between its samples."""
+    """Yield sentences on times without data in a record: before, after or between its samples."""
     least = ROUNDED * scenario.duration
     for path, part, _ in recorded_parts(scenario):
         samples = sampled(part, records)
@@ -184,11 +185,11 @@ def recorded_notes(scenario: Scenario, records: Records) -> Iterator[str]:
         name = f'column "{part.column}" of {part.file} ({path.removesuffix(".column")})'
         first, last = float(samples[0][0]), float(samples[0][-1])
         if first > least:
-            yield f"{name} begins at {first:.4g} s: its first value holds until then"
+            yield f"{name} begins at {first:.4g} s: before that, the signal has its first value"
         if last < scenario.duration - least:
             yield (
-                f"{name} ends at {last:.4g} s, the scenario at {scenario.duration:.4g} s: its "
-                "last value is kept"
+                f"{name} ends at {last:.4g} s, the scenario at {scenario.duration:.4g} s: in "
+                "between the signal keeps its last value"
             )
         time, values = records[part.file or "", part.column or ""]
         missing = [
@@ -197,11 +198,11 @@ def recorded_notes(scenario: Scenario, records: Records) -> Iterator[str]:
             if first < gap.first < min(last, scenario.duration) and gap.last > 0
         ]
         if missing:
-            yield f"{name}: {gap_words(missing)}, interpolated linearly"
+            yield f"{name}: {gap_words(missing)}; the signal is interpolated there"
 
 
 def gaps(time: Array, values: Array) -> list[SampleGap]:
-    """Intervals of a channel without samples: NaN, and missing steps of an even time base."""
+    """Intervals without samples: NaN values, and time steps missing in an even sampling."""
     absent = np.concatenate(([False], ~np.isfinite(values), [False])).astype(np.int8)
     turns = np.flatnonzero(np.diff(absent))
     sample_gaps = [
@@ -222,7 +223,7 @@ def gaps(time: Array, values: Array) -> list[SampleGap]:
 
 
 def gap_words(sample_gaps: list[SampleGap]) -> str:
-    """Text: how many samples are missing, and where (the only gap, or the first and the last).
+    """Text that states how many samples are missing, and where (first and last gap).
 
     >>> gap_words([SampleGap(0.2, 0.2, 1)])
     '1 sample is missing at 0.2 s'
@@ -241,11 +242,12 @@ def gap_words(sample_gaps: list[SampleGap]) -> str:
 
 
 STEP = 0.1
-"""Step, as a share of the stroke (our choice: clearly visible, yet away from the stops)."""
+"""Height of the step in a start file, as a share of the stroke. Our choice: it is clearly visible,
+yet keeps the piston away from the stops."""
 
 
 LOAD = 0.3
-"""Load, as a share of the smallest force of the load cases (our choice)."""
+"""Load in a start file, as a share of the smallest force of the load cases (our choice)."""
 
 
 _HEAD = """\

@@ -1,7 +1,8 @@
 """The barrel in an evaluation: the only place that selects a tube model.
 
 The models are: isotropic (Lamé), exact layered tube (default for all laminates), thin laminate
-(fast), and the formula of the paper. Each returns a `Wall`, with which all later code works.
+(fast), and the formula of a published paper. Each returns a `Wall`, the only form in which
+other modules use the result.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The laminated barrel: exact layered tube by default, or thin laminate.
 
-Stresses of unit pressure, unit axial force and unit temperature change are superposed for every
-load path; cure stresses and tie-rod preload are residual stresses, independent of the load.
+Stresses under unit pressure, unit axial force and unit temperature change are superposed for every
+load path. Cure stresses and the preload of tie rods are residual stresses, independent of the load.
 
 A gradient varies each variable in a copy of the design. Most variables do not affect the wall, so
 most copies have equal walls: only the distinct walls of a batch are computed.
@@ -43,14 +43,15 @@ from .wall import (
 )
 
 FEW = 32
-"""Number of designs below which sorting out repeated designs saves no time."""
+"""Smallest number of designs for which dropping repeated designs saves time."""
 
 
 def distinct(arguments: Mapping[str, Any]) -> tuple[dict[str, Any], Callable[[Array], Array]]:
-    """Drop repeated designs from a model's arguments; also return the indices that restore them.
+    """Drop repeated designs from a model's arguments; return also a function that restores them.
 
-    The last axis of every array counts the designs; it has length 1 if they share the value. The
-    number of designs follows from the longest last axis.
+    The function takes a result for the distinct designs and returns it for all designs. The last
+    axis of every array is that of the designs; it has length 1 if all designs share the value. The
+    longest last axis gives the number of designs.
 
     Parameters
     ----------
@@ -180,11 +181,11 @@ class _ResidualStress:
     autofrettage: Autofrettage | None
 
     def cured(self) -> bool:
-        """Whether any service temperature differs from the stress-free (cure) temperature."""
+        """Whether a service temperature differs from the stress-free temperature, that of cure."""
         return any(bool(np.any(real(state.change))) for state in self.states)
 
     def from_cure(self) -> _ResidualStress:
-        """Residual stress from cooling after cure alone, before machining and assembly."""
+        """Copy with the stress of cooling after cure only, without autofrettage and tie rods."""
         return replace(self, path=replace(self.path, clamp=None), autofrettage=None)
 
     def of(self, rows: list[int]) -> Stress | None:
@@ -208,7 +209,10 @@ class _ResidualStress:
 def _autofrettage(
     v: Values, design: Design, layers: Sequence[Layer], g: Geometry
 ) -> Autofrettage | None:
-    """Residual stress of autofrettage: one overpressure of the open barrel, before machining."""
+    """Residual stress of autofrettage; None if not stated or not covered by the model.
+
+    The open barrel is overpressurised once, before it is machined.
+    """
     if design.barrel.autofrettage_pressure is None or not layers[0].yields:
         return None
     if not all(layer.balanced for layer in layers):
@@ -228,7 +232,7 @@ def _autofrettage(
 
 
 def _load(solution: WallSolution, rows: list[int], axial: Array) -> Stress:
-    """Stress per pressure of the layers in `rows`, (faces, layers, 1, paths, designs).
+    """Stress per unit pressure in the layers `rows`, (faces, layers, 1, paths, designs).
 
     `axial` is the axial force per pressure, (paths, designs).
     """
@@ -240,7 +244,7 @@ def _load(solution: WallSolution, rows: list[int], axial: Array) -> Stress:
 
 
 def _by_climate(values: Sequence[Array]) -> Array:
-    """Give the strengths of a layer, one per climate, the same axes as its stresses."""
+    """Arrange the strengths of a layer, one per climate, on the same axes as its stresses."""
     rows = np.stack(np.broadcast_arrays(*[np.atleast_1d(value) for value in values]))
     return rows[None, None, :, None]
 
@@ -248,7 +252,7 @@ def _by_climate(values: Sequence[Array]) -> Array:
 def _strengths(
     design: Design, layers: Sequence[Layer], residual: _ResidualStress, supply: Array, wall: Wall
 ) -> None:
-    """First-ply failure and yield pressures by layer, failure mode and load path."""
+    """Compute pressures at first-ply failure and yield by layer, failure mode and load path."""
     paths, axial = tuple(wall.path.per_pressure), np.stack(list(wall.path.per_pressure.values()))
     brittle = [i for i, layer in enumerate(layers) if layer.strengths]
     if brittle:
@@ -276,10 +280,10 @@ def _strengths(
 def _rows(
     states: Sequence[Climate], paths: tuple[str, ...], values: Array
 ) -> Iterator[tuple[str, Array]]:
-    """Split values (climates, paths, designs) into (climate and load path, values of all designs).
+    """Yield values (climates, paths, designs) for each climate and load path, with their names.
 
-    The optimiser treats each pair as a separate smooth limit: an optimum may lie where two of them
-    intersect.
+    The optimiser treats each pair as a separate smooth limit, because an optimum may lie where two
+    of these limits intersect.
     """
     for t in range(values.shape[0]):
         for p, place in enumerate(paths):
@@ -298,8 +302,8 @@ def _metal(
     """Calculate the yield pressure of a metal layer, and its stress under pulsating pressure.
 
     The pulse goes from the residual stress to the stress at supply pressure. The mean stress is the
-    larger equivalent stress at the two ends of the pulse, minus half the range. A negative mean
-    counts as zero: it gives no credit.
+    larger of the equivalent stresses at both ends of the pulse, minus half the range. A negative
+    mean counts as zero, so compression does not increase the life.
     """
     limit = _by_climate(layer.yields)
     utilisation = strength.yield_utilisation(stress=load, yield_strength=limit, residual=residual)
@@ -321,7 +325,7 @@ def _metal(
 def _cooling(
     layers: Sequence[Layer], residual: _ResidualStress, wall: Wall, *, exact: bool
 ) -> None:
-    """Compute yield over stress of the liner after cure, and strength over stress of its bond."""
+    """Compute strength over stress of the liner (yield) and its bond after cooling from cure."""
     liners = [i for i, layer in enumerate(layers) if layer.yields]
     if not liners or len(liners) == len(layers):
         wall.why_no_mismatch = "the wall has no liner under plies"
@@ -365,14 +369,17 @@ def _ladder(
     *,
     exact: bool,
 ) -> None:
-    """Compute burst pressures by climate and load path, and first-ply failure after liner yield."""
+    """Compute burst pressures by climate and load path.
+
+    In a wall with a liner, also compute first-ply failure with a liner that yields.
+    """
     if wall.missing:
         return
     if all(layer.isotropic for layer in layers):
-        wall.missing.append("burst of a wall of several metals is not modelled")
+        wall.missing.append("burst is not modelled for a wall of several metals")
         return
     if not all(layer.balanced for layer in layers):
-        wall.missing.append("burst of a wall with single plies is not modelled: use balanced pairs")
+        wall.missing.append("burst is not modelled for unbalanced plies: use balanced pairs")
         return
     arguments = {
         "layers": [layer.as_wall() for layer in layers],

@@ -1,11 +1,11 @@
 """Barrel wall of any model: results, response to unit loads, and the axial force in the wall.
 
 The response of a laminated wall to unit pressure, unit axial force and unit temperature change
-comes from the exact layered tube or from the fast thin laminate. Both give the stresses at the
-faces of the layers.
+comes from the exact layered tube or from the fast thin laminate. Both give stresses for the faces
+of the layers.
 
 The axial force follows from mount, load direction, stop and tie rods. The barrel is never assumed
-to be simply open-ended or closed-ended. Tie rods clamp the barrel with their preload and carry
+to be just open-ended or closed-ended. Tie rods clamp the barrel with their preload and carry
 their share of the separating force. The default preload keeps the joint closed at proof pressure.
 """
 
@@ -41,9 +41,10 @@ LARGEST = "largest axial load"
 class Swelling:
     """Response of the wall to pressure and axial force, far from its ends, (designs,).
 
-    `growth` is the radial growth of the bore [m/Pa] and `shortening` the axial strain [1/Pa], both
-    per pressure and without axial force. `stretch` is the axial strain per axial force [1/N]. By
-    reciprocity, the growth per axial force is shortening/(2 pi r_i), with bore radius r_i.
+    Without axial force, `growth` is the radial growth of the bore per unit pressure [m/Pa], and
+    `shortening` the axial strain per unit pressure [1/Pa]. `stretch` is the axial strain per unit
+    axial force [1/N]. By reciprocity, the growth per unit axial force is shortening/(2 pi r_i),
+    with bore radius r_i.
     """
 
     growth: Array
@@ -56,9 +57,10 @@ class Swelling:
 class LoadPath:
     """Axial forces in the barrel wall.
 
-    `per_pressure` is the force per pressure by load path, (designs,) [m^2]. `held` is the force
-    without pressure [N]. `cases` are the forces at the chamber pressures, including `held`,
-    (cases, designs) [N]. `share` is the share of a separating force that the barrel carries.
+    `per_pressure` is the force per unit pressure for each load path, (designs,) [m^2]. `held` is
+    the force at zero pressure [N]. `cases` are the forces in the load cases, including `held`,
+    (cases, designs) [N]. `share` is the barrel's share of a force that separates
+    its ends.
     """
 
     per_pressure: dict[str, Array]
@@ -69,7 +71,7 @@ class LoadPath:
 
 
 def largest_area(design: Design, g: Geometry) -> Array:
-    """Largest area on which supply pressure separates the ends, by end stop or mount."""
+    """Largest area on which supply pressure separates the ends; depends on end stop and mount."""
     if design.cylinder.end_stop == "internal":
         return g.area_a
     return g.area_b if design.cylinder.mount.startswith("cap") else g.area_a
@@ -83,7 +85,7 @@ def load_path(
     state: LoadState,
     swelling: Swelling,
 ) -> LoadPath:
-    """Axial forces in a design's barrel wall, for a known wall stiffness."""
+    """Axial forces in a design's barrel wall, whose stiffness is given by `swelling`."""
     if design.cylinder.mount.startswith("cap"):
         cases = barrel_ends.axial_force_cap_mounted(
             rod_side_pressure=state.moving_b, rod_side_area=g.area_b, stop_force=0.0
@@ -120,7 +122,8 @@ def _clamped(
 ) -> LoadPath:
     """Axial forces in a barrel between tie rods, as two preloaded springs in parallel.
 
-    `worst` is the area on which the pressure separates the ends, by load path.
+    `worst` has the name of the severest load path, and the area on which pressure separates the
+    ends.
     """
     springs = {
         "barrel_stiffness": 1 / (swelling.stretch * g.barrel_length),
@@ -153,12 +156,13 @@ def _clamped(
 
 
 SEAL_STEP = 0.5
-"""Bore growth at a pressure step over that far from it, from `barrel.pressure_step_factor(0)`."""
+"""Bore growth at a pressure step, as a share of the growth far inside the pressurised length;
+from `barrel.pressure_step_factor(0)`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cycle:
-    """Equivalent stress of a metal per pressure pulse [Pa]: range and mean."""
+    """Equivalent stress of a metal during a pressure pulse [Pa]: its range and mean."""
 
     material: str
     span: Array
@@ -167,16 +171,17 @@ class Cycle:
 
 @dataclass(slots=True)
 class Wall:
-    """The wall of a design. Pressures are by location (part, mode, load path), Pa, (designs,).
+    """The wall of a design.
 
-    `cycles` are the stresses of metals under pulsating pressure, by location. `ply_fatigue` is the
-    fatigue strength of fibres over their stress amplitude.
+    Each pressure has its location (part, mode, load path) as key; Pa, (designs,). `cycles` are the
+    stresses of metals under pulsating pressure, by location. `ply_fatigue` is the fatigue strength
+    of fibres divided by their stress amplitude.
 
     `growth` is the bore growth at supply pressure: the larger of the values with and without the
     axial force of the load cases. `case_growth` is the growth at the pressures of the load cases.
-    `missing` names unknown strengths. `axial_line_stiffness` is the axial E t of the wall, N/m.
-    `mismatch` is yield over stress of the liner, and `bond` is bond strength over the tension
-    between liner and plies, both after cool-down from cure.
+    `missing` names unknown strengths. `axial_line_stiffness` is axial modulus times thickness of
+    the wall, N/m. After cool-down from cure, `mismatch` is yield strength divided by stress of the
+    liner, and `bond` is bond strength divided by the tension between liner and plies.
     """
 
     swelling: Swelling
@@ -259,7 +264,7 @@ def metal_swelling(
 def _strengths(
     stock: MaterialValues, name: str, g: Geometry, path: LoadPath, supply: Array, wall: Wall
 ) -> None:
-    """Yield and burst pressures of every load path, and the stress of a pressure pulse."""
+    """Compute yield and burst pressures of every load path, and the stress of a pressure pulse."""
     size = {"inner_radius": g.inner_radius, "outer_radius": g.outer_radius}
     strength = stock.allowable(name, "yield_strength", "strength_1_tension")
     ultimate = stock.allowable(name, "ultimate_strength", "strength_1_tension")
@@ -288,7 +293,10 @@ def _utilisation(
     *,
     clamped: bool = True,
 ) -> Array:
-    """1/yield pressure at the bore, including the stress that preload causes at zero pressure."""
+    """Reciprocal of the pressure at which the bore yields.
+
+    If `clamped`, it includes the stress that the preload of tie rods causes at zero pressure.
+    """
     hoop, radial, along = barrel.bore_stresses(pressure=1.0, axial_force=axial, **size)
     zero = 0.0 * hoop
     residual = None
@@ -305,7 +313,7 @@ PRESSURE, FORCE, WARMTH = range(3)
 
 @dataclass(frozen=True, slots=True)
 class WallSolution:
-    """Stiffness of the wall, and ply stresses under unit loads, (faces, layers, loads, designs).
+    """Response of the wall to unit loads; ply stresses are (faces, layers, loads, designs).
 
     `walls` are the stiffnesses of the layers in tube axes, as `rod.layered_section` expects them.
     """

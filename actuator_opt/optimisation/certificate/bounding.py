@@ -1,14 +1,14 @@
 """Lower bound for one box: a linear programme minimises the objective of the box's relaxation.
 
-A tangent bounds a curve on its convex side. Tangents are valid in every box; one is added where the
-solution violates the curve [Kelley1960]. On the other side, the chord across the box bounds the
-curve. The bound is computed from the multipliers alone, so it is valid for any tolerance of the
-solver [Neumaier2004].
+A box is a part of the design space. A tangent bounds a curve on its convex side. Tangents are valid
+in every box; a tangent is added where the solution violates the curve [Kelley1960]. On the other
+side, the chord across the box bounds the curve. The bound is computed from the multipliers alone,
+so it is valid for any tolerance of the solver [Neumaier2004].
 
 Sums whose terms vary widely are also stated without logarithms, because their bounds are loose in
 logarithms but exact without. Four planes bound each product [McCormick1976]. They relate a monomial
-to its widest factor and the remaining factor: for example, mass and stiffness of a layer both
-follow its thickness.
+to the factor with the widest range and the remaining factor. Thus mass and stiffness of a layer,
+for example, both follow the layer's thickness.
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ from .relaxation import (
 class Products:
     """Rows of the linear programme, from row `first`, that bound products w = k x y.
 
-    Each row reads low <= w + a x + b y or w + a x + b y <= high. Two planes lie below the product
-    and two above. They pass through the corners of the ranges of x and y.
+    Each row is low <= w + a x + b y or w + a x + b y <= high. Two planes lie below the
+    product and two above. They pass through the corners of the ranges of x and y.
     """
 
     def __init__(self, products: Sequence[Product], first: int, columns: int) -> None:
@@ -81,7 +81,10 @@ class Products:
 
 
 class Lines(NamedTuple):
-    """Lines low <= out + coefficient * ratio <= high for a curve's value and its ratio."""
+    """Lines that bound a curve: low <= out + coefficient * ratio <= high.
+
+    `out` and `ratio` are the columns of the curve's value and of the log ratio that it depends on.
+    """
 
     ratio: Any
     coefficient: Vector
@@ -90,7 +93,7 @@ class Lines(NamedTuple):
     high: Vector
 
     def joined(self, others: Lines) -> Lines:
-        """A set with these lines and then the others."""
+        """These lines, followed by the others."""
         return Lines(*(np.concatenate(pair) for pair in zip(self, others, strict=True)))
 
     def add_to(self, solver: Any) -> None:
@@ -103,7 +106,7 @@ class Lines(NamedTuple):
 
 
 class KnownExtents:
-    """Least and largest value of every direction among known points of the relaxation."""
+    """Least and largest value of every direction (log ratio) among known points."""
 
     def __init__(self, directions: Vector) -> None:
         self.ends = directions.copy(), directions.copy()
@@ -115,7 +118,7 @@ class KnownExtents:
 
 
 WIDEST = 40.0
-"""Widest range of an argument for which a chord is drawn; wider chords bound nothing."""
+"""Widest range of an argument for which a chord is drawn; a wider chord gives no useful bound."""
 
 ROUNDS = 3
 """Maximum number of rounds that add tangents per box; later boxes reuse them."""
@@ -124,16 +127,17 @@ TANGENT_GAIN = 2e-5
 """The rounds of tangents end once a round raises the bound by less than this."""
 
 TANGENT_DISTANCES = (1e-5, 1e-3)
-"""Smallest and largest setting of the distance from a curve at which a tangent is added."""
+"""Limits on the setting of the distance from a curve at which a tangent is added."""
 
 FINE = 0.01
-"""Distance from a curve at which a tangent is added, as a share of the remaining gap."""
+"""Distance from a curve at which a tangent is added, as a share of the gap still to be closed."""
 
 PROVEN = 1e-6
-"""A dual ray proves a box empty if its value is at least this, well above rounding error."""
+"""A dual ray proves that a box has no design if its value is at least this, well above rounding
+error."""
 
 NEAR_END = 0.05
-"""A known point this close to an end of a range (as a share of it) shows that the end cannot be
+"""If a known point is this close to an end of a range (as a share of the range), that end cannot be
 cut."""
 
 LINES_PER_CURVE = 3
@@ -147,13 +151,13 @@ class Bound(NamedTuple):
     atoms: Vector
     directions: Vector
     excess: Vector
-    """For every curve, its distance from the solution on the side of its chord."""
+    """For every curve, the distance between curve and solution on the side bounded by the chord."""
     price: Vector
-    """For every chord, its multiplier."""
+    """For every chord, its multiplier in the linear programme."""
     product_errors: Vector
-    """Error of every product, multiplied by the multipliers of its rows."""
+    """For every product, the error of its bounds, weighted with the multipliers of its rows."""
     slopes: Vector
-    """Reduced cost of every column: slope of the objective, away from the column's better limit."""
+    """Reduced cost of every column: slope of the objective as the column leaves its best limit."""
 
 
 class Bounding:
@@ -170,8 +174,8 @@ class Bounding:
         composite = layout.plain < 0
         self.columns = layout.atoms + int(composite.sum())
         self.column = np.where(composite, layout.atoms + np.cumsum(composite) - 1, layout.plain)
-        """Column of every output and direction; if it equals a single atom, it shares the atom's
-        column."""
+        """Column of every output and direction. An output or direction that equals a single atom
+        shares the atom's column."""
         self.out = self.column[:curves].astype(np.int32)
         self.direction_columns = self.column[curves:]
         self.ratio = self.direction_columns[layout.direction].astype(np.int32)
@@ -199,7 +203,7 @@ class Bounding:
         self.missed = TANGENT_DISTANCES[1]
 
     def refine(self, gap: float) -> None:
-        """Set how accurate the tangents must be for a given gap in the objective's logarithm."""
+        """Set the accuracy of the tangents by the gap that remains in the objective's logarithm."""
         self.missed = float(np.clip(FINE * gap, *TANGENT_DISTANCES))
 
     def _definitions(self) -> tuple[Any, Vector, Vector]:
@@ -254,8 +258,8 @@ class Bounding:
     def trimmed(self, box: Box, bound: Bound, best: float) -> Box:
         """The part of a box that may contain a design as good as the best known design.
 
-        A range with reduced cost d can be cut to the length gap / d, where gap is the remaining
-        gap.
+        A range with reduced cost d can be cut to the length gap / d, where gap is the difference
+        between the best objective and the bound.
         """
         lower, upper = self._ends(box)
         gap = max(best - bound.value, 0.0) + ROOM
@@ -272,7 +276,7 @@ class Bounding:
         )
 
     def enter(self, box: Box) -> tuple[Vector, Vector]:
-        """Load a box into the linear programme, and return the ranges of its columns."""
+        """Load a box into the linear programme, and return the ranges of the columns."""
         self._purge()
         ends = self._columns(box)
         self._chords(box)
@@ -299,8 +303,8 @@ class Bounding:
     ) -> tuple[float, float] | None:
         """Least and largest value of a direction in the loaded box; None if the box is empty.
 
-        Does not search at an end of the range that a known point nearly reaches. Adds the points of
-        the search to `known`.
+        An end of the range that a known point nearly reaches is not searched. The points of the
+        search are added to `known`.
         """
         column = self.direction_columns[direction]
         extent = [float(end[column]) for end in ends]
@@ -320,7 +324,7 @@ class Bounding:
     def _minimum(
         self, cost: Vector, lower: Vector, upper: Vector, *, rounds: int
     ) -> tuple[float, Vector, Vector, Vector] | None:
-        """Minimise a linear function: proven minimum, reduced costs, point, multipliers."""
+        """Minimise a linear function; return proven minimum, reduced costs, point, multipliers."""
         index = np.arange(self.columns, dtype=np.int32)
         self.solver.changeColsCost(self.columns, index, cost)
         previous = -np.inf
@@ -418,7 +422,7 @@ class Bounding:
         return argument
 
     def _missed(self, x: Vector) -> Vector:
-        """Distance of a point from every curve, positive where a tangent is missing."""
+        """Distance of a point from every curve; positive where a new tangent excludes the point."""
         functions = self.layout.functions
         off = functions.value(self._argument(x)) - x[self.out]
         return np.where(functions.convex == 0, -np.abs(off), functions.convex * off)
@@ -441,7 +445,7 @@ class Bounding:
         return len(curves) > 0
 
     def _touching(self, t: Vector, curves: Any) -> Lines:
-        """Tangents of the given curves; `t` has an argument for every curve."""
+        """Tangents of the given curves at the arguments `t`, one for every curve."""
         layout, functions = self.layout, self.layout.functions
         slope = functions.slope(t)
         level = (
@@ -495,13 +499,13 @@ _LOGIC = ("lt", "le", "and", "or", "not")
 
 
 class Leads:
-    """Finds the lead of a value: a single other value that determines it for all variables."""
+    """Finds the lead of a value: a single other value that alone determines it in every design."""
 
     def __init__(self) -> None:
         self._known: dict[int, Symbol] = {}
 
     def of(self, node: Symbol) -> Symbol:
-        """The lead of a value, see `Leads`."""
+        """The lead of a value: the value that alone determines it (see `Leads`)."""
         if node.index not in self._known:
             operand_leads = {self.of(operand) for operand in node.operands}
             self._known[node.index] = operand_leads.pop() if len(operand_leads) == 1 else node
@@ -509,7 +513,7 @@ class Leads:
 
 
 def function(nodes: Sequence[Symbol], lead: Symbol) -> Callable[[Vector], Vector]:
-    """Function from the logarithms (n,) of a lead to the values (nodes, n) of nodes."""
+    """Function from the logarithms (n,) of a lead to the values (nodes, n) that it determines."""
     code = vectorised("lone", "value", {}, nodes, known={lead: "value"})
 
     def values(t: Vector) -> Vector:
@@ -527,7 +531,7 @@ def samples(lead: Symbol) -> Vector:
 
 
 def ranges(nodes: Sequence[Symbol]) -> dict[Symbol, tuple[float, float]]:
-    """Ranges, from samples, of values with a positive lead; only where finite."""
+    """Finite ranges, from samples, of values that a single positive value determines."""
     leads = Leads()
     groups: dict[Symbol, list[Symbol]] = {}
     for node in nodes:
@@ -546,12 +550,11 @@ def ranges(nodes: Sequence[Symbol]) -> dict[Symbol, tuple[float, float]]:
 
 
 WIDE = 0.3
-"""A sum is also stated without logarithms if the logarithm of its terms' ratio varies by this much.
-"""
+"""A sum is also stated without logarithms if the log ratio of its terms varies by this much."""
 
 
 class _PlainAtoms:
-    """Adds atoms without logarithms, for monomials of a relaxation with known ranges."""
+    """Adds atoms for monomials that enter the relaxation as values, not as logarithms."""
 
     def __init__(self, relaxation: Relaxation) -> None:
         self.relaxation = relaxation
@@ -569,7 +572,7 @@ class _PlainAtoms:
         return high - low
 
     def atom(self, powers: Powers) -> int:
-        """Number of the atom for a monomial without logarithm, divided by its largest value."""
+        """Number of the atom that is a monomial (not its logarithm), scaled to at most 1."""
         if powers not in self.known:
             relaxation, form = self.relaxation, Form(0.0, powers)
             low, high = relaxation.reach(form)
@@ -584,14 +587,17 @@ class _PlainAtoms:
         return self.known[powers]
 
     def term(self, form: Form, scale: float) -> Form:
-        """A monomial divided by e^scale, as a linear function of its atom without logarithm."""
+        """A monomial divided by e^scale, as a multiple of the atom that `atom` adds for it."""
         if not form.powers:
             return Form(math.exp(form.constant - scale))
         number = self.atom(form.powers)
         return Form(0.0, ((number, math.exp(form.constant + self.tops[number] - scale)),))
 
     def _tie(self, form: Form, number: int) -> None:
-        """Relate the atom of a monomial to the atoms of its factors, or to that of its argument."""
+        """Relate the atom of a monomial to the atoms of its two factors.
+
+        If the monomial is a sampled function of one other atom, relate it to that atom.
+        """
         lone = [i for i, power in form.powers if power == 1.0]
         if not lone:
             return
@@ -610,7 +616,7 @@ class _PlainAtoms:
 
 
 def add_plain_sums(relaxation: Relaxation) -> None:
-    """State the widely varying sums of a relaxation without logarithms, too."""
+    """Also state, without logarithms, the sums of a relaxation whose terms vary widely."""
     plain = _PlainAtoms(relaxation)
     for whole, part, remainder in list(relaxation.splits):
         if plain.width(part - remainder) < WIDE:

@@ -59,14 +59,14 @@ WIDEST = 20.0
 """Longest logarithmic range that is sampled."""
 
 LARGEST = 8
-"""Maximum number of terms when a sum is expanded so that terms can cancel."""
+"""Maximum number of terms of a sum that is expanded to let terms cancel."""
 
 _MONOMIAL = ("variable", "mul", "div", "neg", "sqrt", "pow")
 """Operations that give a monomial if their operands are monomials."""
 
 
 class Builder:
-    """Adds traced values to a relaxation; equal values use the same atom."""
+    """Adds traced values to a relaxation; equal values share one atom (elementary quantity)."""
 
     def __init__(self) -> None:
         self.relaxation = Relaxation()
@@ -76,7 +76,7 @@ class Builder:
         self.variables: dict[str, Form] = {}
 
     def form(self, value: Any) -> tuple[float, Form]:
-        """Sign and logarithm of a value.
+        """Sign of a value, and the logarithm of its absolute value.
 
         Raises
         ------
@@ -99,14 +99,14 @@ class Builder:
         return entry
 
     def _tightest(self, node: Symbol) -> tuple[float, Form]:
-        """The sampled form of a value, if tighter than the form composed of its operands."""
+        """Sign and logarithm of a value; from samples if these give tighter bounds."""
         if node.op not in _MONOMIAL or self._repeats(node):
             with suppress(Unknown):
                 return self._sampled(node)
         return self._composed(node)
 
     def _repeats(self, node: Symbol) -> bool:
-        """Whether both factors of a product depend on the same value, other than as its powers."""
+        """Whether both factors of a product depend on one value, and not only as powers of it."""
         if node.op not in ("mul", "div"):
             return False
         lead, (first, second) = self._leads.of(node), node.args
@@ -137,13 +137,13 @@ class Builder:
     def _variable(self, node: Symbol) -> tuple[float, Form]:
         low, high = node.bounds
         if not low > 0:
-            raise Unknown(f"{node.args[0]} may be zero or negative")
+            raise Unknown(f"the variable {node.args[0]} may be zero or negative")
         form = self.relaxation.atom(low, high, lambda y: math.nan)  # a design value
         self.variables[node.args[0]] = form
         return 1.0, form
 
     def _sampled(self, node: Symbol) -> tuple[float, Form]:
-        """The sampled form of a value that is a function of a single other value."""
+        """Sign and logarithm, by samples, of a value that is a function of a single other value."""
         lead = self._leads.of(node)
         if lead is node:
             raise Unknown("the model has a function of several values")
@@ -205,14 +205,14 @@ class Builder:
             return None
 
     def _of_sum(self, node: Symbol) -> tuple[float, Form]:
-        """The form of a sum; expanded if terms cancel or the sign of an operand is unknown."""
+        """Sign and logarithm of a sum, expanded if terms cancel or an operand's sign is unknown."""
         low, high = node.bounds
         parts = self._cancelled(node) or self._terms(node)
         single = parts.single
         if single is not None:
             return single
         if not parts.terms:
-            raise Unknown("it is zero")
+            raise Unknown("the value is always zero")
         plus, minus = parts.sides()
         low, high = (
             max(low, self._lower_bound(plus, minus)),
@@ -234,7 +234,7 @@ class Builder:
         return least - sum(math.exp(min(self.relaxation.reach(term)[1], 700.0)) for term in minus)
 
     def _cancelled(self, node: Symbol) -> Signomial | None:
-        """A sum in expanded form, if terms of its operands cancel."""
+        """A sum in expanded form if terms of its operands cancel; else None."""
         parts = [self.expanded(value) for value in (node, *node.args)]
         if None in parts:
             return None
@@ -286,7 +286,7 @@ class Builder:
         """
         plus, minus = self.signomial(value).plus(self.signomial(bound), -1.0).sides()
         if minus and not plus:
-            raise Unknown("it is below its limit")
+            raise Unknown("no design within the bounds meets this limit")
         if minus:
             plus_total, minus_total = (
                 self.relaxation.total(side, 0.0, math.inf) for side in (plus, minus)
@@ -318,7 +318,7 @@ class Builder:
         (s, a), (t, b) = self.form(node.args[1]), self.form(node.args[2])
         low, high = node.bounds
         if s != t:
-            raise Unknown("the sign of a choice is not known")
+            raise Unknown("the model chooses between two values that may differ in sign")
         ends = (low, high) if s > 0 else (-high, -low)
         is_larger = (kind == "max") == (s > 0)
         pick = max if is_larger else min
@@ -346,7 +346,7 @@ class Builder:
     def _logarithm(
         self, graph: object, argument: Any, low: float, high: float
     ) -> tuple[float, Form]:
-        """Logarithm of |ln x|: ln x is affine in the atoms, and the result is a curve of ln x."""
+        """Sign of ln x and logarithm of |ln x|, a curve of ln x, which is affine in the atoms."""
         parts = self.expanded(argument)
         if parts is not None:  # the terms of a sum such as 1.2 + t/r show that it exceeds 1
             plus, minus = parts.sides()
@@ -361,7 +361,7 @@ class Builder:
         return sign, self._curve("log", inner, math.log(ends[0]), math.log(ends[1]))
 
     def _exponential(self, argument: Any, low: float, high: float) -> Form:
-        """The form of e^x: its logarithm is x, which is a curve of the logarithm of x."""
+        """Logarithm of e^x, that is x itself, as a curve of the logarithm of x."""
         sign, form = self.form(argument)
         if sign > 0:
             return self._curve("exp", form, math.log(low) if low > 0 else -FAR, math.log(high))
@@ -370,7 +370,10 @@ class Builder:
         return out
 
     def _curve(self, kind: Kind, argument: Form, low: float, high: float) -> Form:
-        """A new atom: a function of a monomial's logarithm, with bounds in logarithms."""
+        """A new atom whose logarithm is a function of a monomial's logarithm.
+
+        `low` and `high` bound the atom's logarithm.
+        """
         functions = CurveFunctions([kind])
         out = self.relaxation.atom(
             math.exp(low),
@@ -389,16 +392,17 @@ def _power(value: Any, lead: Symbol) -> bool:
 
 
 LEAST_DECAY = 1e-3
-"""Least exponent with which the displacement decays through a part of a layer; avoids exponent 0.
+"""Least exponent with which the displacement decays through a part of a layer, to avoid exponent 0.
 """
 
 
 PARTS = 4
-"""Number of parts per layer of known stiffness in the bound on its growth; any number is valid."""
+"""Number of parts per layer of known stiffness in the bound on a wall's growth, which is valid with
+any number."""
 
 
 CONTRACTION = 0.2
-"""Transverse contraction per axial strain in the bound on a wall's stiffness; any value is valid.
+"""Transverse contraction per axial strain in the bound on a wall's stiffness, valid with any value.
 """
 
 
@@ -412,7 +416,7 @@ class EnvelopeProblem(Protocol):
 
 
 class Envelopes:
-    """Envelopes (upper and lower estimates) of one load case, exact at the `reference` design."""
+    """Upper and lower estimates of the models in one load case, exact at the `reference` design."""
 
     def __init__(
         self,
@@ -436,7 +440,7 @@ class Envelopes:
         )
 
     def number(self, value: Array) -> float:
-        """An evaluated value of the reference design in this load case."""
+        """The entry of an evaluated result that belongs to this load case."""
         rows = np.atleast_2d(np.asarray(value, dtype=float))
         return float(rows[min(self.case, len(rows) - 1), 0])
 
@@ -464,9 +468,9 @@ class Envelopes:
         )
 
     def column(self, mode: TrialMode | None) -> Callable[..., Array]:
-        """Model of the buckling load: an unknown, at most the load computed for a trial shape.
+        """Model of the buckling load: an unknown, at most the load of a trial shape.
 
-        This upper bound uses the shear stiffness of the stiffer segment.
+        The load for the trial shape uses the shear stiffness of the stiffer segment.
         """
 
         def critical(
@@ -492,10 +496,10 @@ class Envelopes:
     def laminate(
         self, v: Values, design: Design, stock: MaterialValues, g: Geometry, state: LoadState
     ) -> Wall:
-        """A laminated wall whose growth and axial stiffness are unknowns between bounds.
+        """A laminated wall whose bore growth and axial stiffness are unknowns between bounds.
 
-        Its swelling is taken as uncoupled: bore growth without axial strain, stretch without radial
-        motion. Its strength enters only through `bearable`.
+        Radial and axial motion are taken as uncoupled: the bore grows without axial strain, and the
+        wall stretches without radial motion. The wall's strength enters only through `bearable`.
 
         Raises
         ------
@@ -545,7 +549,7 @@ class Envelopes:
     def _elastic(
         self, walls: Sequence[Sequence[Array]], thicknesses: Sequence[Array], radius: Array
     ) -> tuple[Symbol, Symbol, Symbol]:
-        """Bore growth per pressure, axially free and fixed, and the axial stiffness."""
+        """Bore growth per unit pressure, axially free and fixed, and axial stiffness of a wall."""
         growth = self.problem.unknown("growth", lambda run: self.number(run.wall.swelling.growth))
         held_growth = self.problem.unknown(
             "held_growth", lambda run: self.number(_held_growth(run.wall.swelling))
@@ -602,7 +606,7 @@ class Envelopes:
 
     @staticmethod
     def joint(statics: Statics, out: MetricArrays) -> None:
-        """Replace the retention factor of a joint by its envelope, if there is a factor."""
+        """Replace a joint's retention factor, if it has one, by an unknown between estimates."""
         retention = statics.joint
         if retention is None or retention.joint.envelope is None:
             return
@@ -620,7 +624,7 @@ class Envelopes:
         state: LoadState,
         swelling: Swelling,
     ) -> LoadPath:
-        """Axial force in a laminated wall; with tie rods, its share is an unknown."""
+        """Axial force in a laminated wall; with tie rods, the wall's share is an unknown."""
         if not clamped(design):
             return wall.load_path(v, design, stock, g, state, swelling)
         name = wall.STOP if design.cylinder.end_stop == "internal" else wall.LARGEST
@@ -638,7 +642,7 @@ class Envelopes:
 
 
 def refuse(design: Design) -> None:
-    """Reject a design that uses a model without an envelope.
+    """Reject a design that uses a model without an envelope (upper and lower estimates).
 
     Raises
     ------
@@ -688,7 +692,7 @@ def decays(
 
 
 def _held_growth(swelling: Swelling) -> Array:
-    """Bore growth per pressure of an axially fixed wall."""
+    """Bore growth per unit pressure of an axially fixed wall."""
     pulled = swelling.growth_by_force / swelling.stretch
     return swelling.growth - pulled * swelling.shortening
 
@@ -720,7 +724,7 @@ def _bearable(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> 
 
 
 def _hoop(layer: plies.Layer) -> Array:
-    """Largest hoop strength of a ply among its climates; at least its strength along the fibres.
+    """Largest hoop strength of a ply over its climates; at least its strength along the fibres.
 
     Axial strain and temperature alone cause far less hoop stress, by the equilibrium of the wall
     (`tube_bounds.greatest_pressure`).

@@ -1,9 +1,9 @@
 """Proof of quality: a lower bound on the objective of all designs, and a design's gap to it.
 
-The models that evaluate a design are traced as expressions of its variables, separately for each
-load case. A model without a closed expression becomes an unknown quantity. An envelope (upper and
-lower estimates) encloses its exact value, so upper and lower limits stay valid. Limits that cannot
-be traced are dropped and listed by name.
+The models that evaluate a design are traced: recorded as expressions of the design's variables,
+separately for each load case. A model without a closed expression becomes an unknown quantity. An
+envelope (upper and lower estimates) encloses its exact value, so the bound stays valid. Limits that
+cannot be traced are dropped and listed by name.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from .intervals import ROOM, Box, Empty, Layout, narrow, tighten
 from .relaxation import ConstraintRow, Form, Relaxation, Unknown
 
 SOFTER = 1e-5
-"""Relative tolerance on the stiffness; its closed-form minimum is accurate to about 1e-7."""
+"""Relative tolerance on the minimum stiffness, whose closed form is accurate to about 1e-7."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,17 +50,17 @@ class TracedLimit:
 class Traced:
     """Objective and limits of a design as expressions of its variables.
 
-    For each limit that could not be traced, `dropped` gives the reason by the limit's name.
+    `dropped` gives the name of each limit that could not be traced, with the reason.
     """
 
     graph: Graph
     variables: dict[str, Symbol]
     """Variables of the design by PATH."""
     unknowns: dict[str, tuple[Symbol, Callable[[ModelRun], float]]] = field(default_factory=dict)
-    """By name: unknown quantities of the envelopes, and functions that read them from an evaluated
-    design."""
+    """By name: each unknown quantity that an envelope bounds, and the function that reads its value
+    from an evaluated design."""
     objectives: list[Any] = field(default_factory=list)
-    """The objective is at least each of these values."""
+    """Values of the objective metric in the load cases; the objective is at least each of them."""
     claims: list[TracedLimit] = field(default_factory=list)
     facts: list[tuple[Any, Any]] = field(default_factory=list)
     """Pairs of values; the first value of a pair is always at least the second."""
@@ -74,7 +74,7 @@ class Traced:
 
 
 def variable(number: int) -> str:
-    """Name that a design variable has in the expressions."""
+    """Name of a design variable in the expressions, from its number."""
     return f"x{number}"
 
 
@@ -132,7 +132,7 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
 
 
 def _least_proof(run: ModelRun) -> float:
-    """The least proof factor among all locations."""
+    """The least proof-pressure factor among all locations."""
     return min(float(np.min(value)) for value in run.computed.metrics["proof_factor"].values())
 
 
@@ -141,7 +141,7 @@ def _along_the_stroke(
 ) -> Iterator[tuple[Any, Any]]:
     """Bound the minimum stiffness from above by its values at some piston positions.
 
-    Walls only add compliance to that of the oil (a 2 x 2 matrix of the two chambers). So its
+    The compliance of the two chambers is a 2 x 2 matrix, to which walls can only add. So its
     determinant and diagonal are at least those of the oil alone.
     """
     springs, stroke = case_statics.springs, case_statics.base.geometry.stroke
@@ -189,7 +189,7 @@ def _collect(
         limit_value = limit.value(values)
         varies = isinstance(limit_value, Symbol)
         if varies and not limit_value.bounds[0] > 0:
-            traced.dropped[limit.name] = "its limit depends on the variables and may be zero"
+            traced.dropped[limit.name] = "the limit depends on the variables and may be zero"
             continue
         bound = 1.0 if varies else float(np.squeeze(limit_value))
         for place, value in rows:
@@ -203,7 +203,7 @@ def _collect(
             else:
                 traced.dropped.setdefault(limit.name, "no variable affects it")
         if not rows and (is_first or limit.case is not None):
-            traced.dropped[limit.name] = "its model is not a closed formula of the variables"
+            traced.dropped[limit.name] = "the model is not a closed formula of the variables"
 
 
 def _applying(out: MetricArrays, metric: str, case: str) -> Iterator[tuple[str, Any]]:
@@ -215,28 +215,29 @@ def _applying(out: MetricArrays, metric: str, case: str) -> Iterator[tuple[str, 
 
 
 def _positions(reference: ModelRun) -> tuple[float, ...]:
-    """Piston position of least stiffness in each load case, as a share of the stroke."""
+    """Piston positions of least stiffness in the load cases, as shares of the stroke."""
     shares = np.ravel(reference.weakest / reference.geometry.stroke)
     return tuple(sorted({round(float(share), 6) for share in shares if np.isfinite(share)}))
 
 
 GUARD = 1e-6
-"""Relative amount subtracted from the bound, far above the rounding error of traced values."""
+"""Relative reduction of the bound for safety, far above the rounding error of traced values."""
 CLOSE = 1e-4
-"""Relative gap at which the search ends."""
+"""Relative gap between design and bound at which the search ends."""
 MIDDLE = 0.2
-"""A split cuts off at least this share of a range."""
+"""Each part of a split range has at least this share of the range."""
 WORTH = 1e-9
-"""Least product of excess and price that justifies a split."""
+"""Least estimated gain in the bound that justifies a split."""
 FAR_OFF = 0.2
-"""Upper limit on a curve's excess when a split is chosen, since the first split gains most."""
+"""Upper limit on a curve's `Bound.excess` in the estimated gain of a split, since the first split
+gains most."""
 FLOOR = 0.003
-"""Least price of a curve when a split is chosen; of several loose curves in series, some have price
-0."""
+"""Added to a curve's `Bound.price` in the estimated gain of a split, since the price of some of
+several loose curves in series is 0."""
 SQUEEZES = 2
-"""Maximum number of rounds that cut the first box."""
+"""Maximum number of rounds that cut the ranges of the first box."""
 DIRECTIONS = 16
-"""Number of directions that are cut per round, besides the variables."""
+"""Number of directions (log ratios) that are cut per round, in addition to the variables."""
 GAIN = 0.1
 """A further round follows only if a round cut at least this share of the ranges."""
 
@@ -256,7 +257,7 @@ class BoxSearch:
     Parameters
     ----------
     layout, bounding : the relaxation
-    best : logarithm of the largest objective of interest; worse designs are excluded
+    best : logarithm of an objective; only designs that are at least as good are of interest
     variables : atoms (elementary quantities) whose ranges are always cut in the first box
     deadline : time of `time.perf_counter` at which the search stops
     max_boxes : maximum number of boxes to solve
@@ -373,7 +374,7 @@ class BoxSearch:
         return by_direction
 
     def _choice(self, box: Box, bound: Bound) -> tuple[int, float] | None:
-        """Direction and position of the split with the largest gain; None if none gains."""
+        """Direction and position of the split with the largest gain; None if no split gains."""
         gains = self._gains(box, bound)
         number = int(np.argmax(gains))
         if gains[number] <= WORTH:
@@ -386,10 +387,11 @@ class BoxSearch:
 Report: TypeAlias = Callable[[float], None] | None
 
 BOXES = 200
-"""Default limit on the number of boxes: some three seconds, and the same bound on every machine."""
+"""Default limit on the number of boxes. They take some three seconds, and unlike a time limit give
+the same bound on every machine."""
 
 AIM = 0.049
-"""Target gap of a coarse search, which only has to exclude much lighter designs."""
+"""Target gap of a coarse search, which only has to exclude much better designs."""
 
 WIDE = 0.1
 """If the gap of the first box exceeds this, a coarse search is run."""
@@ -411,7 +413,7 @@ class Relaxed:
     covered: tuple[TracedLimit, ...]
     dropped: dict[str, str]
     unknowns: dict[str, Callable[[ModelRun], float]]
-    """By name: functions that read the unknown quantities from an evaluated design."""
+    """By name: functions that read the unknown quantities' values from an evaluated design."""
 
     def atoms(self, actuator: ActuatorProblem, x: Vector) -> Vector:
         """Logarithm of every atom's value at a design."""
@@ -470,7 +472,7 @@ def relax(traced: Traced, best: float) -> Relaxed:
 
 
 def _largest(builder: Builder, values: Sequence[Any]) -> Form:
-    """Logarithm of the largest value: a single form, or an atom at least as large as each value."""
+    """Logarithm of the largest value, or of an atom at least as large as each value."""
     forms = list(dict.fromkeys(builder.form(value)[1] for value in values))
     if len(forms) == 1:
         return forms[0]
@@ -532,7 +534,7 @@ def _coarse(
     max_boxes: float,
     report: Report,
 ) -> tuple[Relaxed | None, ProvenBound]:
-    """Search for designs no worse than `aim`; no relaxation if the first box is empty."""
+    """Search for designs no worse than `aim`; the relaxation returned is None if there are none."""
     try:
         relaxed, search = _search(trace(actuator, x), aim, deadline, max_boxes)
     except Empty:

@@ -2,8 +2,8 @@
 
 The propagation runs forwards from operands to results, and backwards from limits to variables
 [Benhamou1999]. If an expression chooses between a value and NaN, the value is taken, because a
-design without a value meets no requirement. A box is a part of the design space, given by ranges of
-atoms (elementary quantities) and of log ratios.
+design whose value is NaN meets no requirement. A box is a part of the design space, given by ranges
+of atoms (elementary quantities) and of log ratios.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def tighten(nodes: Sequence[Symbol], facts: Sequence[tuple[Any, Any]] = ()) -> N
 
 
 def cancelling(nodes: Sequence[Symbol]) -> dict[Symbol, Signomial]:
-    """Sums in which terms cancel when expanded; bounds from operands are too wide."""
+    """Sums in which terms cancel when expanded: bounds from their operands are too wide."""
     signomials: dict[int, Signomial | None] = {}
 
     def expanded(value: Any) -> Signomial | None:
@@ -233,7 +233,7 @@ def _forward(node: Symbol) -> Bounds:
 
 
 def _difference(node: Symbol) -> Bounds:
-    """Bounds on a difference; also as (a - b)(a + b) for squares, if a - b is traced."""
+    """Bounds on a difference; on that of squares also as (a - b)(a + b), if a - b is traced."""
     low, high = bounds("sub", node.args)
     first, second = (_root_of(arg) for arg in node.args)
     if first is not None and second is not None:
@@ -246,7 +246,7 @@ def _difference(node: Symbol) -> Bounds:
 
 
 def _root_of(value: Any) -> Symbol | None:
-    """The value x if the value is x * x."""
+    """The operand x if the value is x * x; else None."""
     if isinstance(value, Symbol) and value.op == "mul" and value.args[0] is value.args[1]:
         root: Symbol = value.args[0]
         return root
@@ -393,7 +393,7 @@ CROSSED = 1e-8
 
 
 def _lone(form: Form) -> int:
-    """Number of the atom, if the form is that single atom; else -1."""
+    """Number of the atom if the form (logarithm of a monomial) is that single atom's; else -1."""
     lone = form.constant == 0 and len(form.powers) == 1 and form.powers[0][1] == 1.0
     return form.powers[0][0] if lone else -1
 
@@ -403,8 +403,8 @@ class Layout:
 
     A direction is a log ratio, such as log(t/r). All curves that depend on powers of one ratio
     share its direction. The largest exponent is scaled to 1, so the direction's range is at most
-    the sum of the ranges of its atoms. The forms are ordered: outputs of curves, directions, rows
-    (each >= 0).
+    the sum of the ranges of its atoms. A form is an affine function of the atoms' logarithms. Forms
+    are stored in this order: outputs of curves, directions, constraint rows (each >= 0).
     """
 
     def __init__(self, relaxation: Relaxation) -> None:
@@ -437,7 +437,7 @@ class Layout:
 
     @cached_property
     def factors(self) -> tuple[np.ndarray, np.ndarray]:
-        """For every product, the directions of its two factors."""
+        """For every product, the numbers of the directions (log ratios) of its two factors."""
         direction_of = {
             curve.out.powers[0][0]: int(number)
             for curve, number in zip(self.relaxation.curves, self.direction, strict=True)
@@ -452,14 +452,14 @@ class Layout:
 
     @cached_property
     def _linked(self) -> tuple[Tables, np.ndarray, Vector]:
-        """For every link: its table, the number of its curve, and the constant in its ratio."""
+        """For every `Link`: its table, the number of its curve, the constant in its log ratio."""
         number = np.array([self._of_curve[id(link.curve)] for link in self.links])
         kinds = [link.curve.kind for link in self.links]
         tables = Tables([kind for kind in kinds if isinstance(kind, SampledFunction)])
         return tables, number, np.array([link.level for link in self.links])
 
     def ratios(self, box: Box) -> tuple[Vector, Vector]:
-        """Least and largest ratio of every link within a box."""
+        """Least and largest ratio out/base of every `Link` within a box."""
         if not self.links:
             return np.empty(0), np.empty(0)
         tables, number, constant = self._linked
@@ -472,7 +472,7 @@ class Layout:
 
     @cached_property
     def parts(self) -> tuple[slice, slice, slice]:
-        """Slices that select the outputs, the directions and the rows among the forms."""
+        """Slices of the forms: outputs of curves, directions (log ratios), constraint rows."""
         outputs_end, directions_end = self.curves, self.curves + self.directions
         return (
             slice(0, outputs_end),
@@ -489,7 +489,7 @@ class Layout:
         return np.minimum(*ends), np.maximum(*ends)
 
     def reach(self, lower: Vector, upper: Vector) -> tuple[Vector, Vector, Vector, Vector]:
-        """Ranges of all forms, and of the terms of each form."""
+        """Ranges of all forms and of their terms, for given ranges of the atoms' logarithms."""
         ends = self.power * lower[self.atom], self.power * upper[self.atom]
         term_low, term_high = np.minimum(*ends), np.maximum(*ends)
         count = len(self.levels)
@@ -500,7 +500,7 @@ class Layout:
 
 @dataclass(frozen=True)
 class Box:
-    """Ranges of the directions, and of the atoms' logarithms."""
+    """Part of the design space: ranges of directions (log ratios) and of the atoms' logarithms."""
 
     lower: Vector
     upper: Vector

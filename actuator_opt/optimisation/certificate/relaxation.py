@@ -4,10 +4,10 @@ A monomial is a positive number times powers of atoms (positive unknowns). Its l
 in the logarithms of the atoms. Products, quotients and powers of monomials are monomials. A
 signomial is a sum of signed monomials.
 
-Every traced value of known sign is a monomial. A sum s = p + q is a new atom with log s - log q =
-softplus(log p - log q), a convex curve of the log ratio of its terms. The chord of the curve bounds
-it from above; a shorter range of the ratio gives a tighter chord. This is the log-log convex
-relaxation of a signomial programme [Maranas1997], applied to every sum.
+Every traced value of known sign is stated as a monomial. A sum s = p + q is a new atom with
+log s - log q = softplus(log p - log q), a convex curve of the log ratio of its terms. The curve's
+chord bounds it from above; a shorter range of the ratio gives a tighter chord. This is the log-log
+convex relaxation of a signomial programme [Maranas1997], applied to every sum.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ FAR = 200.0
 
 
 class MonotoneFunction(NamedTuple):
-    """An increasing function with its slope and inverse; convex (1) or concave (-1)."""
+    """An increasing function with its slope and inverse, either convex (1) or concave (-1)."""
 
     value: Function
     slope: Function
@@ -48,7 +48,7 @@ class MonotoneFunction(NamedTuple):
 
 
 def _softplus_inverse(y: Vector) -> Vector:
-    """The y of softplus inverted: log(e^y - 1)."""
+    """Inverse of the softplus function: log(e^y - 1)."""
     positive = np.maximum(y, LEAST)
     return positive + np.log(-np.expm1(-positive))
 
@@ -77,7 +77,7 @@ SHAPES: dict[Name, MonotoneFunction] = {
         -1,
     ),
 }
-"""Functions of curves; "tanh" maps log x to log tanh x."""
+"""Functions of curves by name, between logarithms: "tanh" maps log x to log tanh x."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,8 +89,8 @@ class SampledFunction:
     low, step : first argument, and spacing of the arguments
     values : the samples
     room : upper limit on the error of linear interpolation
-    convex : 1 convex, -1 concave, 0 neither
-    rising : 1 rising, -1 falling, 0 neither
+    convex : 1 if convex, -1 if concave, 0 if neither
+    rising : 1 if rising, -1 if falling, 0 if neither
     """
 
     low: float
@@ -102,7 +102,7 @@ class SampledFunction:
 
     @classmethod
     def of(cls, t: Vector, values: Vector, caution: float) -> SampledFunction:
-        """The function with samples at t; `caution` scales its second derivative."""
+        """The function with samples at t; `caution` is a safety factor on its second derivative."""
         step = float(t[1] - t[0])
         second = np.diff(values, 2)
         noise = 1e-12 * (1 + float(np.abs(values).max()))
@@ -151,7 +151,7 @@ class Tables:
         return slopes
 
     def _inside(self, low: Vector, high: Vector, indices: np.ndarray) -> tuple[Vector, np.ndarray]:
-        """The sample arguments of some tables, and which of them lie within the ranges."""
+        """Arguments of the samples of some tables, and which samples lie within the ranges."""
         t = self.low[indices, None] + self.step[indices, None] * np.arange(self.last + 1)
         return t, (t > low[:, None]) & (t < high[:, None])
 
@@ -206,7 +206,7 @@ class Tables:
     def _inverse(self, values: Vector, counts_below: np.ndarray, flat: float) -> Vector:
         """Arguments for given values, from the number of samples below each value.
 
-        On a flat segment this is its lower end (`flat` = 0) or its upper end (1).
+        On a flat segment the argument is the segment's lower end (`flat` = 0) or upper end (1).
         """
         ordered, rows = self._ordered, self.rows
         index = np.clip(counts_below - 1, 0, self.last - 1)
@@ -270,7 +270,10 @@ class CurveFunctions:
         return lowest, highest
 
     def secant_errors(self, low: Vector, high: Vector, slope: Vector) -> tuple[Vector, Vector]:
-        """Least and largest distance of functions from their secants; 0 if curved to one side."""
+        """Least and largest distance of the functions from lines through their first values.
+
+        Both are 0 for functions that are convex or concave throughout.
+        """
         lowest, highest = np.zeros_like(low), np.zeros_like(low)
         if self.tables is not None:
             indices, curves = self.tables.non_convex, self.table_curves
@@ -282,7 +285,7 @@ class CurveFunctions:
 
 
 Powers: TypeAlias = tuple[tuple[int, float], ...]
-"""Exponents by atom number, in ascending order; an atom that is not listed has exponent 0."""
+"""Pairs (atom number, exponent) in ascending order; an atom that is not listed has exponent 0."""
 
 
 class Form(NamedTuple):
@@ -374,7 +377,7 @@ class Signomial(NamedTuple):
 
 
 ROUNDING = 1e-12
-"""Two terms cancel if their sum is at most this share of them."""
+"""Two terms cancel if their sum is at most this share of the terms' size."""
 
 
 class Unknown(Exception):
@@ -390,7 +393,7 @@ class AtomFunction(NamedTuple):
 
 
 class Link(NamedTuple):
-    """An atom as a sampled function of another, without logarithms: out = e^level f(base).
+    """An atom as a sampled function f of another atom, without logarithms: out = e^level f(base).
 
     `curve` is the table of log f as a function of the argument's logarithm.
     """
@@ -415,7 +418,7 @@ Maker: TypeAlias = Callable[[Sequence[float]], float]
 
 
 class ConstraintRow(NamedTuple):
-    """A constraint low <= high between two forms."""
+    """A constraint low <= high between the logarithms of two monomials."""
 
     low: Form
     high: Form
@@ -435,7 +438,7 @@ class Relaxation:
     rows: list[ConstraintRow] = field(default_factory=list)
     curves: list[AtomFunction] = field(default_factory=list)
     splits: list[tuple[Form, Form, Form]] = field(default_factory=list)
-    """Every sum, followed by its two terms."""
+    """Every sum of two terms: the sum, the first term, the second term."""
     links: list[Link] = field(default_factory=list)
     products: list[Product] = field(default_factory=list)
     sums: dict[tuple[Form, Form], Form] = field(default_factory=dict)
@@ -448,7 +451,7 @@ class Relaxation:
         return Form(0.0, ((len(self.lower) - 1, 1.0),))
 
     def reach(self, form: Form) -> tuple[float, float]:
-        """Bounds of a monomial's logarithm."""
+        """Least and largest value of a monomial's logarithm within the atoms' bounds."""
         low = high = form.constant
         for i, power in form.powers:
             ends = (power * self.lower[i], power * self.upper[i])

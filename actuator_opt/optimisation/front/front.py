@@ -3,12 +3,12 @@
 The anchors are the designs that are best in one objective each. They share one sweep of the design
 space and one model call per step; between equally good anchors, the other objectives decide.
 Designs between the anchors are computed for levels (upper limits) of the objectives, starting from
-their neighbours, in shared steps. At its own levels, each is compared with all other designs; a
-better design replaces it. Independent full searches at some levels then check whether a better
+their neighbours and in shared steps. Each design is compared with all others at its own levels, and
+a better design replaces it. Independent full searches at some levels then check whether a better
 design was overlooked.
 
-The levels limit how long a continuous front can be between two designs. If close levels lead to
-distant designs, the front jumps and no design lies between them.
+The difference of the levels of two designs limits the length of a continuous front between them.
+If close levels lead to distant designs, the front jumps and no design lies between them.
 """
 
 from __future__ import annotations
@@ -47,9 +47,9 @@ from .plane import (
 from .tracer import FrontDesign, FrontSearch, FrontStart, Tracer, knee, nondominated
 
 HOLD = 1e-10
-"""An anchor's objective may worsen by this share of its range while the others improve."""
+"""An anchor's own objective may worsen by this share of its range while the others improve."""
 GAINED = 1e-3
-"""Normalised gain of the other objectives that justifies this loss."""
+"""Normalised gain of the other objectives that justifies the loss `HOLD`."""
 CONFLICT = 1e-6
 """An objective counts as constant if its range is below this share of its magnitude."""
 ROUGH = 16
@@ -74,7 +74,7 @@ class Anchors:
 
 
 class NoAnchor(NamedTuple):
-    """Number of an objective without a best design, and its failed search."""
+    """Index of an objective whose best design the search did not find, and the failed search."""
 
     objective: int
     solution: Solution
@@ -83,7 +83,7 @@ class NoAnchor(NamedTuple):
 def find_anchors(
     objectives: Objectives, checked: Evaluator, effort: FrontEffort
 ) -> Anchors | NoAnchor:
-    """Find the best design of each objective; return the failed search if one has none."""
+    """Find the best design of each objective; return the failed search if a design is missing."""
     optima = [[] for _ in range(objectives.count)] if not checked.exact else _joint_search(
         objectives, checked, effort
     )  # fmt: skip
@@ -125,7 +125,7 @@ def _joint_search(
 
 
 def _with_cache(evaluate: Callable[[Array], PointValues]) -> Callable[[Array], PointValues]:
-    """The function with a cache of its last real points, as all objectives sweep them."""
+    """The function with a cache of its last real points, since every objective sweeps them."""
     cache: dict[bytes, PointValues] = {}
 
     def remembered(points: Array) -> PointValues:
@@ -163,7 +163,10 @@ def _optima(run_ends: Sequence[Point], converged: Sequence[Point | None]) -> lis
 def normalised(
     objectives: Objectives, checked: Evaluator, anchors: Anchors
 ) -> tuple[Tracer, Vector]:
-    """The normalisation and the anchors (n, k); if no objectives conflict, a single anchor."""
+    """A `Tracer` with normalised objectives, and the anchors (n, k).
+
+    If no objectives conflict, there is a single anchor.
+    """
     x = anchors.x
     all_values = objectives.values(np.concatenate([anchors.others, x], axis=1))
     values, magnitude = all_values[:, -x.shape[1] :], np.abs(all_values).max(axis=1)
@@ -188,7 +191,7 @@ def normalised(
 
 
 def _sharpened(tracer: Tracer, x: Vector, units: Vector) -> Vector:
-    """The anchors (n, k), moved where other objectives improve at no loss of their own."""
+    """The anchors (n, k), moved if other objectives improve while their own does not worsen."""
     count = len(x.T)
     starts = []
     for k in range(count):
@@ -205,15 +208,15 @@ def _sharpened(tracer: Tracer, x: Vector, units: Vector) -> Vector:
 
 
 OVERLOOKED = 1e-6
-"""Normalised amount by which a search must improve a level to replace a design."""
+"""Normalised improvement that a search must find for its design to replace the known design."""
 TOLERANCE = 1e-7
-"""A run ends if level and variables change by less than this relative amount."""
+"""A run ends if the level (t) and the variables change by less than this relative amount."""
 ROUNDS = 24
-"""Maximum number of points of a run; if none is feasible by then, other steps take over."""
+"""Maximum number of points of a run; a run that ends infeasible is continued by other steps."""
 
 
 def overlooked(tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort) -> list[Vector]:
-    """Search for better designs at the levels of some designs; returns their variables (n,)."""
+    """Search for better designs at the levels of some designs; return the variables (n,) found."""
     run_ends: list[list[Point]] = [[] for _ in designs]
     if tracer.exact and designs:
         run_ends = _feasible_ends(tracer, designs, effort)
@@ -315,10 +318,11 @@ class Front:
     values : objectives (objectives, k), to be minimised
     units : normalised objectives: 0 at the ideal, 1 at the worst value of the anchors
     residuals : residuals of the optimality conditions (k,)
-    knee : index of the design where the front bends most, and how far it bulges; or None
-    passed : values (objectives, p) of designs that the search found but that are dominated
+    knee : index of the design where the front bends most, and the distance by which the front
+        bulges there; or None
+    passed : values (objectives, p) of dominated designs that the search found
     checked, improved : number of checking searches, and how many of them improved a design
-    failed : number of levels without a design at or near them
+    failed : number of levels at or near which the search found no design
     wide : with two objectives, gaps wider than `plane.WIDEST` and the reason for them
     """
 
@@ -336,7 +340,7 @@ class Front:
 
     @property
     def gaps(self) -> Vector:
-        """Normalised distance to the next design (two objectives) or the nearest design."""
+        """Normalised distance from each design to the next (two objectives) or nearest design."""
         if self.units.shape[1] < 2:
             return np.empty(0)
         if len(self.units) > 2:
@@ -345,7 +349,7 @@ class Front:
 
 
 def front(objectives: Objectives, settings: FrontSettings) -> Front | NoAnchor:
-    """Compute the front; return the failed search if an objective has no best design."""
+    """Compute the front; return the failed search if an objective's best design is missing."""
     effort = FrontEffort(settings.starts, settings.samples, settings.seed)
     tell("searching for the ends of the front")
     checked, warnings = objectives.checked()

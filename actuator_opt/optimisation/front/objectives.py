@@ -2,9 +2,9 @@
 
 A front design solves: minimise t subject to f_i <= a_i + r_i t for every normalised objective f_i,
 and to all requirements [PascolettiSerafini1984]. The level a_i and the direction r_i are given.
-With r_i = 1 for all objectives, the design is the nearest to the ideal along the line through `a`
-on which all objectives improve equally [DasDennis1998]. An objective with r_i = 0 only has to stay
-below a_i.
+If r_i = 1 for all objectives, the limits a_i + t form a line along which all objectives improve
+equally; the design is as near to the ideal as this line permits [DasDennis1998]. An objective with
+r_i = 0 only has to stay below a_i.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ LEVEL = "level of the objectives"
 """Name of the variable t."""
 
 LOWEST, HIGHEST = -1.0, 2.0
-"""Bounds of t; at the designs between the anchors, t lies between -1 and 1."""
+"""Bounds of t; for designs between the anchors, t is between -1 and 1."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Objectives:
         return len(self.names)
 
     def selection(self) -> ParametricProblem:
-        """The problem with one objective; its parameter is the index of that objective."""
+        """The problem of minimising one objective; its parameter is the index of that objective."""
 
         def evaluate(points: Array, parameters: Array) -> PointValues:
             values = self.evaluate(points)
@@ -138,16 +138,16 @@ def _joined(constraints: Array, front: Array) -> Array:
 class Conditions:
     """Checks the optimality conditions of a front design.
 
-    A front design minimises at least one objective while the others are bounded at their values.
-    Each objective gives such a problem with a residual. The design's residual is the first below
-    the tolerance, or else the smallest.
+    A front design minimises at least one objective while the others may not exceed their values at
+    the design. For each objective, this problem has a residual of its optimality conditions. The
+    design's residual is the first that is below the tolerance, or else the smallest.
     """
 
     objectives: Objectives
 
     @cached_property
     def _evaluators(self) -> list[Evaluator]:
-        """Evaluators of the problems that minimise one objective while the others are bounded."""
+        """For each objective: evaluator of the problem that minimises it and bounds the others."""
         problem, names = self.objectives.problem, self.objectives.names
         return [
             Evaluator(
@@ -171,7 +171,7 @@ class Conditions:
         return float(smallest)
 
     def _residual_of(self, point: Point, index: int) -> float:
-        """The residual of minimising one objective while the others are bounded."""
+        """The residual of the problem that minimises one objective and bounds the others."""
         assert point.jacobian is not None
         count, problem = self.objectives.count, self.objectives.problem
         inner, size = len(problem.constraint_names), len(point.z) - 1

@@ -1,10 +1,11 @@
 """Chooses levels along the front, and selects designs that are evenly spread.
 
-A level is a set of upper limits for the normalised objectives. Levels lie on the plane of the
-anchors. With two objectives they lie on the line u -> (u, 1 - u). Relative to u, a front is never
-steeper than 45 degrees, so its length between two positions is at most twice their difference in u.
-With three or more objectives, levels are lattice points on the plane sum = 1 whose lines meet the
-box between ideal and nadir (best and worst values of the anchors).
+A level is a set of upper limits for the normalised objectives. Levels lie on the plane through the
+anchors (the best design of each objective). With two objectives they lie on the line
+u -> (u, 1 - u). Along a front one objective falls as the other rises, so the front's length between
+two positions is at most twice their difference in u. With three or more objectives, levels are
+lattice points on the plane sum = 1. Only those lattice points are used whose lines of equal
+improvement meet the box between ideal and nadir (best and worst values of the anchors).
 
 A front may extend beyond its anchors. So the search tries the neighbours of every level that has a
 design, until it reaches the edge of the front. There it improves the objectives that can still
@@ -37,7 +38,7 @@ from .tracer import (
 )
 
 STEEPEST = 2.0
-"""With two objectives, the greatest length of a front per unit of u."""
+"""With two objectives, the greatest length of a continuous front per unit of u."""
 
 
 def on_line(places: Vector) -> Vector:
@@ -46,7 +47,7 @@ def on_line(places: Vector) -> Vector:
 
 
 def lengths(places: Vector, units: Vector) -> Vector:
-    """Length of the front between neighbours (k - 1,), without its jumps.
+    """Length (k - 1,) of the front between neighbouring designs, without jumps.
 
     Parameters
     ----------
@@ -58,7 +59,7 @@ def lengths(places: Vector, units: Vector) -> Vector:
 
 
 def between(places: Vector, units: Vector, count: int) -> Vector:
-    """`count` new positions u, chosen where the front between neighbours is longest."""
+    """`count` new positions u, each in the longest remaining piece of the front."""
     sections = lengths(places, units)
     parts_of = np.ones(len(sections), dtype=int)
     for _ in range(count):
@@ -74,7 +75,7 @@ def between(places: Vector, units: Vector, count: int) -> Vector:
 
 
 def places(objectives: int, steps: int) -> list[tuple[int, ...]]:
-    """Lattice points, as steps from the middle, whose lines meet the unit box.
+    """Lattice points (as steps from the middle) whose lines of equal improvement meet the unit box.
 
     >>> len(places(3, 1)), len(places(3, 2))
     (1, 7)
@@ -111,7 +112,7 @@ Place = tuple[int, ...]
 """A lattice point: steps from the middle, one whole number per objective, with sum 0."""
 
 SURPLUS = 2.0
-"""Number of designs computed per requested design; the most distant of them are selected."""
+"""Number of designs computed per requested design; those farthest apart are selected."""
 
 COARSE = 4
 """In the first lattice, the number of steps from the middle to the level of an anchor."""
@@ -126,7 +127,8 @@ RESCALES = 3
 """Maximum number of times that the objectives are normalised again."""
 
 PRICED = 1e-6
-"""The level of an objective counts as active if its price exceeds this (all prices sum to 1)."""
+"""The level of an objective counts as active if its price (multiplier; all prices sum to 1) exceeds
+this."""
 
 HOLD = 1e-9
 """Normalised amount by which a bounded objective may worsen while others improve."""
@@ -138,14 +140,14 @@ ELSEWHERE = 1e-3
 """Two designs at one level differ if a variable differs by more than this."""
 
 CLOSE = 2.0
-"""A design from another valley competes if it is worse by at most this multiple of the neighbours'
-distance."""
+"""A design from another valley (another local optimum) is retried if it is worse by at most this
+multiple of the distance between neighbours."""
 
 CROSSINGS = 4
-"""Maximum number of rounds that retry designs from another valley."""
+"""Maximum number of rounds that retry designs from another valley (another local optimum)."""
 
 NEIGHBOURS = 14
-"""For this many neighbours of each design, the space between is checked for a hole."""
+"""The search for holes looks between each design and this many of its neighbours."""
 
 
 def fill_plane(search: FrontSearch, count: int) -> None:
@@ -202,7 +204,7 @@ def _flood(search: FrontSearch, first_places: Iterable[Place], steps: int, max_l
 
 
 def _start_beside(search: FrontSearch, level: Vector) -> FrontStart:
-    """A start interpolated from the designs nearest to a level, weighted by proximity."""
+    """A start interpolated from the designs nearest to a level; nearer designs weigh more."""
     distance = distances(search.plane, level - level.mean())
     nearest = np.argsort(distance, kind="stable")[: len(level)]
     shares = 1 / np.maximum(distance[nearest], 1e-9) ** 2
@@ -217,8 +219,8 @@ def _fully_improved(
 ) -> list[FrontDesign]:
     """Improve those objectives of each design that can improve without a loss in the others.
 
-    An objective whose level is not active has no price. It is improved while the others are bounded
-    at their values, until every objective has a price [Marler2004].
+    An objective whose level is not active has no price (multiplier). It is improved while the
+    others may not worsen, until every objective has a price [Marler2004].
     """
     finished: list[FrontDesign] = []
     prices = search.tracer.prices
@@ -244,7 +246,7 @@ def _fully_improved(
 def _improving_start(
     search: FrontSearch, front_design: FrontDesign, active: npt.NDArray[np.bool_]
 ) -> FrontStart:
-    """A start to improve the inactive objectives while the active objectives are bounded."""
+    """A start to improve objectives with inactive levels while the others may not worsen."""
     level = np.where(active, front_design.unit + HOLD, front_design.level)
     direction = (~active).astype(float)
     t = float((front_design.unit - front_design.level)[~active].max())
@@ -344,7 +346,7 @@ def _is_alternative(front_design: FrontDesign, alternative: FrontDesign) -> bool
 
 
 def _competitors(search: FrontSearch, indices: Indices) -> list[tuple[int, int]]:
-    """Pairs: a design, and the closest design from another valley that competes with it."""
+    """Pairs of designs: a design, and the nearest rival from another valley (local optimum)."""
     units = search.units[:, indices]
     z = np.stack([search.designs[k].point.z[:-1] for k in indices], axis=1)
     neighbours = np.array(_neighbour_pairs(search, indices), dtype=np.intp).reshape(-1, 2)
@@ -368,7 +370,7 @@ MOST_ROUNDS = 12
 
 
 def fill_line(search: FrontSearch, count: int) -> None:
-    """Add designs between the two anchors, where the front is longest."""
+    """Add designs between the two anchors, always in the longest piece of the front."""
     for number in range(MOST_ROUNDS):
         missing = count - len(search.front_indices())
         if missing <= 0:
@@ -396,7 +398,7 @@ def between_on_line(search: FrontSearch, places: Sequence[float] | Vector) -> li
 def _start_between(
     designs: Sequence[FrontDesign], k: int, u: float, direction: Vector
 ) -> FrontStart:
-    """An interpolated start before design k; where the front jumps, the nearer neighbour."""
+    """A start between designs k - 1 and k: interpolated, or at a jump the nearer of the two."""
     left, right = designs[k - 1], designs[k]
     low, high = left.level[0], right.level[0]
     nearer = left if u - low < high - u else right
@@ -447,8 +449,8 @@ class FrontGap:
     ----------
     after : index of the design before the gap
     size : distance between the two designs
-    reach : upper limit on the length of front between the two designs, from the levels tried
-    jump : whether the reach is at most a median gap, which means that the front jumps here
+    reach : upper limit on the length of a continuous front in the gap, from the levels tried
+    jump : whether `reach` is at most the median gap, which means that the front jumps here
     """
 
     after: int
@@ -505,7 +507,7 @@ def close_gaps(search: FrontSearch, count: int) -> None:
 
 
 def middle_designs(search: FrontSearch, count: int) -> list[int]:
-    """For each wide gap, the design nearest to its middle level (index); widest gap first."""
+    """For each wide gap, the index of the design nearest to its middle level; widest gap first."""
     indices, result = final_designs(search, count), []
     for gap in sorted(wide_gaps(search, indices), key=lambda g: -g.size):
         section = _section(search, indices[gap.after], indices[gap.after + 1])
@@ -516,7 +518,7 @@ def middle_designs(search: FrontSearch, count: int) -> list[int]:
 
 
 def lost_levels(search: FrontSearch, indices: Indices) -> int:
-    """Number of levels without a design nearby; for two objectives, of gaps without a jump."""
+    """Number of levels without a design nearby; with two objectives, those inside gaps."""
     units = search.units[:, indices]
     if len(units) > 2:
         widest = nearest(units).max(initial=0.0)
@@ -536,7 +538,7 @@ def _pairs(indices: Indices) -> Iterator[tuple[int, int]]:
 
 
 def _section(search: FrontSearch, left: int, right: int) -> Indices:
-    """Designs whose levels lie between those of two designs, in order."""
+    """Indices, in order, of the designs with levels between those of two designs."""
     levels = np.array([design.level[0] for design in search.designs])
     low, high = sorted((levels[left], levels[right]))
     order = np.argsort(levels, kind="stable")
@@ -545,7 +547,7 @@ def _section(search: FrontSearch, left: int, right: int) -> Indices:
 
 
 def _section_lengths(search: FrontSearch, left: int, right: int) -> Vector:
-    """Upper limits on the length of front between neighbouring levels of a section."""
+    """Upper limits on the length of the front between neighbouring levels of a section."""
     section = _section(search, left, right)
     levels = np.array([search.designs[k].level[0] for k in section])
     return lengths(levels, search.units[:, section])

@@ -27,7 +27,7 @@ Indices = npt.NDArray[np.intp]
 
 
 CLEARLY = 100.0
-"""Multiple of `equal` that counts as clearly better; it prevents cycles of dominance."""
+"""A gain above this multiple of `equal` is clearly better; this prevents cycles of dominance."""
 
 
 SAME = 1e-6
@@ -42,7 +42,8 @@ def nondominated(values: Vector, equal: float = 0.0) -> npt.NDArray[np.bool_]:
     Parameters
     ----------
     values : objectives to be minimised (objectives, designs); of equal designs, all remain
-    equal : loss up to which a design is no worse; a gain of `CLEARLY` times this is clearly better
+    equal : loss up to which a design counts as no worse; a gain of `CLEARLY` times `equal` counts
+        as clearly better
 
     >>> nondominated(np.array([[1.0, 2.0, 3.0], [3.0, 2.0, 2.0]]))
     array([ True,  True, False])
@@ -102,11 +103,12 @@ def nearest(units: Vector) -> Vector:
 
 
 def knee(units: Vector) -> tuple[int, float] | None:
-    """The design farthest from the anchors' plane, on the side of the ideal, and its distance.
+    """Index and distance of the design farthest from the anchors' plane, towards the ideal.
 
-    `units` (objectives, designs) are 0 at the best value of each objective [Das1999]. The plane of
-    the anchors must fall in every objective. Otherwise it is replaced by the plane of equal sums
-    through the middle of the anchors. None if the front does not bend towards the ideal.
+    `units` (objectives, designs) are normalised objectives, 0 at the best value of each [Das1999].
+    If the anchors' plane does not fall in every objective, the plane of equal sums through the
+    middle of the anchors replaces it. The result is None if the front does not bend towards the
+    ideal.
 
     >>> knee(np.array([[0.0, 0.25, 1.0], [1.0, 0.25, 0.0]]))
     (1, 0.35355339059327373)
@@ -122,16 +124,17 @@ def knee(units: Vector) -> tuple[int, float] | None:
 
 
 BETTER = 1e-7
-"""A normalised improvement of this size shows that a design belongs to another valley."""
+"""A normalised improvement of this size shows that a design belongs to another local optimum."""
 
 HELD = 1e-6
-"""An objective counts as at its level if it falls short by no more than this (normalised)."""
+"""An objective counts as equal to its level if it is below by no more than this (normalised)."""
 
 ROUNDS = 4
-"""Maximum number of rounds that exchange results; they end if a round improves nothing."""
+"""Maximum number of rounds in which designs exchange results. The rounds end as soon as nothing
+improves."""
 
 CURVED = 2
-"""Maximum number of times that the curvature is recomputed if full steps do not converge."""
+"""Maximum number of times that the Hessian is recomputed if full steps do not converge."""
 
 
 @dataclass(frozen=True)
@@ -154,7 +157,7 @@ class FrontDesign:
 
     @property
     def at_level(self) -> bool:
-        """Whether every objective reaches its level; else the front has an edge or jump."""
+        """Whether every objective is at its level; if not, the front has an edge or jump there."""
         room = self.level + self.direction * self.point.objective - self.unit
         return bool((room <= HELD).all())
 
@@ -220,7 +223,7 @@ class Tracer:
         return self.parametric.at(np.concatenate([level, direction]))
 
     def initial_designs(self, x: Vector) -> list[FrontDesign]:
-        """Designs at the variables (n, k), at their own levels and without curvature."""
+        """Designs at the variables (n, k), with their objectives as levels and no Hessian."""
         units = self.unit(x)
         size = self.evaluator.space.size
         return self._at_own(
@@ -252,7 +255,7 @@ class Tracer:
         return [self._design(s, p, s.hessian) for s, p in zip(starts, points, strict=True)]
 
     def prices(self, front_design: FrontDesign) -> Vector:
-        """Price of each objective's level (objectives,) at a design."""
+        """Price (multiplier) of each objective's level (objectives,) at a design."""
         m, count = len(self.objectives.problem.constraint_names), self.objectives.count
         jacobian = self.evaluator.jacobian(front_design.point)
         active = kkt.active_set(self.evaluator, front_design.point)
@@ -325,7 +328,7 @@ class Tracer:
     def spread(
         self, designs: list[FrontDesign], changed: Sequence[FrontDesign]
     ) -> list[FrontDesign]:
-        """Replace each design that a descent from another start improves."""
+        """Replace each design that a descent from one of the `changed` designs improves."""
         improved = list(changed)
         while improved:
             levels = np.stack([descended.level for descended in improved], axis=1)
@@ -370,7 +373,7 @@ class Tracer:
         return Descent(hessian, self.scale, rows, 1.0, radius=radius)
 
     def _follow(self, starts: Sequence[FrontStart]) -> list[FrontDesign | None]:
-        """Take full steps; where they diverge, try again with the curvature of the last point."""
+        """Take full Newton steps; where they diverge, try again with the last point's Hessian."""
         designs: list[FrontDesign | None] = [None] * len(starts)
         indices, current = list(range(len(starts))), list(starts)
         for attempt in range(1 + CURVED):
@@ -459,16 +462,15 @@ class Tracer:
 
 
 EQUAL = 1e-8
-"""Normalised difference up to which objectives count as equal: the accuracy of bounded objectives.
-"""
+"""Normalised difference up to which objectives count as equal: their numerical accuracy."""
 JUMP = 5.0
-"""If neighbours' variables differ by this multiple of the median step, a new valley is suspected.
-"""
+"""If the variables of neighbours differ by this multiple of the median difference, the neighbours
+may belong to different local optima."""
 
 
 @dataclass
 class FrontSearch:
-    """The designs found so far, and other feasible points that are known."""
+    """State of the search: the designs of the front so far, and other known feasible points."""
 
     tracer: Tracer
     designs: list[FrontDesign]
@@ -501,7 +503,7 @@ class FrontSearch:
         return designs
 
     def improved_designs(self, starts: Sequence[FrontStart]) -> list[FrontDesign | None]:
-        """As `designs_at`, but continued from a known design that is better at the level."""
+        """As `designs_at`, but restarted from a known design where that is better at the level."""
         designs = self.designs_at(starts)
         indices = [k for k, d in enumerate(designs) if d is not None]
         known_x = np.stack([design.point.x[:-1] for design in self.designs], axis=1)
@@ -525,7 +527,7 @@ class FrontSearch:
         self.replaced += [self.tracer.values(design.unit[:, None])[:, 0] for design in designs]
 
     def rescale(self, low: Vector, width: Vector) -> None:
-        """Normalise to another range; `low` and `width` (objectives,) are in current units."""
+        """Normalise to another range; `low` and `width` (objectives,) are currently normalised."""
         tracer = self.tracer
         tracer.rescale(tracer.ideal + low * tracer.width, width * tracer.width)
         self.designs = tracer.at_own_levels(self.designs)
@@ -559,12 +561,12 @@ class FrontSearch:
         return residual
 
     def consider(self, x: Vector) -> None:
-        """Compare the designs with feasible designs at x (n, k), and keep the better."""
+        """Compare the front's designs with feasible points x (n, k), and keep the better."""
         self.others = np.concatenate([self.others, x], axis=1)
         self.add([])
 
     def retry_jumps(self) -> None:
-        """Where variables jump between neighbours, retry each side from the other side."""
+        """Where variables jump between neighbours, retry each neighbour from the other."""
         self.sort()
         z = np.stack([design.point.z[:-1] for design in self.designs], axis=1)
         steps = np.abs(np.diff(z, axis=1)).max(axis=0)

@@ -2,8 +2,8 @@
 
 Most optima are reached by quadratic steps that use the Hessian of the known optimum, with one
 evaluation each. If the steps fail, a restoration looks for the nearest feasible point, and SLSQP
-continues from there. The Hessian is not updated: the results need only seven digits, and equalities
-are allowed.
+continues from there. The Hessian is not updated, because seven correct digits are enough and
+because the problem may contain equalities.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ STEPS = 14
 """Maximum number of steps that use the Hessian of the other optimum."""
 
 MOST_STEPS = 100
-"""Maximum number of evaluations by SLSQP if these steps do not converge."""
+"""Maximum number of evaluations by SLSQP after a restoration."""
 
 DOUBTFUL = 0.01
-"""If the remaining violation is at most this, the shortest steps may have overlooked a feasible
-point."""
+"""If the restoration leaves a violation of at most this, it may have overlooked a feasible point,
+and a slower search for a feasible point follows."""
 
 
 class Criteria(NamedTuple):
@@ -49,17 +49,18 @@ class Criteria(NamedTuple):
 
 
 EXACT = Criteria(SETTLED, 1e-11, RESIDUAL)
-"""For final results; a violation changes the objective to first order, the others to second order.
-"""
+"""For final results. The limit on the violation is strict because a violation changes the objective
+to first order; the other two change it only to second order."""
 
 ROUGH = Criteria(1e-4, 1e-7, 1e-3)
-"""For comparisons, which need seven digits."""
+"""For comparisons of designs, which need seven correct digits."""
 
 NEAR = Criteria(0.02, 1e-3, np.inf)
-"""Sufficient for results that are worse than the known result by more than `WORSE`."""
+"""Sufficient to reject a design whose objective is worse than the known best by more than `WORSE`.
+"""
 
 WORSE = 0.02
-"""Relative loss in the objective that is certain with the accuracy of `NEAR`."""
+"""A relative loss in the objective larger than this is certain, even at the accuracy of `NEAR`."""
 
 
 class Nearest(NamedTuple):
@@ -84,7 +85,7 @@ class BoxTask:
     hessian : Hessian at the optimum of the other problem
     criteria : convergence criteria
     hopeless : whether the other problem is infeasible; `x` is then its least infeasible point
-    cutoff : steps may stop early if the optimum is clearly worse than this objective
+    cutoff : known objective; the steps may stop early once the optimum is clearly worse than this
     """
 
     evaluator: Evaluator
@@ -96,9 +97,9 @@ class BoxTask:
 
 
 def resolve_boxes(tasks: Sequence[BoxTask]) -> list[Nearest]:
-    """Re-optimise every task's problem; no optimum if no feasible point is nearby.
+    """Re-optimise the problem of every task; it has no optimum if no feasible point is nearby.
 
-    The problems differ only in their bounds, so a step of all of them takes one model call.
+    The problems differ only in their bounds, so one model call evaluates a step of all problems.
     """
 
     def evaluate(requests: Mapping[int, Vector]) -> list[Point]:
@@ -109,7 +110,7 @@ def resolve_boxes(tasks: Sequence[BoxTask]) -> list[Nearest]:
 
 
 def _finished(task: BoxTask, end: Nearest) -> Nearest:
-    """Continue with SLSQP if the end point is feasible but not optimal."""
+    """Continue with SLSQP if the end point is feasible but not yet optimal."""
     if end.optimum is None or end.followed:
         return end
     point = nlopt_wrapper.run(

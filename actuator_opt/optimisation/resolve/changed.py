@@ -1,4 +1,4 @@
-"""Solves several problems together, which differ from a solved problem only in parameter values."""
+"""Solves several problems together that differ from a solved problem only in parameter values."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from .steps import (
 
 
 def applicable(parametric: ParametricProblem, evaluator: Evaluator) -> bool:
-    """Whether one complex evaluation gives all gradients exactly, without equalities."""
+    """Whether there are no equalities, and complex steps give all gradients exactly."""
     exact = evaluator.complex_works and not evaluator.difference_rows.any()
     return exact and not parametric.problem.equality_names
 
@@ -48,7 +48,7 @@ class ChangedProblems:
     parameters: Vector
 
     def subset(self, numbers: Sequence[int]) -> ChangedProblems:
-        """The problems whose numbers are given."""
+        """The problems with the given numbers (positions in this list)."""
         return replace(self, parameters=self.parameters[:, list(numbers)])
 
     def points(self, z: Vector, numbers: Sequence[int] | None = None) -> list[Point]:
@@ -74,7 +74,7 @@ class ChangedProblems:
         ]
 
     def run(self, solvers: Sequence[Steps[Result]]) -> list[Result]:
-        """The result of a solver for each problem."""
+        """Run one solver for each problem, all in parallel, and return their results."""
 
         def evaluate(requests: Mapping[int, Vector]) -> list[Point]:
             return self.points(np.stack(list(requests.values()), axis=1), list(requests))
@@ -99,27 +99,28 @@ class ChangedProblems:
         )
 
     def restore(self, start: Vector) -> list[Vector | None]:
-        """A feasible point (nf,) of each problem, all from the same start (nf,); or None."""
+        """A feasible point (nf,) of each problem, found from one start (nf,); None if not found."""
         count = self.parameters.shape[1]
         results = self.run([restoring_steps(self.evaluator, start) for _ in range(count)])
         return [None if result.feasible is None else result.feasible.z for result in results]
 
     def margins_at(self, points: Sequence[Point]) -> Vector:
-        """Rows (rows, points, K) of points in each problem."""
+        """Objective and constraints (rows, points, K) of the given points in each problem."""
         count, size = self.parameters.shape[1], len(points)
         x = np.stack([p.x for p in points], axis=1)
         problem = self.parametric.with_columns(np.tile(self.parameters, size))
         return Evaluator.screen(problem.rows(np.repeat(x, count, axis=1))).reshape(-1, size, count)
 
     def near_optimum(self, valley: Valley, starts: Vector) -> list[Point | None]:
-        """The optimum of each problem, by full steps with the Hessian of the unchanged optimum.
+        """The optimum of each problem, by full steps with the Hessian at the unchanged optimum.
 
-        None if the steps do not converge, or if they end worse than the unchanged point.
+        None if the steps do not converge, or if they end at a worse point than the unchanged
+        optimum.
 
         Parameters
         ----------
         valley : the optimum of the solved problem
-        starts : coordinates (nf, K)
+        starts : starting coordinates (nf, K)
         """
         if starts.shape[1] == 0:
             return []
@@ -146,7 +147,7 @@ class ChangedProblems:
     def descend_from(
         self, valley: Valley, starts: Vector
     ) -> tuple[list[Point | None], list[Point | None]]:
-        """Optima by descents, and for problems without an optimum the feasible points.
+        """Optima reached by descents; second, where no optimum is reached, a feasible point.
 
         Parameters
         ----------

@@ -5,7 +5,7 @@
    the optimum of each problem is a start for all others: a small change may favour another valley.
 3. Where both fail, Newton's method and SLSQP from the known points, then a search with a sweep.
 
-Only the last method may end without a design.
+A problem counts as unsolvable only after the last method has failed.
 """
 
 from __future__ import annotations
@@ -27,14 +27,16 @@ from .changed import ChangedProblems, applicable
 from .steps import Valley
 
 BETTER = 1e-8
-"""A relative improvement of the objective by this much shows that there is another valley."""
+"""An objective better by this share means that the point lies in another valley (local optimum)."""
 
 ROUNDS = 3
-"""Maximum number of rounds that exchange optima; they end if a round improves nothing."""
+"""Maximum number of rounds in which problems exchange optima; they end when nothing improves."""
 
 BEYOND = 1.0
-"""A descent starts beyond another valley by this share of its distance from the best valley. The
-ridge between two valleys often moves as fast as the valleys do."""
+"""A descent towards another local optimum starts beyond it as seen from the best optimum.
+
+It starts beyond by this share of the distance between the two. The ridge between two local optima
+often moves as fast as the optima, so a start on the optimum itself could be on the wrong side."""
 
 SAMPLES = 1024
 """Number of points of the sweep for a feasible problem whose optimum is not yet known."""
@@ -58,13 +60,14 @@ class SolvedProblem:
 
 @dataclass(frozen=True)
 class ResolveTask:
-    """A problem to solve near a solved problem.
+    """A changed problem, to be solved from the optimum of a solved problem.
 
     Parameters
     ----------
     problem : the changed problem
     guess : predicted optimum (nf,), in coordinates of the solved problem
-    parameters : values of the parameters (q,) in the changed problem; None if its bounds differ
+    parameters : values of the parameters (q,) in the changed problem; None if the change is not one
+        of parameters, for example of bounds
     """
 
     problem: BoxProblem
@@ -132,7 +135,7 @@ def resolve_batch(
 
 @dataclass
 class _Ends:
-    """The best optimum and the best feasible design of each changed problem."""
+    """The best optimum and the best feasible design reached so far for each changed problem."""
 
     changed: ChangedProblems
     optima: list[Point | None]
@@ -140,7 +143,7 @@ class _Ends:
     feasible: dict[int, Vector] = field(default_factory=dict)
 
     def descend(self, valley: Valley, starts: Mapping[int, Vector | None]) -> None:
-        """Descend from a start of each of these problems, and store what improves."""
+        """Descend from a start for each of these problems, and store the improved results."""
         feasible_starts = {i: z for i, z in starts.items() if z is not None}
         numbers = list(feasible_starts)
         if not numbers:
@@ -153,7 +156,7 @@ class _Ends:
             self.best_feasible[i] = _better(self.best_feasible[i], stop)
 
     def better_designs(self, valleys: Sequence[Point]) -> dict[int, Vector]:
-        """For each problem, the best point of the other problems, if it beats the problem's own."""
+        """For each problem, the best result of the other problems if it beats the own result."""
         points = [*valleys, *(optimum for optimum in self.optima if optimum is not None)]
         rows = self.changed.margins_at(points)
         missed = self.changed.evaluator.violations(rows.reshape(len(rows), -1), "worst")
@@ -179,7 +182,7 @@ class _Ends:
 
 
 def _beaten(point: Point | None) -> float:
-    """A design with an objective below this is clearly better than the point."""
+    """Objective below which a design is clearly better than this point."""
     return np.inf if point is None else point.objective - BETTER * abs(point.objective)
 
 
@@ -190,7 +193,7 @@ def _better(point: Point | None, other: Point | None) -> Point | None:
 
 
 def other_optima(evaluator: Evaluator, solution: Solution) -> list[Point]:
-    """Local optima that a search reached, except for the best."""
+    """The local optima that a search reached, without the best of them."""
     points = [
         optimum.x
         for optimum in solution.optima

@@ -1,4 +1,4 @@
-"""Runs SLSQP from several starts in parallel: a step of all runs takes one model call.
+"""Runs SLSQP from several starts in parallel: one model call evaluates a step of all runs.
 
 A model call for many points costs little more than for one point, but NLopt requests single points.
 So each run has its own thread, which waits until all runs have requested a point. Every run takes
@@ -32,11 +32,12 @@ RESTORATION = "least worst violation by LD_SLSQP"
 
 
 NEARER = 1e-3
-"""A violation counts as a new best only if it is lower than the known violations by this share."""
+"""A violation is stored as a new least violation only if it is smaller by this share."""
 
 
 ELSEWHERE = 1.0
-"""A search counts as stuck if its worst violation exceeds the least known by this share."""
+"""If a restoration ends with a violation that exceeds the least known by this share, a descent is
+tried from its end."""
 
 
 LOCAL_EVALUATIONS = 150
@@ -45,7 +46,7 @@ LOCAL_EVALUATIONS = 150
 
 @dataclass
 class SearchResult:
-    """An end point of runs, with residual, algorithm, and the number of runs that reached it."""
+    """A point at which runs ended, with its residual, algorithm, and the number of these runs."""
 
     point: Point
     residual: float
@@ -59,7 +60,7 @@ class SearchResult:
 
 
 class Descents:
-    """State of a search: the evaluator, the results so far and the warnings."""
+    """State of a search by local runs: the evaluator, the results so far and the warnings."""
 
     def __init__(self, evaluator: Evaluator, seed: int) -> None:
         self.evaluator = evaluator
@@ -101,7 +102,7 @@ class Descents:
     def descend(
         self, start: Point, algorithm: str, *, linear: bool, max_evaluations: int | None = None
     ) -> bool:
-        """Run one local search and polish its result; return True if it ended at an optimum."""
+        """Run one local search and refine its result; return True if it ended at an optimum."""
         evaluations_before = self.evaluator.evaluations
         known_optima = [o for o in self.optima if o.good]
         run = nlopt_wrapper.run(
@@ -148,7 +149,7 @@ class Descents:
             )
 
     def finish(self, point: Point, algorithm: str) -> SearchResult:
-        """Polish a point and add it to the optima."""
+        """Refine a point by Newton steps, and add it to the optima."""
         polished = polish(self.evaluator, point)
         if polished is not point:
             algorithm = f"{algorithm}, {FINISH}"
@@ -161,9 +162,9 @@ class Descents:
         return optimum
 
     def best(self, further: Sequence[SearchResult] = ()) -> SearchResult | None:
-        """The best among the optima and some other points: by violation, then by objective.
+        """The best of the optima and of further points: by violation first, then by objective.
 
-        An optimum is preferred to a point that is better only by rounding.
+        A verified optimum is preferred to another point that is better only by rounding errors.
         """
 
         def rank(optimum: SearchResult) -> tuple[float, float]:
@@ -185,10 +186,10 @@ class Descents:
 
 
 ROUNDS = 60
-"""Maximum number of points computed in advance per run; from a sweep's point, 10 to 60 suffice."""
+"""Maximum number of points computed in advance per run; a start from the sweep takes 10 to 60."""
 
 FIRST = 14
-"""After this number of steps, only the runs of problems without a solution continue."""
+"""Number of steps after which only the problems without a solution continue."""
 
 
 @dataclass(frozen=True)
@@ -200,8 +201,8 @@ class DescentTask:
 
 
 Rows = Callable[[npt.NDArray[np.complex128], npt.NDArray[np.intp]], npt.NDArray[np.generic]]
-"""Computes rows (rows, k) of points (n, k); each point belongs to the task with the number in (k,).
-"""
+"""Computes objective and constraints (rows, k) of points (n, k); the second argument (k,) is the
+number of the task to which each point belongs."""
 
 
 def precompute(
@@ -209,15 +210,15 @@ def precompute(
 ) -> None:
     """Compute, in parallel, the points that SLSQP will visit from the given starts.
 
-    Does nothing if gradients are not exact or evaluations are limited. Stops early if the first run
-    ends infeasible, because the search then skips the other runs, and at the evaluator's time
-    limit.
+    Does nothing if gradients are not exact or evaluations are limited. Stops early at the
+    evaluator's time limit, or if the first run ends infeasible, because the search then skips the
+    other runs.
 
     Parameters
     ----------
     evaluator : evaluator of the problem
     starts : evaluated points
-    seed, max_evaluations : seed of the runs, and evaluations of each at most
+    seed, max_evaluations : seed of the runs, and maximum number of evaluations in each run
     """
     if len(starts) < 2 or not evaluator.exact or evaluator.max_evaluations is not None:
         return
@@ -240,7 +241,7 @@ def run_together(
     tolerance: float = 1e-9,
     rounds: int = ROUNDS,
 ) -> list[list[Point]]:
-    """The best point that each SLSQP run reached, by task and start.
+    """The best point that each SLSQP run reached: a list for every task, with a point per start.
 
     The evaluators store every visited point. If the first run of a task is infeasible, the other
     runs of the task stop. All runs stop at the time limit of the first evaluator.
@@ -343,7 +344,7 @@ class SlsqpRun:
             thread.join()
 
     def enter(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
-        """The point at z (nf,), from the rows of its columns; the task's evaluator stores it."""
+        """The point at z (nf,), from its computed rows, which the task's evaluator stores."""
         self.evaluator.precomputed[z.tobytes()] = rows
         return self._evaluator.enter(z, rows)
 
@@ -361,7 +362,7 @@ class SlsqpRun:
 
 
 class _QueuedEvaluator(Evaluator):
-    """An evaluator that gets its points from the batch of all runs."""
+    """An evaluator whose points are computed together with those of all other runs."""
 
     def __init__(
         self,
@@ -440,7 +441,7 @@ def converged_from(
     parameters: Vector,
     starts: Sequence[Sequence[Point]],
 ) -> list[list[Point | None]]:
-    """The optimum reached from each point by steps with its Hessian, or None.
+    """The optimum reached from each point by steps with the Hessian there; None if not reached.
 
     Parameters
     ----------

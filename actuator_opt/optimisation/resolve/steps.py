@@ -8,11 +8,11 @@ Full quadratic steps reach most optima. They start with the Hessian of the uncha
 update it. Where they fail, a restoration finds a feasible point, and a descent within a trust
 region starts there.
 
-The first Hessian is taken from another optimum, or computed along the free directions (along which
-the active limits do not change). Most designs of a front have nearly as many active limits as
-variables, so there are few free directions; a gradient on each side gives the curvature. Along all
-other directions the Hessian only has to be convex, as the active limits determine the step
-[NocedalWright2006] section 16.2.
+The first Hessian is taken from another optimum, or computed along the free directions (those in
+which the active limits keep their values). Most designs of a front have nearly as many active
+limits as variables, so there are few free directions. In each, the gradients on both sides of the
+point give the curvature. In all other directions the Hessian only has to be convex, as the active
+limits determine the step [NocedalWright2006] section 16.2.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ Steps: TypeAlias = Generator[Vector, Point, Result]
 
 
 BatchEvaluator: TypeAlias = Callable[[Mapping[int, Vector]], Sequence[Point]]
-"""Evaluates the requested point of each solver; solvers are given by number."""
+"""Function that evaluates the requested points; they are given by the number of their solver."""
 
 
 class Batch(Generic[Result]):
@@ -95,7 +95,7 @@ LONGEST = 60
 """Maximum number of evaluations in a descent within a trust region."""
 
 MEMORY = 3
-"""A trial must be better than the worst of this many past merits (see `Descent`)."""
+"""A trial point must be better than the worst of this number of past merits (see `Descent`)."""
 
 RADIUS = 0.1
 """First trust radius, in solver coordinates: 10 % for a logarithmic variable."""
@@ -113,11 +113,10 @@ SETTLED = 1e-6
 """Below this step length, the optimality conditions are checked."""
 
 FEASIBLE = 1e-11
-"""Allowed violation; an error in it changes the objective to first order."""
+"""Allowed violation; strict, because a violation changes the objective to first order."""
 
 RESIDUAL = 1e-6
-"""Allowed residual of the optimality conditions; an error in it changes the objective to second
-order."""
+"""Allowed residual of the optimality conditions; it changes the objective only to second order."""
 
 LEAST_CURVATURE = 1e-10
 """Least ratio of smallest to largest curvature in an updated Hessian; well above rounding error."""
@@ -127,10 +126,10 @@ LEAST_CURVATURE = 1e-10
 class Descent:
     """A descent: the last accepted point, and the trial step from it.
 
-    The merit is the objective plus the violations, which are weighted with more than their
-    multipliers. A trial only has to beat the worst of the last `MEMORY` merits, so that curved
-    constraints do not shorten good steps [NocedalWright2006] ch. 15. The trust radius follows the
-    success of the steps.
+    The merit of a point is its objective plus the weighted sum of its violations; the weight is
+    larger than every multiplier. The next point (the trial) only has to beat the worst of the last
+    `MEMORY` merits, so that curved constraints do not shorten good steps [NocedalWright2006] ch.
+    15. The trust radius is adapted to the success of the steps.
     """
 
     hessian: Vector
@@ -158,7 +157,7 @@ class Descent:
         return np.inf if self.point is None else float(np.abs(self.step).max(initial=0.0))
 
     def accepts(self, trial: Point) -> bool:
-        """Whether the trial is accepted."""
+        """Whether the trial point is accepted as the next point."""
         if self.point is None or self.length <= SETTLED:
             return True
         value, missed = self._measures(trial)
@@ -208,7 +207,7 @@ class Descent:
         return trial.objective / self.scale, float(missed)
 
     def _learn(self, step: Vector, change: Vector) -> None:
-        """Update, damped to stay positive definite [NocedalWright2006] procedure 18.2."""
+        """Update the Hessian, damped to stay convex [NocedalWright2006] procedure 18.2."""
         product = self.hessian @ step
         curvature, measured = float(step @ product), float(step @ change)
         if curvature <= 1e-20:
@@ -227,7 +226,7 @@ class Descent:
 
 
 def margin_price(multipliers: Vector) -> float:
-    """A penalty per missed margin that exceeds all multipliers."""
+    """Penalty per unit of violation; larger than every multiplier."""
     return 2 * float(multipliers.max(initial=0.0)) + 1.0
 
 
@@ -241,7 +240,7 @@ class Valley:
     hessian : Hessian of the Lagrangian divided by `scale`, made positive definite (nf, nf)
     scale : norm of the objective's gradient
     rows : number of constraints
-    price : penalty per missed margin, larger than every multiplier
+    price : penalty per unit of violation, larger than every multiplier
     """
 
     point: Point
@@ -384,7 +383,7 @@ def restoring_steps(
 FIRM = 1e-6
 """A limit is active if its multiplier, relative to the largest, exceeds this."""
 FLATTEST = 1e-10
-"""Least ratio of smallest to largest curvature; if it is smaller, mixed curvatures are dropped."""
+"""Least ratio of smallest to largest curvature; below it, mixed second derivatives are dropped."""
 LEAST = 1e-6
 """Least curvature, relative to the largest multiplier."""
 
@@ -397,7 +396,7 @@ class ScaledHessian:
     scale: float
 
     def in_coordinates(self, evaluator: Evaluator, x: Vector) -> Vector:
-        """The Hessian in the free solver coordinates of a problem, at a point x (n,)."""
+        """The Hessian in the solver coordinates of the free variables, at a point x (n,)."""
         space = evaluator.space
         slope = space.slope(x[:, None])[:, 0]
         return np.asarray(self.hessian[np.ix_(space.free, space.free)] * np.outer(slope, slope))
@@ -421,7 +420,7 @@ def free_hessians(evaluator: Evaluator, descents: Sequence[Descent]) -> list[Vec
 
     Parameters
     ----------
-    evaluator : evaluator for all problems, which have the same curvature
+    evaluator : evaluator used for all descents; their problems have equal second derivatives
     descents : descents, each with a point and its multipliers
     """
     free = [_free(evaluator, descent) for descent in descents]
@@ -451,7 +450,7 @@ def free_hessians(evaluator: Evaluator, descents: Sequence[Descent]) -> list[Vec
 
 
 def _free(evaluator: Evaluator, descent: Descent) -> Vector:
-    """Orthonormal directions (nf, d) along which the active limits do not change."""
+    """Orthonormal directions (nf, d) in which the active limits keep their values."""
     size, prices = evaluator.space.size, descent.prices
     unit = np.eye(size)
     rows = np.concatenate([evaluator.jacobian(descent.current)[1 : 1 + descent.rows], unit, -unit])
@@ -461,7 +460,7 @@ def _free(evaluator: Evaluator, descent: Descent) -> Vector:
 
 
 def _convex(z: Vector, products: Vector, largest: float) -> Vector:
-    """A convex matrix (nf, nf) with given products (nf, d) for orthonormal vectors z (nf, d)."""
+    """A convex matrix (nf, nf) with given products (nf, d) with orthonormal vectors z (nf, d)."""
     size = len(z)
     if z.shape[1] == 0:
         return np.eye(size)

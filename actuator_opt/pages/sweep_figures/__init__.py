@@ -1,1 +1,1 @@
-"""Figures of a sweep: a module for each, which states it as `FIGURE`."""
+"""Figures of a sweep: one module for each, which defines the figure as `FIGURE`."""

@@ -36,7 +36,7 @@ from .shared import ORIGINS, SweepFigure, SweepFigureData, heading
 
 _LEFT, _WIDE, _TALL, _WIDTH = 20.0, 152.0, 100.0, 180.0
 LEVELS = 9
-"""Approximate number of contours."""
+"""Approximate number of contour lines."""
 _SIZE = 6.3
 STYLES: tuple[dict[str, Any], ...] = tuple(
     {"stroke": colour, "pen": pen, "dash": dash}
@@ -118,7 +118,7 @@ def _even(line: Sequence[Point]) -> Array:
 def contour_figure(
     drawn: SweepFigureData, field: Field, boundaries: Sequence[Boundary], metric: str
 ) -> Ink:
-    """Contours of a metric, and lines on which limits are just met, hatched on the missed side.
+    """Contours of a metric, and lines on which limits are just met; the missed side is hatched.
 
     Drawn, not a chart: lines carry their names, and areas are hatched.
 
@@ -171,7 +171,9 @@ def contour_figure(
 def _notes(drawn: SweepFigureData, field: Field) -> str:
     counts = drawn.counts()
     every = (
-        f"; a grid of {len(field.xs)} by {len(field.ys)} of them is drawn" if field.thinned else ""
+        f"; only a grid of {len(field.xs)} by {len(field.ys)} variants is drawn"
+        if field.thinned
+        else ""
     )
     return f"{counts}{every}. Hatched: at least one limit is missed."
 
@@ -228,7 +230,7 @@ def _hatched(areas: Sequence[Sequence[Sequence[Point]]], angle: float, spacing: 
 
 
 def _nowhere(field: Field) -> list[int]:
-    """Limits that no node meets."""
+    """Numbers of the limits that no point of the grid meets."""
     known = np.where(np.isnan(field.margins), -np.inf, field.margins)
     known[:, field.failed] = -np.inf
     answered = not field.failed.all()
@@ -289,7 +291,9 @@ def _name(
         if place is None:
             letter = chr(ord("A") + len(key) % 26)
             place = labels.place(edges[number], letter, bold=True)
-            key.append((letter, words if place else f"{words} (its line has no label)"))
+            key.append(
+                (letter, words if place else f"{words} (no space for the letter at its line)")
+            )
             words = letter
         if place is not None:
             _say(labels.axes.ink, place, words, color, bold=True)
@@ -297,7 +301,7 @@ def _name(
 
 
 def _say(ink: Ink, at: Point, words: str, color: str, *, bold: bool = False) -> None:
-    """Words on a white background, so that no dash beside them looks like a minus sign."""
+    """Write words on a white background, so that no dash beside them looks like a minus sign."""
     wide = text_width(words, _SIZE, bold=bold) + 1.6
     ink.box(at[0] - wide / 2, at[1] - 1.3, wide, 2.6, fill=WHITE, stroke=None)
     ink.text(*at, words, size=_SIZE, anchor="center", color=color, bold=bold)
@@ -306,7 +310,7 @@ def _say(ink: Ink, at: Point, words: str, color: str, *, bold: bool = False) -> 
 def _below(
     ink: Ink, drawn: SweepFigureData, field: Field, key: Sequence[tuple[str, str]], y: float
 ) -> float:
-    """Write the key of the marks and the limits without a line; return the figure's height."""
+    """Write the key of marks and the limits that have no line; return the figure's height."""
     x = 2.0
     marks = [("contour", _METRIC), ("limit just met", STYLES[0])]
     for words, style in marks:
@@ -340,7 +344,7 @@ def _below(
 
 
 def _everywhere(drawn: SweepFigureData, field: Field) -> list[str]:
-    """Requirements that every node meets."""
+    """Requirements that every point of the grid meets, in words."""
     met = []
     for k, margins in enumerate(field.margins):
         limit = drawn.study.binding[k]

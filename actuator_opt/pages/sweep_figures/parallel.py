@@ -24,7 +24,7 @@ from .shared import (
 )
 
 MOST = 1000
-"""Largest number of feasible designs drawn, and of others (our choice: more lines merge)."""
+"""Largest numbers of feasible and of other designs drawn (our choice, as more lines merge)."""
 _LEFT, _RIGHT, _GAP, _TALL, _SIZE = 16.0, 14.0, 25.0, 82.0, 6.3
 
 

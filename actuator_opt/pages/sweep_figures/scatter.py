@@ -17,9 +17,10 @@ from .shared import BETTER, INFEASIBLE, SweepFigure, SweepFigureData, heading
 MOST = 2000
 """Largest number of feasible designs, and of other designs, drawn in a panel (our choice)."""
 WIDEST = 8
-"""Largest number of metrics (our choice: panels are then 20 mm wide)."""
+"""Largest number of metrics (our choice; with so many, panels are 20 mm wide)."""
 LEAST = 0.1
-"""Least margin around the feasible designs, as a share of the range of all designs (our choice)."""
+"""Least space around the feasible designs in a panel, as a share of the range of all designs (our
+choice)."""
 BESIDE = 28.0
 """Least height of a panel for which the legend is placed beside it [mm]."""
 _LEFT, _RIGHT, _GAP, _FOOT, _WIDTH = 20.0, 4.0, 4.0, 10.0, 180.0
@@ -90,9 +91,11 @@ def scatter_figure(drawn: SweepFigureData, metrics: Sequence[str]) -> Ink:
 def require_some(metrics: Sequence[str]) -> None:
     """Refuse too few or too many metrics; raises `UsageError`."""
     if len(metrics) < 2:
-        raise UsageError(Diagnostic("a scatter needs two metrics or more", "add --show METRIC"))
+        raise UsageError(
+            Diagnostic("a scatter plot needs two metrics or more", "add --show METRIC")
+        )
     if len(metrics) > WIDEST:
-        message = f"a scatter of {len(metrics)} metrics cannot be read"
+        message = f"a scatter plot of {len(metrics)} metrics would be illegible"
         raise UsageError(Diagnostic(message, f"show {WIDEST} or fewer"))
 
 
@@ -109,20 +112,27 @@ def _directions(
 ) -> str:
     """Words on the better direction of each metric, and on the designs used for Pareto lines."""
     ways = {name: better(drawn.study, name) for name in metrics}
-    parts = ["frames about the feasible designs"] if len(drawn.swept.sample.others.rows) else []
+    parts = (
+        ["axes limited to the region of the feasible designs"]
+        if len(drawn.swept.sample.others.rows)
+        else []
+    )
     parts += [
         f"{words}: {', '.join(named)}"
         for words, way in (("higher is better", 1), ("lower is better", -1), ("neither", 0))
         if (named := [name for name in metrics if ways[name] == way])
     ]
     if not all(exact for _, exact in lines.values()):
-        parts.append("Pareto lines of the kept designs only")
+        parts.append("Pareto lines only of the designs that were kept")
     words = "; ".join(parts)
     return words[:1].upper() + words[1:]
 
 
 def _span(feasible: Array, every: Sequence[Array]) -> tuple[float, float]:
-    """Axis range: feasible designs with a margin as wide again, limited to where designs lie."""
+    """Axis range: that of the feasible designs, extended by its own width to both sides.
+
+    The range is not extended beyond the designs.
+    """
     known = np.concatenate(list(every))
     known = known[np.isfinite(known)]
     low, high = float(known.min()), float(known.max())
@@ -190,7 +200,7 @@ def _limits(drawn: SweepFigureData, axes: Axes, metric: str, *, upright: bool) -
 def _line(
     drawn: SweepFigureData, axes: Axes, pair: tuple[str, str], values: Array, exact: bool
 ) -> None:
-    """Pareto line as a staircase; points behind it are worse than some design in both metrics."""
+    """Draw the Pareto line as a staircase; beyond it, some design is better in both metrics."""
     if not values.shape[1]:
         return
     xs, ys = (

@@ -35,7 +35,11 @@ ORIGINS = ("requirement", "case")
 
 @dataclass(frozen=True)
 class DrawnRows:
-    """Designs to draw: variants (combinations of names), rows, and sampling step of the rows."""
+    """Designs to draw.
+
+    `variants` are numbers of combinations of named values, `rows` are row numbers, and `every` is
+    the sampling step: 1 if all designs are drawn.
+    """
 
     variants: Array
     rows: Array
@@ -125,7 +129,7 @@ class SweepFigureData:
         return track.shown(drawn.rows[:, self.study.place(name)])
 
     def objective(self, drawn: DrawnRows) -> Array:
-        """The objective of designs, with its sign such that less is better."""
+        """The objective of designs, with opposite sign if it is maximised: less is better."""
         total = np.zeros(len(drawn.rows))
         for name, weight in self.study.goal.weights.items():
             total += weight / self.study.goal.scales[name] * drawn.rows[:, self.study.place(name)]
@@ -138,7 +142,7 @@ class SweepFigureData:
         return Track("objective") if single is None else self.metric(single)
 
     def goals(self, drawn: DrawnRows) -> Array:
-        """The objective of designs as `goal` shows it."""
+        """The objective of designs, in the unit of `goal`."""
         single = self.study.goal.single
         if single is not None:
             return self.values(single, drawn)
@@ -166,7 +170,7 @@ class SweepFigureData:
         return self.swept.best
 
     def feasible(self, most: int) -> tuple[DrawnRows, list[str]]:
-        """At most `most` feasible designs, the best last, each with its fill colour."""
+        """At most `most` feasible designs, the best last, and the fill colour of each."""
         kept = DrawnRows(*self.swept.sample.feasible.thinned(most))
         order = np.argsort(-self.objective(kept), kind="stable")
         fills = [BETTER[3 * k // max(len(order), 1)] for k in range(len(order))]
@@ -194,7 +198,7 @@ class SweepFigureData:
         if swept.failed:
             words += f", {_many(swept.failed)} failed (not drawn)"
         thinned = [f"every {_nth(step)} {group}" for group, step in drawn if step > 1]
-        return words + (f"; drawn: {' and '.join(thinned)} design" if thinned else "")
+        return words + (f"; drawn: only {' and '.join(thinned)} design" if thinned else "")
 
 
 def _many(count: int) -> str:
@@ -239,11 +243,11 @@ class SweepFigure:
 
     Attributes
     ----------
-    every : whether it needs every design, rather than only the best
-    lines : whether it draws Pareto lines of its metrics
-    check : raises `UsageError` for a sweep or metrics that do not fit
-    draw : pictures by the end of their file's name, from the sweep, the metrics, and whether
-        the user named these
+    every : whether the figure needs every design, and not only the best
+    lines : whether the figure draws Pareto lines of its metrics
+    check : raises `UsageError` if sweep or metrics do not suit the figure
+    draw : function of the sweep, the metrics, and whether the user named these; returns pictures by
+        the ending of their file names
     """
 
     every: bool
@@ -253,7 +257,7 @@ class SweepFigure:
 
 
 def fits(study: Study, metrics: Sequence[str]) -> None:
-    """The check of a figure that fits every sweep."""
+    """The check of a figure that suits every sweep."""
 
 
 USUAL = 5
@@ -314,7 +318,10 @@ def sweep_figures(swept: Swept, kinds: Sequence[str], show: Sequence[str] = ()) 
     for kind in dict.fromkeys(kinds):
         pictures = figure(kind).draw(drawn, metrics, bool(show))
         if doubled := inks.keys() & pictures.keys():
-            raise ValueError(f"figure {kind}: another figure already draws {', '.join(doubled)}")
+            raise ValueError(
+                f"figure {kind}: another figure already uses the file name ending "
+                f"{', '.join(doubled)}"
+            )
         inks |= pictures
     return inks
 

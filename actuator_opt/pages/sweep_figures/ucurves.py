@@ -25,7 +25,7 @@ SHARE = 0.3
 
 
 class Required(NamedTuple):
-    """A required stiffness [N/m], and its words in the figure."""
+    """A required stiffness [N/m], and its label in the figure."""
 
     stiffness: float
     words: str
@@ -39,8 +39,9 @@ def stiffness_panels(
 ) -> list[Panel]:
     """At most `MOST` curves with their labels (``name: remark``), above their differences.
 
-    `first` names the first curve, from which the others differ. Curves of similar designs nearly
-    coincide: the differences separate them. At least one curve must have a finite point.
+    `first` is the name of the first curve, to which the differences refer. Curves of similar
+    designs nearly coincide, so the differences are drawn to separate them. At least one curve must
+    have a finite point.
     """
     points = [_points(curve) for curve in curves[:MOST]]
     label = "piston position from the cap end, mm"

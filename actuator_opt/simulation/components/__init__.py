@@ -1,1 +1,1 @@
-"""Components of a circuit, which add their states, rates and signals to a system."""
+"""Components of a circuit. Each adds its states, rates and signals to a system of equations."""

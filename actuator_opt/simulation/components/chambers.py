@@ -27,8 +27,8 @@ from . import valve
 from .circuit import Circuit
 
 DEEPEST = -12.0
-"""Deepest travel into an end stop, divided by half the length of the dead volume (our choice). Of
-that half of the dead volume, 6e-6 then remains."""
+"""Deepest travel into an end stop, divided by half the length of the dead volume (our choice). A
+share of 6e-6 of this half then remains."""
 FLOOR = 1e-6
 """Lower limit of the absolute pressure in the formulas for oil and air [Pa], to guard against
 rounding."""
@@ -38,7 +38,7 @@ stop would have no compliance."""
 
 
 class Volumes(NamedTuple):
-    """Oil properties at a pressure."""
+    """Properties of the oil in a volume, at the pressure of the volume."""
 
     ratio: Expression
     modulus: Expression
@@ -48,7 +48,8 @@ class Volumes(NamedTuple):
 def oil_at(oil: Oil, pressure: Expression) -> Volumes:
     """Density ratio, bulk modulus and energy density at a pressure above vacuum.
 
-    A cavity forms below atmospheric pressure if the oil has almost no air. This limits the vacuum.
+    In oil with almost no air, a cavity forms below atmospheric pressure, so that the pressure stays
+    above vacuum.
     """
     limited = maximum(pressure, FLOOR - ATMOSPHERIC_PRESSURE)
     mixed = Volumes(
@@ -79,7 +80,7 @@ def node(
     volume: float,
     wall: float = 0.0,
 ) -> None:
-    """Add a rigid volume with an elastic wall; its pressure changes with the net inflow."""
+    """Add an oil volume with elastic walls; the net inflow changes its pressure."""
     law = oil_at(circuit.plant.oil, pressure)
     total_volume = volume + wall * pressure
     circuit.system.rate(
@@ -106,7 +107,7 @@ def _content(
 ) -> None:
     """Add mass and energy of a volume to the balance.
 
-    Its inflow brings the oil's elastic energy.
+    The inflowing oil carries its own elastic energy into the volume.
     """
     system, audit = circuit.system, circuit.audit
     mass = system.integral(f"inflow of {name}", law.ratio * inflow, scale=1e-3 * scale)
@@ -117,7 +118,7 @@ def _content(
 
 
 def _left(travel: Expression, film: float) -> tuple[Expression, Expression]:
-    """Length of the oil column without the dead volume, and its slope over the travel.
+    """Length of the oil column without the dead volume, and its derivative by the travel.
 
     The length equals the travel, also into the end stop. Once half the dead volume is used up, the
     piston touches the end over a growing area, so the remaining volume shrinks more slowly.
@@ -149,13 +150,13 @@ def cylinder(
 ) -> Expression:
     """Add both chambers of a cylinder, coupled by walls and rod; return their force [N].
 
-    Volume of chamber A: V_A = A_A x + V_0A + W_AA p_A + W_AB p_B. Volume of chamber B: V_B = A_B (s
-    - x) + V_0B + W_BB p_B + W_AB p_A. A are the areas, x is the position, s the stroke, V_0 the
-    dead volumes, p the pressures. W(x) is the compliance of the walls plus f a a^T for rod and
-    mount, with the flexibility f and a = (A_A, -A_B). The force on the piston is a^T p + p^T W'
-    p/2, which follows from the work of the walls. A pressure given as a number is prescribed: its
-    port then supplies the flow for volume, walls and leakage. Deep in an end stop, x is replaced by
-    the length of `_left`.
+    The chamber volumes are V_A = A_A x + V_0A + W_AA p_A + W_AB p_B and V_B = A_B (s - x) + V_0B +
+    W_BB p_B + W_AB p_A, with the position x, the stroke s, and for each chamber the piston area A,
+    the dead volume V_0 and the pressure p. The matrix W(x) is the compliance of the walls, plus f a
+    a^T for rod and mount with the flexibility f and the vector a = (A_A, -A_B). The force on the
+    piston is a^T p + p^T W' p/2, with W' = dW/dx; its second term follows from the work of the
+    walls. A pressure given as a number is prescribed, so that its port supplies the flow for
+    volume, walls and leakage. Deep in an end stop, the length from `_left` replaces x.
     """
     oil, beyond = circuit.plant.oil, stroke - position
     w_a = walls.a0 + walls.a1 * position + flexibility * area_a * area_a
@@ -201,7 +202,7 @@ def _set_pressures(
 ) -> None:
     """Set the rates of two coupled pressures.
 
-    A port at prescribed pressure supplies the flow instead.
+    If a pressure is prescribed, its port supplies the flow that keeps it constant.
     """
     (c_a, c_b), (net_a, net_b) = capacities, net
     is_state_a, is_state_b = (isinstance(pressure, Symbol) for pressure in pressures)
@@ -234,9 +235,9 @@ PREFIX = "load_"
 
 
 def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Symbol) -> Expression:
-    """Force with which the load cylinder pushes the rod outwards [N].
+    """Force with which the load cylinder pushes the actuator's rod outwards [N].
 
-    Its rod moves with the actuator's.
+    Both rods move together.
     """
     system = circuit.system
     area = float(forces.annulus_area(bore=stated.bore, rod_diameter=stated.rod_diameter))
@@ -389,7 +390,8 @@ FLOW = 1e-12
 
 
 LEAST_NODE = 1e-6
-"""Volume behind a throttle for a design that states none (our choice: 1 ml of fittings)."""
+"""Smallest oil volume at the far end of a line or behind a throttle, also if the design states none
+(our choice: 1 ml of fittings)."""
 
 
 REDUCING_FLOW = 20 / 60000
@@ -445,9 +447,10 @@ def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> ChamberPor
 def connect(
     circuit: Circuit, port: ChamberPort, ends: str, feed: Expression, *, end_pressure: float
 ) -> Expression:
-    """Flow into the chamber.
+    """Connect a chamber to its line; return the flow into the chamber.
 
-    `feed` is the flow, `end_pressure` the pressure at the line's far end.
+    `feed` is the flow into the line at its far end. `end_pressure` is the prescribed pressure
+    there, if any.
     """
     feed = FEEDS[ends](circuit, port, feed, end_pressure)
     if port.line is not None:
@@ -577,4 +580,4 @@ FEEDS = per_kind(
         "reducing_valve": _reducing,
     },
 )
-"""Function for the flow into the line, for every kind of far end."""
+"""Function that returns the flow into the line, for every kind of far end."""

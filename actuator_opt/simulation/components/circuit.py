@@ -1,7 +1,7 @@
-"""A circuit under construction: data shared by its parts, its signals, its reference quantities.
+"""A circuit under construction: data that its components share, signals, and control loops.
 
-A signal over time is a sum of parts, each of which is split where it jumps. A controller follows a
-reference for the position or the speed of the piston or of a motor shaft.
+A signal over time is a sum of pieces, such as steps and sines. The reference of a controller sets
+the position or the speed of the piston or of a motor shaft.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from ..system import System
 
 @dataclass(frozen=True, slots=True)
 class _Clock:
-    """Time of a system, as the `Clock` that signal shapes expect (`design.scenario.kinds`)."""
+    """Time of a system, with the interface `Clock` that the signal shapes in `design` expect."""
 
     system: System
 
@@ -46,7 +46,7 @@ class _Clock:
 
 
 def signal(system: System, parts: Sequence[SignalSegment], records: Records) -> Expression:
-    """Sum of the parts of a signal at the system's time; zero if the signal has no parts."""
+    """Sum of the pieces of a signal at the system's time; zero if the signal has no pieces."""
     total: Expression = 0.0
     for part in parts:
         total = total + SHAPES[part.shape].course(_Clock(system), part, records)
@@ -64,7 +64,7 @@ def _between(time: Array, values: Array) -> Callable[[Any], Any]:
 
 
 def _slope(time: Array, values: Array) -> Callable[[Any], Any]:
-    """Slope of `_between` over time: constant between two samples, zero outside them."""
+    """Time derivative of `_between`: constant between two samples, zero outside them."""
     run = np.diff(time)
     rise = np.divide(np.diff(values), run, out=np.zeros(len(run)), where=run > 0)
     steps = np.concatenate(([0.0], rise, [0.0]))
@@ -91,7 +91,7 @@ def rate(system: System, expression: Expression) -> Expression:
 
 
 def steady_value(parts: Sequence[SignalSegment]) -> float:
-    """Final value of a signal: the sum of the parts that do not end."""
+    """Final value of a signal: the sum of those of its pieces that do not end."""
     return sum(height(part) for part in parts if SHAPES[part.shape].lasts)
 
 
@@ -101,12 +101,12 @@ def at_start(parts: Sequence[SignalSegment], records: Records) -> float:
 
 
 def acts_after(part: SignalSegment, moment: float, records: Records) -> bool:
-    """Whether a part of a signal still changes after a moment [s]."""
+    """Whether a piece of a signal still changes after a given time [s]."""
     return SHAPES[part.shape].changes_after(part, moment, records)
 
 
 def frequencies(parts: Sequence[SignalSegment]) -> tuple[float, ...]:
-    """Frequencies of the sines of a signal [Hz]."""
+    """Frequencies of the sinusoidal pieces of a signal [Hz]."""
     return tuple(
         part.frequency
         for part in parts
@@ -118,7 +118,7 @@ Loop = Literal["position", "speed", "shaft_speed", "shaft_angle"]
 
 
 class Followed(NamedTuple):
-    """The quantity that a control loop controls."""
+    """Controlled quantity of a control loop."""
 
     words: str
     quantity: Quantity
@@ -142,19 +142,19 @@ LOOPS: dict[Loop, Followed] = {
         "shaft angle", SCENARIOS["shaft_angle_value"], "shaft_angle_gain", 1.0
     ),
 }
-"""Control loops, by the name of the quantity that the reference sets."""
+"""Control loops, by the name of the controlled quantity."""
 
 
 def loop_of(control: Controller | None) -> Loop | None:
-    """The control loop that the controller's reference belongs to; None without a controller."""
+    """The loop for which a controller states a reference; None without a controller."""
     if control is None:
         return None
     return next((name for name in LOOPS if getattr(control, name)), None)
 
 
 FLOW = 1e-4
-"""Flow [m^3/s] that, times the supply pressure, gives the power to which energy tolerances refer: 6
-l/min (our choice)."""
+"""Flow of 6 l/min [m^3/s] (our choice). Times the supply pressure, it gives the power to which the
+tolerances of energies refer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,7 +182,7 @@ class Audit:
 
 @dataclass(slots=True)
 class Circuit:
-    """A system of equations, with the data that its parts, its balance and its results need."""
+    """A system of equations, with the data that its components, balance and results need."""
 
     scenario: Scenario
     plant: Plant
@@ -191,8 +191,8 @@ class Circuit:
     gains: ControllerGains | None = None
     loop: Loop | None = None
     linear: bool = False
-    """Whether the loop is opened at a free variable ``u``, which replaces the valve signal.
-    Friction then does not stick."""
+    """Whether the control loop is opened at the valve signal, which becomes a free variable ``u``.
+    Friction is then viscous only."""
     system: System = field(default_factory=System)
     audit: Audit = field(default_factory=Audit)
     measured: Expression = 0.0
@@ -207,9 +207,9 @@ class Circuit:
     def energy_port(
         self, name: str, power: Expression, *, state: str = "", into: bool = False
     ) -> None:
-        """Add an energy flow that leaves the circuit, or enters it with `into`.
+        """Add an energy flow that leaves the circuit or, if `into` is true, enters it.
 
-        `state` names its integral.
+        `state` is the name of its integral over time.
         """
         scale = self.plant.supply_pressure * FLOW
         work = self.system.integral(state or name, power, scale=scale)

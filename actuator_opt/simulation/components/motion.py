@@ -40,9 +40,9 @@ def stops(circuit: Circuit, position: Symbol, speed: Symbol) -> Expression:
 
 
 def cushions(circuit: Circuit, position: Symbol, speed: Symbol) -> Expression:
-    """Force of the oil that the cushion spears throttle.
+    """Force on the piston from the oil that a cushion spear throttles.
 
-    It acts on the whole area of each chamber.
+    The cushion pressure acts on the whole area of the chamber.
     """
     plant, cushion = circuit.plant, circuit.scenario.stops.cushion
     if cushion is None:
@@ -134,7 +134,7 @@ def move(
 
 
 def _joint(circuit: Circuit, position: Symbol, speed: Symbol) -> tuple[Expression, Expression]:
-    """Mass at the rod, with that of the joint, and force due to the joint's torque and inertia."""
+    """Mass at the rod, including the joint's, and force due to the joint's torque and inertia."""
     system, plant = circuit.system, circuit.plant
     joint = plant.joint(position)
     assert joint is not None
@@ -158,7 +158,7 @@ SMOOTHING = 0.05
 
 
 LONE_SPEED = 1e-3
-"""Stribeck speed for friction that does not depend on speed [m/s]."""
+"""Stribeck speed assumed if the scenario states friction, but no Stribeck speed [m/s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,9 +176,9 @@ class FrictionCurve:
 
 
 def law(plant: Plant, stated: Stated, start: InitialState) -> FrictionCurve:
-    """Friction of the scenario, else of the design.
+    """Friction that the scenario states or, if it states none, that of the design.
 
-    The bristle stiffness is for the initial pressures.
+    The bristle stiffness is computed at the initial pressures.
     """
     seals, pressures = plant.seals, (start.pressure_a, start.pressure_b)
     coulomb, static = seals.coulomb, seals.static
@@ -227,7 +227,7 @@ def resist(
     pressure_a: Expression,
     pressure_b: Expression,
 ) -> Expression:
-    """Friction force on the piston; it has the sign of the speed [N]."""
+    """Friction force on the piston [N], positive if the speed is positive."""
     if circuit.linear:
         return _viscous(circuit, curve, speed, pressure_a, pressure_b)
     return FORCES[circuit.scenario.friction.model](circuit, curve, speed, pressure_a, pressure_b)
@@ -308,4 +308,4 @@ def _lugre(
 
 
 FORCES = per_kind(FRICTIONS, {"lugre": _lugre, "stribeck": _stribeck, "none": _viscous})
-"""Function for the friction force, for every friction law of the seals."""
+"""Function that returns the friction force, for every friction law of the seals."""

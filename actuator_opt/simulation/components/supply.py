@@ -16,13 +16,14 @@ RATE_BAND = 1e-3
 """Distance from the ends of the swash plate's range, as a share of the largest flow, over which the
 plate is slowed to a stop (our choice)."""
 AWAKE = 0.1
-"""Pump flow at which an equilibrium search starts, as a share of the largest flow (our choice). At
-an end of its range the swash plate has zero rate, so a search cannot start there."""
+"""Pump flow at which the search for an equilibrium starts, as a share of the largest flow (our
+choice). At an end of its range, the swash plate does not respond to pressure, so a search cannot
+start there."""
 
 
 @dataclass(slots=True)
 class SupplyBuilder:
-    """Supply under construction: `of` creates its pressures, `feed` later connects the valve."""
+    """Supply under construction: `of` creates its pressures, `feed` connects the valve to it."""
 
     circuit: Circuit
     pressure: Expression
@@ -66,7 +67,7 @@ class SupplyBuilder:
     def _through_line(self, demand: Expression) -> Expression:
         """Flow from the pump into the supply line.
 
-        The elastic volume of the line is at the valve.
+        The oil volume of the line is lumped at its valve end.
         """
         circuit, line = self.circuit, self.circuit.scenario.supply.line
         if line is None:
@@ -201,7 +202,7 @@ DELIVERIES = per_kind(
     {name: kind for name, kind in SUPPLIES.items() if kind.pumps},
     {"fixed_pump": _fixed_pump, "controlled_pump": _controlled_pump},
 )
-"""Function for the pump flow, for every kind of pump."""
+"""Function that returns the pump flow, for every kind of pump."""
 
 NECK = 5e-3
 """Bore and length of the neck of an accumulator on the supply line, both 5 mm (our choice)."""

@@ -23,7 +23,7 @@ SPOOL = 1e-7
 
 
 class Port(NamedTuple):
-    """Flows of the valve."""
+    """Flows at the ports of the valve."""
 
     into_a: Expression
     into_b: Expression
@@ -71,7 +71,7 @@ def edges(
 ) -> Port:
     """Flows through the four edges of the spool.
 
-    Add the energy that they dissipate to the balance.
+    The energy that the edges dissipate is added to the balance.
     """
     flows = valve.valve_flows(
         signal=opening - data.offset,
@@ -107,9 +107,9 @@ _FLOW = SCENARIOS["flow_value"]
 
 
 HOLD_BAND = 1e-3
-"""Distance from the signal limit, as a share of the full signal, over which integration fades out
-(our choice). Integration stops while the signal is at its limit and the error would drive it
-further."""
+"""Distance from the signal limit, as a share of the full signal, over which the controller's
+integration fades out (our choice). Integration stops while the signal is at its limit and the error
+would drive it further."""
 
 
 RATE_TIME = 1e-4
@@ -118,10 +118,10 @@ RATE_TIME = 1e-4
 
 @dataclass(frozen=True, slots=True)
 class Feedback:
-    """Feedback signals of the controller."""
+    """Measured signals that the controller uses as feedback."""
 
     value: Expression
-    """Measured value of the loop: position, speed, shaft speed or angle."""
+    """Measured value of the controlled quantity: position, speed, shaft speed or shaft angle."""
     speed: Expression
     load_pressure: Expression
     """Load pressure: pressure force on the piston, divided by area A [Pa]."""
@@ -129,7 +129,7 @@ class Feedback:
 
 
 def inner(circuit: Circuit, valve_signal: Expression, measured: Feedback) -> Expression:
-    """Valve signal minus the inner feedback of the speed and of changes in load pressure."""
+    """Valve signal, reduced by feedback of the speed and of changes in the load pressure."""
     system, control = circuit.system, circuit.scenario.control
     if control is None:
         return valve_signal

@@ -1,7 +1,7 @@
-"""Fit parameters of a design to a measured record: least squares over whole simulations.
+"""Fit parameters of a design to a measured record: least squares, with whole simulations.
 
-Residuals and their slopes come from simulations. The confidence intervals of the parameters follow
-from both.
+Residuals, and their derivatives by the parameters, come from simulations. The confidence intervals
+of the parameters follow from both.
 """
 
 from __future__ import annotations
@@ -53,49 +53,50 @@ FINE, LONGEST = 2, 5e-4
 
 
 RELATIVE: Final = 1e-8
-"""Relative tolerance of an integration step; it is tight because slopes are small differences of
-two simulations."""
+"""Relative tolerance of an integration step. It is tight because the derivatives of the residuals
+are small differences between two simulations."""
 
 
 STEPS: Final = (1e-3, 0.1)
-"""Smallest and largest step for a slope, relative to the size of the parameter (our choices: far
-above integration errors, yet local). Between them, the step is chosen so that the residuals change
-by as much as their noise."""
+"""Smallest and largest step of a parameter for a difference quotient, relative to its size (our
+choices: far above integration errors, yet local). Between them, the step is chosen so that the
+residuals change by as much as their noise."""
 
 
 FIRST: Final = 1e-2
-"""The first step for a slope, relative to the size of the parameter (our choice)."""
+"""First step of a parameter for a difference quotient, relative to its size (our choice)."""
 
 
 GUESSES: Final = (1 / 3, 3.0)
-"""Factors on each initial value that are tried before the search (our choice)."""
+"""Factors on each initial value with which the search may start instead, if the record then fits
+better (our choice)."""
 
 
 ASTRAY: Final = 5.0
-"""Residual, relative to the noise, above which the search is repeated from another start (our
-choice)."""
+"""Ratio of residual to noise above which the search is repeated from the unchanged initial values
+(our choice)."""
 
 
 MARGIN: Final = 0.02
-"""Half the range in which a lag is searched around the best trial lag, as a share of the simulated
-time (our choice)."""
+"""Half the range about the best trial lag in which the search varies the lag, as a share of the
+simulated time (our choice)."""
 
 
 LAGS: Final = 801
-"""Number of trial lags before the search (our choice)."""
+"""Number of lags that are tried before the search (our choice)."""
 
 
 FAR: Final = 10.0
-"""Residual assigned to a failed simulation, relative to the largest of the first simulation (our
-choice)."""
+"""Residual assigned to a failed simulation, divided by the largest residual of the first simulation
+(our choice)."""
 
 
 PASSES: Final = 40
-"""Largest number of steps in a search (our choice)."""
+"""Largest number of iterations of a least-squares search (our choice)."""
 
 
 ROUNDS: Final = 4
-"""Largest number of searches, each with new weights (our choice)."""
+"""Largest number of searches, each with new weights of the channels (our choice)."""
 
 
 SETTLED: Final = 0.1
@@ -110,7 +111,7 @@ the final search (our choices)."""
 class RecordFitProblem:
     """Weighted residuals as a function of the searched values.
 
-    The searched value of a positive parameter is its logarithm.
+    For a positive parameter, the search varies the logarithm.
 
     Parameters
     ----------
@@ -166,7 +167,7 @@ class RecordFitProblem:
         self.failed = FAR * float(np.max(np.abs(self.residuals(self.start))))
 
     def put(self, x: Array) -> Case:
-        """Scenario and plant with fitted values, applied in the order of `PARAMETERS`."""
+        """Scenario and plant with the searched values, applied in the order of `PARAMETERS`."""
         scenario, plant = self.scenario, self.plant
         for name in PARAMETERS:
             if name in self.names:
@@ -182,7 +183,7 @@ class RecordFitProblem:
     def _simulated(self, x: Array) -> tuple[Array, Mapping[str, Array]]:
         """Time and signals of a simulation.
 
-        The last result is kept, as a lag does not change it.
+        The last result is kept, so that a change of the lag alone needs no new simulation.
         """
         searched = np.array(x, dtype=float)
         if self.lag_index is not None:
@@ -238,7 +239,7 @@ class RecordFitProblem:
     def search_slopes(self, x: Array) -> Array:
         """Derivatives of the residuals by one-sided differences.
 
-        They also determine the next steps.
+        They also determine the steps of the next differences.
         """
         residuals, columns = self.residuals(x), []
         for k, step in enumerate(self.steps):
@@ -251,7 +252,7 @@ class RecordFitProblem:
         return slopes
 
     def solve(self) -> Array:
-        """Best values: try several starts, search, then search again with a tight tolerance.
+        """Best values: choose a start, search, then search again with a tight tolerance.
 
         If the residuals stay far above the noise, the search is repeated once from the initial
         values.
@@ -267,7 +268,7 @@ class RecordFitProblem:
     def _reweighted(self, x: Array) -> Array:
         """Repeat least squares until the weights converge.
 
-        A channel's weight follows its residual.
+        The weight of a channel is the reciprocal of its residual.
         """
         self._weigh(x)
         for _ in range(ROUNDS):
@@ -288,7 +289,7 @@ class RecordFitProblem:
         }
 
     def _misses(self, x: Array) -> bool:
-        """Whether any channel has residuals far above its noise."""
+        """Whether the residuals of any channel far exceed its noise."""
         return any(level > ASTRAY * self.noise[name] for name, level in self.levels(x).items())
 
     def _weigh(self, x: Array) -> None:
@@ -327,7 +328,7 @@ class RecordFitProblem:
         return overlap
 
     def _aligned(self, measured: AlignedRecord, signals: Mapping[str, Array]) -> float:
-        """Most likely lag at the initial values, from the samples within the simulated time."""
+        """Most likely lag for the initial parameters, from samples within the simulated time."""
         assert self.lag_index is not None
         time, _ = self._simulated(self.start)
         lags = np.linspace(self.low[self.lag_index], self.high[self.lag_index], LAGS)
@@ -347,7 +348,7 @@ class RecordFitProblem:
         return float(lags[int(np.argmin(np.where(enough, cost, np.inf)))])
 
     def _best_guess(self, x: Array) -> Array:
-        """Improve the initial values: apply the best trial factor to each parameter in turn."""
+        """Improve the initial values: multiply each parameter in turn by the best of `GUESSES`."""
         best, least = x, self._likelihood_cost(x)
         for k, parameter in enumerate(self.parameters):
             for factor in GUESSES if parameter.positive else ():
@@ -377,7 +378,7 @@ def _scaled(entry: FitParameter, value: float) -> float:
 
 
 def _step(spacing: float, duration: float) -> float:
-    """Time between simulation samples: a whole fraction of the record's, unless too short."""
+    """Time between simulation samples: if possible, a whole fraction of that of the record."""
     longest = max(min(spacing / FINE, LONGEST), duration / (FINE * MOST))
     return spacing / ceil(spacing / longest) if longest < spacing else longest
 
@@ -392,8 +393,8 @@ def _thinning_notes(
     for step, names in sorted(steps.items()):
         if step > 1:
             yield (
-                f"{named(names, used)}: the fit uses one in every {step} samples, to keep to "
-                f"at most {MOST}"
+                f"{named(names, used)}: the fit uses only one in {step} samples, at most {MOST} "
+                "in total"
             )
 
 
@@ -408,11 +409,12 @@ def _thinned(time: Array, values: Array) -> tuple[Array, Array]:
 
 
 STEADIEST: Final = 0.97
-"""Largest correlation between neighbouring samples that enters the bandwidth; the usual limit."""
+"""Limit on the correlation between neighbouring samples in the rule for the bandwidth; the usual
+value."""
 
 
 WHOLE: Final = 4
-"""Smallest permitted length of a record, in bandwidths (our choice)."""
+"""The bandwidth is at most the length of the record divided by this (our choice)."""
 
 
 ORDERS: Final = 10
@@ -422,13 +424,15 @@ ORDERS: Final = 10
 def bounds(problem: RecordFitProblem, x: Array) -> FittedParameters:
     """Covariance of the fitted values, estimated from the residuals.
 
-    The covariance is H^-1 S H^-1 with H = J^T J, the slopes J, the residuals r and the covariance S
-    of J^T r. S is the largest of three estimates. The first assumes independent residuals. The
-    second treats each channel as an autoregression, with its order by Akaike's criterion. The third
-    covers intermittent misfit: the sum of J^T r r^T J over times and over lags within a bandwidth,
-    with Bartlett's weights (Newey and West) and all channels of a time together. The bandwidth
-    follows Andrews' rule. With n samples in time, p parameters and the bandwidth m, the degrees of
-    freedom are 3 n/(2 m) - p. The slopes are differences across one standard error.
+    The covariance is H^-1 S H^-1 with H = J^T J. J are the derivatives of the residuals r by the
+    parameters, and S is the covariance of J^T r. S is at least as large as each of three estimates.
+    The first assumes independent residuals. The second describes the residuals of each channel by
+    an autoregression, whose order follows from Akaike's criterion. The third covers a misfit that
+    occurs only at times. It sums J^T r r^T J over all times, and over time lags within a bandwidth
+    with Bartlett's weights (Newey and West); all channels at a time count as one sample. The
+    bandwidth follows from Andrews' rule. With n sample times, p parameters and the bandwidth m, the
+    degrees of freedom are 3 n/(2 m) - p. J is computed by differences across one standard error of
+    each parameter.
     """
     residuals = problem.residuals(x)
     variance = float(np.sum(residuals**2)) / max(residuals.size - x.size, 1)
@@ -455,14 +459,14 @@ def bounds(problem: RecordFitProblem, x: Array) -> FittedParameters:
 
 
 def _larger(first: Array, second: Array) -> Array:
-    """A covariance at least as large as both: the first, plus the excess of the second."""
+    """A covariance at least as large as both: the first, plus what the second has in excess."""
     values, axes = np.linalg.eigh(second - first)
     covariance: Array = first + (axes * np.maximum(values, 0.0)) @ axes.T
     return covariance
 
 
 def _by_time(problem: RecordFitProblem, rows: Array) -> Array:
-    """Rows of samples, summed over the channels at each time, in the order of time."""
+    """Rows of the same time, one for each channel, summed; in the order of time."""
     times = np.concatenate([t for t, _ in problem.used.values()])
     instants, instant = np.unique(times, return_inverse=True)
     sums = np.zeros((instants.size, rows.shape[1]))
@@ -483,7 +487,7 @@ def _bandwidth(moments: Array) -> float:
 
 
 def _summed(moments: Array, width: float) -> Array:
-    """Sum of products of samples within a bandwidth; the weights fall to zero at its end."""
+    """Sum of products of samples, with weights that fall to zero at a time lag of one bandwidth."""
     total: Array = moments.T @ moments
     for k in range(1, min(int(np.ceil(width)), moments.shape[0])):
         product = moments[:-k].T @ moments[k:]
@@ -492,7 +496,7 @@ def _summed(moments: Array, width: float) -> Array:
 
 
 def _coloured(problem: RecordFitProblem, outputs: Array, residuals: Array) -> Array:
-    """Covariance of U^T r, the residuals r of every channel being an autoregression."""
+    """Covariance of U^T r if the residuals r of every channel are an autoregression."""
     from scipy.linalg import matmul_toeplitz  # slow import, rarely used
 
     total = np.zeros((outputs.shape[1], outputs.shape[1]))
@@ -505,7 +509,7 @@ def _coloured(problem: RecordFitProblem, outputs: Array, residuals: Array) -> Ar
 
 
 def _autocovariance(residuals: Array) -> Array:
-    """Autocovariance of the best autoregression of residuals, by Levinson's recursion."""
+    """Autocovariance of the autoregression that fits residuals best, by Levinson's recursion."""
     count = residuals.size
     orders = min(ORDERS, count // 4)
     lags = (
@@ -530,16 +534,15 @@ def _autocovariance(residuals: Array) -> Array:
 
 
 MISFIT: Final = 2.0
-"""Residual, relative to the noise, above which the model does not explain the record (our
-choice)."""
+"""Ratio of residual to noise above which the model does not explain the record (our choice)."""
 WORSE: Final = 1.05
-"""Ratio of the residuals after and before the fit above which the fit counts as worse (our
-choice)."""
+"""A channel fits worse if its residual after the fit exceeds that before the fit by more than this
+factor (our choice)."""
 ALIKE: Final = 0.9
 """Correlation above which two parameters are reported as not separable (our choice)."""
 EDGE: Final = 0.01
-"""Distance from the end of a parameter's range, as a share of the range, within which the parameter
-counts as at its end (our choice)."""
+"""A parameter counts as at the end of its range if it is closer to it than this share of the range
+(our choice)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -571,10 +574,10 @@ class Fit:
     ----------
     scenario, plant : inputs with the fitted parameters
     parameters : fitted parameters by name
-    correlations : between the errors of two parameters, by their names
+    correlations : correlation between the errors of two parameters, by their names
     before, after : comparisons of the record with the simulation at the initial and at the fitted
-        values. If a lag is fitted, the best lag is used in both
-    doubts : reasons to doubt the result that its numbers do not show
+        values; if the lag is fitted, `before` has the lag that fits best at the initial values
+    doubts : reasons to doubt the result, beyond its confidence intervals
     runs, seconds : number of simulations, and computing time
     """
 
@@ -631,7 +634,8 @@ def fit(
 
     The fit is by least squares over all channels. Each channel is weighted by its sensor noise
     (`record.noise`), or by its residuals if they are larger. Confidence intervals are 95 %. They
-    follow from the slopes at the solution and account for residuals that are correlated over time.
+    follow from the derivatives of the residuals at the solution, and take into account that
+    residuals may be correlated over time.
 
     Parameters
     ----------
@@ -639,7 +643,8 @@ def fit(
     records : columns of the files that the scenario's signals name
     measured : record, on the time axis of the scenario
     names : parameters to fit, of `parameters.PARAMETERS` or "lag"
-    tuned : controller gains, which the fit does not change; default: as in the scenario
+    tuned : controller gains, which the fit does not change; default: those of the scenario, stated
+        or tuned
     verify, method : as for `simulation.simulate`, for the simulation with the fitted values
     spec : hash of the scenario and its design
 
@@ -693,8 +698,9 @@ def _natural(
 ) -> Parameter:
     """Convert a searched value to the parameter, in its own unit.
 
-    The confidence interval is that of the parameter itself, not of its logarithm: the effect of an
-    air content or a leakage is proportional to its value. The interval does not extend below zero.
+    Confidence intervals are symmetrical in the parameter itself, not in its logarithm, because the
+    effect of an air content or a leakage is proportional to its value. The interval does not extend
+    below zero.
     """
     x = fitted_parameters.parameters[fit_parameter.name]
     half = x.upper - x.value
@@ -730,7 +736,7 @@ def _correlations(fitted_parameters: FittedParameters) -> dict[tuple[str, str], 
 
 
 def _unidentified(fitted: Mapping[str, Fitted]) -> Iterator[str]:
-    """Messages on parameters that the record does not determine, with the reason."""
+    """Messages on parameters that the record determines poorly, with the reason."""
     for name, parameter in fitted.items():
         quantity, value, side = parameter.entry.quantity, parameter.parameter, parameter.at_bound
         if side is not None:
@@ -765,8 +771,9 @@ def _inseparable(
     ]
     if pairs:
         yield (
-            f"correlated errors: {', '.join(pairs)}; the record determines such a pair better than "
-            "its single parameters, so state one of them, or measure a signal that separates them"
+            f"correlated errors: {', '.join(pairs)}; the record determines a combination of such a "
+            "pair better than each parameter, so state one of the two, or measure a signal that "
+            "separates them"
         )
 
 
@@ -783,15 +790,16 @@ def _misfits(after: Overlay, before: Overlay) -> Iterator[str]:
             continue
         quantity = after.simulation.told[name].quantity
         misfits.append(
-            f"{name} {quantity.text(channel.rms, 2)}, {_times(channel.rms / channel.noise)} times"
+            f"{name} {quantity.text(channel.rms, 2)}, {_times(channel.rms / channel.noise)} times "
+            "its noise"
         )
         if channel.rms > WORSE * before.residuals[name].rms:
             yield f"{name} fits worse than before the fit, so the channels contradict each other"
     if misfits:
         yield shown(
-            "the simulation differs from the record by more than its noise "
+            "the simulation differs from the record by more than the sensor noise "
             f"({'; '.join(misfits)}): the model lacks an effect, or the record was smoothed. This "
-            "biases the parameters, and their confidence intervals exclude the bias",
+            "biases the parameters, and their confidence intervals do not include this bias",
             400,
         )
 
@@ -803,6 +811,6 @@ def _times(ratio: float) -> str:
 def _controller_notes(tuned: Tuned | None) -> Iterator[str]:
     if tuned is not None and tuned.origin != "stated":
         yield (
-            f"the controller's gain is not stated but comes from {tuned.origin}; state the test "
-            "bench's gain in control"
+            f"the controller's gain is not stated but comes from {tuned.origin}; in the block "
+            "control, state the gain of the test bench"
         )

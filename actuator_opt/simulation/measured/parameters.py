@@ -1,4 +1,4 @@
-"""Parameters that can be fitted to a measured record: definition, initial value and range."""
+"""Parameters that can be fitted to a measured record: meaning, initial value and range."""
 
 from __future__ import annotations
 
@@ -18,20 +18,23 @@ Case: TypeAlias = tuple[Scenario, Plant]
 Put: TypeAlias = Callable[[Scenario, Plant, float], Case]
 
 SMALL = 0.01
-"""Share of a full value that counts as small (our choice). It is used for the initial value of a
-friction that the design does not state, and for the accuracy to which an offset must be known."""
+"""Share of a full value that counts as small (our choice), such as of the force of the supply
+pressure. A friction that neither design nor scenario states starts from it, and an offset must be
+known to this accuracy."""
 BLEED = 1e-6 / 60 / 1e5
-"""Initial leakage for a design that states none (our choice): 1 ml/min/bar [m^3/s/Pa]."""
+"""Leakage from which the fit starts if the design states none (our choice): 1 ml/min/bar
+[m^3/s/Pa]."""
 RISE = 1.5
-"""Initial ratio of static to Coulomb friction for a design in which both are equal (our choice)."""
+"""Ratio of static to Coulomb friction from which the fit starts if the two are equal otherwise (our
+choice)."""
 LATEST = 0.2
-"""Largest lag of a record, as a share of the simulated time (our choice: a logger started by
-hand)."""
+"""Largest lag of a record, as a share of the simulated time (our choice: enough for a logger that
+is started by hand)."""
 
 
 @dataclass(frozen=True, slots=True)
 class FitParameter:
-    """A parameter: definition, initial value, range of the search and how it is applied, SI."""
+    """A parameter to fit: quantity, initial value, search range and how it is applied, SI."""
 
     name: str
     quantity: Quantity
@@ -41,8 +44,8 @@ class FitParameter:
     positive: bool
     """Whether the search uses the logarithm of the parameter."""
     near: float
-    """Half width of the confidence interval that is acceptable even for a value near 0. It applies
-    to parameters that may be negative."""
+    """Half the width of a confidence interval that counts as narrow, even if the value itself is
+    near zero. It applies to parameters that may be negative."""
     put: Put
 
 
@@ -196,7 +199,7 @@ def _level(plane: Plane, scenario: Scenario, plant: Plant) -> float:
 
 
 def _scaled(plane: Plane, scenario: Scenario, plant: Plant, value: float) -> Plane:
-    """A friction plane scaled to another friction at the initial pressures.
+    """A friction plane, multiplied by the factor that gives a value at the initial pressures.
 
     Its shape stays the same.
     """
@@ -214,7 +217,7 @@ def _scaled(plane: Plane, scenario: Scenario, plant: Plant, value: float) -> Pla
 
 
 def _stated(scenario: Scenario, **values: float) -> Scenario:
-    """A scenario with other friction values."""
+    """A copy of a scenario with some friction values changed."""
     return scenario.model_copy(update={"friction": scenario.friction.model_copy(update=values)})
 
 
@@ -350,5 +353,6 @@ PARAMETERS: dict[str, Callable[[Scenario, Plant], FitParameter]] = {
     "dead_volume_b": _dead("b"),
     "load_offset": _offset,
 }
-"""Parameters by name. `lag`, which shifts the record, is not among them. Fitting friction keeps its
-dependence on the pressures: `coulomb` and `static` are the friction at the initial pressures."""
+"""Parameters by name. The time shift of the record, `lag`, is not among them. The fitted values of
+`coulomb` and `static` are the friction at the initial pressures; the relative change with pressure
+stays that of the design."""

@@ -1,4 +1,4 @@
-"""Comparison of a measured record with a simulation in time: overlay and residuals."""
+"""Compare a measured record with a simulation over time: overlay and residuals."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ COLUMNS = {name: CHANNELS[name] for name in ("t", "p1", "p2", "x", "v", "F_L", "
     "n_shaft": Channel("angular_speed", "rpm", "speed of the shaft", ("shaftspeed", "speed")),
     "phi": Channel("angle", "deg", "angle of the shaft", ("shaftangle",)),
 }
-"""Channels of a record and their descriptions; a temperature column is ignored."""
+"""Channels of a record by column name, with their descriptions; a temperature column is ignored."""
 SIGNALS = {
     "p1": "pressure_a", "p2": "pressure_b", "x": "position", "v": "speed", "F_L": "load_force",
     "U": "signal", "spool": "spool", "pS": "pressure_supply", "qA": "flow_a", "qB": "flow_b",
@@ -34,7 +34,7 @@ SIGNALS = {
 }  # fmt: skip
 """The simulated signal that each channel measures."""
 FEWEST = 10
-"""Least number of samples for a usable channel (our choice)."""
+"""A channel is used if it has at least this number of samples (our choice)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,11 +79,11 @@ class AlignedRecord:
         if recognised and not channels:
             message = f"fewer than {FEWEST} numbers in {', '.join(recognised)}"
             raise record.fault(
-                message, "give more samples: empty cells, nan, inf and 1e30 count as missing"
+                message, "give more samples; empty cells, nan, inf and 1e30 count as missing"
             )
         if not channels:
             message = "no channel matches a simulated signal"
-            raise record.fault(message, f"name columns {', '.join(SIGNALS)} with units")
+            raise record.fault(message, f"name the columns {', '.join(SIGNALS)}, with their units")
         notes += [
             f"{named(names, channels)}: {words}, left out" for words, names in missing.items()
         ]
@@ -104,7 +104,7 @@ def parse_measured(
     columns: Mapping[str, str] | None = None,
     units: ColumnUnits = NONE,
 ) -> AlignedRecord:
-    """A measured record from the text of a CSV file, with columns as in `COLUMNS`.
+    """A measured record from the text of a CSV file, whose columns have the names in `COLUMNS`.
 
     Parameters
     ----------
@@ -144,24 +144,24 @@ def _rising(record: Record) -> Array:
 
 
 FINEST = 1e-4
-"""Smallest noise of a sensor, as a share of the span of its record (our choice: no sensor is
-better)."""
+"""Smallest noise assumed for a sensor, as a share of the span of its record (our choice: no sensor
+is better)."""
 ORDERS = (3, 6)
-"""Orders of the differences that estimate noise (our choice: a higher order tolerates a faster
-signal)."""
+"""Orders of the differences between samples from which noise is estimated (our choice: a higher
+order tolerates a faster signal)."""
 ROBUST = 1.4826
-"""Standard deviation of a normal distribution, divided by its median absolute deviation."""
+"""Ratio of standard deviation to median absolute deviation in a normal distribution."""
 APART = 0.02
-"""Difference at the start that is tolerated without a message, as a share of the channel's span
-(our choice)."""
+"""Difference between the initial values of record and simulation up to which no message is given,
+as a share of the channel's span (our choice)."""
 BEYOND = 5.0
-"""Difference at the start that is tolerated without a message, in standard deviations of the noise
-(our choice)."""
+"""Difference between the initial values up to which no message is given, in standard deviations of
+the noise (our choice)."""
 BESIDE = 2.0
 """Largest plausible position and pressure in a record, as multiples of stroke and proof pressure
 (our choice: bar and MPa differ by a factor of ten)."""
 STARTS = ("position", "pressure_a", "pressure_b")
-"""Signals whose initial value is set by the scenario."""
+"""Signals for which the scenario sets the initial value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,7 +177,7 @@ class ChannelResidual:
     bias: float
     """Mean difference."""
     span: float
-    """Span of the measured values over the same samples."""
+    """Largest minus smallest measured value of these samples."""
     noise: float
     """Standard deviation of the sensor noise, estimated by `noise`."""
 
@@ -204,7 +204,7 @@ class ChannelResidual:
 
 @dataclass(frozen=True, slots=True)
 class Overlay:
-    """A measured record together with the simulation, and their differences."""
+    """A measured record with its simulation, and the differences between the two."""
 
     measured: AlignedRecord
     simulation: Simulation
@@ -250,10 +250,10 @@ def overlay(simulation: Simulation, measured: AlignedRecord, *, lag: float = 0.0
     notes = [*measured.notes]
     unsimulated = [name for name in measured.channels if name not in signals]
     if unsimulated:
-        notes.append(f"not simulated here: {', '.join(unsimulated)}")
+        notes.append(f"measured, but not simulated: {', '.join(unsimulated)}")
     outside = [name for name in measured.channels if name in signals and name not in samples]
     if outside:
-        notes.append(f"no overlap in time: {', '.join(outside)}")
+        notes.append(f"measured only outside the simulated time: {', '.join(outside)}")
     notes += _partial_overlaps(samples, measured, duration, lag)
     notes += _coarse_sampling(simulation, samples)
     notes += _initial_values(simulation, samples, residuals, lag)
@@ -275,7 +275,7 @@ def inside(
     if not common:
         have = ", ".join(measured.channels) or "none"
         known = ", ".join(name for name in SIGNALS.values() if name in signals)
-        message = f"none of its channels is simulated ({have})"
+        message = f"none of the record's channels is simulated ({have})"
         raise measured.fault(message, shown(f"give some of {known}", 200))
     samples = {}
     for name, (t, y) in common.items():
@@ -297,8 +297,8 @@ def inside(
 class SimulatedSignal:
     """A simulated signal as a function of time: cubic between samples and split at jumps.
 
-    Beyond its ends the signal is constant. Its slopes come from the parabola through a sample and
-    its neighbours on the same side of a jump.
+    Beyond its ends the signal is constant. The cubics have at each sample the slope of the parabola
+    through it and its neighbours on the same side of a jump.
     """
 
     def __init__(self, time: Array, values: Array) -> None:
@@ -331,8 +331,8 @@ class SimulatedSignal:
 def beside(moment: Array, measured: Array, time: Array, values: Array) -> Array:
     """A simulated signal at measured samples.
 
-    Close to a jump, any value between those before and after the jump may apply. The value nearest
-    to the measured value is used.
+    Within half a sample of a jump, any value between those before and after the jump is possible,
+    so the value nearest to the measured value is used.
     """
     simulated = SimulatedSignal(time, values)(moment)
     half = 0.5 * float(np.median(np.diff(moment)))
@@ -360,10 +360,10 @@ def residual(time: Array, measured: Array, simulated: Array) -> ChannelResidual:
 def noise(values: Array) -> float:
     """Standard deviation of a sensor's noise, from differences of neighbouring samples.
 
-    Differences of order n have a variance of (2n)!/n!^2 times that of a sample. Their median size
-    is not affected by jumps, nor by a signal that is smooth over n + 1 samples. The smallest
-    estimate of the `ORDERS` is used. The resolution of a sensor counts as step/sqrt(12). The result
-    is at least `FINEST` of the span.
+    Differences of order n have a variance of (2n)!/n!^2 times that of a sample. Neither jumps nor a
+    signal that is smooth over n + 1 samples affect their median magnitude. Of the estimates for the
+    `ORDERS`, the smallest is used. The result is at least that of the sensor's resolution,
+    step/sqrt(12), and at least `FINEST` times the span.
 
     Parameters
     ----------
@@ -411,7 +411,7 @@ def _coarse_sampling(
     if simulated_step > WIDE * record_step:
         yield (
             f"the simulation is sampled every {1e3 * simulated_step:.3g} ms, but the record "
-            f"every {1e3 * record_step:.3g} ms, so peaks may be missed: state sample_time"
+            f"every {1e3 * record_step:.3g} ms, so peaks may be missed: state a shorter sample_time"
         )
 
 
@@ -421,7 +421,7 @@ def _initial_values(
     residuals: Mapping[str, ChannelResidual],
     lag: float,
 ) -> Iterator[str]:
-    """Messages on channels whose initial value differs from that of the scenario."""
+    """Messages on channels whose initial value differs from that in the scenario."""
     for name in STARTS:
         if name not in samples:
             continue
@@ -435,14 +435,15 @@ def _initial_values(
             quantity = simulation.told[name].quantity
             yield (
                 f"{name} starts at {quantity.text(float(y[0]))} in the record, but at "
-                f"{quantity.text(initial)} in the scenario: state initial.{name}"
+                f"{quantity.text(initial)} in the scenario: "
+                f"state the starting value as initial.{name}"
             )
 
 
 def _implausible(
     simulation: Simulation, samples: Mapping[str, tuple[Array, Array]]
 ) -> Iterator[str]:
-    """Messages on implausible positions and pressures, which suggest a wrong unit or zero point."""
+    """Messages on implausible positions or pressures, which suggest a wrong unit or zero point."""
     plant = simulation.plant
     for name, low, high, limit_name in (
         ("position", 0.0, plant.stroke, "the stroke"),
@@ -457,5 +458,5 @@ def _implausible(
             text = simulation.told[name].quantity.text
             yield (
                 f"{name} ranges from {text(least)} to {text(most)} in the record, but "
-                f"{limit_name} is {text(high)}: check its unit and zero"
+                f"{limit_name} is {text(high)}: check its unit and zero point"
             )

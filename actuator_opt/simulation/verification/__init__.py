@@ -1,4 +1,4 @@
-"""Verification of dynamic requirements by separate experiments in time."""
+"""Verify dynamic requirements by small simulated experiments, one for each requirement."""
 
 from .verify import DYNAMIC, Verification, VerifiedRequirement, verify
 

@@ -1,9 +1,10 @@
-"""Small simulated experiments that measure what the linear models ('linear tier') predict.
+"""Small simulated experiments that measure the quantities that linear models predict.
 
-A test stand holds the design at a position under a constant force. Plant, friction, valve, supply
-and end stops are those of the scenario; each experiment adds its own excitation and control loop.
-Amplitudes are small compared with stroke, signal and pressure. Every result states its amplitude,
-because friction makes results depend on it.
+The linear models of a design are called its 'linear tier'. In the simulation, a test stand holds
+the design at a position under a constant force. Plant, friction, valve, supply and end stops are
+those of the scenario; each experiment adds its own excitation and control loop. Amplitudes are
+small compared with the stroke, the full valve signal and the supply pressure. Every result states
+its amplitude, because friction makes results depend on it.
 """
 
 from __future__ import annotations
@@ -38,11 +39,13 @@ from ..harmonic import dynamic_stiffness_of_record, harmonic_fit
 from ..integrate import integrate
 
 RELATIVE = 1e-7
-"""Relative tolerance of an integration step at full amplitude; it falls with the amplitude."""
+"""Relative tolerance of an integration step at full amplitude; smaller amplitudes have a smaller
+tolerance."""
 FINEST = 1e-9
 """Smallest relative tolerance of an integration step: 0.1 nm for a position of 100 mm."""
 SETTLED = 3.0
-"""Time until a loop is at rest, in periods of its bandwidth (our choice: e^(-6 pi) remains)."""
+"""Time until a loop is at rest, in periods at its bandwidth frequency (our choice: a share of e^(-6
+pi) of the motion then remains)."""
 
 
 @dataclass(slots=True)
@@ -61,7 +64,7 @@ class RunRecord:
     last: Mapping[str, float]
 
     def within(self, begin: float, end: float = inf) -> RunRecord:
-        """Samples between two times; of two samples at the same time, only the later is kept."""
+        """Samples between two times, without the first of two samples at the same time."""
         later = np.append(np.diff(self.time) > 0, True)
         chosen = (self.time >= begin) & (self.time <= end) & later
         signals = {name: values[chosen] for name, values in self.signals.items()}
@@ -70,10 +73,10 @@ class RunRecord:
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """Facts from a simulation that explain a difference between linear and measured values."""
+    """Observations in a simulation that help to explain how it differs from the linear models."""
 
     swing: float
-    """Amplitude of the position without drift [m]."""
+    """Amplitude of the position about a straight drift [m]."""
     travel: float
     """Bristle travel before the seals slip [m]; 0 without sticking friction."""
     saturated: float
@@ -92,7 +95,7 @@ class Facts:
 
 @dataclass(frozen=True, slots=True)
 class ExperimentResult:
-    """Results of an experiment; a missing result is None, and `why` gives the reason."""
+    """Results of an experiment; a missing result is None, and `why` states the reason."""
 
     values: Mapping[str, float | None]
     how: str
@@ -102,7 +105,7 @@ class ExperimentResult:
 
 @dataclass(frozen=True, slots=True)
 class Stand:
-    """A plant held at a position, with chamber pressures that balance a constant force."""
+    """A plant held at a position; a constant external force balances its chamber pressures."""
 
     plant: Plant
     scenario: Scenario
@@ -116,10 +119,10 @@ class Stand:
     bandwidth: float = 1.0
     """Expected bandwidth of the loop, which determines how long it takes to come to rest [Hz]."""
     scale: float = 1.0
-    """Factor on all amplitudes."""
+    """Factor on the amplitudes of all experiments."""
     tally: RunCounter = field(default_factory=RunCounter)
     rest_states: dict[str, float] = field(default_factory=dict)
-    """Equilibrium states of the loop; empty until they are computed."""
+    """States of the closed loop at rest, by name; empty until they are computed."""
 
     def with_changes(self, **changes: Any) -> Stand:
         """Copy the stand with some changes; its equilibrium is computed again when needed."""
@@ -159,11 +162,11 @@ class Stand:
         Parameters
         ----------
         duration, sample_time : [s]
-        gain : of a proportional position loop [V/m]; None for no loop
-        ends : kind of the lines' far ends; None for the valve
+        gain : gain of a proportional position loop [V/m]; None for no loop
+        ends : component at the far ends of the lines; None for the valve
         signal : constant valve signal if there is no loop [V]
-        reference : relative to the position of the stand
-        force : added to the force that balances the pressures
+        reference : reference signal of the loop, relative to the position of the stand
+        force : force in addition to the force that balances the pressures
         start : initial states by name, in place of those of the stand
         """
         self.tally.runs += 1
@@ -220,12 +223,11 @@ class Stand:
         return self.rest()["spool"] - self.plant.valve.offset
 
     def rest(self) -> Mapping[str, float]:
-        """States at rest with the loop holding the force at the stand's position.
+        """States at rest, when the loop holds the plant at the stand's position; computed once.
 
-        Computed only once.
-
-        The valve must supply its own leakage and the piston's, which causes a position error. A
-        first simulation, at mid-stroke, measures this error; a second compensates it.
+        To supply the leakage of valve and piston, the spool must be off its centre, which causes a
+        position error. A first simulation, at mid-stroke, measures this error; a second compensates
+        it.
         """
         if not self.rest_states:
             duration = SETTLED / self.bandwidth * self.gain / self.steady_gain
@@ -246,9 +248,9 @@ class Stand:
     def held(
         self, *, ends: str, duration: float, sample_time: float, force: Sequence[ForceSignal] = ()
     ) -> RunRecord:
-        """Simulate with fixed kinds of far ends and no loop.
+        """Simulate without a control loop, with a given component at the far ends of the lines.
 
-        A valve keeps the signal that held the force.
+        If this is the valve, its signal stays constant at the value at rest.
         """
         if ends != "valve" or not self.steady_gain:
             return self.run(duration=duration, sample_time=sample_time, ends=ends, force=force)
@@ -272,7 +274,7 @@ class Stand:
     ) -> RunRecord:
         """Simulate the closed loop from rest.
 
-        Shift the reference so that the signal does not jump.
+        The reference is shifted so that the valve signal does not jump at the start.
         """
         state = self.rest()
         shift = state["position"] + state["spool"] / gain - self.position
@@ -287,7 +289,7 @@ class Stand:
         )
 
     def facts(self, record: RunRecord) -> Facts:
-        """Collect facts from a simulation that explain a difference from the linear values."""
+        """Collect observations that help to explain a difference from the linear models."""
         t, signals = record.time, record.signals
         position = signals["position"]
         straight = np.polynomial.polynomial.polyfit(t - t[0], position, 1)
@@ -324,82 +326,87 @@ small)."""
 SAMPLES = 40
 """Samples per period of an oscillation."""
 FITTED = 4.0
-"""Number of periods of a sine that are fitted together."""
+"""Number of periods of a sine that one fit of amplitude and phase covers."""
 STEADY = 0.01
-"""Relative change of the open loop between two fits below which the sine counts as steady (our
-choice)."""
+"""A sinusoidal response counts as steady if the open loop changes by less than this share between
+two successive fits (our choice)."""
 LONGEST = 100.0
-"""Number of periods after which a sine is evaluated even if it is not steady."""
+"""Number of periods after which a sinusoidal response is evaluated even if it is not steady."""
 HALF = 1 / sqrt(2)
-"""Amplitude ratio at -3 dB."""
+"""Amplitude ratio at -3 dB, which defines the bandwidth."""
 EXACT = 2e-3
-"""Relative tolerance of a search, such as that for the bandwidth."""
+"""Relative tolerance of the searches, such as for the bandwidth."""
 MOST = 16.0
-"""Largest factor between a linear value and the nonlinear value that is searched for (our
+"""The nonlinear value is searched for up to this factor above and below the linear value (our
 choice)."""
 LASTING = 1e-3
 """Relative decay per period below which an oscillation counts as sustained (our choice)."""
 FIRST, EARLY, LATE = (0.0, 4.0), (8.0, 12.0), (18.0, 22.0)
-"""Windows after a force step, in periods; their amplitudes are compared for growth or decay."""
+"""Time windows after a force pulse, in periods of the oscillation. Their amplitudes are compared to
+see whether the oscillation grows or decays."""
 UNEVEN = 2.0
-"""Ratio of half-period lengths above which a motion does not count as a decaying oscillation (our
-choice)."""
+"""Ratio of the longest to the shortest half period above which a motion does not count as a
+decaying oscillation (our choice)."""
 FADED = 0.01
-"""Amplitude below which a decay is not evaluated further, as a share of the first (our choice)."""
-SWINGS = 8.0
-"""Number of periods over which a decay is evaluated (our choice: leakage shifts closed chambers if
-it takes longer)."""
-RINGING = 20.0
-"""Number of periods after which the oscillation of a resonance has died out (our choice)."""
-SHAPED = 0.6
-"""Frequency, relative to the resonance, up to which a force is applied in several parts (our
+"""Share of the first amplitude below which a decaying oscillation is not evaluated further (our
 choice)."""
+SWINGS = 8.0
+"""Number of periods over which a decaying oscillation is simulated (our choice: over a longer time,
+leakage would shift the piston between closed chambers)."""
+RINGING = 20.0
+"""Number of periods after which a resonant transient counts as died out (our choice)."""
+SHAPED = 0.6
+"""Ratio of excitation to resonance frequency up to which a sinusoidal force starts in three parts
+(our choice)."""
 BESIDE = (0.7, 1.0, 1.4)
-"""Factors on a linear crossover frequency, between which the nonlinear crossover is searched
-for."""
+"""Factors on a crossover frequency of the linear models. The nonlinear crossover is searched for
+between the resulting frequencies."""
 SLIDING = (0.9, 1.0, 1.1)
 STICKING = (0.8, 0.9, 1.0, 1.1, 1.22, 1.35, 1.5)
-"""Factors on a resonance frequency that are searched for crossovers. Sticking seals raise the
+"""Factors on a resonance frequency of the linear models, for seals that slide and for seals that
+stick. Crossovers are searched for between the resulting frequencies. Sticking seals raise the
 resonance, because their bristles add stiffness."""
-HOW_PHASE = "position over error of the closed loop, at unit gain"
+HOW_PHASE = "position divided by error in the closed loop, where this ratio is 1"
 Loop = Callable[[float], complex]
 """Open loop of the linear models as a function of frequency [Hz], including the controller gain."""
 
 
 class Sine(NamedTuple):
-    """Complex amplitude ratios at the excitation frequency, measured in a closed loop."""
+    """Response to a sinusoidal reference: complex amplitude ratios measured in a closed loop."""
 
     closed: complex
     """Position divided by reference."""
     opened: complex
     """Position divided by control error: the describing function of the open loop."""
     distortion: float
-    """Residual of the position, relative to its amplitude at the excitation frequency."""
+    """Part of the position that is not sinusoidal, relative to its amplitude at the excitation
+    frequency."""
     record: RunRecord
 
 
 def _inset(stand: Stand, clearance: float) -> Stand:
-    """The stand, moved so that it has a clearance to both ends of the stroke."""
+    """The stand, moved so that the piston has a clearance to both ends of the stroke."""
     clearance = min(clearance, 0.45 * stand.plant.stroke)
     place = min(max(stand.position, clearance), stand.plant.stroke - clearance)
     return stand if place == stand.position else stand.with_changes(position=place)
 
 
 def placed(stand: Stand) -> Stand:
-    """The stand, moved away from the stroke ends by the amplitude of the experiments."""
+    """The stand, moved so far from the stroke ends that the experiments do not reach them."""
     return _inset(stand, 1.5 * STROKE_SHARE * stand.plant.stroke * stand.scale)
 
 
 def held_place(stand: Stand) -> Stand:
-    """The stand, moved off the stroke ends by the creep of a held piston (2 % of the stroke)."""
+    """The stand, moved 2 % of the stroke from its ends, as a held piston may creep."""
     return _inset(stand, 0.02 * stand.plant.stroke)
 
 
 def amplitude(stand: Stand, frequency: float, opened: complex) -> float:
     """Amplitude of a reference [m]; `opened` is the open loop that the linear models predict.
 
-    The amplitude is 5 % of the stroke or less. The expected error may use half the valve's signal,
-    the expected inertia force a tenth of the supply pressure.
+    The amplitude is 5 % of the stroke or less. It is also limited so that the expected control
+    error uses at most half the valve's full signal, and the expected inertia force at most a tenth
+    of the supply pressure.
     """
     plant = stand.plant
     assert plant.valve is not None
@@ -412,9 +419,9 @@ def amplitude(stand: Stand, frequency: float, opened: complex) -> float:
 
 
 def sine(stand: Stand, frequency: float, size: float, cycles: float) -> Sine:
-    """Simulate the loop following a sine.
+    """Simulate the closed loop with a sinusoidal reference.
 
-    Evaluate it after some cycles, later if it is not steady yet.
+    The response is evaluated after `cycles` periods, or later if it is not steady by then.
     """
     part = PositionSignal(shape="sine", value=size, frequency=frequency)
     while True:
@@ -476,9 +483,9 @@ def _no_sine(response: Sine) -> str:
 
 
 def _root(function: Callable[[float], float], slope: float) -> float | None:
-    """Zero of a function of a logarithmic ratio, by secant steps of up to 0.5 from 0.
+    """Zero of a function of a logarithmic ratio, by secant steps of at most 0.5 from 0.
 
-    Returns None if ten steps do not converge.
+    None if ten steps do not converge.
     """
     x, y = 0.0, function(0.0)
     for _ in range(10):
@@ -497,12 +504,12 @@ def _root(function: Callable[[float], float], slope: float) -> float | None:
 def phase_margin(
     stand: Stand, crossovers: Sequence[float], resonances: Sequence[float], loop: Loop
 ) -> ExperimentResult:
-    """Smallest phase margin at the crossovers, from error and position in the closed loop.
+    """Smallest phase margin, from control error and position in the closed loop.
 
-    L is the position divided by the control error, both at the excitation frequency. Where |L| is
-    one, the margin is |pi + arg L|. The loop stays closed, so friction and saturation act as in
-    service. Crossovers are searched for near the linear crossovers and near the resonances, which
-    sticking seals raise.
+    L is the complex amplitude of the position divided by that of the control error. At a crossover,
+    where |L| is one, the margin is |pi + arg L|. The loop stays closed, so friction and saturation
+    act as in service. Crossovers are searched for near the crossovers of the linear models and near
+    the resonances, which sticking seals raise.
     """
     from scipy.optimize import brentq
 
@@ -543,9 +550,9 @@ def phase_margin(
 
 
 def ultimate_gain(stand: Stand, expected: float, frequency: float) -> ExperimentResult:
-    """Gain above which oscillations after a force step persist.
+    """Gain above which the oscillation after a force pulse persists.
 
-    The search starts at the linear value.
+    The search starts at the value of the linear models.
     """
     from scipy.optimize import brentq
 
@@ -566,9 +573,9 @@ def ultimate_gain(stand: Stand, expected: float, frequency: float) -> Experiment
     facts = stand.facts(records[high])
     if (value < 0) == (direction > 0):
         result = {"ultimate_gain": inf if direction > 0 else 0.0}
-        why = f"no oscillation up to {MOST:g} times the linear ultimate gain"
+        why = f"no sustained oscillation up to {MOST:g} times the linear ultimate gain"
         if direction < 0:
-            why = f"it oscillates even at 1/{MOST:g} of the linear ultimate gain"
+            why = f"the loop oscillates even at 1/{MOST:g} of the linear ultimate gain"
         return ExperimentResult(result, how, facts, why)
     share = float(brentq(growth, low, high, xtol=2 * EXACT))
     nearest = min(records, key=lambda candidate: abs(candidate - share))
@@ -578,10 +585,10 @@ def ultimate_gain(stand: Stand, expected: float, frequency: float) -> Experiment
 
 
 def _growth(stand: Stand, gain: float, frequency: float, push: float) -> tuple[float, RunRecord]:
-    """Growth of the speed oscillation per period, and the signals of its early window.
+    """Logarithmic growth of the speed oscillation per period, and the signals in window `EARLY`.
 
-    An oscillation that is larger at the end than just after the force step counts as sustained,
-    even if it is irregular.
+    An oscillation that is larger at the end than just after the force pulse counts as growing, even
+    if it is irregular.
     """
     period = 1 / frequency
     record = stand.closed(
@@ -603,8 +610,8 @@ def dynamic_stiffness(
 ) -> ExperimentResult:
     """Stiffness against a sinusoidal force on the rod, without a control loop.
 
-    Below the resonance the force starts in three parts (1/4, 1/2, 1/4 of it), half a resonance
-    period apart. Their transients then cancel.
+    Well below the resonance, the force starts in three parts (1/4, 1/2 and 1/4 of its amplitude),
+    half a resonance period apart, so that their transients cancel.
     """
     settle, cycles, wait = RINGING / resonance, 10.0, 0.5 / resonance
     shares = (0.25, 0.5, 0.25) if frequency < SHAPED * resonance else (1.0,)
@@ -640,9 +647,9 @@ def dynamic_stiffness(
 def decay(stand: Stand, ends: str, resonance: float) -> ExperimentResult:
     """Natural frequency and damping ratio after a step of force, without a control loop.
 
-    D_i are the differences between successive extremes of the speed, n is their number down to a
-    hundredth of the first. The damping ratio zeta follows from the logarithmic decrement
-    ln(D_0/D_n)/n per half period. The natural frequency is f = f_d/sqrt(1 - zeta^2), with the
+    D_0, D_1, ... are the differences between successive extremes of the speed, and D_n is the last
+    that exceeds a hundredth of D_0. The damping ratio zeta follows from the logarithmic decrement
+    per half period, ln(D_0/D_n)/n. The natural frequency is f = f_d/sqrt(1 - zeta^2), with the
     measured frequency f_d.
     """
     push = FORCE_SHARE * stand.full_force * stand.scale
@@ -666,7 +673,7 @@ def decay(stand: Stand, ends: str, resonance: float) -> ExperimentResult:
         return ExperimentResult(dict.fromkeys(names), how, facts, why)
     halves = np.diff(times[: count + 1])
     if np.max(halves) > UNEVEN * np.min(halves):
-        why = "stick-slip: half periods of uneven length, no decay"
+        why = "stick-slip: the half periods differ in length, so this is no decaying oscillation"
         return ExperimentResult(dict.fromkeys(names), how, facts, why)
     decrement = log(spans[0] / spans[count - 1]) / (count - 1)
     ratio = decrement / sqrt(pi * pi + decrement * decrement)
@@ -677,7 +684,7 @@ def decay(stand: Stand, ends: str, resonance: float) -> ExperimentResult:
 
 
 def _extremes(time: Array, values: Array) -> tuple[Array, Array]:
-    """Times and values of the extremes, from parabolas through three samples each."""
+    """Times and values of the extremes, each from a parabola through three samples."""
     rising = np.diff(values) > 0
     at = np.flatnonzero(rising[1:] != rising[:-1]) + 1
     before, peak, after = values[at - 1], values[at], values[at + 1]
@@ -689,12 +696,14 @@ def _extremes(time: Array, values: Array) -> tuple[Array, Array]:
 
 WEAKEST = "weakest position"
 STEADY_STEP = 0.4
-"""Gain, relative to the ultimate gain, that is used to bring an oscillating loop to rest (our
-choice)."""
+"""Gain with which a loop that would oscillate is brought to rest, relative to the ultimate gain
+(our choice)."""
 SLOW = 0.05
-"""Bandwidth assumed for a loop of unknown bandwidth, relative to the resonance (our choice)."""
+"""Bandwidth assumed for a loop if it is unknown, relative to the resonance frequency (our
+choice)."""
 PEAK = 0.5
-"""Magnitude of the open loop above which a resonance may cause a crossover (our choice)."""
+"""Magnitude of the open loop above which a resonance peak is searched for a crossover (our
+choice)."""
 
 
 class Spot(NamedTuple):
@@ -719,7 +728,7 @@ class LoopFigures(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class LinearTier:
-    """The linear model of a design, at any position of the stroke."""
+    """Linear models of a design, for any load case and any position of the piston."""
 
     subject: PreparedDesign
     done: ModelRun
@@ -730,7 +739,7 @@ class LinearTier:
         return cls(subject, compute(subject, subject.values()))
 
     def spot(self, row: Requirement) -> Spot:
-        """The load case and position at which a requirement has its worst value."""
+        """Load case, position and spool direction at which a requirement has its worst value."""
         cases = self.subject.cases
         case = cases.index(row.case) if row.case in cases else 0
         place = row.place or WEAKEST
@@ -743,7 +752,7 @@ class LinearTier:
         return Spot(case, of_case(position, case), extending, ", ".join(filter(None, parts)))
 
     def plant(self, case: int) -> Plant:
-        """The plant with the oil of a load case."""
+        """The plant with the oil and the temperature of a load case."""
         subject = self.subject
         order = [case, *(k for k in range(len(subject.cases)) if k != case)]
         cases = tuple(subject.design.load_cases[k] for k in order)
@@ -754,7 +763,7 @@ class LinearTier:
         return plant(replace(subject, design=design, films=films))
 
     def stand(self, scenario: Scenario, spot: Spot, tally: RunCounter, scale: float) -> Stand:
-        """The design on a test stand at a worst-case point, with pressures of the load case."""
+        """The design on a test stand at its worst point, with the pressures of the load case."""
         actuator = self.plant(spot.case)
         state = self.done.state
         stand = Stand(
@@ -785,7 +794,7 @@ class LinearTier:
         return of_case(self.done.computed.metrics["position_gain"][""], case)
 
     def figures(self, case: int, position: float, extending: bool) -> LoopFigures:
-        """Metrics of the position loop; the margins are those at the design's gain."""
+        """Metrics of the position loop; margin and bandwidth are those at the design's gain."""
         open_loop, gain = self._open_loop(position, extending), self._gain(case)
         limit = loop.ultimate_gain(loop=open_loop)
         margins = loop.margins(loop=open_loop, gain=gain)
@@ -817,7 +826,7 @@ class LinearTier:
     def crossings(
         self, case: int, position: float, extending: bool
     ) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Crossovers and resonances of the open loop [Hz]."""
+        """Crossover and resonance frequencies of the open loop [Hz]."""
         figures = self.figures(case, position, extending)
         resonance = self.resonance(case, position)
         low = 0.2 * min(figures.bandwidth or resonance, resonance)
@@ -833,7 +842,7 @@ class LinearTier:
         return of_case(self.done.motion.closed_frequency(np.array([[position]])), case)
 
     def held(self, case: int, position: float) -> dict[str, float]:
-        """Natural oscillation and dynamic stiffness of the actuator, without its position loop."""
+        """Natural frequency, damping and dynamic stiffness, without the position loop."""
         place = np.array([[position]])
         motion = self.done.motion
         model = motion.model(place)
@@ -864,19 +873,20 @@ class LinearTier:
         return of_case(state.holding_a, case), of_case(state.holding_b, case)
 
     def unsimulated(self) -> str:
-        """Text that names the parts of the design that no experiment covers.
+        """Reason why experiments cannot represent this design.
 
-        Empty if there are none.
+        Empty if they can.
         """
         if self.subject.design.ports.accumulators:
-            return "accumulators at the ports are not simulated"
+            return "accumulators at the ports are not simulated, so no experiment is possible"
         return ""
 
 
 MANY = 9.0
-"""Relative change above which it is reported as a factor instead of per cent (our choice)."""
+"""Relative changes above this are reported as a factor instead of in per cent (our choice)."""
 STILL = 0.01
-"""Motion of the spool, as a share of its opening, up to which it counts as still (our choice)."""
+"""Motion of the spool, relative to its largest opening, up to which it counts as still (our
+choice)."""
 
 
 def relative_difference(value: float | None, other: float | None) -> float | None:
@@ -906,20 +916,22 @@ def relative_change(share: float) -> str:
 
 
 def evidence(facts: Facts | None, cause: str) -> str:
-    """Evidence, as text, that friction or the size of the oscillation causes a difference."""
+    """Evidence, as text, that friction or a large amplitude causes a difference."""
     if facts is None:
         return "no record"
     if cause == "friction":
         return _seals(facts)
     words = []
     if facts.saturated > 0:
-        words.append(f"the signal is at its limit {100 * facts.saturated:.0f} % of the time")
+        words.append(f"the valve signal is at its limit {100 * facts.saturated:.0f} % of the time")
     if facts.lowest < 0:
-        words.append(f"a chamber falls to {1e-5 * facts.lowest:.2g} bar")
+        words.append(f"the pressure in a chamber falls to {1e-5 * facts.lowest:.2g} bar")
     low, high = (0.0, 0.0) if facts.spool is None else facts.spool
     if high - low > STILL * max(abs(low), abs(high)):
         words.append(f"the spool oscillates between {low:.2g} and {high:.2g} V")
-    return "; ".join(words) or f"the pressure in A oscillates by {1e-5 * facts.pulse:.2g} bar"
+    return "; ".join(words) or (
+        f"the pressure in chamber A oscillates by +-{1e-5 * facts.pulse:.2g} bar"
+    )
 
 
 def _seals(facts: Facts) -> str:

@@ -1,10 +1,11 @@
-"""Verification of dynamic requirements by simulation, with the error of the linear models.
+"""Verify dynamic requirements by simulation, and determine the error of the linear models.
 
-The requirements of a design are evaluated with linear models (the 'linear tier'). Here each dynamic
-requirement is measured in its own small simulated experiment, where the linear value is worst. It
-uses the scenario's equations. If measured and linear values differ, the experiment is repeated
-without sticking friction, then also with small amplitudes. The change by each step shows how much
-friction and amplitude contribute; the rest is due to the operating point.
+The requirements of a design are evaluated with linear models (the 'linear tier'). Here the metric
+of each dynamic requirement is measured in its own small simulated experiment, with the equations of
+the scenario, at the point where the linear value is worst. If measured and linear values differ,
+the experiment is repeated without sticking friction, and then with small amplitudes in addition.
+The two changes show how much friction and amplitude contribute to the difference; the rest is due
+to the operating point.
 """
 
 from __future__ import annotations
@@ -46,9 +47,10 @@ HELD = ("dynamic_stiffness", "dynamic_phase", "damping_ratio", "natural_frequenc
 DYNAMIC: Final = (*LOOPS, *HELD)
 """Metrics of a design that an experiment can measure."""
 SMALL = 0.02
-"""Amplitude that counts as small, relative to that of the normal experiment (our choice)."""
+"""Factor on the amplitude of an experiment that is repeated with a small amplitude (our choice)."""
 AGREE = 0.02
-"""Relative difference between both tiers up to which no reason is given (our choice)."""
+"""Relative difference between linear and measured value up to which they count as equal and no
+cause is given (our choice)."""
 CENTRED = 1e-3
 """Distance from its centre, as a share of the full signal, within which a spool counts as centred
 (our choice)."""
@@ -65,7 +67,7 @@ class VerifiedRequirement:
     sense: str
     limit: float
     stated: float | None
-    """Value of the evaluation: the worst value of the linear models."""
+    """Value in the evaluation of the design, which is the worst value of the linear models."""
     linear: float | None
     """Value of the linear models at the experiment's position and spool direction."""
     value: float | None
@@ -79,12 +81,12 @@ class VerifiedRequirement:
     why: str = ""
     """Cause of the difference, or the reason why a value is missing."""
     shares: Mapping[str, float] = field(default_factory=dict)
-    """Relative changes of the value due to friction, amplitude and operating point."""
+    """Relative changes of the value, each due to friction, amplitude or operating point."""
 
 
 @dataclass(frozen=True, slots=True)
 class Verification(Displayed):
-    """All requirements of a design and of a scenario, verified by simulation."""
+    """All dynamic requirements of a design and all of a scenario, verified by simulation."""
 
     name: str
     rows: tuple[VerifiedRequirement, ...]
@@ -136,7 +138,7 @@ def verify(
     scenario : inputs over time; the experiments use its friction, supply, stops and rate limit
     subject : the design to verify, such as an optimum
     records : columns of the files that the scenario's signals name
-    result : the scenario already simulated with this design
+    result : simulation of the scenario with this design, if it already exists
     scale : factor on the amplitudes of all experiments
 
     Raises
@@ -178,7 +180,7 @@ def verify(
 def _notes(scenario: Scenario, any_requirement: bool) -> tuple[str, ...]:
     if not any_requirement:
         return ("the design has no dynamic requirement",)
-    notes = ["each experiment is simulated only at the point where the linear model is worst"]
+    notes = ["each requirement is simulated only at the point where the linear model is worst"]
     control = scenario.control
     own_controller = control is not None and (
         loop_of(control) != "position"
@@ -187,13 +189,14 @@ def _notes(scenario: Scenario, any_requirement: bool) -> tuple[str, ...]:
     )
     if own_controller:
         notes.append(
-            "the scenario has its own controller, but requirements of the design refer to its "
-            "proportional position loop"
+            "the scenario has its own controller, but requirements of the design refer to the "
+            "proportional position loop of the design"
         )
     omitted = _left_out(scenario.load)
     if omitted:
         notes.append(
-            f"the experiments load the rod with a constant force; they leave out {omitted}"
+            f"the experiments load the rod with a constant force; they leave out these "
+            f"parts of the load: {omitted}"
         )
     return tuple(notes)
 
@@ -223,7 +226,7 @@ class _Bench:
     made: dict[tuple[str, Spot, bool, bool], ExperimentResult] = field(default_factory=dict)
 
     def row(self, requirement: Requirement) -> VerifiedRequirement:
-        """Compare one requirement of the design with the linear value and the measured value."""
+        """Compare the linear and the measured value for one requirement of the design."""
         spot = self.tier.spot(requirement)
         why = self._impossible(requirement.metric, spot)
         full = ExperimentResult({}, "", why=why) if why else self.measured(requirement.metric, spot)
@@ -271,7 +274,7 @@ class _Bench:
         ):
             return []
         return [
-            "met only because of friction; without friction the value is "
+            "met only because of seal friction; without it, the value is "
             f"{METRICS[requirement.metric].text(frictionless)}"
         ]
 
@@ -356,7 +359,7 @@ class _Bench:
     def _way(self, spot: Spot, stand: Stand) -> bool:
         """Whether the spool rests on the extending side.
 
-        A centred spool counts as in the linear models.
+        For a centred spool, this is the side on which the linear models have their worst value.
         """
         assert stand.plant.valve is not None
         if abs(stand.opening) < CENTRED * stand.plant.valve.signal:
@@ -374,8 +377,8 @@ class _Bench:
     def _reasons(
         self, metric: str, spot: Spot, full: ExperimentResult
     ) -> tuple[dict[str, float], list[str]]:
-        """Shares of friction, amplitude and operating point in a difference, with evidence."""
-        steps = [("size of the swing", self.measured(metric, spot, frictionless=True, small=True))]
+        """Shares of friction, amplitude and operating point in the difference, with evidence."""
+        steps = [("amplitude", self.measured(metric, spot, frictionless=True, small=True))]
         if self.scenario.friction.model != "none":
             steps.insert(0, ("friction", self.measured(metric, spot, frictionless=True)))
         shares: dict[str, float] = {}
@@ -399,11 +402,11 @@ class _Bench:
         return shares, reasons
 
     def _compared(self, metric: str, spot: Spot) -> str:
-        """Text that states the point of comparison, if it is not the linear models' worst point."""
+        """Text that states the point of comparison, if it is not the worst linear point."""
         stand = self._placed(metric, spot)
-        words = f"compared at {1e3 * stand.position:.3g} mm"
+        words = f"compared at the position {1e3 * stand.position:.3g} mm"
         if metric in HELD:
-            return f"{words}, away from the stop"
+            return f"{words}, away from the end stop"
         direction = "extending" if self._way(spot, stand) else "retracting"
         return f"{words}, {direction}: the spool rests {stand.opening:.2g} V from its centre"
 
