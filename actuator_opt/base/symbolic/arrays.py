@@ -7,6 +7,7 @@ exact graph (`exact_graph`), so the recorded operations repeat those of NumPy, N
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Callable, Sequence
 from types import SimpleNamespace
 from typing import Any
@@ -240,10 +241,6 @@ def _extreme(*, largest: bool, keep_nan: bool) -> Callable[[Any, Any], Any]:
 
 _RAISED = _recorded("pow", np.power)
 _ABSOLUTE = _recorded("abs", np.absolute)
-
-
-def _sign(a: Any) -> Any:
-    return _recorded("sign", np.sign)(a)
 
 
 _ELEMENTS: dict[Any, Callable[..., Any]] = {
@@ -548,6 +545,25 @@ def elements(values: Any) -> list[Any]:
     return flat
 
 
+_QUICK: dict[str, Callable[..., Any]] = {
+    "add": operator.add,
+    "sub": operator.sub,
+    "mul": operator.mul,
+    "neg": operator.neg,
+    "lt": operator.lt,
+    "le": operator.le,
+    "eq": operator.eq,
+    "and": lambda a, b: bool(a and b),
+    "or": lambda a, b: bool(a or b),
+    "not": operator.not_,
+    "where": lambda condition, yes, no: yes if condition else no,
+    "real": operator.pos,
+    "abs": abs,
+    "isnan": lambda a: a != a,
+}
+"""Operations on Python numbers that equal those of NumPy, many times faster."""
+
+
 class Trace:
     """A graph that records a model exactly, at a point that decides its branches.
 
@@ -575,8 +591,13 @@ class Trace:
         if not isinstance(symbol, Symbol):
             return symbol
         for node in needed([symbol], self._known):
+            if node.op not in OPERATIONS:
+                raise TypeError("a branch that depends on the roots of a polynomial")
             operands = [self._known[a] if isinstance(a, Symbol) else a for a in node.args]
-            self._known[node] = _of_numbers(OPERATIONS[node.op], *operands)
+            quick = _QUICK.get(node.op)
+            self._known[node] = (
+                _of_numbers(OPERATIONS[node.op], *operands) if quick is None else quick(*operands)
+            )
         return self._known[symbol]
 
     def decide(self, symbol: Symbol) -> bool:

@@ -232,8 +232,8 @@ class Graph:
         """Node of an operation, without simplification; -0 and 0 are different operands."""
         key = (op, *args)
         for a in args:
-            if a == 0.0 and math.copysign(1.0, a) < 0:
-                key = (op, *("-0" if a == 0.0 and math.copysign(1.0, a) < 0 else a for a in args))
+            if type(a) is float and a == 0.0 and math.copysign(1.0, a) < 0:
+                key = (op, *map(str, args))  # texts of symbols and numbers tell -0 from 0
                 break
         symbol = self.known.get(key)
         if symbol is None:
@@ -257,7 +257,7 @@ class Symbol:
     ) -> None:
         self.graph, self.op, self.args, self.index = graph, op, args, index
         self.bounds = limits
-        self.operands = tuple(a for a in args if isinstance(a, Symbol))
+        self.operands = tuple([a for a in args if isinstance(a, Symbol)])
 
     def __array_namespace__(self, **_: Any) -> Any:
         return Namespace

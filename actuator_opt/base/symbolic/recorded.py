@@ -7,6 +7,7 @@ through the function itself. The recording is checked against the function befor
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -147,20 +148,29 @@ class RecordedFunction:
             self.reason = "its branches differ between designs"
             return
         self.recordings += 1
-        trace = Trace()
+        collecting = gc.isenabled()
+        gc.disable()  # a recording makes many small objects, none of which can be freed
         try:
-            with np.errstate(all="ignore"):
-                symbols = trace.variables(self.names, point)
-                results = elements(self.function(symbols))
+            recording = self._traced(point)
         except Exception as error:  # any model may meet an operation that is not recorded
             self.reason = f"a model cannot be recorded ({error})"
             return
-        written = programs.program(elements(symbols), [*results, *trace.guards])
-        recording = Recording(written, np.array(list(trace.guards.values()), dtype=bool))
+        finally:
+            if collecting:
+                gc.enable()
         if self._agrees(recording, point):
             self.recording = recording
         else:
             self.reason = "the recording differs from the models"
+
+    def _traced(self, point: Array) -> Recording:
+        """The program of the function, with the branches taken at a point (inputs,)."""
+        trace = Trace()
+        with np.errstate(all="ignore"):
+            symbols = trace.variables(self.names, point)
+            results = elements(self.function(symbols))
+        written = programs.program(elements(symbols), [*results, *trace.guards])
+        return Recording(written, np.array(list(trace.guards.values()), dtype=bool))
 
     def _agrees(self, recording: Recording, point: Array) -> bool:
         """Whether the recording equals the function at a point and at one nearby."""
