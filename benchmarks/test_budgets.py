@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 import actuator_opt as ao
+from actuator_opt.base.numeric import STEP
 from actuator_opt.design import read_design
 from actuator_opt.evaluation import compute, prepare
 from actuator_opt.models.layered_tube import (
@@ -112,6 +113,29 @@ def test_optimise_with_report(benchmark, tmp_path):
     arguments = ("-m", "actuator_opt", "optimise", str(KNEE), "--out", str(tmp_path), "-q")
     took = benchmark.pedantic(cold, arguments, rounds=1)
     print(f"\noptimise with report: {took:.3f} s (budget 2 s)")
+
+
+@pytest.mark.parametrize(("name", "budget"), [("knee", 15), ("servo_knee", 8)])
+def test_recorded_models_against_numpy(benchmark, name, budget):
+    """Value and all gradients: NumPy takes at least `budget` times as long; measured in pairs."""
+    problem = build(prepare(read_design(KNEE.with_stem(name)).design))
+    assert problem.recorded is not None
+    x = problem.problem.start
+    points = x[:, None] + 1j * STEP * np.diag(x)
+    with np.errstate(all="ignore"):
+        while problem.recorded.recording is None and not problem.recorded.reason:
+            problem.evaluate(points)
+        pairs = [
+            (timeit.timeit(lambda: problem.evaluate(points), number=20),
+             timeit.timeit(lambda: problem._by_models(points, {}), number=20))
+            for _ in range(15)
+        ]  # fmt: skip
+    ratio = statistics.median(numpy / recorded for recorded, numpy in pairs)
+    benchmark.extra_info |= {"ratio": ratio, "budget": budget}
+    benchmark(lambda: problem.evaluate(points))
+    best = 50 * min(recorded for recorded, _ in pairs)
+    print(f"\n{name}: {best:.3f} ms; NumPy takes {ratio:.0f} times as long (budget {budget})")
+    assert ratio >= budget
 
 
 def test_evaluate_with_gradients(benchmark, knee):

@@ -315,7 +315,10 @@ def test_a_damaged_program_is_refused_or_harmless(data):
     for _ in range(data.draw(st.integers(1, 4))):
         array = data.draw(st.sampled_from([code, extra, outputs]))
         place = data.draw(st.integers(0, array.size - 1))
-        array.flat[place] = data.draw(st.integers(-(2**31), 2**31 - 1) | st.integers(-9, 40))
+        limits = np.iinfo(array.dtype)
+        least, most = int(limits.min), int(limits.max)
+        near = st.integers(max(least, -9), 40)
+        array.flat[place] = data.draw(st.integers(least, most) | near)
     broken = Program(code, extra, outputs, made.frozen, made.constants, made.slots, made.inputs)
     for attempt in (
         lambda: broken.values(np.ones((40, 4))),

@@ -22,9 +22,11 @@ enum { OPERATIONS(ENUM) OPERATION_COUNT };
 #define TEXT(name) #name,
 static const char *const NAMES[] = {OPERATIONS(TEXT)};
 
-/* An instruction is six integers: operation, flags, result, and up to three operands. */
-enum { WORDS = 6, LANES = 32, MOST_DEGREE = 32 };
+/* An instruction is five short words: operation and flags, result, and up to three operands. */
+enum { WORDS = 5, LANES = 32, MOST_DEGREE = 32 };
 /* Flags: which operands, and whether the result, have derivatives; operands without them. */
+#define OPERATION(at) ((at)[0] & 255)
+#define FLAGS(at) ((at)[0] >> 8)
 enum { FIRST = 1, SECOND = 2, THIRD = 4, RESULT = 8, FROZEN = 16 };
 
 #if defined(__GNUC__) && defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
@@ -180,10 +182,10 @@ static void roots(const double *p, int n, double *re, double *im) {
 static double sign_of(double a) { return a != a ? a : (a > 0) - (a < 0); }
 
 /* Compute the values of an instruction's result in L lanes. */
-INLINE void value_of(const int32_t *at, const int32_t *extra, double *V, const int L) {
-    double *R = V + (size_t)at[2] * L;
-    const double *A = V + (size_t)at[3] * L, *B = V + (size_t)at[4] * L;
-    switch (at[0]) {
+INLINE void value_of(const uint16_t *at, const int32_t *extra, double *V, const int L) {
+    double *R = V + (size_t)at[1] * L;
+    const double *A = V + (size_t)at[2] * L, *B = V + (size_t)at[3] * L;
+    switch (OPERATION(at)) {
         case OP_add: VALUES(a + b)
         case OP_sub: VALUES(a - b)
         case OP_mul: VALUES(a * b)
@@ -219,15 +221,15 @@ INLINE void value_of(const int32_t *at, const int32_t *extra, double *V, const i
         case OP_not: VALUE(a == 0)
         case OP_isnan: VALUE(a != a)
         case OP_where: {
-            const double *C = V + (size_t)at[5] * L;
+            const double *C = V + (size_t)at[4] * L;
             EACH { const double b = B[l], c = C[l]; R[l] = A[l] != 0 ? b : c; }
             break;
         }
         case OP_roots: { /* operands: place of the coefficients' slots in `extra`, and the degree */
-            const int n = at[4];
+            const int n = at[3];
             double p[MOST_DEGREE + 1], re[MOST_DEGREE], im[MOST_DEGREE];
             EACH {
-                for (int k = 0; k <= n; k++) p[k] = V[(size_t)extra[at[3] + k] * L + l];
+                for (int k = 0; k <= n; k++) p[k] = V[(size_t)extra[at[2] + k] * L + l];
                 roots(p, n, re, im);
                 for (int k = 0; k < n; k++) {
                     R[(size_t)k * L + l] = re[k];
@@ -240,13 +242,13 @@ INLINE void value_of(const int32_t *at, const int32_t *extra, double *V, const i
 }
 
 FAST static void run_single(
-    const int32_t *code, Py_ssize_t count, const int32_t *extra, double *V
+    const uint16_t *code, Py_ssize_t count, const int32_t *extra, double *V
 ) {
     for (Py_ssize_t k = 0; k < count; k++) value_of(code + WORDS * k, extra, V, 1);
 }
 
 FAST static void run_lanes(
-    const int32_t *code, Py_ssize_t count, const int32_t *extra, double *V
+    const uint16_t *code, Py_ssize_t count, const int32_t *extra, double *V
 ) {
     for (Py_ssize_t k = 0; k < count; k++) value_of(code + WORDS * k, extra, V, LANES);
 }
@@ -269,34 +271,51 @@ INLINE void combined(
 
 /* Compute the value and derivatives of every instruction's result, along T directions. */
 INLINE void dual(
-    const int32_t *code, Py_ssize_t count, const int32_t *extra, double *V, double *D, const int T
+    const uint16_t *code, Py_ssize_t count, const int32_t *extra, double *V, double *D, const int T
 ) {
     for (Py_ssize_t k = 0; k < count; k++) {
-        const int32_t *at = code + WORDS * k;
-        const int flags = at[1];
+        const uint16_t *at = code + WORDS * k;
+        const int flags = FLAGS(at);
         if (!(flags & RESULT)) {
             value_of(at, extra, V, 1);
             continue;
         }
-        const double a = V[at[3]], b = V[at[4]];
-        double *R = D + (size_t)at[2] * T;
-        const double *A = D + (size_t)at[3] * T, *B = D + (size_t)at[4] * T;
-        if (at[0] == OP_where) {
-            const int chosen = a != 0 ? at[4] : at[5];
-            V[at[2]] = V[chosen];
-            if (flags & (a != 0 ? SECOND : THIRD)) {
-                const double *C = D + (size_t)chosen * T;
-                ALONG R[t] = C[t];
-            } else ALONG R[t] = 0.0;
-            continue;
+        const double a = V[at[2]], b = V[at[3]];
+        double *R = D + (size_t)at[1] * T;
+        const double *A = D + (size_t)at[2] * T, *B = D + (size_t)at[3] * T;
+        switch (OPERATION(at)) { /* the most frequent operations first, in one step */
+            case OP_mul:
+                V[at[1]] = a * b;
+                combined(R, A, B, b, a, flags, T);
+                continue;
+            case OP_add:
+                V[at[1]] = a + b;
+                combined(R, A, B, 1.0, 1.0, flags, T);
+                continue;
+            case OP_sub:
+                V[at[1]] = a - b;
+                combined(R, A, B, 1.0, -1.0, flags, T);
+                continue;
+            case OP_div: {
+                const double r = a / b;
+                V[at[1]] = r;
+                combined(R, A, B, 1.0 / b, -r / b, flags, T);
+                continue;
+            }
+            case OP_where: {
+                const int chosen = a != 0 ? at[3] : at[4];
+                V[at[1]] = V[chosen];
+                if (flags & (a != 0 ? SECOND : THIRD)) {
+                    const double *C = D + (size_t)chosen * T;
+                    ALONG R[t] = C[t];
+                } else ALONG R[t] = 0.0;
+                continue;
+            }
+            default: break;
         }
         value_of(at, extra, V, 1);
-        const double r = V[at[2]];
-        switch (at[0]) {
-            case OP_add: combined(R, A, B, 1.0, 1.0, flags, T); break;
-            case OP_sub: combined(R, A, B, 1.0, -1.0, flags, T); break;
-            case OP_mul: combined(R, A, B, b, a, flags, T); break;
-            case OP_div: combined(R, A, B, 1.0 / b, -r / b, flags, T); break;
+        const double r = V[at[1]];
+        switch (OPERATION(at)) {
             case OP_pow:
                 combined(R, A, B, b * pow(a, b - 1.0), flags & SECOND ? r * log(a) : 0.0, flags, T);
                 break;
@@ -330,19 +349,20 @@ INLINE void dual(
 }
 
 FAST static void run_dual_4(
-    const int32_t *code, Py_ssize_t count, const int32_t *extra, double *V, double *D
+    const uint16_t *code, Py_ssize_t count, const int32_t *extra, double *V, double *D
 ) { dual(code, count, extra, V, D, 4); }
 FAST static void run_dual_8(
-    const int32_t *code, Py_ssize_t count, const int32_t *extra, double *V, double *D
+    const uint16_t *code, Py_ssize_t count, const int32_t *extra, double *V, double *D
 ) { dual(code, count, extra, V, D, 8); }
 FAST static void run_dual_16(
-    const int32_t *code, Py_ssize_t count, const int32_t *extra, double *V, double *D
+    const uint16_t *code, Py_ssize_t count, const int32_t *extra, double *V, double *D
 ) { dual(code, count, extra, V, D, 16); }
 
 /* ---- a program from Python ---- */
 
 typedef struct {
-    const int32_t *code, *extra, *outputs;
+    const uint16_t *code;
+    const int32_t *extra, *outputs;
     const double *constants;
     Py_ssize_t count, extras, results, constant_count, slots, inputs;
 } Program;
@@ -351,19 +371,19 @@ typedef struct {
 static int refused(const Program *p) {
     const Py_ssize_t all = p->slots + p->constant_count;
     for (Py_ssize_t k = 0; k < p->count; k++) {
-        const int32_t *at = p->code + WORDS * k;
-        if (at[0] < 0 || at[0] >= OPERATION_COUNT || at[2] < 0 || at[2] >= p->slots) return 1;
-        if (at[0] == OP_roots) {
-            const int n = at[4];
-            if (n < 1 || n > MOST_DEGREE || at[3] < 0 || at[3] + n >= p->extras) return 1;
-            if ((Py_ssize_t)at[2] + 2 * n > p->slots || (at[1] & RESULT)) return 1;
+        const uint16_t *at = p->code + WORDS * k;
+        if (OPERATION(at) >= OPERATION_COUNT || at[1] >= p->slots) return 1;
+        if (OPERATION(at) == OP_roots) {
+            const int n = at[3];
+            if (n < 1 || n > MOST_DEGREE || at[2] + n >= p->extras) return 1;
+            if ((Py_ssize_t)at[1] + 2 * n > p->slots || (FLAGS(at) & RESULT)) return 1;
             for (int j = 0; j <= n; j++)
-                if (p->extra[at[3] + j] < 0 || p->extra[at[3] + j] >= all) return 1;
+                if (p->extra[at[2] + j] < 0 || p->extra[at[2] + j] >= all) return 1;
             continue;
         }
-        for (int j = 3; j < WORDS; j++) {
-            if (at[j] < 0 || at[j] >= all) return 1;
-            if ((at[1] & (1 << (j - 3))) && at[j] >= p->slots) return 1;
+        for (int j = 2; j < WORDS; j++) {
+            if (at[j] >= all) return 1;
+            if ((FLAGS(at) & (1 << (j - 2))) && at[j] >= p->slots) return 1;
         }
     }
     for (Py_ssize_t k = 0; k < p->results; k++)
@@ -406,20 +426,20 @@ static int is_step(int operation) {
 
 /* Set the flags of every instruction for the slots that have derivatives at the start; afterwards
    `active` is that of the end. Slots are used again, so the order matters. */
-static void follow(const Program *p, int32_t *code, uint8_t *active) {
+static void follow(const Program *p, uint16_t *code, uint8_t *active) {
     for (Py_ssize_t k = 0; k < p->count; k++) {
-        int32_t *at = code + WORDS * k;
-        int flags = at[1] & ~(FIRST | SECOND | THIRD | RESULT);
-        if (at[0] == OP_roots) {
-            for (int j = 0; j < 2 * at[4]; j++) active[at[2] + j] = 0;
+        uint16_t *at = code + WORDS * k;
+        int flags = FLAGS(at) & ~(FIRST | SECOND | THIRD | RESULT);
+        if (OPERATION(at) == OP_roots) {
+            for (int j = 0; j < 2 * at[3]; j++) active[at[1] + j] = 0;
         } else {
             for (int j = 0; j < 3; j++)
-                if (at[3 + j] < p->slots && active[at[3 + j]] && !(flags & (FROZEN << j)))
+                if (at[2 + j] < p->slots && active[at[2 + j]] && !(flags & (FROZEN << j)))
                     flags |= 1 << j;
-            if ((flags & (FIRST | SECOND | THIRD)) && !is_step(at[0])) flags |= RESULT;
-            active[at[2]] = (flags & RESULT) != 0;
+            if ((flags & (FIRST | SECOND | THIRD)) && !is_step(OPERATION(at))) flags |= RESULT;
+            active[at[1]] = (flags & RESULT) != 0;
         }
-        at[1] = flags;
+        at[0] = (uint16_t)(OPERATION(at) | flags << 8);
     }
 }
 
@@ -451,7 +471,7 @@ static int run_slopes(
 
 static int sized(Py_buffer *view, Py_ssize_t item, Py_ssize_t *count) {
     *count = view->len / item;
-    return view->len % item == 0 && ((uintptr_t)view->buf) % (item < 8 ? 4 : 8) == 0;
+    return view->len % item == 0 && ((uintptr_t)view->buf) % item == 0;
 }
 
 PyDoc_STRVAR(run_doc,
@@ -464,7 +484,7 @@ static PyObject *run(PyObject *self, PyObject *args) {
     int width;
     Program p;
     Py_ssize_t size[8], points = 0;
-    static const Py_ssize_t item[8] = {4, 4, 4, 4, 8, 8, 8, 8};
+    static const Py_ssize_t item[8] = {2, 4, 4, 4, 8, 8, 8, 8};
     (void)self;
     memset(view, 0, sizeof view);
     if (!PyArg_ParseTuple(args, "y*y*y*y*y*nny*y*iw*", &view[0], &view[1], &view[2], &view[3],
@@ -477,7 +497,7 @@ static PyObject *run(PyObject *self, PyObject *args) {
     p.count = size[0] / WORDS, p.extras = size[1], p.results = size[2];
     p.constant_count = size[4];
     valid = valid && size[0] % WORDS == 0 && size[3] == size[2] && p.slots >= 0
-         && p.slots < 100000000 && p.inputs > 0 && size[5] % p.inputs == 0 && !refused(&p);
+         && p.slots <= 65536 && p.inputs > 0 && size[5] % p.inputs == 0 && !refused(&p);
     if (valid) {
         points = size[5] / p.inputs;
         const int32_t *varies = view[3].buf;
@@ -511,15 +531,14 @@ static PyObject *follow_slots(PyObject *self, PyObject *args) {
     Program p = {0};
     (void)self;
     if (!PyArg_ParseTuple(args, "w*w*n", &view[0], &view[1], &p.slots)) return NULL;
-    p.code = view[0].buf, p.count = view[0].len / 4 / WORDS;
-    int valid = view[0].len % (4 * WORDS) == 0 && ((uintptr_t)view[0].buf) % 4 == 0
+    p.code = view[0].buf, p.count = view[0].len / 2 / WORDS;
+    int valid = view[0].len % (2 * WORDS) == 0 && ((uintptr_t)view[0].buf) % 2 == 0
              && view[1].len == p.slots;
     for (Py_ssize_t k = 0; valid && k < p.count; k++) {
-        const int32_t *at = p.code + WORDS * k;
-        if (at[2] < 0 || at[2] >= p.slots) valid = 0;
-        else if (at[0] == OP_roots)
-            valid = at[4] > 0 && at[4] <= MOST_DEGREE && (Py_ssize_t)at[2] + 2 * at[4] <= p.slots;
-        else valid = at[3] >= 0 && at[4] >= 0 && at[5] >= 0;
+        const uint16_t *at = p.code + WORDS * k;
+        if (at[1] >= p.slots) valid = 0;
+        else if (OPERATION(at) == OP_roots)
+            valid = at[3] > 0 && at[3] <= MOST_DEGREE && (Py_ssize_t)at[1] + 2 * at[3] <= p.slots;
     }
     if (valid) follow(&p, view[0].buf, view[1].buf);
     PyBuffer_Release(&view[0]), PyBuffer_Release(&view[1]);

@@ -29,6 +29,8 @@ WIDTHS: Final = (4, 8, 16)
 SHARED: Final = ("real", "part")
 """Operations that compute nothing: a value without its derivatives, and one root of several. They
 share the slot of their operand."""
+MOST_SLOTS: Final = 2**16
+"""Largest number of slots that an instruction can name."""
 _FROZEN: Final = 16
 """Flag of an instruction whose first operand counts as constant; doubled for each further one."""
 
@@ -39,7 +41,7 @@ class Program:
 
     Parameters
     ----------
-    code : (instructions, 6), each an operation, flags, the slot of the result, three operands
+    code : (instructions, 5), each an operation with flags, the slot of the result, three operands
     extra : slots of the coefficients of polynomials
     outputs : slot of every output
     frozen : whether an output has no derivatives in any case
@@ -162,7 +164,7 @@ class _Writer:
                 slot, self.count = self.count, self.count + wide
             self.slot[node.index] = slot
             words += [words[0]] * (3 - len(words))
-            self.code.append((codes[node.op], flags, slot, *words))
+            self.code.append((codes[node.op] | flags << 8, slot, *words))
         return self._finished()
 
     def _place(self, value: Any) -> int:
@@ -188,9 +190,11 @@ class _Writer:
             array = np.array(places, dtype=np.int32)
             return np.where(array < 0, self.count - 1 - array, array).astype(np.int32)
 
-        code = np.array(self.code, dtype=np.int32).reshape(-1, 6)
-        code[:, 3:] = settled(code[:, 3:])
+        if self.count + len(self.values) > MOST_SLOTS:
+            raise ValueError("its program is too long")
+        code = np.array(self.code, dtype=np.int32).reshape(-1, 5)
+        code[:, 2:] = settled(code[:, 2:])
         return Program(
-            np.ascontiguousarray(code), settled(self.extra), settled(outputs),
+            code.astype(np.uint16), settled(self.extra), settled(outputs),
             np.array(frozen, dtype=np.int32), np.array(self.values), self.count, len(self.inputs),
         )  # fmt: skip
