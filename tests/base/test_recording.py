@@ -73,7 +73,7 @@ STEPS = st.lists(
 
 
 def grown(steps, inputs):
-    """Values of a random chain of operations, from numbers or symbols, real or complex."""
+    """Values of a random chain of exactly rounded operations, of numbers or symbols."""
     known = [*inputs, 0 * inputs[0] + 0.3]
     for kind, i, j in steps:
         a, b = known[i % len(known)], known[j % len(known)]
@@ -84,13 +84,13 @@ def grown(steps, inputs):
                 lambda a, b: a * b,
                 lambda a, b: a / b,
                 lambda a, b: sqrt(a),
-                lambda a, b: np.exp(-a * a),
+                lambda a, b: 1.0 / (1.0 + a * a),
                 lambda a, b: absolute(a),
                 lambda a, b: where(real(a) < real(b), a, 2.0 * b),
-                lambda a, b: positive(a) ** 1.5,
-                lambda a, b: np.sin(a) * real(b),
+                lambda a, b: positive(a) * b,
+                lambda a, b: a * real(b),
                 lambda a, b: where(np.isnan(real(a)), 1.0, a),
-                lambda a, b: np.tanh(b) - 0.0 * a,
+                lambda a, b: b - 0.0 * a,
             )[kind](a, b)
         )
     return known[len(inputs) :]
@@ -99,7 +99,7 @@ def grown(steps, inputs):
 @given(steps=STEPS, values=st.lists(SIZED.filter(bool), min_size=3, max_size=3))
 @settings(max_examples=150, deadline=None)
 def test_random_programs_agree_with_numpy_and_the_complex_step(steps, values):
-    """Values to rounding, NaN in the same places, and slopes as those of the complex step."""
+    """The same bits, NaN in the same places, and slopes as those of the complex step."""
     _, made = recorded(
         lambda x: np.stack(np.broadcast_arrays(*grown(steps, list(x[:, None])))), np.ones(3)
     )
@@ -110,8 +110,8 @@ def test_random_programs_agree_with_numpy_and_the_complex_step(steps, values):
                  for k, v in enumerate(point)]  # fmt: skip
         stepped = np.array([np.broadcast_to(v, (3,)) for v in grown(steps, moved)]).imag / STEP
     got, slopes = made.slopes(point[None], np.eye(3)[None])
-    np.testing.assert_allclose(made.values(point[None])[0], plain, rtol=1e-12, atol=1e-300)
-    np.testing.assert_allclose(got[0], plain, rtol=1e-12, atol=1e-300)
+    np.testing.assert_array_equal(made.values(point[None])[0], plain)
+    np.testing.assert_array_equal(got[0], plain)
     # Where a root or a quotient is singular, and at 0, where its square is negative, the complex
     # step has no slope to compare with.
     sound = np.isfinite(plain)[:, None] & np.isfinite(stepped) & (np.abs(stepped) < 1e8)
@@ -198,7 +198,7 @@ def stepped(point):
 def used(function, point):
     """A recorded function after enough calls to be recorded."""
     made = RecordedFunction(function, [str(k) for k in range(len(point))], point)
-    for _ in range(PATIENCE + 1):
+    for _ in range(int(PATIENCE) + 1):
         made(stepped(point))
     return made
 
@@ -269,7 +269,7 @@ def test_a_branch_taken_often_is_recorded_anew():
 def test_what_cannot_be_recorded_stays_with_numpy(function, reason):
     """The reason is kept; results are those of the function."""
     made = RecordedFunction(function, ["a", "b"], np.ones(2))
-    for _ in range(PATIENCE + 2):
+    for _ in range(int(PATIENCE) + 2):
         with suppress(TypeError):  # the function itself may refuse complex numbers
             made(stepped(np.array([2.0, 1.0])))
     assert reason in made.reason

@@ -41,7 +41,7 @@ def problem_of(name):
     """The problem of a design, with its models recorded."""
     actuator = build(ao.read(text_of(name)).subject())
     steps = complex_steps(actuator.problem.start[:, None])
-    for _ in range(PATIENCE + 1):
+    for _ in range(int(PATIENCE) + 1):
         with np.errstate(all="ignore"):
             actuator.evaluate(steps)
     return actuator

@@ -18,9 +18,9 @@ from . import program as programs
 from .arrays import Trace, elements
 from .program import Program
 
-PATIENCE = 3
-"""Number of calls with derivatives after which a recording pays (our choice: recording costs as
-much as some 40 calls)."""
+PATIENCE = 4.0
+"""Work of calls after which a recording pays, where a call is 1 and each of its points is 0.01 (our
+choice: recording costs as much as some 40 calls, and a search makes hundreds)."""
 RECORDINGS = 3
 """Largest number of recordings at different branches."""
 FEW = 20
@@ -74,7 +74,7 @@ class RecordedFunction:
         self.reason = "" if programs.AVAILABLE else "the machine was not built at installation"
         self.recording: Recording | None = None
         self.recordings = 0
-        self.calls = 0
+        self.work = 0.0
         self.points = 0
         self.outside = 0
 
@@ -82,15 +82,14 @@ class RecordedFunction:
         """Results (rows, k) at points (inputs, k), by the machine once that pays."""
         if self.reason:
             return self.function(points)
-        stepped = np.iscomplexobj(points)
         if self.recording is None:
-            self.calls += stepped
-            if self.calls <= PATIENCE:
+            self.work += 1 + points.shape[1] / 100
+            if self.work <= PATIENCE:
                 return self.function(points)
-            self._record(points[:, 0].real)
+            self._record(self.present)
             if self.recording is None:
                 return self.function(points)
-        return self._slopes(points) if stepped else self._values(points)
+        return self._slopes(points) if np.iscomplexobj(points) else self._values(points)
 
     def confirmed(self, points: Array) -> bool:
         """Whether the machine and the function agree at points (inputs, k).
