@@ -14,8 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.numeric import Array, array_of
-from ..base.symbolic.expression import Symbol
+from ..base.numeric import Array, array_of, namespace
 
 
 class Values:
@@ -58,7 +57,8 @@ def stacked(rows: Sequence[Array]) -> Array:
     """Stack the values of all load cases, floats or arrays (designs,), to (cases, 1 or designs)."""
     if all(isinstance(row, float) for row in rows):
         return np.array(rows)[:, None]
-    if len(rows) == 1 and isinstance(rows[0], Symbol):
+    if len(rows) == 1 and not isinstance(rows[0], np.ndarray) and namespace(rows[0]) is not np:
+        # a single symbol is a scalar
         return rows[0]
     return np.stack(np.broadcast_arrays(*[np.atleast_1d(array_of(row)) for row in rows]))
 
