@@ -30,7 +30,8 @@ RANK = 1e-7
 """Smallest usable ratio of singular values: below it, a step is lost in double-precision rounding
 of the residuals."""
 SEEN = 1e-4
-"""Largest component that a parameter may have along directions that the data do not determine."""
+"""A parameter is undetermined if the data leave more than this share of its direction undetermined
+(the squared component of a unit vector)."""
 
 Verdict = Literal["identifiable", "weakly identifiable", "not identifiable"]
 

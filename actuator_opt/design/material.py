@@ -624,7 +624,7 @@ def _projected(
     basis: Callable[[float], Array],
     steepest: float,
 ) -> tuple[Array, Array]:
-    """Search the rates of least squares; for given rates, the amplitudes follow linearly.
+    """Search the rates with the least sum of squares; linear fits give the amplitudes.
 
     The best distinct starting points are refined, with rates limited to +-steepest.
     """
