@@ -108,7 +108,7 @@ def named_plugins(run: Run, plugins: Plugins) -> tuple[Plugin, ...]:
     files = [plugin["file"] or "a function of a script" for plugin in run.body["input"]["plugins"]]
     if files and not loaded_plugins:
         message = (
-            f"its custom metrics come from {', '.join(files)}; a plug-in is a program and only "
+            f"its custom metrics came from {', '.join(files)}; a plug-in is a program and only "
             "runs if you name it"
         )
         raise InputError(Diagnostic(message, "name it with --plugin to run it", str(run.path)))

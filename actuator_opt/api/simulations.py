@@ -140,7 +140,7 @@ def simulate(
     Raises
     ------
     InputError
-        as for `read_scenario`; or a gain is to be tuned, but the control law has no tuning rule
+        as for `read_scenario`; or a gain must be tuned, but its control law has no tuning rule
     Unsolvable
         the integration fails; the message states the time
     """

@@ -2,8 +2,8 @@
 
 Coefficients are floats or arrays that broadcast. Terms with a coefficient that is the number 0 are
 skipped, so one formula serves circuits with and without a line or a valve. Everything but `roots`
-is plain arithmetic and works under a complex step. So that a complex step
-can pass through frequency responses too, their real and imaginary parts are kept separately.
+is plain arithmetic and works under a complex step. So that a complex step can pass through
+frequency responses too, their real and imaginary parts are kept separately.
 """
 
 from __future__ import annotations

@@ -162,7 +162,11 @@ LINKAGE_CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
 
 
 def lines(view: FileView) -> Iterator[Fault]:
-    """Check every hydraulic line: outer above inner diameter; a throttle stated if beyond one."""
+    """Check every hydraulic line.
+
+    Its outer diameter must exceed its inner diameter. If the line is beyond a throttle, the design
+    must state this throttle.
+    """
     for index in range(len(view.items("lines"))):
         inner = view.number("lines", index, "inner_diameter")
         outer = view.number("lines", index, "outer_diameter")
@@ -253,7 +257,7 @@ def control(view: FileView) -> Iterator[Fault]:
 
 
 def held_pressures(view: FileView) -> Iterator[Fault]:
-    """Check that held pressures are stated for both chambers or none, up to proof pressure."""
+    """Check that held pressures are stated for both chambers or none, and do not exceed proof."""
     for index in range(len(view.items("load_cases"))):
         loc = ("load_cases", index)
         a, b = view.has(*loc, "pressure_a"), view.has(*loc, "pressure_b")
