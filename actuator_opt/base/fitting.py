@@ -217,8 +217,8 @@ def relaxed(
 ) -> tuple[Array, Array]:
     """Solve many least-squares problems at once, each from its own start, within limits.
 
-    The search takes Levenberg-Marquardt steps. A number at a limit stays there as long as the cost
-    falls only beyond that limit.
+    The search takes Levenberg-Marquardt steps. A number at a limit stays there as long as it
+    would have to pass the limit to reduce the cost.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ class Interpolation:
     slopes : for each input by name, derivatives of the outputs (m,) with respect to its logarithm;
         slopes of an axis are only used if its `hermite` is set; an input that is not an axis and
         has no slopes has no effect
-    why : reason for a failed evaluation; values and slopes are then unused
+    why : why the evaluation failed (values and slopes are then ignored); "" if it succeeded
     """
 
     values: np.ndarray

@@ -248,7 +248,7 @@ def units_of(dimension: str) -> tuple[str, ...]:
 
 
 def unit(name: str, dimension: str) -> Unit:
-    """The unit `name` of `dimension`; else `UnitError` says of which dimension it is a unit."""
+    """The unit `name` of `dimension`; `UnitError` if unknown or a unit of another dimension."""
     table = _SCALES[dimension]
     for candidate in (name.strip(), _normalise(name)):
         if candidate in table:

@@ -541,8 +541,8 @@ def assess(
     law : function B(speed, values), safe under a complex step
     values : least-squares parameters by name, SI
     speed, damping, weights : the points
-    least : smallest scales of parameters that may be near 0, large enough to change the curve
-        visibly; the scale of any other parameter is its value
+    least : smallest scale of each parameter that may be near 0; a change by this scale must change
+        the curve visibly. The scale of any other parameter is its value
     doubts : reasons for parameters that the search already left undetermined
 
     Returns
