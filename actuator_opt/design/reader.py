@@ -103,7 +103,7 @@ class FileSource:
     def _find(self, fault: Fault) -> NodeSpan | Override | None:
         """Location in the text of the faulty value, else of the nearest block around it.
 
-        If the value was set from outside the file, its override.
+        If the value was set from outside the file, its override is returned instead.
         """
         for depth in range(len(fault.loc), -1, -1):
             loc = fault.loc[:depth]
@@ -141,8 +141,8 @@ def read_design(
     Parameters
     ----------
     source : path, ``"-"`` for standard input, or a text of several lines
-    overrides : (PATH, value) pairs that replace values before all checks; a bare number is SI,
-        unless another file states it
+    overrides : (PATH, value) pairs that replace values before all checks; a bare number is
+        in SI, but a value that comes from another file needs its unit
     materials : names and kinds of materials; default: the library
     metrics : metrics that may be named; default: `metrics.METRICS`
 
@@ -233,7 +233,7 @@ def _require_kind(document: Document) -> None:
     """Raise an error if a scenario is given where a design is required, or the reverse."""
     for kind, mark in _MARKS.items():
         if mark in document.data and _MARKS[document.kind] not in document.data:
-            remedy = "give the design file that it names"
+            remedy = "give the design file that the scenario names"
             if kind == "design":
                 remedy = f'name it in a scenario: "design: {Path(document.file).name}"'
             message = f"the file is a {kind}, not a {document.kind}"

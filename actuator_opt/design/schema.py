@@ -226,7 +226,7 @@ def _snippet(entry: KeyEntry) -> Any:
 
 _REFERENCE = str.maketrans({"/": "_per_", "^": "", "*": "_", "%": "percent"})
 _LISTED = {"barrel.layup": 6, "rod.layup": 4, "lines": 2}
-"""Number of entries of each list whose PATHs the editor offers under `variables`."""
+"""Number of entries in each list for which the editor offers PATHs under `variables`."""
 _OF_TABLES = (
     r"^(name|notes|(objective|requirements|variables|measured|uncertainty|materials|waivers)\..+)$"
 )

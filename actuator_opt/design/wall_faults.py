@@ -97,9 +97,9 @@ def autofrettage(view: FileView) -> Iterator[Fault]:
 
 
 def laminated_rod(view: FileView) -> Iterator[Fault]:
-    """Check a laminated rod: its layers leave a bore, which the file does not state.
+    """Check that the layers of a laminated rod leave a bore, which the file itself must not state.
 
-    Only a laminated rod may have fittings.
+    Also check that the fittings fit into this bore, and that no other rod states fittings.
     """
     layers = len(view.items("rod", "layup"))
     if not layers:

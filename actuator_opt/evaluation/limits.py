@@ -53,8 +53,8 @@ class MetricLimit:
 
 ENDS = ("retracted", "extended")
 OWN_PLACE = "position of the case"
-"""Positions at which a joint torque is limited: both stops, or the stated position of a load
-case."""
+"""Locations at which a joint torque is limited: the stops (`ENDS`), or, for a load case that states
+its piston position, that position (`OWN_PLACE`)."""
 
 
 def requirement_limits(design: Design) -> list[MetricLimit]:
