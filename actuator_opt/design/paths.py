@@ -87,7 +87,9 @@ def resolve(
     metrics: Mapping[str, Quantity] | None = None,
     root: type[Section] = Design,
 ) -> Target:
-    """Find the value that `path` names, in a section of type `root` or in its tree.
+    """Find the value that `path` names in `tree`.
+
+    `tree` is a section of type `root`, or the same section as dicts and lists.
 
     Raises
     ------

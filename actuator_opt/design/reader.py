@@ -85,7 +85,7 @@ class FileSource:
         return self.at(Fault(("variables", path), message, remedy, at_key=True), path)
 
     def at(self, fault: Fault, path: str | None = None) -> Diagnostic:
-        """Convert a fault to a diagnostic."""
+        """Convert a fault to a diagnostic with line and column."""
         if path is None:
             path = spell(fault.loc, self.document.data) or None
         if path is not None:
@@ -245,7 +245,7 @@ def _unusable(fault: Fault, document: Document) -> bool:
 
 
 def _once(faults: Sequence[Fault], document: Document) -> list[Fault]:
-    """Keep only the first of equal faults in the layers of one compact lay-up entry."""
+    """Report a fault only once if several layers of one compact lay-up entry have it."""
     unique, seen = [], set()
     for fault in faults:
         shorthand = document.shorthand(fault.loc)

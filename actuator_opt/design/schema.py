@@ -230,7 +230,8 @@ _LISTED = {"barrel.layup": 6, "rod.layup": 4, "lines": 2}
 _OF_TABLES = (
     r"^(name|notes|(objective|requirements|variables|measured|uncertainty|materials|waivers)\..+)$"
 )
-"""Pattern of the PATHs that `set` accepts in addition to the values of the design's parts."""
+"""Pattern of the PATHs that the block `set` of a scenario accepts besides values of the design's
+parts."""
 
 
 def json_schema(

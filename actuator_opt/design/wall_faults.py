@@ -1,6 +1,6 @@
 """Check barrel, rod and joint: impossible layers, unsuitable materials, unsuitable keys.
 
-Each joint of caps and head has a module in `joints`. This declares the keys of the block
+Each joint of caps and head has a module in `joints`. That module declares the keys of the block
 `retention` that the joint uses, and the checks of their values.
 """
 

@@ -328,7 +328,7 @@ def _sublayers(layers: Sequence[Layer]) -> list[TubeLayer]:
 
 
 def _points(values: Array) -> Array:
-    """Rearrange values at sublayer faces, (2, sublayers, ...), to (layers, points, ...)."""
+    """Rearrange values at both faces of sublayers, (2, sublayers, ...) to (layers, points, ...)."""
     shaped = values.reshape(2, -1, PARTS, *values.shape[2:])
     return np.concatenate([shaped[0], shaped[1][:, -1:]], axis=1)
 

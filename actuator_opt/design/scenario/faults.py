@@ -193,7 +193,7 @@ def drives(view: FileView) -> Iterator[Fault]:
 
 
 def reference(view: FileView) -> Iterator[Fault]:
-    """Check that control has exactly one reference, of the rod or, with a motor, of the shaft."""
+    """Check that control has exactly one reference, for the rod or, with a motor, for the shaft."""
     if not isinstance(child_at(view.tree, ("control",)), dict):
         return
     references = stated_references(view)
