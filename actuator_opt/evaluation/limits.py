@@ -54,7 +54,7 @@ class MetricLimit:
 ENDS = ("retracted", "extended")
 OWN_PLACE = "position of the case"
 """Locations at which a joint torque is limited: the stops (`ENDS`), or, for a load case that states
-its piston position, that position (`OWN_PLACE`)."""
+its piston position or joint angle, that position (`OWN_PLACE`)."""
 
 
 def requirement_limits(design: Design) -> list[MetricLimit]:
