@@ -107,7 +107,7 @@ def _columns(explored: Explored) -> list[dict[str, Any]]:
 
 
 def _texts(explored: Explored, path: str) -> dict[str, Any]:
-    """Return a text column as JSON: a list of its distinct texts, and for each row an index into it."""
+    """Return a text column as JSON: its distinct texts, and an index into them for each row."""
     texts = explored.kept.texts[path]
     number = [texts.index(variant[path]) for variant in explored.variants]
     codes = _base64(np.array(number)[explored.variant], "<u2")

@@ -314,7 +314,7 @@ def _diameters(evaluated: Mapping[str, float]) -> list[_Diameter]:
 def diameters_above(
     space: Any, evaluated: Mapping[str, float], profiles: Sequence[Profile], paper: DrawingSizes
 ) -> float:
-    """Draw diameters, with texts in one row above the parts; return the highest y coordinate used."""
+    """Draw diameters, with texts in one row above the parts; return the largest y reached."""
     diameters = _diameters(evaluated)
     top = max(r for profile in profiles for _, r in profile)
     widths = [paper.width(diameter.shown) for diameter in diameters]

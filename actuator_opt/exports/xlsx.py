@@ -308,7 +308,7 @@ def _about(book: Any, evaluation: Evaluation, program: str, date: str | None) ->
         ),
         (
             "blue cells",
-            "limits that you can change: margins and verdicts then update, results stay as they are",
+            "limits that you can change: margins and verdicts update, results stay as they are",
         ),
         *(("warning", words) for words in evaluation.warnings),
     ]

@@ -388,7 +388,7 @@ def _update_walls(problem: ElementProblem, state: ElementState, force: Floats, p
 
 @dataclass(slots=True)
 class _Links:
-    """Constraints and their forces: one per touching node, then that between the two level nodes."""
+    """Constraints and their forces: one per touching node, then one between the two level nodes."""
 
     gap: Floats
     rows: csc_matrix

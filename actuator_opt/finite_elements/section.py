@@ -103,7 +103,7 @@ class Assembly:
         self.flat_shape: Floats = self.shape.reshape(count, points * 5, 12)
 
     def _pattern(self) -> None:
-        """Set the rows and columns that elements and edges occupy in the sparse stiffness matrix."""
+        """Set which entries of the sparse stiffness matrix each element and edge contributes to."""
         displacement_dofs = (2 * self.triangles[:, :, None] + np.arange(2)).reshape(
             len(self.triangles), 12
         )

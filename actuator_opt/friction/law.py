@@ -87,7 +87,7 @@ class FrictionLaw:
     def friction(
         self, seal: SealSizes, contact: SealContact, load: Array, speed: Array
     ) -> Friction:
-        """Dry friction of seals in series: sliding friction, or Coulomb friction in load cases at rest.
+        """Dry friction of seals in series: sliding friction, or at rest the Coulomb friction.
 
         Parameters
         ----------

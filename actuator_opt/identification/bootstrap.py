@@ -88,10 +88,10 @@ def resampled(
 
     A parameter that is not identifiable gets the wider of its linearised and its resampled
     interval: its optimum lies in a flat valley, and the draws show the scatter around the optimum,
-    not the length of the valley. All parameters of the LuGre model get the wider interval if F_C
-    has no confidence limits, or if neither lag nor bristle damping is fitted, because their
-    linearised intervals then contain more than scatter. The covariance of the Stribeck curve stays
-    that of the linearised model.
+    not the length of the valley. The bristle parameters and the lag always get the wider interval.
+    So do all parameters of the LuGre model if F_C has no confidence limits, or if neither lag nor
+    bristle damping is fitted, because the linearised intervals then contain more than scatter.
+    The covariance of the Stribeck curve stays that of the linearised model.
 
     Parameters
     ----------
@@ -309,7 +309,7 @@ def searched(names: Sequence[str], values: Mapping[str, float]) -> Array:
 
 
 def natural(names: Sequence[str], rows: Array, values: Mapping[str, float]) -> dict[str, Array]:
-    """Convert searched values, of shape (rows, searched values), to parameters, each of shape (rows,).
+    """Convert searched values, (rows, searched values), to parameters, each of shape (rows,).
 
     Parameters that are not searched are added with their entry in `values`.
     """
@@ -339,7 +339,7 @@ def _spreads(slopes: Array, residuals: Array, variance: float) -> Array:
 
 
 def _scales(rng: np.random.Generator, freedom: int, count: int) -> Array:
-    """Random factors sqrt(nu/chi^2_nu) by which the noise of each draw is multiplied, (count, 1)."""
+    """Random factors sqrt(nu/chi^2_nu) that scale the noise of each draw, of shape (count, 1)."""
     return np.sqrt(freedom / rng.chisquare(freedom, (count, 1)))
 
 
