@@ -80,7 +80,7 @@ def agreed(parameters: Mapping[str, Parameter], references: Mapping[str, Paramet
 
 
 class Unequal(NamedTuple):
-    """A force that grows with a chamber pressure but does not reverse with motion, as friction does."""
+    """A force that grows with a chamber pressure but, unlike friction, does not reverse."""
 
     chamber: int
     share: float

@@ -608,7 +608,7 @@ def _any_exponent(fit: LuGreFit, reversals: Windows, fixed: Mapping[str, float])
         if np.isfinite(variances).all():
             errors[name] = float(np.sqrt(extra**2 + max(variances[1] - variances[0], 0.0)))
     doubt = (
-        f"the exponent is fixed at {EXPONENT:g}; the confidence intervals allow for "
+        f"the Stribeck exponent is fixed at {EXPONENT:g}; the confidence intervals allow for "
         f"{OTHER:g} as well"
     )
     parameters = widened(fit.parameters, errors, NORMAL)
