@@ -84,7 +84,7 @@ def wetted(
     ----------
     chain : boundary nodes in order, from the sealed side
     barrier : contact pressure at every node, 0 where nothing touches
-    state : solution, which tells which nodes were wet before and which touch the outer side wall
+    state : solution, with the nodes that were wet before and those that touch the outer side wall
     pressure : pressure of the fluid
     """
     needed = pressure * np.where(state.wet[chain] > 0, 1.0, 1.0 - HOLDING)

@@ -47,7 +47,7 @@ STARTS = (1.0, 1 / 3, 3.0)
 choice: half a decade to either side)."""
 STEPS, LUGRE_STEPS = 40, 8
 """Number of Gauss-Newton steps for each draw, for a Stribeck fit and for a LuGre fit. The LuGre fit
-uses the derivatives at the optimum in all steps (our choice: more steps do not change the
+uses the derivatives at the optimum in every step (our choice: more steps do not change the
 confidence limits for synthetic records)."""
 LEAST_WINDOWS = 3
 """Smallest number of windows to draw from (our choice: with two windows, a single difference would

@@ -309,7 +309,7 @@ class LugreProblem:
     def lane_errors(self, residuals: Array, slopes: Array) -> Array:
         """Standard errors of the parameters from differences between windows, called lanes.
 
-        They are zero if there are too few windows to tell. The windows are assumed to be
+        They are zero if there are too few windows. The windows are assumed to be
         independent; within a window, any correlation is allowed. The covariance is H^-1 sum (J_l^T
         r_l)(J_l^T r_l)^T H^-1 n/(n - 3) for n windows l [SeberWild1989], with H, J and r as in
         `whitened`. It includes the effect of the position sensor's steps, which shift a whole

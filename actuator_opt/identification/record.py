@@ -400,7 +400,7 @@ def parse_record(
     ----------
     text : text of the file
     name : name of the file, for messages
-    columns : headings of columns whose channel cannot be told from the heading, by channel, such as
+    columns : headings of columns that do not name their channel in a known way, by channel, such as
         ``{"p1": "Channel 3"}``. ``"Channel 3 [bar]"`` also states the unit, if the file does not
     channels : channels to read, including ``t``
     units : units of columns whose heading states none
@@ -513,7 +513,7 @@ def _is_unit(text: str, dimension: str) -> bool:
 
 
 def _channel(name: str, unit: str, channels: Mapping[str, Channel]) -> str | None:
-    """The channel that a heading names; None if unknown. The unit tells time from temperature."""
+    """The channel that a heading names, or None; the unit decides between time and temperature."""
     plain = _plain(name)
     alike = [c for c, known in channels.items() if plain in (_plain(c), *known.others)]
     fitting = [c for c in alike if _is_unit(unit, channels[c].dimension)]

@@ -107,7 +107,7 @@ class JointField(NamedTuple):
 
 
 class FactorBasis(NamedTuple):
-    """What a safety factor is measured against, in words: a `measure`, and `of` which parts.
+    """Words for the strength on which a safety factor is based: a `measure`, `of` some parts.
 
     For example, the measure "rupture" of "threads and skirt".
     """
@@ -352,7 +352,7 @@ class Joint:
     """Metrics that only this joint has, each with the text that says why other joints do not have
     it."""
     judged: tuple[FactorBasis, FactorBasis]
-    """What the working factor and the burst factor are measured against, as words for texts."""
+    """Words for the strengths on which the working factor and the burst factor are based."""
     models: Mapping[tuple[str, str], str]
     """Names of models, such as `rod.section_area`: for a pair (metric, location), the main model
     that computes this metric there."""
@@ -416,7 +416,7 @@ def models_at(joints: Iterable[Joint], metric: str) -> dict[str, str]:
 
 
 def judged_on(joints: Iterable[Joint], index: int) -> str:
-    """Words that say what the safety factors of all joints are measured against.
+    """Words for the strengths on which the safety factors of all joints are based.
 
     `index` is 0 for the working factor, 1 for the burst factor.
     """

@@ -20,8 +20,7 @@ Wall = Literal["layered", "thin_laminate"]
 """Wall models of a laminated barrel."""
 
 CRITERION = "criterion"
-"""Placeholder for the name of a model: it stands for the failure criterion that the design
-selects."""
+"""Placeholder for the name of a model, which is the failure criterion that the design selects."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +65,7 @@ class MetricRow:
     ----------
     name, symbol, dimension, unit, label, lower, upper : fields of its `quantities.Quantity`
     worst : whether the smallest ("min") or the largest ("max") value of all load cases and places
-        is the worst, which is the one reported
+        is the worst; the worst value is reported
     model : ``"module.function"`` of `actuator_opt.models`; None for plain geometry
     feeds : sources of its validity warnings, names of `Feed`
     check : its line of the check list; None if it has no check
