@@ -274,7 +274,7 @@ def squeezed_step_ring(
             "give the slope of the face behind the land",
         ),
         (not plastic.youngs_modulus > 0, "the plastic has no stiffness", "give its modulus"),
-        (not shape.edge_radius > 0, "the ends of the land are sharp", "give their edge_radius"),
+        (not shape.edge_radius > 0, "the land has sharp ends", "give their edge_radius"),
         (
             not thinnest >= 0.2 * shape.thickness,
             "chamfer or relief uses up the thickness of the slide ring",

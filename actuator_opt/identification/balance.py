@@ -14,9 +14,8 @@ from .conditioning import ConditionedRecord, RecordSection
 
 RESTING, CREEP = 3.0, 2e-5
 """Below a certain speed, the rod may be at rest. That speed is `RESTING` standard deviations of the
-velocity noise, or `CREEP` [m/s] if that is larger (our choices: beyond 3 standard deviations, noise
-makes only 0.3 % of the samples at rest look faster; 2e-5 m/s is two sensor steps of 10 um in a
-second)."""
+velocity noise, or `CREEP` [m/s] if that is larger (our choices: only 0.3 % of the samples at rest
+look faster than 3 standard deviations; 2e-5 m/s is two sensor steps of 10 um in a second)."""
 OPPOSED = 0.5
 """Smallest `opposing_share` of a plausible record. A smaller share indicates a channel with a wrong
 sign (our choice: at this value, a quarter of the friction's power drives the rod, which is more
