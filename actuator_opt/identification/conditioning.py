@@ -116,8 +116,10 @@ def pass_cutoff(*, cutoff: float, order: int) -> float:
     -------
     frequency [Hz]
 
-    References ---------- [derived] two passes, each with the cut-off f_p, together have the gain
-    1/(1 + (f/f_p)^(2n)) at a frequency f; the gain is 1/sqrt 2 at f = f_c
+    References
+    ----------
+    [derived] two passes, each with the cut-off f_p, together have the gain 1/(1 + (f/f_p)^(2n)) at
+    a frequency f; the gain is 1/sqrt 2 at f = f_c
 
     Examples
     --------

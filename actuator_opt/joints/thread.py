@@ -213,7 +213,7 @@ def _skirt_wall_faults(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
 
 
 def _size_paths(view: StatedValues) -> Iterator[str]:
-    """PATHs of the sizes that determine how much metal is left under the barrel's thread."""
+    """PATHs of the sizes that determine the barrel thread's crests and the metal under its root."""
     outermost = _layer(view)[-1]
     yield "retention.thread.pitch"
     yield f"barrel.layup[{outermost}].thickness"
