@@ -27,7 +27,8 @@ def energised_share(*, poissons_ratio: Array) -> Array:
 
     Notes
     -----
-    Valid: block kept by floor and face, wall friction neglected (it lowers k away from the side).
+    Valid: block kept by floor and face; wall friction, which lowers k away from the pressure, is
+    neglected.
 
     References
     ----------

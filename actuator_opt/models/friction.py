@@ -65,7 +65,7 @@ def coulomb_as_published(
     pressure : pressure difference, the same at both seals [Pa]
     friction_coefficient : [-]
     piston_contact_width, rod_contact_width : `seals.width_as_published` [m]
-    bore, rod_diameter : at pressure (D + 2 delta_r) [m]
+    bore, rod_diameter : D and d under pressure, the bore grown by 2 delta_r [m]
 
     Returns
     -------

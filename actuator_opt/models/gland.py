@@ -314,7 +314,7 @@ def squeeze_at_volume(*, squeeze: Array, volume_ratio: Array) -> Array:
 
     Notes
     -----
-    Valid: the ring lies on its groove diameter, whose length it follows.
+    Valid: the ring stays on the groove's diameter, and only its section grows or shrinks.
 
     References
     ----------
@@ -500,9 +500,9 @@ def backed_gap_limit(
 ) -> Array:
     """Largest gap with a back-up ring: the larger limit of those that cover the pressure.
 
-    A back-up ring bridges the gap for the seal, so the larger of both limits counts. Beyond its
-    last stated pressure, a limit is not data but a constant continuation. There, only the other
-    limit counts. Beyond both pressures, the limit that is stated up to the higher pressure counts.
+    A back-up ring bridges the gap for the seal, so the larger of both limits counts. Above the last
+    pressure of its data, a limit is only continued as a constant and does not count: the limit
+    whose data reach higher counts alone, even above the end of its own data.
 
     Parameters
     ----------
@@ -512,7 +512,7 @@ def backed_gap_limit(
 
     Returns
     -------
-    radial gap [m]; it steps down where the larger of two limits ends
+    radial gap [m]; it steps down where the data of the larger limit end
 
     Notes
     -----

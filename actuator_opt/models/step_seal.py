@@ -18,8 +18,8 @@ def wetted_back(*, ring_width: Array, foot_width: Array, section: Array, squeeze
     """Length of the ring's back that the pressure wets, a_b = w - b - W (1 - C)/2, at least 0.
 
     The pressure has pushed the O-ring to the outer side. A dry corner, bounded by the rounded side
-    of the squeezed section, remains between its contact b and the groove's outer wall. Under
-    pressure the contact widens into that corner, so a_b does not change.
+    of the squeezed section, remains between the O-ring's contact and the groove's outer wall. Under
+    pressure this contact widens into that corner, so a_b does not change.
 
     Parameters
     ----------
