@@ -471,7 +471,7 @@ OIL_FED = tuple(fed_by("oil", ROWS))
 """Metrics that inherit the validity warnings of the oil's bulk modulus."""
 
 OWN = frozenset(fed_by("own", ROWS))
-"""Metrics that show warnings about their own model (`model`)."""
+"""Metrics whose validity warnings concern the model named in their own row."""
 
 
 def of_metric(name: str) -> Quantity:

@@ -90,7 +90,7 @@ class Autofrettage:
 
 
 class _Liner(NamedTuple):
-    """Of the liner: elastic constants, radii squared, free strain alpha dT, N/(2 pi p)."""
+    """Elastic constants of the liner, radii squared, free strain alpha dT, and N/(2 pi p)."""
 
     modulus: Array
     ratio: Array

@@ -79,7 +79,7 @@ class WallLayer:
 
 @dataclass(frozen=True, slots=True)
 class LadderStep:
-    """One failure on the way to burst: the layer (from the bore), the mode, the pressure [Pa]."""
+    """One failure on the way to burst: layer (counted from the bore), mode, pressure [Pa]."""
 
     layer: int
     mode: str
@@ -95,8 +95,8 @@ class BurstLadder:
     first_ply_pressure : first failure of a composite ply
     burst_pressure : largest load of the ladder
     liner_yield_pressure : first yield of a metal layer in the intact wall; infinite without one
-    record : for each step the row of its mode in `intact`, its pressure, and whether the design
-        took this step
+    record : for each step the row of the failing mode in `intact`, its pressure, and whether each
+        design took this step
     order : position from the bore of each layer in the internal order, which lists metals first
     intact : 1/p for the pressure p at which each mode fails in the intact wall: rows over modes,
         faces and layers, then over the yield of metals
@@ -349,7 +349,11 @@ def _elastic(layer: WallLayer) -> tuple[Array, ...]:
 
 
 def _table(xp: Any, angle: Array, thickness: Array, moduli: tuple[Array, ...]) -> Array:
-    """Rows of values per layer: stresses 1, 2, 12 per axial and hoop strain, line stiffnesses."""
+    """Rows of values per layer, for `_Membrane`.
+
+    First stresses 1, 2, 12 per unit axial strain, then per unit hoop strain, then the membrane
+    stiffnesses zz, zt, tt.
+    """
     double = 2 * angle
     along = (1 + xp.cos(double)) / 2
     across, shift = 1 - along, xp.sin(double)

@@ -27,8 +27,7 @@ def energised_share(*, poissons_ratio: Array) -> Array:
 
     Notes
     -----
-    Valid: block kept by floor and face; wall friction, which lowers k away from the pressure, is
-    neglected.
+    Valid: block kept by floor and face; no wall friction (it lowers k away from the pressure).
 
     References
     ----------

@@ -146,7 +146,7 @@ def extrusion_gap(*, clearance: Array, growth: Array) -> Array:
 
     Parameters
     ----------
-    clearance : radial [m] (twice it when side load pushes the piston over)
+    clearance : radial [m]; pass twice this value where a side load pushes the piston over
     growth : radial bore growth at the seal [m]
 
     Returns
@@ -391,7 +391,7 @@ ROUNDING = 1e-9
 
 
 def gap_limit(*, pressure: Array, points: Points) -> Array:
-    """Largest gap at a pressure, ln g linear in p between the points, constant beyond them.
+    """Largest permitted gap g at a pressure: ln g is linear between the points, constant beyond.
 
     Parameters
     ----------
@@ -410,7 +410,8 @@ def gap_limit(*, pressure: Array, points: Points) -> Array:
 
     References
     ----------
-    [SealAndDesignExtrusion] form of the table; [derived] ln g is never above a straight line in g
+    [SealAndDesignExtrusion] form of the table; [derived] interpolation in ln g is never above a
+    straight line in g
 
     Examples
     --------
@@ -422,7 +423,9 @@ def gap_limit(*, pressure: Array, points: Points) -> Array:
 
 
 def extrusion_gap_limit(*, hardness: Array, pressure: Array, table: Table) -> Array:
-    """Largest gap at a hardness and a pressure, ln g linear in both, constant beyond the table.
+    """Largest permitted gap at a hardness and a pressure: ln g is linear in both inside the table.
+
+    Beyond the table the gap is constant.
 
     Parameters
     ----------

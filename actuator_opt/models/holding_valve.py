@@ -13,7 +13,7 @@ LEAST = 1e-12
 
 
 class FeedingEdges(NamedTuple):
-    """Flow coefficients of both edges of a chamber whose load the valve holds [m^3/s/sqrt(Pa)]."""
+    """Flow coefficients of a chamber's two valve edges while it holds a load [m^3/s/sqrt(Pa)]."""
 
     supply: Array
     tank: Array

@@ -293,7 +293,7 @@ class ViscosityLaw:
 
 
 def _warm(oil: Properties, temperature: Array, pressure: Array) -> Array:
-    """Bulk modulus at the pressure for which it is stated, corrected to a temperature."""
+    """Stated bulk modulus of the oil (at its stated pressure), corrected to `temperature`."""
     modulus, decay = oil("bulk_modulus"), oil("bulk_modulus_decay")
     if decay is None:
         return modulus

@@ -319,8 +319,8 @@ def pressure_flow_factor(*, film_ratio: Array) -> Array:
 def shear_flow_factor(*, film_ratio: Array, rod_share: Array) -> Array:
     """Flow carried by the roughness, divided by (U/2) sigma: phi_s = (2 V - 1) Phi_s.
 
-    Phi_s = 1.899 H^0.98 e^(-0.92 H + 0.05 H^2) to H = 5, 1.126 e^(-0.25 H) beyond. The flow of
-    the motion is (U/2)(h_T + sigma phi_s) for a rod of speed U.
+    Phi_s = 1.899 H^0.98 e^(-0.92 H + 0.05 H^2) to H = 5, 1.126 e^(-0.25 H) beyond. A rod
+    of speed U drags along the flow (U/2)(h_T + sigma phi_s).
 
     Parameters
     ----------

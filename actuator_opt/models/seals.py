@@ -64,7 +64,7 @@ def width_as_published(*, section: Array, gland_height: Array) -> Array:
 
 
 class ContactFunction(Protocol):
-    """Function for one quantity of a contact law; it takes all arguments, used or not."""
+    """Function for one quantity of a contact law; it takes all four arguments, used or not."""
 
     def __call__(
         self, *, squeeze: Array, section: Array, youngs_modulus: Array, pressure: Array

@@ -311,8 +311,8 @@ def mode_shear_stiffness(
     Valid: EI ratio to 100; the load is within 0.5 % up to P/S_i = 0.1, within 4 % up to 0.3.
 
     For fixed-pinned columns these errors are 2 % and 11 %, for fixed-fixed columns 2 % and 16 %.
-    For other ends the load is an upper bound, and Engesser's load with the smaller S_i a lower
-    bound.
+    For all other ends the load is an upper bound on the exact one, and Engesser's load with the
+    smaller S_i is a lower bound.
 
     References
     ----------
