@@ -307,7 +307,7 @@ def autofrettage(
 
 
 def _share(value: Array) -> Array:
-    """Hoop minus radial stress, divided by the yield strength: at most 1; NaN stays NaN."""
+    """Hoop minus radial stress, divided by the yield strength and limited to 1; NaN stays NaN."""
     return minimum(1 + 0 * value, value)
 
 

@@ -51,7 +51,7 @@ class WallLayer:
     ----------
     youngs_modulus_1, youngs_modulus_2, poissons_ratio_12, shear_modulus_12 : elastic constants
         [Pa], [-]; E, E, nu, G for an isotropic layer
-    thickness : thickness of the layer, of the whole pair [m]
+    thickness : thickness of the layer [m]; of a pair, both plies together
     angle : winding angle from the tube axis [rad]
     strength : ply strengths of a composite; None for a metal
     yield_strength : yield strength of a metal [Pa]; None for a composite

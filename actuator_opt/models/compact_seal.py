@@ -1,4 +1,4 @@
-"""Compact double-acting seals (DAS type): an elastomer block between guide parts, face outwards.
+"""Compact double-acting seals (DAS type): a squeezed elastomer block between guide parts.
 
 The block has the free radial height h and the face width w. It is squeezed by the share C of h
 between groove floor and sliding surface, without strain along the circumference. Pressure from

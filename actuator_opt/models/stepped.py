@@ -145,7 +145,7 @@ class _Waves:
 
 
 def _ordered(ends: Ends, *pairs: Pair) -> tuple[tuple[str, str], list[Pair]]:
-    """Fixity in the order of `_UNIFORM`, and properties of both segments in the same order."""
+    """Swap ends and segment properties if only the swapped ends are in `_UNIFORM`."""
     key = (str(ends[0]), str(ends[1]))
     if key in _MIRRORED:
         return key[::-1], [(second, first) for first, second in pairs]
