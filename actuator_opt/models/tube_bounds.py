@@ -1,4 +1,4 @@
-"""Bounds for all layered tubes of given layers: bore growth, axial stiffness, pressure.
+"""Bounds on layered tubes: bore growth, axial stiffness and pressure before damage.
 
 They are energy bounds: any compatible displacement stores at least the energy of the true
 displacement, and any equilibrium stress at least the true complementary energy [Gurtin1972]. The

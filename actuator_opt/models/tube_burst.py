@@ -1,7 +1,7 @@
 """Burst of the exact layered tube by ply discount: leak, liner yield and fibre failure.
 
 The sequence of failures is that of `burst_ladder`. Stresses come from `layered_tube` at both faces
-of every layer, so that the fibres or the liner at the bore govern where they are stressed most.
+of every layer, because the stresses at the two faces differ.
 """
 
 from __future__ import annotations
@@ -107,19 +107,19 @@ class _Tube:
 
     @property
     def sorted(self) -> bool:
-        """Whether the ladder lists the layers in the order of the wall."""
+        """Whether the burst calculation lists the layers in the order of the wall, bore first."""
         return self.order == tuple(range(len(self.order)))
 
     def _chosen(self, table: Array, mask: Array | None) -> Array:
-        """The table with failed values for the layers in `mask`, which is in the wall's order."""
+        """Values from `table`: failed for layers in `mask` (bore first), intact for all others."""
         intact = table[:, :, :, 0, ...]
         return intact if mask is None else where(mask, table[:, :, :, 1, ...], intact)
 
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
         """Stresses per unit pressure, and stresses from clamp, cooling and yielded metals.
 
-        The latter are None if absent. One pass through the layers gives both: an axis before the
-        axes of the batch has the two loads.
+        The second result is None if there are no such stresses. One pass through the layers gives
+        both results: an additional axis, before the axes of the batch, holds the two loads.
         """
         xp = namespace(self.axial)
         mask = soft

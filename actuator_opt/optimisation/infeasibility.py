@@ -146,7 +146,7 @@ def _smaller_relaxation(
 def _conflicting(
     evaluator: Evaluator, point: Point, quality: kkt.KktResidual
 ) -> npt.NDArray[np.bool_]:
-    """Mask of the constraints that cause the conflict, even if all others are dropped.
+    """Mask of the constraints that conflict with each other even if all others are dropped.
 
     The multipliers of the relaxation prove this locally, and globally for a convex problem. If the
     relaxation is not optimal, every active constraint counts as a possible cause.

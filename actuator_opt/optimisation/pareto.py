@@ -81,7 +81,7 @@ class ParetoFront(Displayed):
     passed : objectives of dominated designs that the search found
     gaps : normalised distances between neighbours; for three or more objectives, to the nearest
         design
-    wide : with two objectives, gaps above three times the median and the reason for them
+    wide : with two objectives, gaps above three times the median, and whether the front jumps there
     checked, improved : number of checking searches between designs, and how many improved the front
     failed : number of levels without a design nearby
     infeasibility : reason why no design is feasible, if there is no front for that reason
@@ -122,7 +122,7 @@ class ParetoFront(Displayed):
 
     @property
     def steps(self) -> tuple[float, ...]:
-        """The gaps that are not jumps."""
+        """Distances between neighbouring designs of the front, except across jumps."""
         jumps = {gap.after for gap in self.jumps}
         return tuple(gap for k, gap in enumerate(self.gaps) if k not in jumps)
 

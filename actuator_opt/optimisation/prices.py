@@ -266,9 +266,9 @@ def _without_copies(
 
 
 def _vertices(rows: Vector, target: Vector, rank: int, free_count: int) -> Vector:
-    """Vertices (v, a) of {m : rows.T @ m = target, m >= 0}; `free_count` entries have any sign.
+    """Vertices (v, a) of {m : rows.T @ m = target, m >= 0}.
 
-    These entries are the last.
+    The last `free_count` entries of m may have either sign.
     """
     count = len(rows)
     vertices = []

@@ -7,8 +7,8 @@ their neighbours and in shared steps. Each design is compared with all others at
 a better design replaces it. Independent full searches at some levels then check whether a better
 design was overlooked.
 
-The difference of the levels of two designs limits the length of a continuous front between them.
-If close levels lead to distant designs, the front jumps and no design lies between them.
+On a continuous front, designs at nearly equal levels are close together. If two designs are farther
+apart than their levels permit, the front jumps and no design lies between them.
 """
 
 from __future__ import annotations
@@ -323,7 +323,8 @@ class Front:
     passed : values (objectives, p) of dominated designs that the search found
     checked, improved : number of checking searches, and how many of them improved a design
     failed : number of levels at or near which the search found no design
-    wide : with two objectives, gaps wider than `plane.WIDEST` and the reason for them
+    wide : with two objectives, gaps wider than `plane.WIDEST` times the median gap, and whether the
+        front jumps there
     """
 
     x: Vector

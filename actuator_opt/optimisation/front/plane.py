@@ -47,7 +47,9 @@ def on_line(places: Vector) -> Vector:
 
 
 def lengths(places: Vector, units: Vector) -> Vector:
-    """Length (k - 1,) of the front between neighbouring designs, without jumps.
+    """Upper limit (k - 1,) on the length of the front between neighbouring designs.
+
+    Across a jump, only the length that a continuous front may have there counts.
 
     Parameters
     ----------
@@ -398,7 +400,7 @@ def between_on_line(search: FrontSearch, places: Sequence[float] | Vector) -> li
 def _start_between(
     designs: Sequence[FrontDesign], k: int, u: float, direction: Vector
 ) -> FrontStart:
-    """A start between designs k - 1 and k: interpolated, or at a jump the nearer of the two."""
+    """A start between designs k - 1 and k: interpolated, or at a jump the nearer design."""
     left, right = designs[k - 1], designs[k]
     low, high = left.level[0], right.level[0]
     nearer = left if u - low < high - u else right
@@ -518,7 +520,7 @@ def middle_designs(search: FrontSearch, count: int) -> list[int]:
 
 
 def lost_levels(search: FrontSearch, indices: Indices) -> int:
-    """Number of levels without a design nearby; with two objectives, those inside gaps."""
+    """Number of levels without a design nearby; for two objectives, in wide gaps without a jump."""
     units = search.units[:, indices]
     if len(units) > 2:
         widest = nearest(units).max(initial=0.0)
