@@ -12,7 +12,8 @@ utilisation is
 - infinite (SR = 0) where the residual stress alone fails the ply.
 
 The largest utilisation of the modes is that of the ply; `strength_modes.load_multiplier` gives SR.
-Branches are chosen by real parts, so a complex step stays on the branch of the real value.
+Branches are chosen by the real parts of numbers, so that complex-step
+derivatives are those of the branch that applies.
 
 The criteria use the same few strengths, yet their results for one tube differ by 20-25 %: a
 first-ply pressure means little without the name of its criterion. No uniaxial test gives Tsai-Wu's

@@ -211,7 +211,7 @@ def max_stress_modes(
 
 
 def _strains(stress: Stress, elastic: PlyRatios) -> tuple[Array, Array, Array]:
-    """Strains of a stress, scaled to stresses: E_1 epsilon_1, E_2 epsilon_2 and tau_12."""
+    """Strains that a stress causes, times moduli: E_1 epsilon_1, E_2 epsilon_2 and tau_12."""
     along, across, radial, slip = stress
     e = elastic
     first = along - e.poissons_ratio_12 * across - e.poissons_ratio_13 * radial
@@ -275,7 +275,7 @@ def _exit_root(square: Array, half: Array, left: Array) -> Array:
     """1/SR where the growing load leaves the region square SR^2 + 2 half SR <= left.
 
     The load may start outside and enter the region first. Of the two equal forms
-    (half + root)/left and square/(root - half), the code uses that which loses no digits.
+    (half + root)/left and square/(root - half), the code uses the form that loses no digits.
     """
     inside = half * half + square * left
     root = namespace(inside).sqrt(where(real(inside) > 0, inside, 0.0))

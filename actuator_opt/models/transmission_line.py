@@ -42,6 +42,9 @@ def line_matrix(
 ) -> LineMatrix:
     """Matrix of a distributed line: A = D = cosh Gamma, B = Z_c sinh Gamma, C = sinh Gamma/Z_c.
 
+    Gamma is the complex propagation constant times the length, and Z_c is the characteristic
+    impedance.
+
     Parameters
     ----------
     frequency : [Hz]; 0 gives the steady flow
@@ -289,7 +292,7 @@ def plugged_branch_impedance(
     """Impedance at the mouth of a plugged T-pipe, Z_c coth Gamma.
 
     It is small at odd numbers of quarter waves and large at even numbers. Without friction it is
-    -i Z_c cot(omega l/a).
+    -i Z_c cot(omega l/a). `line_matrix` defines Gamma and Z_c.
 
     Parameters
     ----------

@@ -68,7 +68,7 @@ class Listed:
         return np.unique(self.rows[list(rows), column])
 
     def parts(self, rows: Rows, row: int) -> list[Rows]:
-        """Split all rows but `row` into parts that lie on one side of `row` in some variable."""
+        """Split all rows except `row` into parts, each below or above `row` in one variable."""
         parts: list[Rows] = []
         for column, value in enumerate(self.rows[row]):
             of = self.rows[:, column]
@@ -526,7 +526,7 @@ class _Run:
         return assignment, point
 
     def _restricted(self, lower: Vector, upper: Vector) -> Evaluator:
-        """The problem with these bounds on its listed variables."""
+        """Evaluator of the problem, with these bounds on the listed variables."""
         lowest, highest = self.problem.lower.copy(), self.problem.upper.copy()
         lowest[self.index], highest[self.index] = lower, upper
         evaluator = Evaluator(replace(self.problem, lower=lowest, upper=highest, start=None))

@@ -415,10 +415,10 @@ def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
 
 
 _SIZING = {
-    "found": "its best design with listed sizes was found",
+    "found": "the search found its best design with listed sizes",
     "sizes of the best": "computed with the listed sizes of the best design",
-    "none better": "no better design with listed sizes was found",
-    "none": "no feasible design with listed sizes was found",
+    "none better": "the search found no better design with listed sizes",
+    "none": "the search found no feasible design with listed sizes",
     "no size fits": "no listed size lies within the bounds",
 }
 """Words for each result of the search for listed sizes."""

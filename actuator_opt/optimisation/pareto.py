@@ -60,7 +60,11 @@ class FrontPoint:
 
 @dataclass(frozen=True, slots=True)
 class Knee:
-    """The design where the front bends most; its normalised distance from the anchors' plane."""
+    """The design where the front bends most: its index, and how far the front bulges there.
+
+    `depth` is the normalised distance from the plane (for two objectives, the line) through the
+    designs that are best in one objective each.
+    """
 
     index: int
     depth: float

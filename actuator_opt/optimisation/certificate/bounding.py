@@ -166,8 +166,8 @@ class Bounding:
     """The relaxation as one linear programme that is solved again for every box.
 
     The columns are atoms (elementary positive quantities), directions (logarithms of ratios) and
-    curves. The rows define directions and curves, state the limits, and hold lines that bound a
-    curve by its direction: one chord per curve, and the tangents.
+    curves. The rows define directions and curves, state the limits, and bound every curve by
+    straight lines: one chord and some tangents.
     """
 
     def __init__(self, layout: Layout, objective: Form) -> None:
