@@ -1,4 +1,4 @@
-"""Detects problems for which a search of listed sizes gives the same result.
+"""Detects problems for which a search of listed sizes would repeat an earlier search.
 
 Combinations of choices often differ only in numbers that enter inactive limits, such as the
 viscosity of oils with the same bulk modulus. The search of listed sizes depends on the result of

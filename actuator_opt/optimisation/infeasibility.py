@@ -34,8 +34,8 @@ class Conflict:
 
     Parameters
     ----------
-    joint : limits that must be relaxed together, by the least total; largest first; empty if only
-        laws conflict
+    joint : limits to relax together so that the total relaxation is least, the most relaxed first;
+        empty if only laws conflict
     sole : for each conflicting requirement, the relaxation that is enough if only it is relaxed
     bounds : bounds of variables that are active at `x`, the most helpful first
     laws : constraints that cannot be relaxed but conflict with each other

@@ -44,7 +44,9 @@ linear programming is used."""
 
 @dataclass(frozen=True)
 class Optimum:
-    """Vectors and matrices at an optimum; margins are of constraints, lower and upper bounds.
+    """Vectors and matrices at an optimum.
+
+    The M margins are those of the constraints, then of the lower and of the upper bounds.
 
     Parameters
     ----------

@@ -5,9 +5,9 @@ in every box; a tangent is added where the solution violates the curve [Kelley19
 side, the chord across the box bounds the curve. The bound is computed from the multipliers alone,
 so it is valid for any tolerance of the solver [Neumaier2004].
 
-The relaxation uses the logarithms of all quantities, in which the bounds on a sum are loose if its
-terms vary widely. Such a sum is therefore also stated with the quantities themselves, as a linear
-and so exact row. A product is then not linear: four planes bound it [McCormick1976]. Its two
+The relaxation uses the logarithms of all quantities. In logarithms, the bounds on a sum are loose
+if its terms vary widely. Such a sum is therefore also stated with the quantities themselves, as a
+linear and so exact row. A product is then not linear: four planes bound it [McCormick1976]. Its two
 factors are the quantity with the widest range and the rest of the product. Thus mass and stiffness
 of a layer, for example, both follow the layer's thickness.
 """
@@ -619,7 +619,7 @@ class _PlainAtoms:
 
 
 def add_plain_sums(relaxation: Relaxation) -> None:
-    """State sums whose terms vary widely also with the values themselves, without logarithms."""
+    """State sums whose terms vary widely a second time, with values instead of logarithms."""
     plain = _PlainAtoms(relaxation)
     for whole, part, remainder in list(relaxation.splits):
         if plain.width(part - remainder) < WIDE:

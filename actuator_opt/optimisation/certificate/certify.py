@@ -232,8 +232,8 @@ FAR_OFF = 0.2
 """Upper limit on a curve's `Bound.excess` when the gain of a split is estimated, since the first
 split gains most."""
 FLOOR = 0.003
-"""Added to a curve's `Bound.price` in the estimated gain of a split. Among loose
-curves in a chain (each the argument of the next), some have a price of 0."""
+"""Added to a curve's `Bound.price` in the estimated gain of a split. Among loose curves
+in a chain (each the argument of the next), some have a price of 0."""
 SQUEEZES = 2
 """Maximum number of rounds that cut the ranges of the first box."""
 DIRECTIONS = 16
