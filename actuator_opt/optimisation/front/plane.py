@@ -4,9 +4,9 @@ A level is a set of upper limits for the normalised objectives. Levels lie on th
 anchors (the best design of each objective). With two objectives they lie on the line
 u -> (u, 1 - u). Along a front one objective falls as the other rises, so the front's length between
 two positions is at most twice their difference in u. With three or more objectives, levels are
-lattice points on the plane sum = 1. From each lattice point starts a line along which all objectives
-improve by equal amounts. Only those points are used whose line meets the box between ideal and
-nadir (best and worst values of the anchors).
+lattice points on the plane sum = 1. Along a line through each lattice point, all
+objectives improve by equal amounts. Only those points are used whose line meets the box between
+ideal and nadir (best and worst values of the anchors).
 
 A front may extend beyond its anchors. So the search tries the neighbours of every level that has a
 design, until it reaches the edge of the front. There it improves the objectives that can still
