@@ -268,8 +268,8 @@ def burst_of_tube(
 
     The maximum-stress criterion applies at both faces of each layer. A matrix or shear failure
     multiplies E2, G12, nu12 and nu23 by `residual` for all plies of that material and |angle|, and
-    removes their matrix limits. A yielding metal keeps the deviator of its stress and its bulk
-    modulus. Burst is the largest pressure reached until a fibre fails.
+    removes their limits of matrix and shear stress. A yielding metal keeps the deviator of its
+    stress and its bulk modulus. Burst is the largest pressure reached until a fibre fails.
 
     Parameters
     ----------

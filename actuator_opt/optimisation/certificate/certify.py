@@ -141,8 +141,8 @@ def _along_the_stroke(
 ) -> Iterator[tuple[Any, Any]]:
     """Bound the minimum stiffness from above by its values at some piston positions.
 
-    The compliance of the two chambers is a 2 x 2 matrix, to which walls can only add. So its
-    determinant and diagonal are at least those of the oil alone.
+    The compliance of the two chambers is a 2 x 2 matrix. Elastic walls only add to that
+    of the oil alone, so its determinant and diagonal are at least those of the oil.
     """
     springs, stroke = case_statics.springs, case_statics.base.geometry.stroke
     if springs.topology != "per_chamber" or springs.seals is not None:
