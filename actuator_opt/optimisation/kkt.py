@@ -43,7 +43,7 @@ class Active:
 
     Parameters
     ----------
-    gradients : gradients of the margins (a, nf)
+    gradients : gradients of the margins (a, nf), for a active limits and nf free variables
     margins : margins (a,), at least 0 where met
     constraint, lower, upper : indices of the active constraints, and of the variables at their
         lower and upper bounds; `gradients` and `margins` are in this order

@@ -46,7 +46,8 @@ linear programming is used."""
 class Optimum:
     """Vectors and matrices at an optimum.
 
-    The M margins are those of the constraints, then of the lower and of the upper bounds.
+    The M margins are those of the constraints, then of the lower and of the upper bounds. The
+    number of free variables is nf.
 
     Parameters
     ----------

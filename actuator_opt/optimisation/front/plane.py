@@ -373,7 +373,7 @@ MOST_ROUNDS = 12
 
 
 def fill_line(search: FrontSearch, count: int) -> None:
-    """Add designs between the two anchors, always in the longest piece of the front."""
+    """Add designs between the two anchors, always in the longest gap between neighbours."""
     for number in range(MOST_ROUNDS):
         missing = count - len(search.front_indices())
         if missing <= 0:

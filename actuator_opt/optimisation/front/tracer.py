@@ -219,11 +219,11 @@ class Tracer:
         return units * self.width[:, None] + self.ideal[:, None]
 
     def at(self, level: Vector, direction: Vector) -> BoxProblem:
-        """The single-objective problem for given levels."""
+        """The single-objective problem for given levels (upper limits of the objectives)."""
         return self.parametric.at(np.concatenate([level, direction]))
 
     def initial_designs(self, x: Vector) -> list[FrontDesign]:
-        """Designs at the variables (n, k), with their objectives as levels and no Hessian."""
+        """Designs at the variables (n, k), with their own objectives as levels and no Hessian."""
         units = self.unit(x)
         size = self.evaluator.space.size
         return self._at_own(
@@ -234,7 +234,7 @@ class Tracer:
         )
 
     def at_own_levels(self, designs: Sequence[FrontDesign]) -> list[FrontDesign]:
-        """The designs, with the values of their own objectives as levels."""
+        """The designs, with the values of their own objectives as levels (upper limits)."""
         if not designs:
             return []
         units = self.unit(np.stack([design.point.x[:-1] for design in designs], axis=1))
@@ -286,7 +286,7 @@ class Tracer:
     def exchange(
         self, designs: list[FrontDesign], other_x: Vector, other_units: Vector
     ) -> list[FrontDesign]:
-        """Replace each design where the variables of another design reach a better level.
+        """Replace each design for which another is better at its levels, after a descent from it.
 
         Parameters
         ----------
@@ -361,7 +361,7 @@ class Tracer:
         return self._follow(starts)
 
     def _changed(self, starts: Sequence[FrontStart]) -> ChangedProblems:
-        """The problems for the levels of some starts."""
+        """The single-objective problems for the levels of some starts."""
         levels = np.stack(
             [np.concatenate([start.level, start.direction]) for start in starts], axis=1
         )

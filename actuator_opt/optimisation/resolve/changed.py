@@ -34,7 +34,7 @@ def applicable(parametric: ParametricProblem, evaluator: Evaluator) -> bool:
 
 @dataclass(frozen=True)
 class ChangedProblems:
-    """A solved problem, with K sets of other values for its parameters.
+    """A solved problem with nf free variables, and K sets of other values for its parameters.
 
     Parameters
     ----------
