@@ -157,7 +157,7 @@ class Evaluator:
         return point
 
     def enter(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
-        """The point at z (nf,), from results computed in advance at the complex points `columns`."""
+        """The point at z (nf,), from results computed before at the complex points `columns`."""
         return self._store(z, *self.values_and_slopes(rows))
 
     def enter_precomputed(self) -> None:
