@@ -731,7 +731,7 @@ def _bearable(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> 
 
 
 def _hoop(layer: plies.Layer) -> Array:
-    """Largest hoop strength of a ply over its climates; at least its strength along the fibres.
+    """Largest hoop strength of a ply at its service temperatures; at least its fibre strength.
 
     Axial strain and temperature alone cause far less hoop stress, by the equilibrium of the wall
     (`tube_bounds.greatest_pressure`).

@@ -430,7 +430,7 @@ class Relaxed:
 
 
 def relax(traced: Traced, best: float) -> Relaxed:
-    """Relax the problem for all designs that meet the limits and are at most as bad as `best`.
+    """Relax the problem for all designs that meet the limits, with an objective of at most `best`.
 
     Raises
     ------
