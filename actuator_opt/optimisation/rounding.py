@@ -7,10 +7,10 @@ proves nothing; see `branch_and_bound`.
 
 Remedies are small changes of a limit, a load or the supply pressure that make better sizes
 possible. If rounding costs much, the variable that rounding changed most is moved to the
-neighbouring size on the other side of its continuous value; some limit forbids this size. If no
-design with listed sizes is feasible, the least infeasible sizes are used instead. For these sizes,
-the smallest sufficient relaxation of each limit is computed. An optimisation with the relaxed limit
-then confirms the remedy.
+neighbouring size on the other side of its continuous value, a size that some limit forbids. If no
+design with listed sizes is feasible, the least infeasible sizes are used instead. With these
+sizes fixed, the smallest sufficient relaxation of each limit is computed. An optimisation with the
+relaxed limit then confirms the remedy.
 """
 
 from __future__ import annotations
@@ -212,7 +212,7 @@ class _FixedSizes:
     def remedy(
         self, eased: BoxProblem, x: Vector, entry: Mapping[str, Any]
     ) -> Iterator[SizeRemedy]:
-        """The remedy, with the best design of these sizes after the change, if it is better."""
+        """Yield the remedy if, after its change, the best design with these sizes is better."""
         point = repairs.near(eased, x)
         if point is None:
             return

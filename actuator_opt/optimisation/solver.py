@@ -1,7 +1,7 @@
 """The optimiser: sweeps the design space, descends from the best starts, refines and verifies.
 
 On the default path, a low-discrepancy sweep suggests starts. From each start, SLSQP runs in
-logarithmic variables, and after a failure in linear variables. If all runs fail, the augmented
+logarithmic variables and, if that fails, in linear variables. If all runs fail, the augmented
 Lagrangian method with LBFGS follows. Active-set Newton steps reduce the remaining error to
 rounding. Feasibility and optimality are then verified, independently of what a solver reports.
 

@@ -31,16 +31,16 @@ STARTS = 3
 """Number of starts in the search that follows if the steps fail."""
 
 SAMPLES = 1024
-"""Number of sweep points in that search."""
+"""Number of sweep points in the search that follows if the steps fail."""
 
 AGREES = 1e-9
-"""Allowed difference of margins, due to rounding errors, when testing whether a parameter describes
-a changed problem."""
+"""Largest difference of margins, due to rounding errors, at which changing a parameter and building
+the problem anew count as the same."""
 
 
 @dataclass(frozen=True, slots=True)
 class SearchEffort:
-    """Effort of a search: number of starts, number of sweep points, and the seed."""
+    """Settings of a search: number of starts, number of sweep points, and random seed."""
 
     starts: int
     samples: int
@@ -172,7 +172,7 @@ class WarmStart:
         Parameters
         ----------
         changes : difference of each number by PATH
-        size : number of these joint changes that make up a change of 100 %
+        size : change of 100 %, as a multiple of this joint change
         """
         optimum = self.optimum
         derivatives = self._along(changes, size)
@@ -198,7 +198,7 @@ class WarmStart:
         return self._optimum
 
     def _along(self, changes: Mapping[str, float], size: float) -> Responses:
-        """Derivatives with respect to one parameter that changes several numbers in proportion."""
+        """Derivatives by one parameter that moves several numbers by fixed multiples of itself."""
         self.differentiate(changes)
         parts = [(self._responses[path], change) for path, change in changes.items()]
         first = parts[0][0]

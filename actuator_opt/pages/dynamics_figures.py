@@ -76,7 +76,7 @@ def _frequency_panel(study: DynamicsStudy, requirements: Sequence[Requirement]) 
         words = (
             "including the moving oil in the lines"
             if study.end == "closed"
-            else f"lines end at: {end}"
+            else f"oil lines end at: {end}"
         )
         curves.append(Curve(words, xs, ended))
     least = min(closed)

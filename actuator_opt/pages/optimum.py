@@ -429,7 +429,7 @@ def robust_tables(optimisation: Optimisation) -> Iterator[Table]:
         f"{percent(robust.lower)} to {percent(robust.upper)})."
     )
     columns = [Column(head, width=1.0) for head in ("round", quantity.label, "all limits met")]
-    title = f"Towards a yield of {percent(robust.target)}"
+    title = f"Search for a yield of {percent(robust.target)}"
     yield Table(title, columns, rounds, note=note, on="paper")
     kept: list[list[Cell]] = [
         [soft(name), f"{100 * share:.1f} %"]
@@ -440,6 +440,6 @@ def robust_tables(optimisation: Optimisation) -> Iterator[Table]:
         columns = [Column(head, width=1.0) for head in ("limit", "added, of the limit")]
         note = (
             "Added margin: the margin that the nominal design needs so that, with scatter, no more "
-            "draws miss this limit than the yield allows."
+            "draws miss this limit than the required yield allows."
         )
         yield Table("Margins added for scatter", columns, kept, note=note, on="paper")

@@ -299,7 +299,7 @@ def _counts(evaluation: Evaluation) -> dict[str, int]:
 
 
 def _misfit(optimisation: Optimisation | None) -> str:
-    """Clause on the geometrical conditions that no design meets together."""
+    """Clause that names geometrical conditions that no design can meet all at once."""
     card = None if optimisation is None else optimisation.infeasibility
     return (
         f"; conflicting conditions of the geometry: {', '.join(card.laws)}"
@@ -620,7 +620,10 @@ def warnings(subject: Evaluation | Optimisation) -> list[str]:
 
 
 def _remarks(evaluation: Evaluation, optimisation: Optimisation | None) -> Iterator[Block]:
-    """Warnings; on the terminal also a short form of the appendix, which is only on paper."""
+    """Warnings; on the terminal also a summary of the appendix.
+
+    The full appendix is printed only on paper.
+    """
     if lines := warnings(optimisation or evaluation):
         yield Notes("Warnings", [text.pretty(line) for line in lines], style="yellow")
     data = []

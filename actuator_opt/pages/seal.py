@@ -256,7 +256,7 @@ def operating_rows(study: SealStudy) -> list[tuple[str, str, str]]:
         row("friction, film", lambda point: _force(point.friction)),
         row("part by oil shear", lambda point: _force(point.viscous)),
         row("part by asperities", lambda point: _force(point.asperity)),
-        row("friction, range by scatter of the moduli", _scatter),
+        row("friction, range due to scatter of moduli", _scatter),
         row("friction by friction coefficient", lambda p: _force(p.coefficient_friction)),
         row("breakaway, dry", lambda point: _force(point.breakaway)),
         row("secant damping at this speed", lambda point: _damping(point.damping)),

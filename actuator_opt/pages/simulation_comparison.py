@@ -211,7 +211,7 @@ def _least(shown: Curve, span: tuple[float, float]) -> float:
 
 
 def _taken(run: Simulation) -> dict[str, float]:
-    """Energy taken by each of `SINKS` [J]; all other sinks are summed, with stored energy."""
+    """Energy taken by each of `SINKS` [J]; all other sinks and the stored energy are one sum."""
     taken: dict[str, float] = {}
     for flow in run.balance.flows:
         if flow.energy < 0:
@@ -311,7 +311,7 @@ def comparison(
     notes: Sequence[str] = (),
     columns: Sequence[str] = (),
 ) -> RunComparison:
-    """Runs to compare.
+    """Collect several runs for a page that compares them.
 
     Parameters
     ----------

@@ -247,8 +247,8 @@ def over_time(simulation: Simulation) -> dict[str, Array]:
 
 
 _LOADED = ("load", "valve edges")
-"""Flows whose power can be computed from the signals only if the machine has no lines, no joint and
-no machine outside."""
+"""Flows whose power can be computed from the signals only if the system has no hydraulic lines, no
+joint, and no external machine that moves the rod."""
 
 
 def doubts(simulation: Simulation) -> list[str]:

@@ -19,10 +19,10 @@ BESIDE = 0.02
 result, and the result at the position of the time simulation."""
 MEANING = (
     "Evaluation: worst result of the linear models. Linear: result of the same models at the "
-    "position of the experiment and for the side to which its spool is open; the difference "
-    "refers to this value. Beside: the worst linear result is for the other side of the spool. "
-    "The spool only passes through this side while the load drifts, so no experiment, which "
-    "starts at rest, can reach it."
+    "position of the experiment and with the valve spool open in the same direction; the "
+    "difference refers to this value. Beside: the worst linear result is for the opposite spool "
+    "direction. The spool only passes through it while the load drifts, so no experiment, which "
+    "starts at rest, can check it."
 )
 UNSURE = "?"
 """Mark behind an effect that a run with half the parameter step does not confirm."""

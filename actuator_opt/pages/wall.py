@@ -376,10 +376,10 @@ def _criteria(study: WallStudy) -> Block:
         for row in study.ratios
         if row.criterion == YIELD and row.ratio is not None
     ]
-    key = "; ".join(f"{letter} {name}" for name, letter in letters.items())
+    key = "; ".join(f"{letter}: {name}" for name, letter in letters.items())
     note = (
         "Strength ratio: factor on the supply pressure at which the ply first fails, including "
-        f"cure stress, with failure mode and face. Load paths: {key}; cold, hot: climates. ●: "
+        f"cure stress, with failure mode and face. Load paths: {key}. Cold, hot: climates. ●: "
         "criterion of the design. Spread: ratio of the largest to the smallest value in the row."
     )
     if any(row.ratio == 0.0 for row in study.ratios):
@@ -574,7 +574,7 @@ def _metals(study: WallStudy) -> Block:
     note = (
         "For each metal of the library: the thinnest tube of the same bore that has at most the "
         "bore growth of this design (without axial load), and at least the required burst "
-        "pressure (or that of this design, if it is lower). Computed by Lamé and Faupel, under "
+        "pressure (or this design's own, if that is lower). Computed by Lamé and Faupel, under "
         "the same axial forces, without a minimum wall for turning."
     )
     return Table(

@@ -442,7 +442,10 @@ def _stretches(axes: Axes, stretches: Sequence[Stretch], x: Scale) -> None:
 
 
 def _ends(axes: Axes, between: tuple[float, float], x: Scale) -> tuple[float, float]:
-    """Ends of a short level inside the frame [mm]; an end that x cannot show lies at the left."""
+    """Positions on paper of both ends of a short horizontal line, cut at the frame [mm].
+
+    An end with no position on the x axis (zero on a logarithmic axis) is put at the left edge.
+    """
     low, high = axes.x_range
     start, end = np.clip(np.nan_to_num(x.at(between), nan=low), low, high)
     return axes.x(float(start)), axes.x(float(end))

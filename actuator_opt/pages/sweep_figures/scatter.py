@@ -15,7 +15,8 @@ from ...sweeps.result import better
 from .shared import BETTER, INFEASIBLE, SweepFigure, SweepFigureData, heading
 
 MOST = 2000
-"""Largest number of feasible designs, and of other designs, drawn in a panel (our choice)."""
+"""Largest number of feasible designs drawn in a panel, and of designs that miss a limit (our
+choice)."""
 WIDEST = 8
 """Largest number of metrics (our choice; with so many, panels are 20 mm wide)."""
 LEAST = 0.1

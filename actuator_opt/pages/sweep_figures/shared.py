@@ -37,8 +37,9 @@ ORIGINS = ("requirement", "case")
 class DrawnRows:
     """Designs to draw.
 
-    `variants` are numbers of combinations of named values, `rows` are row numbers, and `every` is
-    the sampling step: 1 if all designs are drawn.
+    For each design, `rows` (designs, columns) has its inputs and metrics, and `variants` the index
+    of its combination of named values (such as materials). `every` is the sampling step: 1 if all
+    designs are drawn.
     """
 
     variants: Array
