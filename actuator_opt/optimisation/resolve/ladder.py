@@ -33,11 +33,11 @@ ROUNDS = 3
 """Maximum number of rounds in which problems exchange optima; fewer if a round improves none."""
 
 BEYOND = 1.0
-"""How far beyond a second-best local optimum a descent towards it starts.
+"""A descent towards another local optimum starts beyond it, as seen from the best optimum.
 
-The start lies on the line from the best optimum through the other, beyond the other by this share
-of the distance between the two. The ridge that separates them often moves as fast as they do, so a
-start on the other optimum itself could be on the wrong side of the ridge."""
+The start lies on the straight line through both optima, beyond the other optimum by this share of
+the distance between them. The ridge that separates them often moves as fast as they do, so a start
+on the other optimum itself could be on the wrong side of the ridge."""
 
 SAMPLES = 1024
 """Number of points of the sweep for a feasible problem whose optimum is not yet known."""
