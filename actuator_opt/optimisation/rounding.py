@@ -99,9 +99,10 @@ def size_remedies(
 
 
 def _other_sizes(listed: Sequence[Listed], x: Vector, size_search: SizeSearch) -> list[Assignment]:
-    """Assignments in which the variable that rounding changes most has its other neighbouring size.
+    """Infeasible combinations of sizes that move the variable which rounding changed most.
 
-    If no design with sizes is feasible, returns the least infeasible assignment.
+    This variable takes the neighbouring size on the other side of its continuous value. If no
+    design with sizes is feasible, only the least infeasible combination is returned.
     """
     if size_search.assignment is None:
         return [] if size_search.nearest is None else [size_search.nearest]
@@ -134,7 +135,7 @@ def _limits(actuator: ActuatorProblem, solution: Solution, size_search: SizeSear
 
 @dataclass(frozen=True)
 class _FixedSizes:
-    """The problem in which every variable with sizes is fixed at the size of an assignment."""
+    """The problem with its sizes fixed: `assignment` chooses a size for each listed variable."""
 
     actuator: ActuatorProblem
     listed: Sequence[Listed]

@@ -361,7 +361,10 @@ def _best_seen(search: Descents, swept: Sweep) -> SearchResult:
 
 
 def _settle(search: Descents, best: SearchResult) -> tuple[Point, tuple[str, ...]]:
-    """Reset variables without effect to their start, or else to the middle of their bounds."""
+    """Reset variables that affect nothing to their start, or else to the middle of their bounds.
+
+    Returns the new point and the names of these variables.
+    """
     evaluator = search.evaluator
     space, problem = evaluator.space, evaluator.problem
     if not best.point.valid or space.size == 0:

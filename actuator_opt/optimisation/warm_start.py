@@ -131,8 +131,9 @@ class WarmStart:
     ) -> list[Point | None]:  # fmt: skip
         """Find the optimum for each value of one number, in parallel.
 
-        For values that the parallel steps do not solve, single searches follow, from the value
-        nearest to the optimum outwards. On each side they stop at the first value without a design.
+        For values that the parallel steps do not solve, single searches follow, beginning with the
+        values nearest to the present one. Above and below it, they stop at the first value for
+        which no design exists.
 
         Parameters
         ----------

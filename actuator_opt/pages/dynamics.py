@@ -105,7 +105,7 @@ def _modes(evaluation: Evaluation, study: DynamicsStudy) -> Block:
 
 
 def shaken_cases(study: DynamicsStudy) -> list[Shaken]:
-    """Load cases with excitation, each with its least stiffness and the phase along the stroke."""
+    """Load cases with excitation, each at its stroke position of least dynamic stiffness."""
     return [
         Shaken(clean(case.name), case.frequency, case.stiffness, case.phase)
         for case in study.shaken
@@ -133,7 +133,7 @@ def _response(evaluation: Evaluation, study: DynamicsStudy) -> Block:
 
 
 def lumped_sentence(study: DynamicsStudy) -> str:
-    """Sentence: up to which frequency the lumped and the distributed model of the lines agree.
+    """Sentence on the frequency up to which two models of the lines agree: lumped, distributed.
 
     Empty if the design has no lines.
     """
@@ -151,7 +151,7 @@ def lumped_sentence(study: DynamicsStudy) -> str:
         return "1 kHz" if frequency is None else f"{text.number(frequency, 2)} Hz"
 
     words = (
-        " With the lines modelled as transmission lines instead of lumped masses, the "
+        " With hydraulic lines modelled as transmission lines instead of lumped masses, the "
         f"magnitude differs by less than 1 % up to {upto(0.01)}"
     )
     return words + (

@@ -35,7 +35,7 @@ ALONG = "piston position from the cap end, mm"
 
 @dataclass(frozen=True, slots=True)
 class Shaken:
-    """A load case with excitation: its frequency (Hz), least stiffness (N/m) and phase (rad)."""
+    """A load case with excitation: frequency (Hz), least dynamic stiffness (N/m), phase (rad)."""
 
     name: str
     frequency: float

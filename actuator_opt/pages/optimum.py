@@ -317,7 +317,7 @@ def infeasibility_blocks(card: Infeasibility) -> list[Block]:
     words = ""
     if card.cures:
         words = (
-            "Each of these changes alone is enough, and no smaller change of the same input was. "
+            "Each of these changes alone is enough; a smaller change of the same input was not. "
             "The most advisable is first. "
         )
     if others:

@@ -59,7 +59,7 @@ FLAG = " (!)"
 FLAGGED = "(!) EXTRAPOLATED: a model was used outside its valid range"
 
 _SHORT_OF = ("missed", "infeasible")
-"""States of an optimum with less than the required yield."""
+"""States in which the badge of a robust search says that margins for scatter are not included."""
 _MET = ("met", "checks")
 """States in which every requirement is met: without cautions (green), and with cautions
 (amber)."""

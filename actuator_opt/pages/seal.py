@@ -478,7 +478,7 @@ def _speeds(study: SealStudy, curves: FilmMap) -> Chart:
             f"{_damping(point.damping)}, which applies to this speed only. "
         )
     note += (
-        f"By the coefficient of friction, friction is {_force(point.coefficient_friction)};"
+        f"Computed by a friction coefficient, friction is {_force(point.coefficient_friction)};"
         f" breakaway takes {_force(point.breakaway)}.{missing(curves)}"
     )
     title = f"{_seals(study)}: friction and damping over speed"

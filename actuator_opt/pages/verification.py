@@ -107,7 +107,7 @@ def tables(verification: Verification) -> tuple[Table, ...]:
         return (both,)
     heads = ("requirement", "case and place", "experiment", "difference, as seen")
     note = (
-        "The shares of the difference are computed: the experiment is repeated without sticking "
+        "To find each cause's share of the difference, the experiment is repeated without sticking "
         "friction, then with a fiftieth of the amplitude. The rest is due to the operating point."
     )
     widths = (1, 1.2, 1.5, 3.5)

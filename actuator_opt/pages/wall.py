@@ -305,12 +305,12 @@ def _layers(study: WallStudy) -> Block:
         Column("E₂, GPa", "right"),
         Column("G₁₂, GPa", "right"),
         Column("ν₁₂", "right"),
-        Column("allowables at highest temperature, MPa (share left)", "left", 2.6),
+        Column("allowables at highest temperature, MPa (share of library value)", "left", 2.6),
     ]
     note = (
         "From the bore outwards; angles are from the tube axis; ± is a balanced pair. X: "
         "strength along the fibre, Y: across it, S: in shear; t: tension, c: compression. "
-        "Share left: allowable as a share of the library value, after knock-downs for "
+        "Share of library value: the part that remains after knock-downs for "
         "temperature, moisture, statistical basis and process."
     )
     return Table("Barrel wall: layers", columns, rows, note=note, on="paper")

@@ -399,7 +399,7 @@ def _small(ink: Ink, x: float, y: float, style: int) -> None:
 
 
 def _level(axes: Axes, level: Level, y: Scale, x: Scale) -> None:
-    """Draw a horizontal level; the forbidden side of a limit is hatched."""
+    """Draw a `Level` as a horizontal line; the forbidden side of a limit is hatched."""
     place = y.place(level.value)
     if not axes.y_range[0] <= place <= axes.y_range[1]:
         return
@@ -415,7 +415,7 @@ def _level(axes: Axes, level: Level, y: Scale, x: Scale) -> None:
 
 
 def _upright(axes: Axes, level: Level, x: Scale) -> None:
-    """Draw a vertical level; the forbidden side of a limit is hatched."""
+    """Draw a `Level` as a vertical line; the forbidden side of a limit is hatched."""
     place = x.place(level.value)
     if not axes.x_range[0] <= place <= axes.x_range[1]:
         return
@@ -524,7 +524,7 @@ def _right_words(axes: Axes, frame: Frame, lines: Sequence[Sequence[Line]]) -> N
 
 
 def _beside(axes: Axes, level: Level, y: Scale, x: Scale, drawn_points: Sequence[Point]) -> None:
-    """Write the name of a short level on the side where it crosses the fewest lines."""
+    """Write the name of a short `Level` line on the side where it crosses the fewest lines."""
     place = y.place(level.value)
     if level.between is None or not axes.y_range[0] <= place <= axes.y_range[1]:
         return
@@ -575,7 +575,7 @@ def _written(
 
 
 def _level_lines(axes: Axes, frame: Frame, x: Scale) -> Iterator[Line]:
-    """The lines of all levels, in mm of paper."""
+    """The lines of all `Level` objects, in mm of paper."""
     left, right = axes.left, axes.left + axes.width
     for level in frame.panel.levels:
         place = (x if level.upright else frame.y).place(level.value)

@@ -309,7 +309,7 @@ def _fit_head(frame: Frame, wide: float, right: float) -> None:
 
 
 def _entries(frame: Frame, wide: float) -> Iterator[Entry]:
-    """Legend entries of points, curves and full-width levels, without duplicates."""
+    """Legend entries of points, curves and full-width `Level` lines, without duplicates."""
     panel, entries = frame.panel, dict[str, Entry]()
 
     def add(words: str, **sketch: Any) -> None:
@@ -351,7 +351,7 @@ def line_style(curve: Curve, index: int) -> dict[str, Any]:
 
 
 def level_style(level: Level) -> dict[str, Any]:
-    """Colour, width and dashes of a level; limits are red."""
+    """Colour, width and dashes of a `Level` line; limits are red."""
     if level.sense and level.between is not None:
         return LIMIT | {"pen": 0.4, "dash": ()}
     return LIMIT if level.sense else LINES[level.style % len(LINES)] | {"pen": 0.3}

@@ -1,8 +1,9 @@
 """Re-solves many problems near a solved problem, by increasingly robust methods.
 
 1. Full steps from the predicted optima, all problems together.
-2. Where they fail, a restoration and a descent. Descents also start in the other known valleys, and
-   the optimum of each problem is a start for all others: a small change may favour another valley.
+2. Where they fail, a restoration finds a feasible point, and a descent starts there. Descents also
+   start in the other known valleys (local optima), and the optimum of each problem is a start for
+   all others, because a small change may favour another valley.
 3. Where both fail, Newton's method and SLSQP from the known points, then a search with a sweep.
 
 A problem counts as unsolvable only after the last method has failed.

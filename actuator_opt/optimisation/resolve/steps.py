@@ -250,11 +250,11 @@ class Valley:
     price: float
 
     def full(self) -> Descent:
-        """A descent by full steps."""
+        """A new descent by full steps, with the Hessian of this optimum."""
         return Descent(self.hessian, self.scale, self.rows, 1.0, radius=kkt.RADIUS)
 
     def trusted(self) -> Descent:
-        """A descent within a trust region."""
+        """A new descent within a trust region, with the Hessian of this optimum."""
         return Descent(self.hessian, self.scale, self.rows, self.price)
 
 
@@ -338,7 +338,7 @@ def trusted_steps(
 
 
 class RestorationResult(NamedTuple):
-    """A feasible point; if none is reached, None and the least infeasible point of the steps."""
+    """`feasible` is the feasible point reached, or None; `least` is the least infeasible point."""
 
     feasible: Point | None
     least: Point | None

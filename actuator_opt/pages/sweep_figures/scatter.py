@@ -130,9 +130,9 @@ def _directions(
 
 
 def _span(feasible: Array, every: Sequence[Array]) -> tuple[float, float]:
-    """Axis range: that of the feasible designs, extended by its own width to both sides.
+    """Axis range: that of the feasible designs, extended on each side by its own width.
 
-    The range is not extended beyond the designs.
+    It ends earlier where no design lies farther out.
     """
     known = np.concatenate(list(every))
     known = known[np.isfinite(known)]

@@ -109,14 +109,14 @@ class SweepFigureData:
         return f"{head} {limit_text(self.study.quantity(limit.metric), limit.sense, known)}"
 
     def axis(self, path: str) -> Track:
-        """A varied input."""
+        """The `Track` of a varied input."""
         axis = next(axis for axis in self.study.plan.axes if axis.path == path)
         if axis.values is None:
             return Track(path, names=axis.texts)
         return Track(path, quantity_of(path, self.study.design))
 
     def metric(self, name: str) -> Track:
-        """A metric."""
+        """The `Track` of a metric."""
         return Track(name, self.study.quantity(name))
 
     def values(self, name: str, drawn: DrawnRows) -> Array:
