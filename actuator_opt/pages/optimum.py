@@ -81,7 +81,8 @@ def _place(row: VariableResult) -> float:
 def best_values(optimisation: Optimisation, room: float) -> list[Block]:
     """Best values of the variables side by side.
 
-    Only the values that fit into the height `room` [mm] are shown; a line refers to the others.
+    Only the values that fit into the height `room` [mm] are shown; a note refers to the
+    table with all variables.
     """
     best = optimisation.best_variables
     lines = (len(best) + 1) // 2

@@ -209,9 +209,10 @@ def sentences(optimisation: Optimisation) -> list[str]:
 
 
 def reserve_sentences(subject: Evaluation | Optimisation) -> list[str]:
-    """Sentences on limits without reserve and on the yield.
+    """Sentences on limits without reserve, and on the yield.
 
-    Empty if a requirement is missed, or if the search already included scatter (robust search).
+    The yield is the share of actuators that meet all limits in spite of scatter. The result is
+    empty if a requirement is missed, or if the search already included scatter (robust search).
     """
     evaluation, optimisation = parts_of(subject)
     robust = optimisation is not None and optimisation.robust is not None
@@ -321,7 +322,7 @@ def key_figures(subject: Evaluation | Optimisation) -> list[Tile]:
     for name in names:
         metric, quantity = evaluation.metrics[name], text.metric(name)
         row = _limited(evaluation, name)
-        value, note = metric.value, f"case {metric.case}" if metric.case else ""
+        value, note = metric.value, f'load case "{metric.case}"' if metric.case else ""
         state: State = ""
         before = _before(optimisation, name)
         if name in first and before is not None and metric.value is not None:

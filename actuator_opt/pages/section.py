@@ -213,7 +213,7 @@ def _balloon_rows(count: int, width: float) -> int:
 
 
 def _spans(outline: Outline, position: float) -> list[tuple[float, float]]:
-    """Radial intervals of a part at an axial position."""
+    """Radial intervals [m] in which a part has material at an axial position."""
     spans = []
     for polygon in outline.polygons:
         hits = []

@@ -125,9 +125,9 @@ def kind_of(simulations: Sequence[Simulation]) -> str:
 
 
 def styles(names: Sequence[str]) -> list[Pen]:
-    """Pen of every run, chosen by its name.
+    """Pen (colour, dash) of every run, chosen by its name.
 
-    The words before the last comma of the name determine the colour, those after it the dash.
+    Words before the last comma of the name determine the colour, words after it the dash.
 
     If the names form no such groups, every run has a different colour and dash.
 

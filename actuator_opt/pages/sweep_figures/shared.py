@@ -266,7 +266,7 @@ USUAL = 5
 
 
 def chosen(study: Study, show: Sequence[str]) -> tuple[str, ...]:
-    """The metrics to show: the requested ones, else those of objective and requirements.
+    """The metrics to show: as requested, or else the metrics of objective and requirements.
 
     Raises
     ------
