@@ -69,9 +69,10 @@ class Infeasibility:
     limit and needed are torques.
 
     An entry of `bounds` is a bound of a variable that is active at the joint relaxation. It
-    contains variable, parameter (PATH), quantity, bound (side), value, gain (decrease of `total`
-    per relative change of the bound, so that a change of 1 % decreases `total` by 0.01 of it),
-    needed (the bound that is enough if it alone is moved; None if no bound is), change and texts.
+    contains variable, parameter (PATH), quantity, bound (side), value, gain, needed (the bound that
+    is enough if it alone is moved; None if no bound is), change and texts. The gain is the decrease
+    of `total` (see below) per relative change of the bound: moving the bound by 1 % decreases
+    `total` by 0.01 times the gain.
 
     An entry of `cures` is a single change that is enough, the most advisable first. It contains
     kind (dimension, choice, bound, requirement, safety factor), parameter (PATH), now and needed

@@ -13,7 +13,7 @@ from ..rendering.text import DASH
 from ..rendering.tornado import MOST, TornadoBar, bars
 
 MOVING = 3
-"""Largest number of dimensions named per row of the table of changed dimensions."""
+"""Largest number of dimensions named in each row of the table of changed dimensions."""
 MOST_MOVES = 8
 """Largest number of rows in the table of changed dimensions."""
 LEAST_MOVE = 1e-4

@@ -335,7 +335,7 @@ def _strength(study: WallStudy) -> Block:
     if study.shares is not None:
         climate = {"cold": ", coldest", "hot": ", hottest"}.get(study.shares.climate, "")
         right = (
-            f" Right: stress over strength for the most severe load "
+            f" Right: stress / strength for the most severe load "
             f"({study.shares.path}{climate}), including stress without pressure; negative: "
             "compression, or negative shear."
         )
@@ -517,7 +517,7 @@ def _thicknesses(study: WallStudy) -> Block:
         f"{text.trimmed(100 * share, 3)} % at {text.trimmed(1e3 * at, 2)} mm"
         for at, share in settling.shares
     )
-    shell = f"thin shell, radius over thickness {text.number(settling.radius_ratio, 2)}"
+    shell = f"thin shell, radius / thickness {text.number(settling.radius_ratio, 2)}"
     if settling.radius_ratio < 5:
         shell += ": below 5, so this is a rough value"
     note = (
@@ -566,8 +566,8 @@ def _metals(study: WallStudy) -> Block:
         Column("for\nburst, mm", "right"),
         Column("wall, mm", "right", strong=True),
         Column("bore growth,\nµm", "right"),
-        Column("burst over\nworking", "right"),
-        Column("yield over\nworking", "right"),
+        Column("burst /\nworking", "right"),
+        Column("yield /\nworking", "right"),
         Column("mass,\ng/m", "right", strong=True),
         Column("against this\ndesign", "right"),
     ]
