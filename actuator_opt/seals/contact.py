@@ -100,8 +100,8 @@ SHARED = (THICKNESS, WIDTH, GROOVE_WIDTH, LAND, RELIEF, TAPER, ROOT_CLEARANCE)
 
 
 WITHIN, TOUCHING = 1e-6, 1.0
-"""Least excess of contact pressure over oil pressure, as a share of the sealed pressure and in Pa.
-With a smaller excess, the sealed pressure would open the contact."""
+"""Least excess of the contact pressure over the oil pressure: as a share of the sealed pressure,
+and in Pa. With a smaller excess, the sealed pressure would open the contact."""
 
 
 @dataclass(frozen=True, slots=True)

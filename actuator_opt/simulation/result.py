@@ -566,8 +566,8 @@ def _values(system: System, expressions: list[object], run: Trajectory) -> list[
 EXPLAINING = ("position", "speed", "shaft_speed", "pressure_a", "pressure_b", "pressure_supply")
 """Signals whose values at the time of failure are reported if an integration fails."""
 OUT = 0.1
-"""Travel past the end of the stroke, as a share of the stroke, above which the model of the end
-stops counts as overloaded (our choice)."""
+"""Travel past the end of the stroke, as a share of the stroke, above which the end stops count as
+too soft for the load (our choice)."""
 
 
 def failed(stuck: Stuck, compiled: Compiled, plant: Plant) -> Unsolvable:

@@ -45,8 +45,8 @@ SETTLED = 0.02
 """Relative difference between the initial pressure of a pump line and its equilibrium pressure,
 above which a note reports it (our choice)."""
 WARN_PLANE = 0.02
-"""Relative error of the plane fitted to the friction over the pressures, above which a note reports
-it."""
+"""The friction at other chamber pressures is interpolated by a fitted plane. Above this relative
+error of the plane, a note reports it."""
 
 
 def simulate(

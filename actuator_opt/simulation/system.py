@@ -244,7 +244,7 @@ class Compiled:
 
 
 def _below(state: Symbol) -> Expression:
-    """Gauge pressure below zero, down to vacuum, from its state."""
+    """A pressure state, limited to the range from `EMPTY` atmospheres (nearly vacuum) to zero."""
     return clip(state, EMPTY * ATMOSPHERIC_PRESSURE, 0.0)
 
 

@@ -24,7 +24,8 @@ CACHED = 64
 """Number of prepared designs that a process keeps in memory."""
 
 VARIANTS = 8
-"""Whether a number can vary as an array is checked in at most this number of text combinations."""
+"""Maximum number of text combinations in which the program checks whether a number can vary as an
+array. Texts are choices such as materials."""
 
 AT_ONCE = 4096
 """Maximum number of designs in one model call; more would take memory without saving time."""
@@ -52,8 +53,8 @@ class Designs:
     """The designs of a sweep plan, each prepared when it is needed.
 
     `apart` are the PATHs of numbers that need a new design for each value, such as temperatures
-    that change strengths. A number raises `InputError` if no model reads it in any combination of
-    texts.
+    that change strengths. `InputError` is raised for a number that no model reads in any
+    combination of texts (choices such as materials).
     """
 
     design: Design
@@ -94,9 +95,9 @@ class Designs:
     def _same_extremes(self) -> bool:
         """Whether the lowest and highest temperature stay the same over the sweep.
 
-        Strengths are prepared at these two temperatures. Neither falls if a temperature of the
-        design rises, so both are constant if they are the same with all temperatures at their lower
-        and with all at their upper ends.
+        Strengths are prepared at these two temperatures. A rise of any temperature in the design
+        lowers neither of the two. Both are therefore constant if they are the same with all
+        temperatures at their lower ends and with all at their upper ends.
         """
         temperatures = {a.path: a.ends for a in self.plan.numeric if self._is_temperature(a)}
         all_extremes = []

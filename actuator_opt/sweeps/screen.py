@@ -1,7 +1,7 @@
-"""Screen of a sweep: fast closed expressions exclude most designs before full evaluation.
+"""Screen of a sweep: fast closed-form expressions exclude most designs before full evaluation.
 
 The models run once with symbols instead of numbers. The objective and those limits that become
-closed expressions of the varied numbers are compiled for NumPy, or for JAX if it is chosen and
+closed-form expressions of the varied numbers are compiled for NumPy, or for JAX if it is chosen and
 installed. Designs that pass are evaluated in full, so a screen never changes the result.
 """
 
@@ -168,8 +168,8 @@ def screen(
 ) -> Scores | None:
     """Return a screen for designs whose numbers at `paths` vary between `ends` (axes, 2).
 
-    None if the objective is no closed expression of these numbers, or if a number cannot vary as an
-    array.
+    None if the objective is no closed-form expression of these numbers, or if a number cannot vary
+    as an array.
     """
     variables = {
         path: Variable(lower=float(low), upper=float(high), start=float((low + high) / 2))
@@ -229,7 +229,7 @@ def _decisive(limits: Limits, points: Array) -> list[int]:
 
 
 def _is_closed(value: Any, names: dict[Symbol, str]) -> bool:
-    """Whether a traced value depends only on the varied numbers."""
+    """Whether a value, computed with symbols, depends only on the varied numbers."""
     if not isinstance(value, Symbol):
         return True
     return all(node in names for node in needed([value]) if node.op == "variable")

@@ -130,7 +130,8 @@ class Indices:
 
 
 TOGETHER = 2048
-"""Maximum number of points in one call; up to it, the points for several inputs are joined."""
+"""Maximum number of points in one model call. Where a sample is smaller, the samples for several
+inputs are computed in one call."""
 REPLICATES = 8
 """Number of independent randomisations, from whose scatter the confidence intervals of indices
 follow."""

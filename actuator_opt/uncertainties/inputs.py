@@ -327,7 +327,7 @@ class UncertainModel:
         return np.concatenate([self.flat(self.at(part)) for part in chunks(shares)], axis=1)
 
     def flat(self, drawn_inputs: ModelDraws) -> Vector:
-        """Stack margins, least margin and metrics; a margin of 1e9 or more counts as missing."""
+        """Stack margins, least margin and metrics; a margin of 1e9 or more becomes NaN."""
         margins = np.where(np.abs(drawn_inputs.margins) < 1e9, drawn_inputs.margins, np.nan)
         with np.errstate(all="ignore"):
             least = np.min(drawn_inputs.margins[self.own], axis=0, initial=np.inf)

@@ -228,7 +228,10 @@ class RecordFitProblem:
         )
 
     def slopes(self, x: Array, steps: Array) -> Array:
-        """Derivatives of the residuals by central differences, within the permitted range."""
+        """Derivatives of the residuals by the searched values, from central differences.
+
+        At an end of the permitted range of a value, the difference is one-sided.
+        """
         columns = []
         for k, step in enumerate(steps):
             up, down = x.copy(), x.copy()
@@ -237,9 +240,9 @@ class RecordFitProblem:
         return np.stack(columns, axis=1)
 
     def search_slopes(self, x: Array) -> Array:
-        """Derivatives of the residuals by one-sided differences.
+        """Derivatives of the residuals by the searched values, from one-sided differences.
 
-        They also determine the steps of the next differences.
+        The steps of the next differences are then chosen from these derivatives.
         """
         residuals, columns = self.residuals(x), []
         for k, step in enumerate(self.steps):
@@ -642,7 +645,8 @@ def fit(
     scenario, plant : the measured system, as far as known
     records : columns of the files that the scenario's signals name
     measured : record, on the time axis of the scenario
-    names : parameters to fit, of `parameters.PARAMETERS` or "lag"
+    names : names of the parameters to fit, from `parameters.PARAMETERS`; "lag" fits the time lag of
+        the record
     tuned : controller gains, which the fit does not change; default: those of the scenario, stated
         or tuned
     verify, method : as for `simulation.simulate`, for the simulation with the fitted values
@@ -696,7 +700,7 @@ def fit(
 def _natural(
     fit_parameter: FitParameter, fitted_parameters: FittedParameters, problem: RecordFitProblem
 ) -> Parameter:
-    """Convert a searched value to the parameter, in its own unit.
+    """Convert a value of the search, which may be a logarithm, to the fitted parameter in SI.
 
     Confidence intervals are symmetrical in the parameter itself, not in its logarithm, because the
     effect of an air content or a leakage is proportional to its value. The interval does not extend

@@ -366,7 +366,7 @@ STICKING = (0.8, 0.9, 1.0, 1.1, 1.22, 1.35, 1.5)
 """Factors on a resonance frequency of the linear models, for seals that slide and for seals that
 stick. Crossovers are searched for between the resulting frequencies. Sticking seals raise the
 resonance, because their bristles add stiffness."""
-HOW_PHASE = "position divided by error in the closed loop, where this ratio is 1"
+HOW_PHASE = "position divided by control error in the closed loop, where this ratio is 1"
 Loop = Callable[[float], complex]
 """Open loop of the linear models as a function of frequency [Hz], including the controller gain."""
 
@@ -397,7 +397,7 @@ def placed(stand: Stand) -> Stand:
 
 
 def held_place(stand: Stand) -> Stand:
-    """The stand, moved 2 % of the stroke from its ends, as a held piston may creep."""
+    """The stand, at least 2 % of the stroke away from both stroke ends, as the piston may creep."""
     return _inset(stand, 0.02 * stand.plant.stroke)
 
 

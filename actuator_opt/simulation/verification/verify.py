@@ -81,7 +81,7 @@ class VerifiedRequirement:
     why: str = ""
     """Cause of the difference, or the reason why a value is missing."""
     shares: Mapping[str, float] = field(default_factory=dict)
-    """Relative changes of the value, each due to friction, amplitude or operating point."""
+    """Relative change of the value due to friction, to amplitude and to the operating point."""
 
 
 @dataclass(frozen=True, slots=True)
