@@ -35,7 +35,7 @@ def contact(seal: SealSizes) -> SealContact:
 
 
 def groove(sizes: Mapping[str, Array]) -> SealGroove:
-    """Groove for a block with the seal's free section."""
+    """Groove for a block with the seal's section before mounting."""
     section, width = sizes["section"], sizes["width"]
     depth = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
     return SealGroove(depth, width, AXIAL_PLAY * width, (SealPart(section * width, depth / 2),))

@@ -33,7 +33,7 @@ def law_inputs(seal: SealSizes) -> dict[str, Array]:
 
 
 def contact(seal: SealSizes) -> SealContact:
-    """Contact of the ring by its contact law; its width is limited to that of the groove."""
+    """Contact of the ring by its contact law, with a contact width of at most the groove width."""
     law, inputs, pressure = seals.LAWS[seal.law], law_inputs(seal), seal["pressure"]
     width = gland.limited_width(
         contact_width=law.contact_width(**inputs), groove_width=seal["groove_width"]
@@ -61,7 +61,7 @@ def round_piece(section: Array, depth: Array) -> SealPart:
 
 
 def groove(sizes: Mapping[str, Array]) -> SealGroove:
-    """The standard gland for the section."""
+    """The standard O-ring gland for the section diameter of the ring."""
     section = sizes["section"]
     depth = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
     width = gland.groove_width(section=section)

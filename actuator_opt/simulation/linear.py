@@ -399,7 +399,7 @@ NO_GAIN = 1e-9
 """Factor on the proportional gain that replaces a factor of zero, so that an integral or derivative
 part can be expressed relative to it."""
 UNHELD = "the valve cannot hold the load"
-CAUSES = "lower the load or the piston's leakage, raise supply.pressure or the valve's flow"
+CAUSES = "lower the load or the piston's leakage, or raise supply.pressure or the valve's flow"
 
 
 @dataclass(frozen=True, slots=True)

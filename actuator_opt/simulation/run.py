@@ -62,7 +62,7 @@ def simulate(
     Parameters
     ----------
     scenario : inputs over time
-    subject : the design, in which the values that the scenario sets are already changed
+    subject : the design, already with the values that the scenario sets
     records : columns of the files that the scenario's signals name
     verify : whether to integrate again by another method and compare the results
     method : integration method

@@ -103,12 +103,12 @@ class SealPoint:
 
     @property
     def viscous(self) -> float:
-        """Return the oil friction [N]."""
+        """Return the friction of all rings due to oil shear [N]."""
         return sum(ring.viscous for ring in self.rings)
 
     @property
     def asperity(self) -> float:
-        """Return the asperity friction [N]."""
+        """Return the friction of all rings due to asperities [N]."""
         return sum(ring.asperity_friction for ring in self.rings)
 
     @property

@@ -122,7 +122,7 @@ class Study:
         return self.evaluated(first, points if places is None else points.some(places))
 
     def evaluated(self, first: int, points: SweepPoints, keep_best: int | None = None) -> Chunk:
-        """Return the rows of points.
+        """Return the rows of results for some points.
 
         A feasible design also counts as failed if the reader of design files would reject it. With
         `keep_best`, feasible designs are checked from the best on, until that many are valid.

@@ -163,7 +163,11 @@ class Designs:
         return _Variation(agrees, axis.path in combined.read)
 
     def alike(self, points: SweepPoints) -> Iterator[tuple[Array, int, dict[str, float]]]:
-        """Group points by prepared design; yield indices, text combination and `apart` values."""
+        """Group the points that share a prepared design.
+
+        Yield for each group the indices of its points, the number of its text combination, and the
+        values of its `apart` numbers by PATH.
+        """
         paths = [axis.path for axis in self.plan.numeric]
         separate_axes = [k for k, path in enumerate(paths) if path in self.apart]
         if not separate_axes and self.plan.variants == 1:
@@ -211,10 +215,11 @@ class Designs:
 
 
 def _test_values(axis: SweepAxis) -> Iterator[tuple[float, bool]]:
-    """Yield test values of an axis, and whether each must be tested; of all others, two suffice.
+    """Yield test values of an axis, and whether each of them must be tested.
 
-    All values of a short list must be tested. Zero must be tested too, because it may make another
-    kind of design (no speed, no angle).
+    All values of a short list must be tested; of the values in a range, two that give valid designs
+    suffice. Zero must be tested too, because it may make another kind of design (no speed, no
+    angle).
     """
     assert axis.values is not None
     low, high = axis.values[[0, -1]]

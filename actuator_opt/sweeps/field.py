@@ -163,7 +163,7 @@ class Field:
 
 
 def margins_at(study: Study, numbers: Array) -> Array:
-    """Return the margin of every limit, (limits, n), at numbers (axes, n) of the plan."""
+    """Return the margin of every limit, (limits, n), at n points; `numbers` is (axes, n)."""
     count = numbers.shape[1]
     margins = np.full((len(study.binding), count), np.nan)
     for places, subject, varied in study.designs.groups(

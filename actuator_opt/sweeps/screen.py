@@ -32,8 +32,9 @@ ENGINES: tuple[Engine, ...] = get_args(Engine)
 
 
 Scores: TypeAlias = Callable[[Array, Array], Array]
-"""Function that estimates the objective of each design, (n,), from its numbers (axes, n). Excluded
-designs get inf. The second argument is the objective that a design must not exceed."""
+"""Function that estimates the objective of each of n designs, (n,), from their numbers, (axes, n),
+with one row per varied number. Excluded designs get inf. The second argument is the objective that
+a design must not exceed."""
 
 
 LEAST_BATCH = 1024

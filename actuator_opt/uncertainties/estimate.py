@@ -23,7 +23,8 @@ LEVEL = 0.95
 """Confidence level of all bounds."""
 
 Outputs = Callable[[Vector], Vector]
-"""Function that returns the outputs (k, n) at points (d, n) of the unit cube."""
+"""Function that returns k outputs, (k, n), at n points, (d, n), of the unit cube in d
+dimensions."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -412,12 +412,13 @@ def _thinned(time: Array, values: Array) -> tuple[Array, Array]:
 
 
 STEADIEST: Final = 0.97
-"""Limit on the correlation between neighbouring samples in the rule for the bandwidth; the usual
-value."""
+"""Limit on the correlation between neighbouring samples in the rule for the bandwidth (see
+`WHOLE`); the usual value."""
 
 
 WHOLE: Final = 4
-"""The bandwidth is at most the length of the record divided by this (our choice)."""
+"""Largest bandwidth: the length of the record divided by this (our choice). Here, bandwidth means
+the longest time lag over which residuals count as correlated."""
 
 
 ORDERS: Final = 10
@@ -478,7 +479,7 @@ def _by_time(problem: RecordFitProblem, rows: Array) -> Array:
 
 
 def _bandwidth(moments: Array) -> float:
-    """Bandwidth in samples, by Andrews' rule from the correlation of neighbouring samples."""
+    """Bandwidth in samples (see `WHOLE`), by Andrews' rule from the correlation of neighbours."""
     before, after = moments[:-1], moments[1:]
     power = np.maximum(np.sum(before**2, axis=0), 1e-300)
     rho = np.clip(np.sum(before * after, axis=0) / power, -STEADIEST, STEADIEST)
@@ -490,7 +491,7 @@ def _bandwidth(moments: Array) -> float:
 
 
 def _summed(moments: Array, width: float) -> Array:
-    """Sum of products of samples, with weights that fall to zero at a time lag of one bandwidth."""
+    """Sum of products of samples; their weights fall to zero at a time lag of one bandwidth."""
     total: Array = moments.T @ moments
     for k in range(1, min(int(np.ceil(width)), moments.shape[0])):
         product = moments[:-k].T @ moments[k:]

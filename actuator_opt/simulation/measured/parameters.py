@@ -34,7 +34,10 @@ is started by hand)."""
 
 @dataclass(frozen=True, slots=True)
 class FitParameter:
-    """A parameter to fit: quantity, initial value, search range and how it is applied, SI."""
+    """A parameter to fit: its quantity, initial value and search range, SI.
+
+    `put` is the function that sets the parameter in a scenario and plant.
+    """
 
     name: str
     quantity: Quantity

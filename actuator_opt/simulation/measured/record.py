@@ -125,7 +125,7 @@ def parse_measured(
 
 
 def named(names: Collection[str], all_names: Collection[str]) -> str:
-    """The names of some channels as text, or "all channels"."""
+    """Some channel names as text, or "all channels" if none is missing."""
     return ", ".join(names) if len(names) < max(len(all_names), 2) else "all channels"
 
 

@@ -337,8 +337,8 @@ HALF = 1 / sqrt(2)
 EXACT = 2e-3
 """Relative tolerance of the searches, such as for the bandwidth."""
 MOST = 16.0
-"""The nonlinear value is searched for up to this factor above and below the linear value (our
-choice)."""
+"""A value of the nonlinear system is searched for up to this factor above and below the value of
+the linear models (our choice)."""
 LASTING = 1e-3
 """Relative decay per period below which an oscillation counts as sustained (our choice)."""
 FIRST, EARLY, LATE = (0.0, 4.0), (8.0, 12.0), (18.0, 22.0)
@@ -357,7 +357,7 @@ RINGING = 20.0
 """Number of periods after which a resonant transient counts as died out (our choice)."""
 SHAPED = 0.6
 """Ratio of excitation to resonance frequency up to which a sinusoidal force starts in three parts
-(our choice)."""
+to avoid transients (our choice; see `dynamic_stiffness`)."""
 BESIDE = (0.7, 1.0, 1.4)
 """Factors on a crossover frequency of the linear models. The nonlinear crossover is searched for
 between the resulting frequencies."""

@@ -3,9 +3,9 @@
 The requirements of a design are evaluated with linear models (the 'linear tier'). Here the metric
 of each dynamic requirement is measured in its own small simulated experiment, with the equations of
 the scenario, at the point where the linear value is worst. If measured and linear values differ,
-the experiment is repeated without sticking friction, and then with small amplitudes in addition.
-The two changes show how much friction and amplitude contribute to the difference; the rest is due
-to the operating point.
+the experiment is repeated without sticking friction, and then again with small amplitudes as well.
+The two repetitions show how much friction and amplitude contribute to the difference; the rest is
+due to the operating point.
 """
 
 from __future__ import annotations
