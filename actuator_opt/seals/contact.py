@@ -22,7 +22,7 @@ class Size(NamedTuple):
     Parameters
     ----------
     key : key in the design file
-    quantity : its name in `quantities.INPUTS`
+    quantity : name of the physical quantity in `quantities.INPUTS`
     help : its meaning, for the JSON Schema
     example : valid value, for messages
     """
@@ -199,6 +199,6 @@ def stadium(middle: float, low: float, high: float, section: float) -> Polygon:
 
 
 def round_ring(middle: float, low: float, high: float, section: float) -> tuple[Shape, ...]:
-    """Outlines of a round ring: squeezed between two heights, and free."""
+    """Outlines of a round ring: squeezed between two heights, and before mounting."""
     free = stadium(middle, high - section, high, section)
     return Shape("elastomer", stadium(middle, low, high, section)), Shape("free", free)

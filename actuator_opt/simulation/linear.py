@@ -410,7 +410,7 @@ class Tuned:
     origin: str
     ultimate: Ultimate
     margins: LoopMargins
-    """Margins of the linear loop with these gains, multiplied by the scenario's factors."""
+    """Margins of the linear loop with these gains times the scenario's factors."""
     unit: str
     notes: tuple[str, ...] = ()
     unheld: str = ""

@@ -464,8 +464,8 @@ def values(
 def _settled_from(parts: Sequence[SignalSegment], duration: float) -> float:
     """Time at which the following error is first evaluated.
 
-    This is one period of the slowest sine after the start of the reference, or its start if it has
-    no sine, but at most 90 % of the duration.
+    This is the start of the reference, plus one period of its slowest sine if it has one, but at
+    most 90 % of the duration.
     """
     tones = frequencies(parts)
     begin = min(part.start for part in parts)
@@ -555,7 +555,7 @@ def balance(circuit: Circuit, run: Trajectory) -> Balance:
 
 
 def _values(system: System, expressions: list[object], run: Trajectory) -> list[Array]:
-    """Values at every sample of expressions in the states."""
+    """Values of some expressions at every sample; expressions are functions of the states."""
     unpack = system.unpack([state.symbol for state in system.states], "y")
     values = vectorised("stored", "t, y, m", unpack, expressions)(
         run.time, run.states, tuple(run.flags)

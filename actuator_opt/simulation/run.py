@@ -45,8 +45,8 @@ SETTLED = 0.02
 """Relative difference between the initial pressure of a pump line and its equilibrium pressure,
 above which a note reports it (our choice)."""
 WARN_PLANE = 0.02
-"""The friction at other chamber pressures is interpolated by a fitted plane. Above this relative
-error of the plane, a note reports it."""
+"""A simulation uses a simple function of the chamber pressures, fitted to the friction of the
+seals. If its relative error exceeds this value, a note reports the error."""
 
 
 def simulate(

@@ -24,12 +24,13 @@ from ..models import end_stop, lines, linkage
 from .bench import Bench, bench, first_case
 
 LEAST_AIR = 1e-4
-"""Free air content above which the expansion of the air limits a vacuum. Our choice: 0.01 %."""
+"""Free air content above which the expanding air keeps the pressure above absolute vacuum. Our
+choice: 0.01 %."""
 
 CAVITY = 1e-6
-"""Content of the vapour cavity that limits a vacuum in oil with less air, as a share of the volume.
-The cavity exists only below atmospheric pressure. Our choice: at 0.05 bar absolute it takes 0.006 %
-of the volume."""
+"""Content of the vapour cavity that keeps the pressure above absolute vacuum in oil with less air
+than `LEAST_AIR`, as a share of the volume. The cavity exists only below atmospheric pressure. Our
+choice: at 0.05 bar absolute it takes 0.006 % of the volume."""
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Chamber pressures at which the friction is fitted, as shares of the supply pressure."""
 
@@ -53,7 +54,7 @@ class Oil:
 
     @property
     def cavity(self) -> float:
-        """Return the content of the cavity in a vacuum; zero if air limits the vacuum."""
+        """Return the content of the vapour cavity; zero if the oil contains enough air."""
         return CAVITY if self.air_content < LEAST_AIR else 0.0
 
     @property
@@ -345,7 +346,7 @@ def _numbers(v: Values, section: Any, at: str) -> dict[str, float] | None:
 
 
 def _seals(v: Values, own: Bench, supply: float) -> SealData:
-    """Return the friction as a function of both pressures, fitted to that of the seals."""
+    """Return the seal friction, fitted as a function of both chamber pressures."""
     p_a, p_b = (pressure.ravel() for pressure in np.meshgrid(*2 * (supply * np.array(SHARES),)))
     loads = [(ring, force) for ring, force in own.normal_forces(p_a, p_b)]
     coulomb = own.coulomb(p_a, p_b)

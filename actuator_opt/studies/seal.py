@@ -378,8 +378,8 @@ def study(
     ----------
     subject : a design in which all rings of this piston or rod seal use the oil film
     speed, pressure : speed of the counterface [m/s], sealed pressure above the outer pressure [Pa].
-        The defaults are those of the load case with the highest pressure among those with motion,
-        which also sets outer pressure and oil
+        By default, both are those of the load case with the highest pressure, which also determines
+        outer pressure and oil. If no speed is given, only load cases with motion count
     curves : whether to compute friction against speed at three pressures
     mapped : whether to compute a map over speed and pressure
     elements : contacts from `with_elements`, stored in the result
@@ -480,7 +480,7 @@ def _within(seal_row: Sequence[Ring], place: Place, pressure: float) -> None:
 
 
 def _case(ring: Ring, speed: float | None) -> int:
-    """Return the load case of the study: of the cases with motion, that of highest pressure."""
+    """Return the load case with the highest pressure; without a speed, of the cases with motion."""
     pressures, speeds = (
         np.atleast_2d(np.asarray(ring[name], dtype=float))[:, 0] for name in ("pressure", "speed")
     )

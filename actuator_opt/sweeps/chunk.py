@@ -302,7 +302,7 @@ class Study:
 
 
 def key_head(texts: Mapping[str, str]) -> hashlib.blake2b:
-    """Return the hash of the texts of a point; updating it with the numbers gives the key."""
+    """Return a hash object for the texts of a point; updating it with the numbers gives the key."""
     return hashlib.blake2b(json.dumps(dict(texts), sort_keys=True).encode(), digest_size=16)
 
 

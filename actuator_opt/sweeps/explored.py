@@ -160,7 +160,7 @@ def explored_designs(
 
     Parameters
     ----------
-    design : the design that all have in common, without free variables
+    design : the common design, without free variables; each point changes some of its numbers
     points : numbers of each design, by PATH (SI)
     plugins : the user's metrics and constraints
     origin, shown : as in `Explored`
@@ -320,7 +320,7 @@ def _text_numbers(
     variants: tuple[dict[str, str], ...],
     path: Path,
 ) -> Array:
-    """Return the index of the text combination of each row, found from the key of the row."""
+    """Return the index of the text combination of each row, found from its database key."""
     data = np.ascontiguousarray(numbers[:, : len(study.order)], dtype="<f8")
     heads = [key_head(texts) for texts in variants]
     text_numbers = np.empty(len(keys), dtype=np.int64)

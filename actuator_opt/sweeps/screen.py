@@ -98,14 +98,17 @@ TEST_POINTS = 512
 
 @dataclass(frozen=True)
 class Limits:
-    """Compiled expressions of some limits, with their bounds and signs (1 for a lower bound)."""
+    """Compiled expressions of some limits, with their bounds.
+
+    The sign of a limit is 1 for a lower bound and -1 for an upper bound.
+    """
 
     compiled: Any
     bounds: Array
     signs: Array
 
     def missed(self, numbers: Array) -> Iterator[Array]:
-        """Yield for each limit whether it is missed: (n,), or a single value for all designs."""
+        """Yield for each limit which designs miss it: (n,), or one value that applies to all."""
         with np.errstate(all="ignore"):
             for value, bound, sign in zip(
                 self.compiled(numbers), self.bounds, self.signs, strict=True

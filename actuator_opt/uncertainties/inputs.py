@@ -47,8 +47,7 @@ class Input:
 
     Parameters
     ----------
-    path : PATH
-    quantity : its quantity
+    path : path of the input in the design file (PATH) quantity : its quantity
     value : nominal value in the design, SI
     distribution : distribution of its draws
     origin : kind of source: "design", "measured", "library" or "practice"

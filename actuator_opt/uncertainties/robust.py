@@ -3,8 +3,9 @@
 The design is optimised repeatedly. At each optimum, random draws of the uncertain inputs show how
 the margin of every limit scatters. Each limit then needs a reserve, which is its nominal margin
 minus a low quantile of its drawn margins. The design is optimised again with these reserves until
-they converge. In doing so, the failure probability allowed for a single limit is adjusted until any
-limit fails as often as permitted. Further independent draws then verify the last design.
+they converge. In doing so, the failure probability allowed for each single limit is adjusted until
+the permitted share of draws misses at least one limit. Further independent draws then verify the
+last design.
 """
 
 from __future__ import annotations
@@ -133,7 +134,7 @@ def _prepared(design: Design, subject: PreparedDesign) -> PreparedDesign:
 
 
 class _FailureLevel:
-    """Failure probability allowed for a single limit, adjusted to how often any limit fails."""
+    """Failure probability allowed for each limit, adjusted to the share of draws that miss any."""
 
     def __init__(self, aim: float) -> None:
         self.aim = self.value = aim

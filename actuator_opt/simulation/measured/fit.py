@@ -68,7 +68,7 @@ FIRST: Final = 1e-2
 
 
 GUESSES: Final = (1 / 3, 3.0)
-"""Factors on each initial value with which the search may start instead, if the record then fits
+"""Factors by which each initial value may be multiplied before the search, if the record then fits
 better (our choice)."""
 
 
@@ -381,7 +381,7 @@ def _scaled(entry: FitParameter, value: float) -> float:
 
 
 def _step(spacing: float, duration: float) -> float:
-    """Time between simulation samples: if possible, a whole fraction of that of the record."""
+    """Sample interval of the simulation; if possible, that of the record divided by an integer."""
     longest = max(min(spacing / FINE, LONGEST), duration / (FINE * MOST))
     return spacing / ceil(spacing / longest) if longest < spacing else longest
 
@@ -470,7 +470,7 @@ def _larger(first: Array, second: Array) -> Array:
 
 
 def _by_time(problem: RecordFitProblem, rows: Array) -> Array:
-    """Rows of the same time, one for each channel, summed; in the order of time."""
+    """For every time, the sum of the rows of all channels; in the order of time."""
     times = np.concatenate([t for t, _ in problem.used.values()])
     instants, instant = np.unique(times, return_inverse=True)
     sums = np.zeros((instants.size, rows.shape[1]))

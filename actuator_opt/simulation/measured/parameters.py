@@ -106,7 +106,7 @@ def _idle(name: str, scenario: Scenario, plant: Plant) -> str | None:
 
 
 def _even(scenario: Scenario, plant: Plant) -> bool:
-    """Whether static friction does not exceed Coulomb friction."""
+    """Whether static friction is no larger than Coulomb friction."""
     friction = scenario.friction
     if friction.coulomb is not None:
         return (friction.static or friction.coulomb) <= friction.coulomb
@@ -202,7 +202,7 @@ def _level(plane: Plane, scenario: Scenario, plant: Plant) -> float:
 
 
 def _scaled(plane: Plane, scenario: Scenario, plant: Plant, value: float) -> Plane:
-    """A friction plane, multiplied by the factor that gives a value at the initial pressures.
+    """A friction function, scaled so that it has a given value at the initial pressures.
 
     The relative change with pressure stays the same.
     """

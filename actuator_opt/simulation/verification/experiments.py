@@ -483,7 +483,7 @@ def _no_sine(response: Sine) -> str:
 
 
 def _root(function: Callable[[float], float], slope: float) -> float | None:
-    """Zero of a function of a logarithmic ratio, by secant steps of at most 0.5 from 0.
+    """Zero of a function, found by secant steps of at most 0.5 that start at 0.
 
     None if ten steps do not converge.
     """

@@ -86,7 +86,7 @@ class VerifiedRequirement:
 
 @dataclass(frozen=True, slots=True)
 class Verification(Displayed):
-    """All dynamic requirements of a design and all of a scenario, verified by simulation."""
+    """All dynamic requirements of a design and all requirements of a scenario, simulated."""
 
     name: str
     rows: tuple[VerifiedRequirement, ...]
@@ -402,7 +402,10 @@ class _Bench:
         return shares, reasons
 
     def _compared(self, metric: str, spot: Spot) -> str:
-        """Text that states the point of comparison, if it is not the worst linear point."""
+        """Text that states where the two values were compared.
+
+        It is used if this is not the point at which the linear models have their worst value.
+        """
         stand = self._placed(metric, spot)
         words = f"compared at the position {1e3 * stand.position:.3g} mm"
         if metric in HELD:
