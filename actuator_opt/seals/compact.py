@@ -56,7 +56,7 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
 TYPE = SealType(
     name="compact",
     title="compact seal",
-    help="a rubber body between two guides, effective in both directions",
+    help="a rubber body between two guides, which seals in both directions",
     fields=(SizeField(WIDTH, None), SizeField(LAND, lambda sizes: 1.0 * sizes["width"])),
     faults=no_faults,
     groove=groove,

@@ -71,21 +71,22 @@ LAND = Size(
     "land",
     "part_length",
     "axial width of the contact without pressure; default: half the width of a step ring, the "
-    "whole width of a compact seal; for a U-cup it is twice the radius of its lip's edge "
+    "whole width of a compact seal; for a U-cup, state twice the edge radius of its lip "
     "(default: a tenth of the lip length)",
     "2 mm",
 )
 RELIEF = Size(
     "relief",
     "length",
-    "width of a step ring's face in front of its land, on which the oil pressure acts; default: "
-    "half of the width outside the land",
+    "axial width of the part of a step ring's face between its sealed side and its land, on which "
+    "the oil pressure acts; default: half of the ring width minus the land",
     "1 mm",
 )
 TAPER = Size(
     "taper",
     "taper",
-    "angle of the tapers beside a step ring's land against the sliding counterface; default: 6 deg",
+    "angle between the counterface and the tapers on both sides of a step ring's land; default: "
+    "6 deg",
     "6 deg",
 )
 ROOT_CLEARANCE = Size(

@@ -97,7 +97,7 @@ def law_warnings(seal: SealSizes) -> Iterable[str]:
     if ratio > law.pressure_range[1]:
         yield (
             f"pressure is {ratio:.1f} times Young's modulus, but the {law.name} contact law was "
-            f"only compared with data up to {law.pressure_range[1]:g} times"
+            f"only compared with data up to {law.pressure_range[1]:g} times this modulus"
         )
 
 

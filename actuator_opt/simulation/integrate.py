@@ -678,7 +678,7 @@ def sampled(*, time: Array, fewest: int = 2, **channels: Array) -> tuple[np.ndar
     shape = arrays[0].shape
     for name, values in zip(names, arrays, strict=True):
         if values.shape != shape or values.ndim != 1:
-            message = f"{name} has shape {values.shape}, but time {shape}"
+            message = f"{name} has shape {values.shape}, but time has shape {shape}"
             raise InputError(Diagnostic(message, "give one number per sample in every channel"))
         broken = np.flatnonzero(~np.isfinite(values))
         if broken.size:

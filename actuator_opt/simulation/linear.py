@@ -541,8 +541,8 @@ def _gains_by_rule(
         return gains, "Ziegler and Nichols", (note,)
     if control.law == "pid":
         message = (
-            "tuning by margins supports only p and pi, as a derivative part would reduce the "
-            "margins"
+            "tuning by margins supports only the laws p and pi, as a derivative part would reduce "
+            "the margins"
         )
         remedy = "write law: pi, or tuning: ziegler_nichols"
         raise InputError(Diagnostic(message, remedy, path="control.tuning"))

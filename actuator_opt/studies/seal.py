@@ -467,8 +467,8 @@ def _within(seal_row: Sequence[Ring], place: Place, pressure: float) -> None:
         tables = ring.element.contact
         if tables and pressure > tables[-1].pressure * (1 + 1e-9):
             message = (
-                f"pressure {pressure / 1e5:g} bar: the stated profiles of the {ring.label} end at "
-                f"{tables[-1].pressure / 1e5:g} bar"
+                f"pressure {pressure / 1e5:g} bar: the contact profiles stated for the "
+                f"{ring.label} end at {tables[-1].pressure / 1e5:g} bar"
             )
             raise InputError(
                 Diagnostic(

@@ -47,7 +47,8 @@ class Input:
 
     Parameters
     ----------
-    path : path of the input in the design file (PATH) quantity : its quantity
+    path : path of the input in the design file (PATH)
+    quantity : its quantity
     value : nominal value in the design, SI
     distribution : distribution of its draws
     origin : kind of source: "design", "measured", "library" or "practice"

@@ -348,7 +348,7 @@ def test_a_record_that_stands_still_is_not_fitted_to():
     """No channel that moves: one line, not a search."""
     still = AlignedRecord({"position": (np.linspace(0, 0.1, 50), np.full(50, 0.055))})
     own = plant(trial().actuator.subject())
-    with pytest.raises(InputError, match="every channel is constant; fit to a record with motion"):
+    with pytest.raises(InputError, match="every channel is constant; choose a record with motion"):
         fit(trial().scenario, own, {}, still, ("air_content",))
 
 

@@ -157,7 +157,7 @@ class RecordFitProblem:
             name: channel for name, channel in measured.channels.items() if name not in constant
         }
         if not varying:
-            raise measured.fault("every channel is constant", "fit to a record with motion")
+            raise measured.fault("every channel is constant", "choose a record with motion")
         self.weights = {name: 1 / self.noise[name] for name in varying}
         _, signals = self._simulated(self.start)
         overlap = self._overlapping(replace(measured, channels=varying), signals)
@@ -816,6 +816,6 @@ def _times(ratio: float) -> str:
 def _controller_notes(tuned: Tuned | None) -> Iterator[str]:
     if tuned is not None and tuned.origin != "stated":
         yield (
-            f"the controller's gain is not stated but comes from {tuned.origin}; in the block "
-            "control, state the gain of the test bench"
+            f"the controller's gain is not stated but comes from {tuned.origin}; state the gain "
+            "of the test bench in the block control"
         )

@@ -459,5 +459,5 @@ def _implausible(
             text = simulation.told[name].quantity.text
             yield (
                 f"{name} ranges from {text(least)} to {text(most)} in the record, but "
-                f"{limit_name} is {text(high)}: check its unit and zero point"
+                f"{limit_name} is {text(high)}: check the unit and zero point of this channel"
             )
