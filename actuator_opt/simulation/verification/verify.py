@@ -181,7 +181,8 @@ def _notes(scenario: Scenario, any_requirement: bool) -> tuple[str, ...]:
     if not any_requirement:
         return ("the design has no dynamic requirement",)
     notes = [
-        "each requirement is simulated only at the point where the linear model gives its worst value"
+        "each requirement is simulated only at the point where the linear model gives its worst "
+        "value"
     ]
     control = scenario.control
     own_controller = control is not None and (
