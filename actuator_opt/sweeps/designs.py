@@ -139,7 +139,7 @@ class Designs:
         return varies
 
     def _varies_in(self, axis: SweepAxis, texts: Mapping[str, str]) -> _Variation:
-        """Whether all `_test_values` give the same results as one array as in separate designs."""
+        """Whether one array of all `_test_values` gives the same results as a design for each."""
         separate: dict[float, Many] = {}
         for value, mandatory in _test_values(axis):
             if len(separate) >= 2 and not mandatory:
