@@ -479,7 +479,11 @@ def integrate(
 
 
 def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> tuple[bool, ...]:
-    """On/off flags at a restart: instants from the time; switches keep their state, if known."""
+    """On/off flags of the equations after a restart of the integration.
+
+    The flag of an instant follows from the time. A switch keeps its state; at the very start, the
+    state follows from its guard.
+    """
     instants = tuple(t + APART >= instant for instant in compiled.instants)
     if before:
         return instants + before[len(instants) :]

@@ -405,7 +405,7 @@ class _Bench:
         return shares, reasons
 
     def _compared(self, metric: str, spot: Spot) -> str:
-        """Text that states where the two values were compared.
+        """Text that states the point at which linear and simulated value are compared.
 
         It is used if this is not the point at which the linear models have their worst value.
         """
