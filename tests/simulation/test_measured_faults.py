@@ -325,9 +325,9 @@ def test_a_record_in_another_unit_is_told():
         }
     )
     made = ao.simulate(trial())
-    told = [one for one in overlay(made, wrong).notes if "check its unit" in one]
+    told = [one for one in overlay(made, wrong).notes if "check the unit" in one]
     assert [one.split()[0] for one in told] == ["position", "pressure_a"]
-    assert not any("check its unit" in one for one in overlay(made, record()).notes)
+    assert not any("check the unit" in one for one in overlay(made, record()).notes)
 
 
 def test_a_record_of_a_million_samples_is_thinned_for_a_fit():
