@@ -64,8 +64,8 @@ ROWS = table((
               "smallest seal squeeze after growth and tolerance", worst="min",
               model="gland.squeeze_extremes", feeds=("wall",),
               check=CheckLine("5.1", "smallest seal squeeze", 0.08,
-                          "our choice: 8 % after bore growth and tolerances (gland tables: from "
-                          "8 % for 5.33 mm sections to 15 % for 1.78 mm sections)")),
+                          "our choice: 8 % after growth and tolerances (gland tables: 8 % for "
+                          "5.33 mm sections, 15 % for 1.78 mm)")),
     MetricRow("seal_squeeze_max", "C_max", "ratio", "%", "largest seal squeeze at assembly",
               worst="max", model="gland.squeeze_extremes", feeds=(),
               check=CheckLine("5.2", "largest seal squeeze", 0.25,
