@@ -7,8 +7,9 @@
 Most functions are named like the command that does the same in the terminal: `check`, `evaluate`,
 `optimise`, `sensitivity`, `pareto`, `sweep`, `uncertainty`, `compare`, `explore`, `seal`,
 `identify`, `calibrate`, `simulate`, `report` and `export`. `read` reads a design, `save` writes it,
-and `session` re-solves it quickly. `bending` is `identify --span` in the terminal;
-`compare_measured`, `servo_sensitivities` and `verify_dynamics` are options there. A module with
+and `session` re-solves it quickly after changes. In the terminal, some functions are options:
+`bending` is `identify --span`, `compare_measured` is `simulate --measured`, `servo_sensitivities`
+is `simulate --sensitivity`, and `verify_dynamics` is `optimise --verify-dynamics`. A module with
 slow imports loads when a function first needs it.
 """
 

@@ -25,7 +25,7 @@ Plugins = Iterable["Plugin | Callable[[View], object] | str | Path"]
 
 @dataclass(frozen=True, slots=True)
 class Actuator:
-    """A design as read, with the line of every value in its file, and the user's own metrics."""
+    """A design as read, with the line number of every value in its file, and the user's metrics."""
 
     design: Design
     source: FileSource | None = None
@@ -36,14 +36,17 @@ class Actuator:
         return prepare(self.design, plugins=self.plugins)
 
     def changed(self, values: Mapping[str, float | str]) -> Actuator:
-        """A copy of the actuator with new values by PATH (a number in SI, or text with a unit)."""
+        """Copy the actuator with new values, keyed by PATH (such as ``cylinder.stroke``).
+
+        A value is a number in SI, or text with a unit.
+        """
         quantities = with_own(self.plugins)
         design = with_values(self.design, dict(values), metrics=quantities)
         return Actuator(design, self.source, self.plugins)
 
 
 def plugins_of(sources: Plugins) -> tuple[Plugin, ...]:
-    """The plugins defined by functions and Python files."""
+    """Load the plugins from decorated functions and Python files."""
     plugins: list[Plugin] = []
     for item in sources:
         if isinstance(item, Plugin):
@@ -110,7 +113,7 @@ def read_as(
 
 
 def as_actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -> Actuator:
-    """Turn a design in any form into an actuator."""
+    """Turn a design (file, text, `Design` or `Actuator`) into an `Actuator`."""
     if isinstance(design, Actuator):
         return design
     if isinstance(design, Design):
@@ -119,13 +122,16 @@ def as_actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -
 
 
 def fault_of(actuator: Actuator) -> Callable[[str, str, str], Diagnostic] | None:
-    """A function from a variable's PATH, fault and remedy to a Diagnostic with its line."""
+    """Return a function that makes a `Diagnostic` from a variable's PATH, a fault and its remedy.
+
+    The function adds the variable's line number in the file; None if the design has no file.
+    """
     return None if actuator.source is None else actuator.source.of_variable
 
 
 @contextmanager
 def located(actuator: Actuator) -> Iterator[None]:
-    """Give faults that only state a PATH the line of that value in the design file."""
+    """If a fault states a value's PATH but no line, add the value's line in the design file."""
     try:
         yield
     except InputError as error:
@@ -144,7 +150,7 @@ def located(actuator: Actuator) -> Iterator[None]:
 def checked_design(
     design: Actuator | Design | str | Path, plugins: Plugins
 ) -> tuple[Actuator, PreparedDesign]:
-    """Read and prepare a design in any form: the actuator, and the form that the models take.
+    """Read a design; return the `Actuator`, and the `PreparedDesign` that the models take.
 
     Raises
     ------

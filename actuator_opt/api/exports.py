@@ -102,7 +102,8 @@ def explore(
     store : database written by `sweep`, or a recorded run of `sweep` or `pareto`, named as for
         `read_run`
     out : the page's file (``.html``), or a folder
-    study : number of the study in the database; default: that of the run, or else the newest
+    study : number of the study (a base design with its varied inputs) in the database; default:
+        that of the run, or else the newest
     rows : maximum number of designs shown; of a larger sweep, an even sample and the best designs
     plugins : files with the user's metrics and constraints, the same as for the sweep. The record
         names these files, but they only run if given here

@@ -159,7 +159,7 @@ class Prices(Displayed):
         return {key: data[key] for key in keys if key in data}
 
     def page(self) -> Page:
-        """The page: prices and movement of the optimum, or the reason for a missing optimum."""
+        """The page: the prices and how the optimum moves, or the reason why no optimum exists."""
         from ..pages.report import prices_page
 
         return prices_page(self.optimisation)

@@ -34,7 +34,7 @@ _NOT_TESTED = (
     "objective",
     "measured",
 )
-"""Keys of a design that do not describe the tested actuator, so two designs may differ in them."""
+"""Keys that do not describe the tested actuator; designs that only differ here count as equal."""
 Units = str | Path | Mapping[str, str] | None
 """Units of columns without a unit in their header: ``"SI"``, a file, or a mapping by column."""
 
@@ -227,7 +227,7 @@ class Calibrated(Displayed):
         }
 
     def page(self) -> Page:
-        """The page, from the record to the redesigned actuator."""
+        """The page of the calibration: fitted parameters, and their effect on the design."""
         from ..pages.calibration import page
         from ..studies.bench import bench
 

@@ -57,7 +57,7 @@ class Rerun(Displayed):
     sentence: str
 
     def to_dict(self) -> dict[str, Any]:
-        """The object of `rerun --json`: that of the repeated command, with the key `rerun`."""
+        """The object of `rerun --json`: that of the repeated command, plus the key `rerun`."""
         return self.subject.to_dict() | {
             "rerun": {
                 "report": str(self.file),
@@ -119,7 +119,10 @@ def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
             raise InputError(Diagnostic(message, "install that version, or a later one"))
         verb, options = parsed(command)
         if options.plugin and not plugins:
-            message = f"was made with --plugin {options.plugin[0]}, which is a program"
+            message = (
+                f"was made with --plugin {options.plugin[0]}; a plug-in is a program and only runs "
+                "if you name it"
+            )
             raise InputError(Diagnostic(message, "name it with --plugin to run it"))
         pairs = [_pair(text) for text in options.set]
     except InputError as error:
@@ -174,7 +177,7 @@ def _order(version: str) -> tuple[int, ...]:
 
 
 class _Parser(argparse.ArgumentParser):
-    """Parser for the options of a report's command; reports other options as a fault."""
+    """Parser for the options of a report's command; an unknown option raises `InputError`."""
 
     def error(self, message: str) -> NoReturn:
         fault = f"its command cannot be repeated: {shown(message, 200)}"
@@ -203,7 +206,7 @@ def parser() -> argparse.ArgumentParser:
 def parsed(command: str) -> tuple[str, argparse.Namespace]:
     """Command and options, parsed from the command line in a report."""
     if len(command) > _LONGEST:
-        message = f"its command has more than {_LONGEST} letters"
+        message = f"its command has more than {_LONGEST} characters"
         raise InputError(Diagnostic(message, "run it by hand"))
     try:
         words = shlex.split(command)

@@ -39,7 +39,7 @@ _LAST_SECOND = 253_402_300_799
 
 
 def _seal_studies(subject: PreparedDesign) -> list[SealStudy]:
-    """Seal studies for a report: of piston or rod seals whose friction follows from an oil film."""
+    """Study, for a report, the piston and rod seals whose friction follows from an oil film."""
     from ..studies.seal import study
 
     if not any(case.moves for case in subject.design.load_cases):
@@ -138,10 +138,10 @@ def report_design(
 
 
 def published(evaluation: Evaluation) -> list[Block]:
-    """Tables of the numbers published in the paper that a design reproduces, beside our numbers.
+    """Tables that compare our numbers with those of the paper whose cylinder the design describes.
 
-    The package with these tables is imported by name, because a wheel lacks it. In that case the
-    report names the distributions that contain the tables.
+    The package with these tables is imported by name, because a wheel lacks it. If it is missing,
+    the report says which distributions contain the tables.
     """
     from ..rendering.blocks import Notes
 

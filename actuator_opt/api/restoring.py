@@ -59,12 +59,13 @@ def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
 
     Raises
     ------
-    InputError : the run is of another command, its record is damaged, or its plugins are not given
+    InputError : the run is not of `optimise`, `pareto` or `sweep`; its record is damaged; or its
+        plugins are not given
     """
     run = of if isinstance(of, Run) else read_run(of)
     kind = run.head.get("kind")
     if kind not in ("optimise", "pareto", "sweep"):
-        message = f"is a run of {kind}, which has no such report"
+        message = f"is a run of {kind}; only optimise, pareto and sweep can be restored"
         raise InputError(Diagnostic(message, "name a run that `runs list` shows", str(run.path)))
     try:
         with damage_reported(run):
@@ -106,7 +107,10 @@ def named_plugins(run: Run, plugins: Plugins) -> tuple[Plugin, ...]:
     loaded_plugins = plugins_of(plugins)
     files = [plugin["file"] or "a function of a script" for plugin in run.body["input"]["plugins"]]
     if files and not loaded_plugins:
-        message = f"its custom metrics came from {', '.join(files)}, which is a program"
+        message = (
+            f"its custom metrics came from {', '.join(files)}; a plug-in is a program and only "
+            "runs if you name it"
+        )
         raise InputError(Diagnostic(message, "name it with --plugin to run it", str(run.path)))
     return loaded_plugins
 

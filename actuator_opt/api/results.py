@@ -3,7 +3,8 @@
 By the type of a result, the terminal and the library look up the functions for its text, JSON,
 report, CSV, record and exit code. A function is named "module:function" below `actuator_opt` and
 imported when it is used, or it is a method of the result. None means that the type does not have
-this output. A function that is not declared raises an error at import.
+this output. If a type states report, CSV or record neither as a function nor as None, the import
+fails.
 """
 
 from __future__ import annotations
@@ -221,7 +222,7 @@ def kind_of(result: object) -> ResultKind:
 
 
 def piece(name: str, result: object) -> Callable[..., Any]:
-    """A function of the result's kind, with the result already filled in as first argument."""
+    """Find a function by its name in `ResultKind`; the result is bound as its first argument."""
     module, _, function = name.rpartition(":")
     if not module:
         return getattr(result, name)  # type: ignore[no-any-return]

@@ -34,7 +34,8 @@ NUDGE = 1e-4
 """Relative change of a number, to test whether it affects other numbers."""
 
 ROUNDING = 1e-9
-"""Share of a change, or of a number, that counts as zero."""
+"""Smallest relative change of a number that counts as a change; also the relative tolerance when
+judging whether a prediction is valid over the whole change."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +165,7 @@ class Session:
 
     Every call states its changes relative to the design as read; no call affects a later call. If
     the objective is a weighted sum, each term is divided by its value in the design as read.
-    `solve` divides by its value in the changed design, as `optimise` does.
+    `solve` divides each term by its value in the changed design, as `optimise` does.
 
     Attributes
     ----------

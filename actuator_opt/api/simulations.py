@@ -128,19 +128,19 @@ def simulate(
     set : values to replace, by PATH in the scenario, or else in its design; a number without a unit
         is SI
     verify : whether to integrate again by another method and compare the results
-    method : "lsoda"; "cvodes" is faster (extra ``fast``); "radau"
+    method : integration method: "lsoda", "cvodes" (faster; extra ``fast``) or "radau"
 
     Returns
     -------
     the results, SI: `signals` by name over `time`, `told` (label and quantity of each signal),
     `values` by the names in `quantities.RESULTS` (a value may be None; `why` has the reason),
         `requirements`,
-    `servo`, `balance`, `events`, `notes`; printed, a table
+    `servo`, `balance`, `events`, `notes`; when printed, they appear as a table
 
     Raises
     ------
     InputError
-        as for `read_scenario`; or a gain has no tuning rule
+        as for `read_scenario`; or a gain must be tuned, but its control law has no tuning rule
     Unsolvable
         the integration fails; the message states the time
     """
@@ -159,7 +159,7 @@ def simulate(
 
 @contextmanager
 def placed(trial: Trial) -> Iterator[None]:
-    """Give faults of a scenario's values their line in the scenario file."""
+    """Add the line in the scenario file to faults of the scenario's values."""
     try:
         yield
     except InputError as error:
@@ -324,7 +324,7 @@ def fitting(trial: Trial, design: Actuator | Design | str | Path) -> Actuator:
     for key in ("motor", "held_ports"):
         if getattr(scenario, key) is not None:
             fault = trial.loaded.diagnostic(key, "replaces the cylinder")
-            raise InputError(replace(fault, remedy="verify with a scenario without this block"))
+            raise InputError(replace(fault, remedy="verify with a scenario that lacks this block"))
     changes = {change.path: change.value for change in trial.loaded.changes}
     actuator = as_actuator(design)
     actuator = actuator.changed(changes) if changes else actuator
@@ -383,8 +383,8 @@ def write_comparison(
 
     Parameters
     ----------
-    runs : simulations by name; names such as "50 %, extending" and "50 %, retracting" get the same
-        colour
+    runs : simulations by name; those with the same words before the last comma of the name
+        ("50 %, extending" and "50 %, retracting") get the same colour
     scenario : scenario of the simulations, which is attached
     title, notes : title and notes of the page
     paper : as for `report`; the page is named after the scenario's file, with "-compared" added

@@ -58,7 +58,8 @@ def sweep(
     Parameters
     ----------
     design : the base design
-    vary : ``"PATH=A..B:N"`` or ``"PATH=a,b,c"``, or a mapping of PATH to ``"A..B:N"``
+    vary : ``"PATH=A..B:N"`` (N values from A to B) or ``"PATH=a,b,c"``, or a mapping of PATH to
+        ``"A..B:N"``
     method : "grid" (full factorial), "sobol" or "lhs" (Latin hypercube)
     n : number of points for "sobol" and "lhs"
     seed : seed for "sobol" and "lhs"
@@ -227,7 +228,7 @@ def study_of(
 
 
 def _watched(study: Study, figures: Sequence[str], show: Sequence[str]) -> tuple[str, ...]:
-    """Metrics of the figures' Pareto lines; rejects an invalid figure before the sweep."""
+    """Metrics for which the figures draw Pareto lines; raises `UsageError` for invalid figures."""
     if not figures:
         return ()
     from ..pages.sweep_figures.shared import watched
@@ -268,8 +269,8 @@ def draw_sweep(
 
     Notes
     -----
-    At most 4096 of the feasible designs and of the others are drawn, sampled evenly, with a note in
-    the figure. Pareto lines cover every feasible design if the metrics were known before the sweep
+    At most 4096 feasible and 4096 infeasible designs are drawn, sampled evenly, with a note in the
+    figure. Pareto lines cover every feasible design if the metrics were known before the sweep
     (``sweep(..., figures=["scatter"], show=...)``); otherwise they only cover the sample.
     """
     from ..pages.sweep_figures.shared import write_figures

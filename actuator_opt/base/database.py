@@ -6,8 +6,8 @@ chunks. Each row is stored once, whichever process computes it.
 Every row has a checksum of its study, its key and its numbers; rows with a wrong checksum are
 ignored. Each checksum covers one row, not a chunk, because another sweep may group the same rows
 differently. The hash is BLAKE2b, as for the keys; a cyclic redundancy check is faster but misses
-one change in 2^32. It guards against damage, not against forgery: anyone who edits a row can also
-write its checksum.
+one change in 2^32. The checksum guards against damage, not against forgery: anyone who edits a row
+can also write its checksum.
 """
 
 from __future__ import annotations

@@ -63,7 +63,7 @@ def escaped(text: str, own: str = "") -> str:
     Parameters
     ----------
     text : text to print
-    own : sequences to keep, as a regular expression without groups
+    own : control sequences to keep (such as colours), as a regular expression without groups
 
     >>> print(escaped("\x1b[2J\u202e" "a\tb"))
     \x1b[2J\u202ea	b

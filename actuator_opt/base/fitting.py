@@ -30,7 +30,8 @@ RANK = 1e-7
 """Smallest usable ratio of singular values: below it, a step is lost in double-precision rounding
 of the residuals."""
 SEEN = 1e-4
-"""Largest component that a parameter may have along directions that the data do not determine."""
+"""A parameter is undetermined if the data leave more than this share of its direction undetermined
+(the squared component of a unit vector)."""
 
 Verdict = Literal["identifiable", "weakly identifiable", "not identifiable"]
 
@@ -216,8 +217,8 @@ def relaxed(
 ) -> tuple[Array, Array]:
     """Solve many least-squares problems at once, each from its own start, within limits.
 
-    The search takes Levenberg-Marquardt steps. A number at a limit stays there as long as the cost
-    falls only beyond that limit.
+    The search takes Levenberg-Marquardt steps. A number at a limit stays there as long as it
+    would have to pass the limit to reduce the cost.
 
     Parameters
     ----------

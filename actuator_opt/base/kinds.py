@@ -79,7 +79,7 @@ def kinds(what: str, *entries: K) -> Kinds[K]:
     ------
     ValueError
         if a name is a duplicate or not a lower-case word; if a field is None or empty; or if a
-        field annotated as a function is none
+        field annotated as a function is not a function
 
     Examples
     --------

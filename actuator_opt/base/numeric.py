@@ -144,7 +144,10 @@ def together(values: Sequence[Array], axis: int = 0) -> Array:
 
 
 def stacked(rows: Sequence[Sequence[Array]]) -> list[Array]:
-    """Stack lists with one value per layer into arrays (layers, ...) of a common batch shape."""
+    """Stack each list of values (one per layer) into an array (layers, ...).
+
+    All arrays have the same number of axes, so that they broadcast.
+    """
     xp = namespace(*(value for row in rows for value in row))
     result = []
     for row in rows:
@@ -157,7 +160,7 @@ def stacked(rows: Sequence[Sequence[Array]]) -> list[Array]:
 
 
 def lifted(value: Array, dims: int) -> Array:
-    """Reshape an array (layers, ...) to `dims` axes, of which the batch axis is the last."""
+    """Insert axes of length 1 after the layer axis, until `dims` axes follow it."""
     missing = dims + 1 - value.ndim
     if missing <= 0:
         return value
@@ -190,7 +193,7 @@ vanishes."""
 
 
 def sizes(function: Callable[..., object]) -> tuple[str, ...]:
-    """Arguments of a function that are sizes, judged by their names."""
+    """Names of a function's arguments that are lengths, areas or volumes, judged by the names."""
     code = function.__code__
     names = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
     return tuple(name for name in names if _SIZE.fullmatch(name) and not _RATE.fullmatch(name))
@@ -200,8 +203,9 @@ def geometry(function: Callable[P, T]) -> Callable[P, T]:
     """Make a model return NaN if a size is negative or an inner size is not below the outer.
 
     Of an array, only the impossible elements become NaN. The thicknesses of `layers` are checked
-    too. Symbols, and arrays of libraries other than NumPy, are not checked: such a model is traced
-    once for many values, and the limits of the design already exclude impossible values.
+    too. Symbols (`base.symbolic`) and arrays of libraries other than NumPy are not checked: with
+    them, a model is traced once for many values, and the limits of the design already exclude
+    impossible values.
     """
     names = sizes(function)
     pairs = [pair for pair in PAIRS if pair[0] in names and pair[1] in names]
@@ -234,7 +238,7 @@ def geometry(function: Callable[P, T]) -> Callable[P, T]:
 
 
 def _possible(value: Any) -> bool:
-    """Whether a size is certainly nowhere negative; a quick test for the common types."""
+    """Whether no element of a size is negative; False also for types that this quick test omits."""
     if isinstance(value, float):
         return not value < 0
     if type(value) is np.ndarray and value.dtype.kind in "fc":
@@ -243,7 +247,7 @@ def _possible(value: Any) -> bool:
 
 
 def _checked(value: Any) -> tuple[Any, Any]:
-    """Replace negative values of one or several sizes by NaN; also return their mask."""
+    """Replace negative sizes by NaN; also return the mask of the replaced elements."""
     if not isinstance(value, tuple | list):
         return _masked(real(value) < 0, value)
     elements = [_checked(element) for element in value]
@@ -252,7 +256,10 @@ def _checked(value: Any) -> tuple[Any, Any]:
 
 
 def _masked(impossible: Any, value: Any) -> tuple[Any, Any]:
-    """Replace impossible values by NaN; also return their mask. A single symbol is unchanged."""
+    """Replace values by NaN where `impossible` is true; return them and the mask.
+
+    If the condition is a single symbol, the value is returned unchanged and the mask is False.
+    """
     if impossible is False:
         return value, False
     if impossible is True:

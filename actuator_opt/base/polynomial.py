@@ -2,8 +2,8 @@
 
 Coefficients are floats or arrays that broadcast. Terms with a coefficient that is the number 0 are
 skipped, so one formula serves circuits with and without a line or a valve. Everything but `roots`
-is plain arithmetic and works under a complex step. For the same reason, frequency responses have
-separate real and imaginary parts.
+is plain arithmetic and works under a complex step. So that a complex step can pass through
+frequency responses too, their real and imaginary parts are kept separately.
 """
 
 from __future__ import annotations
@@ -15,20 +15,21 @@ import numpy as np
 from .numeric import Array, namespace, real
 
 BEYOND = 1.324718
-"""Root of x^3 = x + 1. The distance from the inflection point at which Newton's steps start is
-multiplied by it, so that they start beyond the outer root."""
+"""Root of x^3 = x + 1. An estimate of the outer root's distance from the inflection point is
+multiplied by this number, so that Newton's steps start beyond the root."""
 SHY = 1 + 1e-15
 """Divisor that shortens a Newton step, so that rounding does not carry it past the root."""
 MOST = 120
-"""Largest number of Newton steps: enough for a triple root, where a step covers a third of the
-distance."""
+"""Largest number of Newton steps: enough for a triple root, where each step covers a third of the
+remaining distance."""
 
 
 def cubic_roots(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> np.ndarray:
     """All roots of x^3 + square x^2 + slope x + constant, (..., 3) complex, the real root first.
 
     Newton's steps start beyond the outer real root and approach it from one side. The remaining
-    quadratic is found by synthetic division from the end that loses fewer digits [Kahan1986].
+    quadratic is found by synthetic division, from the highest or from the lowest power, whichever
+    loses fewer digits [Kahan1986].
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from . import units
 from .dataclass import dataclass
 
 Sense = Literal["min", "max"]
-"""Sense of a limit ("min": at least, "max": at most), or which value is the worst."""
+"""Sense of a limit ("min": at least, "max": at most), or the worst value (smallest or largest)."""
 
 INFINITY = float("inf")
 
@@ -85,7 +85,7 @@ INPUTS = _table("""
  rod_diameter         | d      | length      | mm   | 1     | 900   | rod outer diameter
  rod_inner_diameter   | d_i    | length      | mm   | 0     | 890   | rod inner diameter
  length               | L      | length      | mm   | 0     | 20000 | length
- stop_travel          | s_e    | length      | mm   | 0.001 | 1000  | stop travel
+ stop_travel          | s_e    | length      | mm   | 0.001 | 1000  | deflection of an end stop
  part_length          | L      | length      | mm   | 0.1   | 20000 | length of a part
  radial_clearance     | c      | length      | mm   | 0.001 | 2     | radial clearance
  tolerance            | tol    | length      | mm   | 0     | 2     | tolerance
@@ -200,20 +200,20 @@ MATERIAL_PROPERTIES = _table("""
  shear_strength       | tau_m  | pressure    | MPa    | 0.5    | 3000 | ultimate shear strength
  matrix_temperature_knockdown | k_Tm | ratio | -      | 0.05   | 1    | share of matrix strength left at the knock-down temperature
  matrix_moisture_knockdown | k_wm | ratio    | -      | 0.05   | 1    | share of matrix strength left after moisture saturation
- process_knockdown    | k_p    | ratio       | -      | 0.05   | 1    | fibre tension strength of the made part, as a share of the coupon's
+ process_knockdown    | k_p    | ratio       | -      | 0.05   | 1    | fibre tensile strength of the made part, as a share of that of a flat coupon
  knockdown_temperature| T_k    | temperature | degC   | 30     | 1000 | temperature at which the temperature knock-downs apply
  fibre_volume_fraction| V_f    | ratio       | -      | 0.1    | 0.8  | fibre volume fraction
  density_temperature  | T_rho  | temperature | degC   | -60    | 100  | temperature at which the density is stated
  bulk_modulus_temperature | T_K | temperature | degC  | -60    | 200  | temperature at which the bulk modulus is stated
  bulk_modulus_pressure| p_K    | pressure    | bar    | 0      | 1000 | gauge pressure at which the bulk modulus is stated
  bulk_modulus_decay   | b_K    | per_temperature | 1/K | 0     | 0.02 | relative fall of the bulk modulus per kelvin
- tait_modulus         | K_00   | pressure    | GPa    | 0.5    | 200  | zero-pressure bulk modulus of the Tait law, extended to 0 K
+ tait_modulus         | K_00   | pressure    | GPa    | 0.5    | 200  | zero-pressure bulk modulus of the Tait law, extrapolated to 0 K
  tait_decay           | c_K    | per_temperature | 1/K | 0     | 0.02 | relative fall of the Tait modulus per kelvin
- tait_coefficient     | B      | ratio       | -      | 1.5    | 30   | coefficient of the Tait law, one more than K' at zero pressure
+ tait_coefficient     | B      | ratio       | -      | 1.5    | 30   | coefficient of the Tait law: K' at zero pressure plus 1
  bond_thickness       | t_a    | length      | mm     | 0.005  | 5    | bond line thickness
  speed_max            | v_max  | speed       | m/s    | 0.001  | 50   | highest sliding speed
  softening            | b_E    | per_temperature | 1/K | -0.01 | 0.05 | relative fall of the elastomer's modulus per kelvin
- stiffening_temperature | T_10 | temperature | degC   | -150   | 150  | temperature at which cold makes the modulus ten times its plateau (torsion test)
+ stiffening_temperature | T_10 | temperature | degC   | -150   | 150  | low temperature at which the modulus is ten times its plateau value (torsion test)
  asperity_friction    | f      | ratio       | -      | 0.001  | 1    | dry friction of the asperities in the film model
  seal_roughness       | sigma  | length      | um     | 0.01   | 20   | RMS roughness of the sliding face in the film model
  asperity_radius      | R_a    | length      | um     | 0.01   | 1000 | radius of the asperity tips
@@ -222,7 +222,7 @@ MATERIAL_PROPERTIES = _table("""
 
 RECORDS = _table("""
  cutoff               | f_c    | frequency   | Hz     | 0.01  | 100000 | cut-off frequency of the filter
- moving_mass          | m      | mass        | kg     | 0     | 1e6    | mass moving inside the force sensor
+ moving_mass          | m      | mass        | kg     | 0     | 1e6    | mass moving between piston and force sensor
  load_force           | F_L    | force       | N      | -2e7  | 2e7    | force of the load, positive against extension
  pressure_lag         | tau    | time        | ms     | -100  | 100    | delay of the pressure signals
  span                 | L      | length      | mm     | 1     | 20000  | span between the supports
@@ -245,8 +245,8 @@ SCENARIOS = _table("""
  shaft_angle_value    | phi    | angle       | deg    | -1e6  | 1e6    | angle of the shaft
  phase                | phi    | angle       | deg    | -360  | 360    | phase
  factor               | k      | ratio       | -      | -1e6  | 1e6    | factor
- part_factor          | k      | ratio       | -      | 0     | 1e6    | factor on a part of the controller
- signal_rate          | dU/dt  | signal_rate | V/s    | 0.001 | 1e9    | largest rate of the signal
+ part_factor          | k      | ratio       | -      | 0     | 1e6    | factor on one part of the controller (gain, integral or derivative)
+ signal_rate          | dU/dt  | signal_rate | V/s    | 0.001 | 1e9    | largest rate of change of the signal
  position_gain        | K_p    | signal_gain | V/m    | 0     | 1e9    | gain on the position
  speed_gain           | K_v    | speed_gain  | V*s/m  | 0     | 1e9    | gain on the speed
  shaft_angle_gain     | K_p    | angle_gain  | V/rad  | 0     | 1e9    | gain on the angle of the shaft

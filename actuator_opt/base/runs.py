@@ -21,8 +21,8 @@ from .errors import Diagnostic, InputError, shown
 from .files import private_part, read_json
 
 FOLDER, SWITCH = "ACTUATOR_OPT_RUNS", "ACTUATOR_OPT_NO_RECORD"
-"""Environment variables: the folder of the records, and a switch that disables them unless it is
-"0"."""
+"""Environment variables: the folder of the records, and a switch that disables recording if it is
+set to anything but "0"."""
 FORMAT = 2
 """Version of the file format; newer versions are refused with an explanation. Version 1 has no
 checksums."""

@@ -26,9 +26,9 @@ class Interpolation:
     ----------
     values : outputs (m,)
     slopes : for each input by name, derivatives of the outputs (m,) with respect to its logarithm;
-        those of an axis only count with `hermite`, and an input that is neither listed nor an axis
-        has no effect
-    why : reason for a failed evaluation; values and slopes are then unused
+        slopes of an axis are only used if its `hermite` is set; an input that is not an axis and
+        has no slopes has no effect
+    why : why the evaluation failed (values and slopes are then ignored); "" if it succeeded
     """
 
     values: np.ndarray
@@ -95,7 +95,8 @@ class Surrogate:
     Parameters
     ----------
     axes : inputs with a range base : reference value of every input
-    coefficients : (terms of axis 1, terms of axis 2, ..., outputs, 1 + first-order inputs)
+    coefficients : array (terms of axis 1, terms of axis 2, ..., outputs, 1 + linear inputs); the
+        last axis has the value, then the slope for each input in `linear`
     linear : inputs whose effect is linearised
     failed : reasons of failed points, which the fit omits
     """

@@ -189,7 +189,8 @@ _OFFSETS = {"degC": 273.15, "°C": 273.15, "degF": 459.67 * 5 / 9, "°F": 459.67
 _INVERSES = {float(f"1e-{n}"): float(f"1e{n}") for n in range(1, 16)}
 
 _DECIMAL_DIGITS = 12
-"""Scales written with at most this many characters (1e-2, 0.0254, 101325) are exact decimals."""
+"""Conversion factors written with at most this many characters (1e-2, 0.0254, 101325) are exact
+decimals."""
 
 _SYNONYMS = (("**", "^"), ("²", "^2"), ("³", "^3"), ("·", "*"), ("⋅", "*"), ("⁻¹", "^-1"))
 
@@ -247,7 +248,7 @@ def units_of(dimension: str) -> tuple[str, ...]:
 
 
 def unit(name: str, dimension: str) -> Unit:
-    """The unit `name` of `dimension`; else `UnitError` says of which dimension it is a unit."""
+    """The unit `name` of `dimension`; `UnitError` if unknown or a unit of another dimension."""
     table = _SCALES[dimension]
     for candidate in (name.strip(), _normalise(name)):
         if candidate in table:

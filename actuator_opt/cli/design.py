@@ -94,7 +94,7 @@ def init(
 def _start_text(
     source: str | None, scenario: str | None, out: Path | None, title: dict[str, str]
 ) -> str:
-    """Text of a start file with its `title`: a design, or a scenario for the file `out`."""
+    """Text of a start file named by `title`: a design, or a scenario that `out` will contain."""
     from ..design import read_design
     from ..design.kinds import ValueFault
     from ..design.scenario.reader import scenario_text

@@ -36,8 +36,8 @@ class Job:
     others : further input files
     sets, plugins : changed values (``--set``) and plug-ins of the design
     csv, write : files to write; neither may be an input file, except that `write` may be the design
-    report : whether to write the report to `out`, with `date`, as `format`; with `all_pages`,
-        images of all pages
+    report : whether to write the report to the folder `out`, with `date` and in `format`;
+        `all_pages` adds images of all pages
     as_json, quiet : form of the answer
     record : whether to record the run
     paper : keyword arguments that only the report of this command has

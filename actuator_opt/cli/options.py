@@ -148,7 +148,7 @@ def quantity_of(option: str, text: str | None, quantity: Quantity) -> float | No
 
 
 def named_columns(texts: list[str] | None) -> dict[str, str]:
-    """Header of the column for every channel that a ``--column`` option names."""
+    """Map every channel that a ``--column`` option names to the header of its column."""
     columns: dict[str, str] = {}
     for text in texts or []:
         channel, equals, name = text.partition("=")

@@ -175,7 +175,7 @@ def identify(
     settings = _settings(cutoff, order, uncompensated, mass, load_force, pressure_lag)
     if length is None:
         if part is not None:
-            raise UsageError(Diagnostic("--part: only with --span", "add --span, or remove it"))
+            raise UsageError(Diagnostic("--part: only with --span", "add --span, or remove --part"))
         settings |= {"bootstrap": bootstrap, "seed": seed, **reading}
         return job.deliver(job.run(verbs.identify, record, design=job.actuator, **settings))
     options = {"--report": report or None, "--csv": csv, "--bootstrap": bootstrap or None}

@@ -20,7 +20,8 @@ runs = typer.Typer(
 RunName = Annotated[
     str,
     typer.Argument(
-        metavar="RUN", help="Id of a run or its beginning, the word last, or a record's file."
+        metavar="RUN",
+        help='Id of a run or its first characters, the word "last", or a record file.',
     ),
 ]
 

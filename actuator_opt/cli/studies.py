@@ -52,8 +52,8 @@ Rows = Annotated[
         max=1_000_000,
         metavar="N",
         help=(
-            "Size of the base sample for the sensitivity indices; takes (number of inputs + 2) "
-            "evaluations for each unit. 0: no indices."
+            "Size of the base sample for the sensitivity indices; each of its rows takes "
+            "(number of inputs + 2) evaluations. 0: no indices."
         ),
     ),
 ]
@@ -228,7 +228,7 @@ RecordColumns = Annotated[
     typer.Option(
         "--column",
         metavar="CHANNEL=NAME",
-        help="Column of a channel of the record (t, p1, p2, x, v, F_L, U, spool, pS, qA, qB, "
+        help="Header of the column with a channel (t, p1, p2, x, v, F_L, U, spool, pS, qA, qB, "
         'n_shaft, phi), e.g. "p1=Channel 3 [bar]". Repeatable.',
     ),
 ]

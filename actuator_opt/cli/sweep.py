@@ -190,7 +190,11 @@ def explore(
     ],
     study: Annotated[
         int | None,
-        typer.Option("--study", metavar="N", help="Study of the database; default: the newest."),
+        typer.Option(
+            "--study",
+            metavar="N",
+            help="Number of the study in the database; default: the newest.",
+        ),
     ] = None,
     rows: Annotated[
         int,

@@ -152,7 +152,7 @@ def _unless_known(faults: Iterable[Fault], reported: Sequence[Fault]) -> list[Fa
 
 
 def _section_at(root: type[Section], loc: Loc) -> tuple[type[Section] | None, KeyEntry | None]:
-    """Section type and key entry at a location of the file; None inside tables."""
+    """Section type and key entry at a location of the file; None inside tables with free keys."""
     section: type[Section] | None = root
     entry: KeyEntry | None = None
     for key in loc:

@@ -33,7 +33,10 @@ MOST_COMBINATIONS = 1000
 
 
 def recheck(tree: dict[str, Any]) -> Iterator[Fault]:
-    """Check every PATH (known, no variable) and its values (valid, distinct, not too many)."""
+    """Check that each PATH exists and is no variable, and that its values are valid and distinct.
+
+    Valid values are then replaced in the tree by values in SI. Too many values are also a fault.
+    """
     block = tree.get("choices")
     if not isinstance(block, dict):
         return
@@ -83,7 +86,7 @@ def choosable(path: str, tree: Any) -> Target:
         target = resolve(path, tree)
     except ValueFault as fault:
         raise ValueFault(fault.message.removeprefix(f"{path}: "), fault.remedy) from None
-    remedy = "write the PATH of a number, a material or a word of a part"
+    remedy = "write the PATH of a part's number, material or type"
     if target.entry is None or target.entry.shape == "list" or len(target.loc) == 1:
         raise ValueFault("is not a value of an actuator part", remedy)
     if isinstance(target.entry.kind, Text) and not isinstance(target.entry.kind, MaterialName):
@@ -148,7 +151,7 @@ def same(value: Value, other: Value) -> bool:
 
 
 def material_faults(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
-    """Yield faults for unknown materials, and for materials of a kind that the PATH refuses."""
+    """Yield faults for unknown materials, and for materials of a kind not accepted at the PATH."""
     block = tree.get("choices")
     for path, values in block.items() if isinstance(block, dict) else ():
         try:

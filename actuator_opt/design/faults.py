@@ -36,7 +36,7 @@ class _Reach(NamedTuple):
 
 
 def _closed(view: FileView) -> float | None:
-    """Pin-to-pin length of the retracted actuator; None if one of its parts is unknown."""
+    """Pin-to-pin length of the retracted actuator; None if a length that it needs is unknown."""
     stroke, piston = view.number("cylinder", "stroke"), view.number("piston", "length")
     head = view.number("head", "length") if view.has("head") else piston
     barrel = view.number("barrel", "length")
@@ -98,7 +98,7 @@ def linkage(view: FileView) -> Iterator[Fault]:
 
 
 def inertia(view: FileView) -> Iterator[Fault]:
-    """Require a linkage if a joint speed, torque or inertia is stated."""
+    """Require a linkage if the load states a moment of inertia."""
     if view.number("load", "inertia") and not view.has("linkage"):
         yield _no_linkage(("load", "inertia"), "load.mass")
 
@@ -109,7 +109,11 @@ def _no_linkage(loc: Loc, instead: str) -> Fault:
 
 
 def linkage_load_cases(view: FileView) -> Iterator[Fault]:
-    """Check that a load case has one speed, and an angle or position within the joint's range."""
+    """Check the joint angle and joint speed of every load case.
+
+    Both require a linkage. The angle must lie within the joint's range and excludes a position; the
+    joint speed excludes a piston speed.
+    """
     for index, case in enumerate(view.items("load_cases")):
         if not isinstance(case, dict):
             continue
@@ -158,7 +162,11 @@ LINKAGE_CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
 
 
 def lines(view: FileView) -> Iterator[Fault]:
-    """Check that every line has a wall, and that a throttle is stated if a line is beyond it."""
+    """Check every hydraulic line.
+
+    Its outer diameter must exceed its inner diameter. If the line is beyond a throttle, the design
+    must state this throttle.
+    """
     for index in range(len(view.items("lines"))):
         inner = view.number("lines", index, "inner_diameter")
         outer = view.number("lines", index, "outer_diameter")
@@ -180,7 +188,7 @@ ENDS = get_args(get_args(choices.End)[0])
 
 
 def ports(view: FileView) -> Iterator[Fault]:
-    """Check that the component selected as the end of the lines is described."""
+    """Check that the component at the end of the lines is described, and no unused component is."""
     end = view.text("ports", "end")
     if end not in ENDS:  # reported as a separate fault
         return
@@ -194,7 +202,7 @@ def ports(view: FileView) -> Iterator[Fault]:
     if end != "reducing_valve" and view.has("ports", "reducing_valve"):
         yield Fault(
             ("ports", "reducing_valve"),
-            "is not the selected end of the lines",
+            "has no effect, because ports.end is not reducing_valve",
             'write "end: reducing_valve", or remove it',
             at_key=True,
         )
@@ -208,7 +216,7 @@ def ports(view: FileView) -> Iterator[Fault]:
 
 
 def valve(view: FileView) -> Iterator[Fault]:
-    """Check that a valve leaks less when centred than flows when open, at equal pressure drop."""
+    """Check that the centred valve leaks less than it passes when open, at equal pressure drop."""
     numbers = [
         view.number("valve", name)
         for name in ("rated_flow", "rated_drop", "leakage_flow", "leakage_drop")
@@ -241,12 +249,15 @@ def control(view: FileView) -> Iterator[Fault]:
     """Require a valve if a position loop is stated."""
     if view.has("control") and not view.has("valve"):
         yield Fault(
-            ("control",), "no valve to control", "add valve, or remove control", at_key=True
+            ("control",),
+            "no valve to control",
+            'add a block "valve:", or remove the block "control:"',
+            at_key=True,
         )
 
 
 def held_pressures(view: FileView) -> Iterator[Fault]:
-    """Check that held pressures are stated for both chambers or neither, and below proof."""
+    """Check that held pressures are stated for both chambers or none, and do not exceed proof."""
     for index in range(len(view.items("load_cases"))):
         loc = ("load_cases", index)
         a, b = view.has(*loc, "pressure_a"), view.has(*loc, "pressure_b")

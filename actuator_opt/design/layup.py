@@ -216,7 +216,7 @@ def expanded(document: Document) -> Document:
 
 
 def _expand_wall(document: Document, wall: Loc, items: Sequence[Any]) -> Document:
-    """Expand the compact entries of one wall; entry i then starts at index `starts[i]`."""
+    """Expand the compact entries of one wall; `starts[i]` is the index of entry i's first layer."""
     expanded_items: list[Any] = []
     starts: list[int] = []
     places: dict[Loc, NodeSpan] = {}
@@ -347,7 +347,7 @@ def _entries(item: Mapping[str, Any], layers: Sequence[PlyGroup]) -> Iterator[di
 
 
 def _places(document: Document, loc: Loc, layer_loc: Loc, layer: PlyGroup) -> dict[Loc, NodeSpan]:
-    """Locations of a layer's values; each is the place of its angle in the notation."""
+    """Where a layer's values are written: angle and thickness at its angle in the notation."""
     angle_span = _character(document, (*loc, "plies"), layer.offset)
     places = {layer_loc: angle_span} | {
         (*layer_loc, key): angle_span for key in ("angle", "thickness", "balanced")

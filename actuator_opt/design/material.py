@@ -541,8 +541,8 @@ def assess(
     law : function B(speed, values), safe under a complex step
     values : least-squares parameters by name, SI
     speed, damping, weights : the points
-    least : smallest scales of parameters that may be near 0, large enough to change the curve
-        visibly; the scale of any other parameter is its value
+    least : smallest scale of each parameter that may be near 0; a change by this scale must change
+        the curve visibly. The scale of any other parameter is its value
     doubts : reasons for parameters that the search already left undetermined
 
     Returns
@@ -624,7 +624,7 @@ def _projected(
     basis: Callable[[float], Array],
     steepest: float,
 ) -> tuple[Array, Array]:
-    """Search the rates of least squares; for given rates, the amplitudes follow linearly.
+    """Search the rates with the least sum of squares; linear fits give the amplitudes.
 
     The best distinct starting points are refined, with rates limited to +-steepest.
     """

@@ -35,7 +35,7 @@ _ENTRY_KEYS = (
 _PROPERTY_KEYS = ("value", "points", "note", *_META)
 _ARGUMENTS = {"temperature": 313.15, "pressure": float("inf")}
 """Arguments of tables with their reference values. The point of a table nearest to the reference
-gives the property's single value."""
+(40 degC, or the highest pressure) gives the property's single value."""
 Parent: TypeAlias = Callable[[str], Material | None]
 """Function that returns the material named by ``inherit:``; None if unknown."""
 
@@ -47,7 +47,7 @@ class MaterialFile:
     path: str
     text: str
     places: dict[str, tuple[int, int, int]] = field(default_factory=dict)
-    """Start, end and line of each entry's text by name."""
+    """Start, end (character indices) and line number of each entry's text, by name."""
     faults: list[Diagnostic] = field(default_factory=list)
     """Faults of the file as a whole."""
     _sources: dict[str, str] | None = None

@@ -35,7 +35,7 @@ from .seals import Seals
 
 
 class Line(Section):
-    """A pipe or hose of chamber a (cap side) or b (rod side); lines are listed from the port on."""
+    """A pipe or hose of chamber a (cap side) or b (rod side); the list starts at the port."""
 
     chamber: choices.Chamber
     type: choices.LineType = "pipe"
@@ -105,11 +105,15 @@ class ReducingValve(Section):
         float,
         Of(
             "conductance",
-            "change of flow per change of regulated pressure, in slow (static) operation",
+            "change of flow per change of regulated pressure, by slow (static) motion of the spool",
         ),
     ]
     passive_conductance: Annotated[
-        float, Of("conductance", "flow per pressure drop of the valve opening, at any frequency")
+        float,
+        Of(
+            "conductance",
+            "change of flow per change of pressure with the spool at rest, at any frequency",
+        ),
     ] = 0.0
     natural_frequency: Annotated[float, Of("frequency", "natural frequency of the valve")]
     damping_ratio: Annotated[float, Of("damping_ratio", "damping ratio of the valve")]
@@ -126,7 +130,7 @@ class Accumulator(Section):
 
 
 class Ports(Section):
-    """Components at the ends of both lines when the load excites the uncontrolled actuator."""
+    """Components at the far ends of both lines, for the response of the uncontrolled actuator."""
 
     end: choices.End = "closed"
     throttle: Throttle | None = None
@@ -144,7 +148,7 @@ class PositionLoop(Section):
 
 
 class Linkage(Section):
-    """A joint that the actuator drives between two pivots; its angle grows on extension."""
+    """A revolute joint driven by the actuator; the joint angle grows as the actuator extends."""
 
     base_radius: Annotated[float, Of("pivot_radius", "distance from joint axis to fixed pivot")]
     crank_radius: Annotated[float, Of("pivot_radius", "distance from joint axis to crank pin")]
@@ -372,8 +376,8 @@ class Thread(Section):
 class RetentionThread(Section):
     """Metric thread of tie rods, or of caps screwed onto the barrel's outside.
 
-    For caps, the barrel's end is turned down to the thread diameter. If that is missing, it is the
-    outer diameter of the barrel.
+    For caps, the barrel's end is turned down to the thread diameter. If no thread diameter is
+    stated, it equals the outer diameter of the barrel.
     """
 
     diameter: Annotated[

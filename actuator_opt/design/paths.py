@@ -87,13 +87,15 @@ def resolve(
     metrics: Mapping[str, Quantity] | None = None,
     root: type[Section] = Design,
 ) -> Target:
-    """Find the value that `path` names, in a section of type `root` or in its tree.
+    """Find the value that `path` names in `tree`.
+
+    `tree` is a section of type `root`, or the same section as dicts and lists.
 
     Raises
     ------
     ValueFault
-        if the PATH is malformed, unknown (with the most similar name), or names a block, not a
-        value
+        if the PATH is malformed, unknown (the message suggests the most similar PATH), or names a
+        block and not a value
     """
     path = path.strip()
     if len(path) > 200 or _PATH.fullmatch(path) is None:
@@ -118,7 +120,7 @@ def _resolve_section(
     section: type[Section],
     loc: Loc,
 ) -> Target:
-    """Find the value that `tokens` name below a section, which the tree may lack (None)."""
+    """Find the value that `tokens` name below a section; `node` is None if the tree lacks it."""
     keys, tree = entries(section), whole[0]
     if not tokens:
         raise _not_a_value(path, list(keys))

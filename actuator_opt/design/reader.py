@@ -85,7 +85,7 @@ class FileSource:
         return self.at(Fault(("variables", path), message, remedy, at_key=True), path)
 
     def at(self, fault: Fault, path: str | None = None) -> Diagnostic:
-        """Convert a fault to a diagnostic."""
+        """Convert a fault to a diagnostic with line and column."""
         if path is None:
             path = spell(fault.loc, self.document.data) or None
         if path is not None:
@@ -103,7 +103,7 @@ class FileSource:
     def _find(self, fault: Fault) -> NodeSpan | Override | None:
         """Location in the text of the faulty value, else of the nearest block around it.
 
-        If the value was set from outside the file, its override.
+        If the value was set from outside the file, its override is returned instead.
         """
         for depth in range(len(fault.loc), -1, -1):
             loc = fault.loc[:depth]
@@ -141,8 +141,8 @@ def read_design(
     Parameters
     ----------
     source : path, ``"-"`` for standard input, or a text of several lines
-    overrides : (PATH, value) pairs that replace values before all checks; a bare number is SI,
-        unless another file states it
+    overrides : (PATH, value) pairs that replace values before all checks; a bare number is
+        in SI, but a value that comes from another file needs its unit
     materials : names and kinds of materials; default: the library
     metrics : metrics that may be named; default: `metrics.METRICS`
 
@@ -233,7 +233,7 @@ def _require_kind(document: Document) -> None:
     """Raise an error if a scenario is given where a design is required, or the reverse."""
     for kind, mark in _MARKS.items():
         if mark in document.data and _MARKS[document.kind] not in document.data:
-            remedy = "give the design file that it names"
+            remedy = "give the design file that the scenario names"
             if kind == "design":
                 remedy = f'name it in a scenario: "design: {Path(document.file).name}"'
             message = f"the file is a {kind}, not a {document.kind}"
@@ -245,7 +245,7 @@ def _unusable(fault: Fault, document: Document) -> bool:
 
 
 def _once(faults: Sequence[Fault], document: Document) -> list[Fault]:
-    """Keep only the first of equal faults in the layers of one compact lay-up entry."""
+    """Report a fault only once if several layers of one compact lay-up entry have it."""
     unique, seen = [], set()
     for fault in faults:
         shorthand = document.shorthand(fault.loc)

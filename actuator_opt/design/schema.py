@@ -226,11 +226,12 @@ def _snippet(entry: KeyEntry) -> Any:
 
 _REFERENCE = str.maketrans({"/": "_per_", "^": "", "*": "_", "%": "percent"})
 _LISTED = {"barrel.layup": 6, "rod.layup": 4, "lines": 2}
-"""Number of entries of each list whose PATHs the editor offers under `variables`."""
+"""Number of entries in each list for which the editor offers PATHs under `variables`."""
 _OF_TABLES = (
     r"^(name|notes|(objective|requirements|variables|measured|uncertainty|materials|waivers)\..+)$"
 )
-"""Pattern of the PATHs that `set` accepts in addition to the values of the design's parts."""
+"""Pattern of the PATHs that the block `set` of a scenario accepts besides values of the design's
+parts."""
 
 
 def json_schema(

@@ -198,14 +198,17 @@ def clearances(view: FileView) -> Iterator[Fault]:
             ring = ".".join(str(key) for key in loc[:-1])
             yield Fault(
                 (part, "clearance"),
-                f"{length_text(gap)}: not smaller than the depth of the groove of {ring}, which is "
-                f"{length_text(depth)} from the mating surface",
+                f"{length_text(gap)}: not smaller than the groove of {ring}, whose depth from the "
+                f"mating surface is {length_text(depth)}",
                 f"write less than {length_text(depth)}, e.g. 0.03 mm",
             )
 
 
 def squeeze(view: FileView) -> Iterator[Fault]:
-    """Check that the nominal squeeze of O-rings is in the range of their law, of others above 0."""
+    """Check the nominal squeeze.
+
+    For O-rings, it must be within the valid range of their contact law; for other seals, above 0.
+    """
     for loc in elements(view):
         value, kind = view.number(*loc, "squeeze"), _kind(view, loc)
         if value is None or kind is None:
@@ -311,7 +314,7 @@ def reach(view: FileView) -> Iterator[Fault]:
         if first is not None and first > 0:
             yield Fault(
                 (*loc, "contact", 0, "pressure"),
-                f"{text(first)}: the profile without pressure is missing",
+                f"{text(first)}: the profile at zero pressure is missing",
                 "add a profile at 0 bar before it",
             )
         if last is not None and supply is not None and last < supply * (1 - 1e-9):
@@ -356,8 +359,9 @@ def _numbers(block: object) -> dict[str, float]:
 
 
 SLIDING_RING = 3.0
-"""Stated modulus over the modulus that follows from hardness. Above this ratio, a compound is taken
-for a plastic sliding ring on rubber. For a hard polyurethane the ratio is about 1."""
+"""Ratio of a compound's stated modulus to the modulus that follows from its hardness. Above this
+ratio, the compound is taken for a plastic sliding ring on rubber. For a hard polyurethane the ratio
+is about 1."""
 
 
 def sliding_rings(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:

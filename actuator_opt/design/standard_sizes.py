@@ -218,7 +218,9 @@ def ring_sections() -> tuple[float, ...]:
 
 
 def section_tolerance(section: float) -> StandardSize:
-    """Tolerance (plus or minus, m) of a ring's free section: by ISO 3601-1, else by size band.
+    """Tolerance (plus or minus, m) of a ring's free section.
+
+    It is that of ISO 3601-1 for a nominal section, else that of the size band of the section.
 
     Raises
     ------
@@ -342,7 +344,7 @@ def nearest_standard(
     elif direction == "down":
         sizes = tuple(size for size in sizes if size <= value * (1 + slack))[-1:]
     if not sizes or value <= 0:
-        message = f"no standard {kind} {direction} of {value * 1e3:.4g} mm"
+        message = f'no standard {kind} in direction "{direction}" from {value * 1e3:.4g} mm'
         raise InputError(Diagnostic(message, "choose another size or direction"))
     return min(sizes, key=lambda size: max(size / value, value / size))
 
@@ -386,7 +388,10 @@ class SizeSeries:
     def values(
         self, view: FileView, path: str, parent: float | None, bounds: Bounds
     ) -> Sequence[float]:
-        """The sizes for a value of the parent; None if there is no parent, or it is continuous."""
+        """The sizes for a value of the parent.
+
+        `parent` is None if there is no parent variable, or if it varies continuously.
+        """
         raise NotImplementedError
 
 
@@ -411,7 +416,10 @@ class _Iso3320(SizeSeries):
 
 
 class _Pairs(SizeSeries):
-    """Bores or rods of catalogue cylinders; the other of the two also varies, or is fixed."""
+    """Bores or rod diameters of catalogue cylinders, which exist only in certain pairs.
+
+    Of bore and rod, one or both vary; if both vary, both must use this series.
+    """
 
     def _other(self, path: str) -> str:
         return "cylinder.bore" if path != "cylinder.bore" else "rod.outer_diameter"

@@ -46,7 +46,7 @@ class KeyEntry:
     """`least` and `most` are the smallest and largest number of entries of a list."""
 
     def quantity(self, value: object = None) -> Quantity | None:
-        """Quantity of the key's number; a position is a length or a fraction, as `value` is."""
+        """Quantity of the key's number; for a position, it depends on the type of `value`."""
         if isinstance(self.kind, PositionKind):
             return self.kind.quantity_of(value)
         return self.kind.quantity if isinstance(self.kind, Of) else None
@@ -203,7 +203,10 @@ class Properties(Protocol):
 
 
 class FileView:
-    """Reads the values of a tree in SI; defaults replace missing values, None unusable values."""
+    """Reads the values of a tree in SI.
+
+    A missing value is replaced by its default, an unusable value by None.
+    """
 
     def __init__(self, tree: Any, root: type[Section] = Design) -> None:
         self.tree = tree
@@ -240,7 +243,7 @@ class FileView:
 def without_effect(
     view: FileView, loc: Loc, keys: Iterable[str], where: str, remedy: str = "remove the line"
 ) -> Iterator[Fault]:
-    """Yield a fault for each of these keys below a location that the file states without effect."""
+    """Yield a fault for each of these keys that the file states, because it has no effect there."""
     for key in keys:
         if view.has(*loc, key):
             yield Fault((*loc, key), f"without effect {where}", remedy, at_key=True)

@@ -96,7 +96,8 @@ NUMBERS = ("lower", "upper", "deviation", "half_width", "cv", "factor")
 """Keys with numeric values."""
 
 REACH = 5.0
-"""Standard deviations at which normal and lognormal samples are truncated; 6e-7 lie beyond."""
+"""Number of standard deviations at which normal and lognormal distributions are truncated. A share
+of 6e-7 of the distribution lies beyond."""
 
 
 def quantity_of_entry(key: str, quantity: Quantity) -> Quantity | None:
@@ -143,14 +144,18 @@ def limits(shape: str, entry: Stated, value: float) -> tuple[float, float]:
 
 
 def ratio(shape: str, entry: Stated) -> float:
-    """Largest sample over the value in the design, for a lognormal or loguniform distribution."""
+    """Ratio of largest sample to value in the design, of a lognormal or loguniform distribution."""
     if shape == "loguniform":
         return float(entry["factor"])
     return exp(REACH * log_deviation(entry))
 
 
 def log_deviation(entry: Stated) -> float:
-    """Standard deviation of the logarithm: sqrt(ln(1 + cv^2)), or ln(factor)/1.96."""
+    """Standard deviation of the logarithm: sqrt(ln(1 + cv^2)), or ln(factor)/1.96.
+
+    The entry states `cv`, the coefficient of variation, or `factor`, by which 95 % of the samples
+    differ at most from the median.
+    """
     cv = entry.get("cv")
     return sqrt(log1p(cv * cv)) if cv is not None else log(entry["factor"]) / 1.959964
 

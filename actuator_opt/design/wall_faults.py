@@ -1,6 +1,6 @@
 """Check barrel, rod and joint: impossible layers, unsuitable materials, unsuitable keys.
 
-Each joint of caps and head has a module in `joints`. This declares the keys of the block
+Each joint of caps and head has a module in `joints`. That module declares the keys of the block
 `retention` that the joint uses, and the checks of their values.
 """
 
@@ -97,9 +97,9 @@ def autofrettage(view: FileView) -> Iterator[Fault]:
 
 
 def laminated_rod(view: FileView) -> Iterator[Fault]:
-    """Check a laminated rod: its layers leave a bore, which the file does not state.
+    """Check that the layers of a laminated rod leave a bore, which the file itself must not state.
 
-    Only a laminated rod may have fittings.
+    Also check that the fittings fit into this bore, and that no other rod states fittings.
     """
     layers = len(view.items("rod", "layup"))
     if not layers:

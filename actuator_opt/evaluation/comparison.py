@@ -151,7 +151,7 @@ class Comparison(Displayed):
                 yield name, next(row.quantity for row in rows if row is not None), values
 
     def to_dict(self) -> dict[str, Any]:
-        """The object that `compare --json` writes (SI), without its sentences."""
+        """The object that `compare --json` writes (SI), without the texts `answers` and `notes`."""
         return {
             "designs": [
                 {

@@ -219,20 +219,22 @@ class DynamicsStudy:
     """Natural frequency [Hz] with the lines connected to `end`."""
     damping_ratio: Array
     friction_share: float
-    """Contribution of friction and oil shear to the damping ratio at the weakest position."""
+    """Contribution of friction and oil shear to the damping ratio, at the position of least
+    stiffness."""
     conductance_share: float
-    """Contribution of leakage and line ends to the damping ratio at the weakest position."""
+    """Contribution of leakage and line ends to the damping ratio, at the position of least
+    stiffness."""
     poles: tuple[Pole, ...]
-    """All poles at the weakest position, lowest frequency first."""
+    """All poles at the position of least stiffness, lowest frequency first."""
     frequencies: Array
     response_case: str
     """Load case of `responses`: the case with the least dynamic stiffness, or `case` if there is no
     excitation."""
     responses: tuple[Response, ...]
-    """Responses at the cap end, the weakest position and the rod end."""
+    """Responses at the cap end, the position of least stiffness and the rod end."""
     distributed: Array | None
-    """Dynamic stiffness at the weakest position, with the lines as transmission lines; None without
-    lines."""
+    """Dynamic stiffness at the position of least stiffness, with the lines as transmission lines;
+    None without lines."""
     shaken: tuple[ShakenCase, ...]
     """Load cases with an oscillating load, each at its position of least dynamic stiffness."""
     position_loop: LoopStudy | None

@@ -42,7 +42,7 @@ can reach many times the sealed pressure."""
 
 LEAST_SQUEEZE = 0.02
 """Smallest squeeze for which a film is solved; smaller values are raised to it. In such a design
-the ring loses contact, and its check of squeeze is missed anyway."""
+the ring loses contact, so the design fails its squeeze check anyway."""
 
 _NOT_OF_FILM = frozenset(
     {
@@ -81,7 +81,7 @@ def films_asked(design: Design) -> bool:
 
 
 def on_stroke(rings: Sequence[Ring], stroke: Stroke) -> tuple[Ring, ...]:
-    """The rings with the sealed pressure of a stroke, which is different on the return stroke."""
+    """The rings with the pressure that they seal on the drive stroke or on the return stroke."""
     if stroke == "drive":
         return tuple(rings)
     return tuple(ring.at(pressure=ring["return_pressure"]) for ring in rings)
@@ -114,7 +114,7 @@ class FilmRow:
     outward: bool
 
     def inputs(self) -> dict[str, Array]:
-        """Inputs of the film solver, with absolute pressures and at least `LEAST_SQUEEZE`."""
+        """Inputs of the film solver; pressures are absolute, squeeze at least `LEAST_SQUEEZE`."""
         first, last = self.rings[0], self.rings[-1]
         outer = last["outer_pressure"] + ATMOSPHERIC_PRESSURE
         inputs = {
@@ -130,7 +130,10 @@ class FilmRow:
         return inputs
 
     def at(self, point: Mapping[str, Array]) -> FilmRow:
-        """The row with other values of `inputs`; each ring gets the whole pressure difference."""
+        """Copy with other values of `inputs`; each ring gets the whole pressure difference.
+
+        `between` then divides this difference between two rings.
+        """
         shared = {name: point[name] for name in SHARED if name in point}
         shared["outer_pressure"] = point["outer"] - ATMOSPHERIC_PRESSURE
         shared["pressure"] = point["sealed"] - point["outer"]
@@ -341,7 +344,7 @@ def slopes(solved: Solved, names: Sequence[str]) -> dict[str, np.ndarray]:
 
 
 def _as_starved(contact: Contact, solved: Contact) -> Contact:
-    """A copy of a contact, with its ends starved of oil as much as in a solved contact."""
+    """A copy of a contact, with its ends starved of oil to the same degree as in `solved`."""
     return replace(
         contact,
         sealed_cavitation=solved.sealed_cavitation,

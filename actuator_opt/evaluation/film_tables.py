@@ -31,14 +31,14 @@ POINTS = 6
 MOST_AXES = 2
 """Largest number of axes of a surrogate; each further axis needs `POINTS` times as many films."""
 SPEEDS, SPEED_ROOM = 3, 1.25
-"""Number of nodes of the speed axis, and ratio of its end to the speeds that occur. Every surrogate
-has this axis, so that the derivative with respect to speed varies with all other inputs. The middle
-node is the speed of the load case."""
+"""Number of nodes of the speed axis if the speed is not varied, and factor by which it extends
+beyond the smallest and largest speed. The middle node is the speed of the load case. Every
+surrogate has this axis, so that the derivative by speed varies with all other inputs."""
 CHECKS = 4
 """Number of samples at which a surrogate is compared with solved films, besides the design."""
 MISSED = 0.005
-"""Largest error of linear extrapolation, relative to the load, for an input without its own axis.
-The error is that at the ends of the input's range."""
+"""Error of linear extrapolation to the ends of an input's range, as a share of the normal force on
+the asperities. Above this error, the input becomes a candidate for its own axis."""
 Key = tuple[Place, int, Stroke]
 """Location (piston or rod), load case and stroke of a table."""
 
@@ -196,7 +196,7 @@ def _missed(
 ) -> float:
     """Error of linear extrapolation to one end of an input's range.
 
-    It is the error of drag or load, whichever is larger, relative to the load.
+    It is the larger of the errors of viscous drag and asperity load, divided by the asperity load.
     """
     solved = walker.solve({**base, name: end})
     if solved.why:
@@ -241,7 +241,7 @@ def _errors(
 
 
 def _outward(place: Place, push: bool) -> dict[Stroke, bool]:
-    """Strokes that need a film, each with whether the counterface moves outwards.
+    """For each stroke that needs a film, whether the counterface moves outwards.
 
     The piston always moves away from the pressurised chamber. Relative to the piston seal, the bore
     therefore always moves inwards, towards the sealed oil. The rod seal also needs a film for the
@@ -258,7 +258,8 @@ def tables(
     Parameters
     ----------
     design : the design
-    values : function that returns its numbers, some replaced by arrays (`PreparedDesign.values`)
+    values : function that returns the design's numbers, with some of them replaced by arrays
+        (`PreparedDesign.values`)
     rings_of : function that returns the sealing rings for these numbers
     """
     rings = rings_of(values())
@@ -288,7 +289,7 @@ def _table(inputs: bytes) -> FilmTable:
 
 
 def unsolved(design: Design, rings: tuple[Ring, ...]) -> dict[Key, FilmTable]:
-    """Tables without a surrogate for all films of a design; their results are NaN."""
+    """Placeholders for all film tables of a design: no film is solved, and all results are NaN."""
     film_tables = {}
     for key, row in _rows(design, rings):
         inputs = {name: float(value) for name, value in row.inputs().items()}

@@ -437,7 +437,7 @@ def _at_stops(
     parts: dict[str, Array],
     out: MetricArrays,
 ) -> None:
-    """Compute stiffness and frequency as loaded at each stop of a linkage, one entry per stop."""
+    """Compute stiffness and frequency under the force and mass at each stop of a linkage."""
     s = basis.state
     differing = joint.open_cases(v, design, s.positions)
     if not differing.any():

@@ -53,8 +53,8 @@ class MetricLimit:
 
 ENDS = ("retracted", "extended")
 OWN_PLACE = "position of the case"
-"""Positions at which a joint torque is limited: both stops, or the stated position of a load
-case."""
+"""Locations at which a joint torque is limited: the stops (`ENDS`), or, for a load case that states
+its piston position or joint angle, that position (`OWN_PLACE`)."""
 
 
 def requirement_limits(design: Design) -> list[MetricLimit]:
@@ -233,7 +233,7 @@ class LimitRow:
 def by_case(
     computed: MetricArrays, metric: str, array: Array, cases: tuple[str, ...], place: str = ""
 ) -> Iterator[tuple[str, Array]]:
-    """Yield the values (designs,) of each load case to which a metric applies, with its name."""
+    """Yield (name, values (designs,)) of each load case to which a metric applies."""
     array = np.asarray(array)
     if array.ndim < 2:
         yield ALL_CASES, np.atleast_1d(array)

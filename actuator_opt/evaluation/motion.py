@@ -265,7 +265,7 @@ too low for tracking, but results are finite."""
 
 
 def _least(values: Array) -> Array:
-    """Least value of all directions, positions and load cases, by real part; (designs,)."""
+    """Least value over all directions, positions and load cases (by real part), (designs,)."""
     flat = values.reshape(-1, values.shape[-1])
     best = np.argmin(real(flat), axis=0)[None]
     return np.take_along_axis(flat, best, axis=0)[0]

@@ -393,7 +393,7 @@ def same_dimensions(
 
 @dataclass(frozen=True)
 class _Parts:
-    """One of many designs, whose outlines can be drawn for its dimensions."""
+    """The parts of one design, to draw them with its dimensions or with one dimension changed."""
 
     subject: PreparedDesign
     geometry: Geometry

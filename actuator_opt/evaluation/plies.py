@@ -34,7 +34,7 @@ STRENGTHS = (
 
 @dataclass(frozen=True, slots=True)
 class Climate:
-    """Lowest or highest service temperature.
+    """The lowest or highest service temperature, for strengths and residual stresses.
 
     `change` is the temperature change from the stress-free state [K]; `cold` selects the strengths
     at the lowest temperature.
@@ -47,7 +47,10 @@ class Climate:
 
 @dataclass(frozen=True, slots=True)
 class Layer:
-    """A layer with its properties; `strengths` and `yields` have an entry per climate if known."""
+    """A layer with its properties.
+
+    `strengths` and `yields` have one entry per `Climate` (service temperature) if known.
+    """
 
     label: str
     name: str
@@ -95,7 +98,8 @@ class Layer:
     def as_wall(self, climate: int | None = None) -> WallLayer:
         """The layer as input of the burst models.
 
-        Its strengths are those of one climate, or of all climates (climates, 1, 1).
+        `climate` is the index of a service temperature, at which the strengths are taken. None: the
+        strengths at all service temperatures, (climates, 1, designs).
         """
         c, (first, second) = self.constants, self.expansions or (0.0, 0.0)
         return WallLayer(
@@ -123,7 +127,7 @@ def stress_of(parts: Iterable[Array]) -> Stress:
 
 
 def _of_climate(values: Sequence[Any], climate: int | None, combine: Callable[..., Any]) -> Any:
-    """The value in one climate, or, without `climate`, the combined values of all climates."""
+    """The value at one service temperature, or the combined values of all if `climate` is None."""
     if not values:
         return None
     if climate is not None:
@@ -132,12 +136,15 @@ def _of_climate(values: Sequence[Any], climate: int | None, combine: Callable[..
 
 
 def _axis(values: Sequence[Array]) -> Array:
-    """Stack one value per climate to (climates, 1, designs); the second axis is for load paths."""
+    """Stack values, one per service temperature, to (climates, 1, designs).
+
+    The second axis is for load paths.
+    """
     return np.stack(np.broadcast_arrays(*[np.atleast_1d(value) for value in values]))[:, None, :]
 
 
 def _of_all(strengths: Sequence[PlyStrength]) -> PlyStrength:
-    """Combine the ply strengths of all climates into arrays."""
+    """Combine the ply strengths at all service temperatures into arrays."""
 
     def of_climates(name: str) -> Array:
         return _axis([getattr(strength, name) for strength in strengths])
@@ -154,7 +161,10 @@ def _of_all(strengths: Sequence[PlyStrength]) -> PlyStrength:
 
 
 def climates(v: Values, design: Design) -> tuple[Climate, ...]:
-    """Coldest and hottest climate; without a cure temperature, one climate without cure stress."""
+    """Lowest and highest service temperature, with their temperature change from cure.
+
+    Without a cure temperature, there is a single climate without cure stress.
+    """
     environment = design.environment
     if environment is None or environment.cure_temperature is None:
         return (Climate("", 0.0, cold=False),)
@@ -254,8 +264,8 @@ def utilisations(
 ) -> dict[str, Array]:
     """Utilisation 1/SR (SR: strength ratio) by failure mode of one criterion.
 
-    Stresses are (faces, plies, climates, ...); further axes, such as load paths and designs, come
-    last. The strengths of every ply and climate are on the same axes.
+    Stresses are (faces, plies, climates, ...), where faces are the inner and outer face of a ply,
+    and climates the service temperatures. Further axes, such as load paths and designs, come last.
     """
     extra = stress[0].ndim - 3
 
@@ -288,7 +298,7 @@ def utilisations(
 
 
 def _strengths(plies: Sequence[Layer], name: str, extra: int) -> Array:
-    """The strength `name` of every ply and climate, (plies, climates, ...)."""
+    """The strength `name` of every ply at every service temperature, (plies, climates, ...)."""
     rows = [
         np.stack(
             np.broadcast_arrays(

@@ -97,7 +97,9 @@ class YieldEstimate:
         if self.with_checks is not None and self.with_checks < self.value:
             text += f", and {_percent(self.with_checks)} % would also pass every check"
         if self.worst is not None and self.worst_fails:
-            text += f"; {self.worst} is missed most often, by {_percent(self.worst_fails)} %"
+            text += (
+                f"; {self.worst} is missed most often, by {_percent(self.worst_fails)} % of them"
+            )
         return f"{text}."
 
 

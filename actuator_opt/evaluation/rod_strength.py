@@ -43,13 +43,19 @@ LEAST = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class Beam:
-    """Critical load [N] and largest bending moment without push [N m], in each load case."""
+    """Critical load [N] and largest bending moment [N m] of the rod in each load case.
+
+    The moment is that before axial compression amplifies it.
+    """
 
     critical: Array
     moment: Array
 
     def under(self, push: Array) -> Array:
-        """Moment amplified by a push [N]; above `NEAR` of the critical load, it rises linearly."""
+        """Bending moment, amplified by a push [N].
+
+        Above the share `NEAR` of the critical load, it rises linearly with the push.
+        """
         share = push / self.critical
         near = minimum(share, NEAR)
         amplified = column.amplified_moment(
@@ -80,7 +86,7 @@ def derive(
     *,
     critical_load: CriticalLoad,
 ) -> Beam:
-    """Critical load and bending moment in every load case; our choice is a horizontal actuator."""
+    """Critical load and bending moment in every load case; the actuator is taken as horizontal."""
     segments = lengths(g, state)
     weight_moment = _weight(v, design, g, state, rod, parts, segments)
     return Beam(
@@ -253,7 +259,11 @@ pull, with and without outside pressure."""
 def _factors(
     design: Design, section: RodSection, forces: Array, pressures: Array
 ) -> dict[str, Array]:
-    """Strength ratios of all layers; forces and outside pressures are (sides, cases, designs)."""
+    """Strength ratios of all layers.
+
+    Forces and outside pressures are (states, cases, designs). The states are the stress states on
+    both sides of the bent rod, in the order of `DIRECTIONS`.
+    """
     factors: dict[str, Array] = {}
     brittle = [i for i, layer in enumerate(section.layers) if layer.strengths]
     if brittle:
@@ -279,7 +289,10 @@ def _factors(
 
 
 def _rows(section: RodSection, label: str, utilisation: Array) -> dict[str, Array]:
-    """Strength ratios by climate and direction; `utilisation` is their inverse."""
+    """Strength ratios by service temperature and load direction, from the utilisation.
+
+    The utilisation is the inverse of the strength ratio.
+    """
     rows = {}
     for direction, sides in DIRECTIONS.items():
         multiple = load_multiplier(plies.worst(utilisation[:, :, sides], (0, 2)))
@@ -327,19 +340,29 @@ def cycles(
 
 
 def _unit_load(section: RodSection, rows: list[int], load: int) -> list[Array]:
-    """Ply stresses of layers `rows` under a unit load, (faces, layers, 1, 1, 1, designs)."""
+    """Ply stresses of layers `rows` under a unit load, (faces, layers, 1, 1, 1, designs).
+
+    The faces are the inner and outer face of each layer.
+    """
     assert section.unit is not None
     return [part[:, rows][:, :, load][:, :, None, None, None] for part in section.unit]
 
 
 def _load(section: RodSection, rows: list[int], forces: Array, pressures: Array) -> Stress:
-    """Stresses under force and pressure, (faces, layers, 1, sides, cases, designs)."""
+    """Ply stresses of layers `rows` under axial force and outside pressure.
+
+    They are (faces, layers, 1, states, cases, designs): the faces are the inner and outer face of
+    each layer, the states those of `forces` and `pressures`, such as both sides of the bent rod.
+    """
     units = (_unit_load(section, rows, load) for load in (FORCE, OUTSIDE))
     return plies.stress_of([f * forces + p * pressures for f, p in zip(*units, strict=True)])
 
 
 def _residual(section: RodSection, rows: list[int]) -> Stress | None:
-    """Cure stresses of the layers in `rows`, (faces, layers, climates, 1, 1, designs)."""
+    """Cure stresses of the layers in `rows`, (faces, layers, climates, 1, 1, designs).
+
+    The faces are the inner and outer face of each layer, the climates the service temperatures.
+    """
     if not section.cured:
         return None
     change = np.stack(

@@ -46,7 +46,8 @@ class RodSection:
     [N] and mass per length [kg/m]. `shell_modulus` and `shell_ratio` are Young's modulus and
     Poisson's ratio of an isotropic wall with the same local buckling load. `expansion` is the
     axial thermal expansion [1/K], None if not stated. A layered rod also has `unit`, the ply
-    stresses under each unit load, (faces, layers, loads, designs).
+    stresses at the inner and outer face of each layer under each unit load, (faces, layers, loads,
+    designs).
     """
 
     outer_diameter: Array
@@ -173,7 +174,10 @@ def _tube(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> RodS
 
 
 def _unit(tube: LayeredTube, state: TubeState) -> Stress:
-    """Ply stresses at the faces of the layers; if the tube twists, of both plies in a +/- pair."""
+    """Ply stresses at the inner and outer face of every layer.
+
+    If the tube twists, they are given for both plies of a +/- pair.
+    """
     plus = ply_stresses_at_faces(tube=tube, state=state)
     if not tube.twisting:
         return plus

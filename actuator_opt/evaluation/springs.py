@@ -169,7 +169,7 @@ class Springs:
         return 1 / sum(self.compliances(position).values())
 
     def per_chamber_stiffness(self, position: Array) -> Array:
-        """Axial stiffness at a position; for every topology, each chamber is a separate spring."""
+        """Axial stiffness at a position; each chamber is a separate spring in every topology."""
         return 1 / (sum(self._by_energy(position).values()) + self.series_compliance())
 
 

@@ -292,7 +292,7 @@ def _holding(
 def holding(
     v: Values, design: Design, stock: MaterialValues, geometry: Geometry, s: LoadState, end: str
 ) -> LoadState:
-    """Copy the state, with the load held at one of the stops of a linkage."""
+    """Copy the state, with the force and chamber pressures of the load held at a linkage's stop."""
     force = s.demands[end].force
     holding_a, holding_b = _holding(v, design, geometry, s.push, force)
     return replace(

@@ -111,9 +111,10 @@ def _pressure_factors(
     bursts: Mapping[str, Array],
     out: MetricArrays,
 ) -> None:
-    """Compute yield, first-ply and burst pressures of the barrel over working and proof pressure.
+    """Compute the barrel's safety factors against yield, first-ply failure and burst.
 
-    `yields` and `bursts` are the yield and burst pressures by location, in barrel and joint.
+    A factor is the failure pressure divided by supply pressure, or by proof pressure. `yields` and
+    `bursts` are the yield and burst pressures by location, in barrel and joint.
     """
     proof = v["supply.proof_ratio"] * supply
     liner = {place: p / supply for place, p in wall.yield_pressure.items()}

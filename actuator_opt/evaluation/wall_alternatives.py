@@ -302,7 +302,11 @@ def metal_tube(
     burst_pressure: float | None,
     axial_forces_per_pressure: Sequence[float],
 ) -> MetalTube:
-    """The thinnest tube of a metal with a bore strain (without axial force) and burst pressure."""
+    """The thinnest tube of a metal that meets limits of bore strain and burst pressure.
+
+    `strain` is the largest bore strain without axial force, `burst_pressure` the required burst
+    pressure.
+    """
     inner, density = inner_radius, stock.get(name, "density")
     elastic = {
         "youngs_modulus": stock.get(name, "youngs_modulus"),

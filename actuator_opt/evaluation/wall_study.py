@@ -80,8 +80,8 @@ class WallProfile:
     """Stresses [Pa] through the wall under one load, each (layers, points), starting at the bore.
 
     `used` is the utilisation 1/SR (SR: strength ratio). It follows from the criterion of the
-    design, for metals from yield, and includes the cure stress of the worse climate. It is NaN if
-    unknown, and None for a load without pressure.
+    design, for metals from yield, and includes the cure stress at the worse of the two extreme
+    service temperatures. It is NaN if unknown, and None for a load without pressure.
     """
 
     name: str
@@ -112,9 +112,9 @@ class Ratio:
 class Shares:
     """Stress divided by strength through the wall, (layers, points).
 
-    The load path and climate are those with the least strength ratio of the wall. For plies, the
-    ratios along the fibre, across it and in shear have a sign; for metals, the ratio is von Mises
-    stress divided by yield strength. Ratios that do not apply to a layer are NaN.
+    The load path and climate (service temperature) have the least strength ratio of the wall. The
+    ratios of plies along the fibre, across it and in shear have a sign. For metals, the ratio is
+    von Mises stress divided by yield strength. Ratios that do not apply to a layer are NaN.
     """
 
     path: str
@@ -167,8 +167,8 @@ class WallStudy:
     radius: Array
     profiles: tuple[WallProfile, ...]
     rest: tuple[WallProfile, ...]
-    """Stresses at zero pressure, for each climate, from cure, clamping and autofrettage; empty if
-    these are zero."""
+    """Stresses at zero pressure from cure, clamping and autofrettage, at the lowest and highest
+    service temperature; empty if these are zero."""
     ratios: tuple[Ratio, ...]
     shares: Shares | None
     ladder: Ladder
@@ -207,7 +207,8 @@ _STRENGTHS = {
 class _StressField:
     """Stresses (layers, points, loads).
 
-    The loads are supply pressure on every load path, then every climate without pressure.
+    The loads are supply pressure on every load path, then zero pressure at every extreme service
+    temperature (climate).
     """
 
     paths: tuple[str, ...]
@@ -224,7 +225,10 @@ class _StressField:
         )
 
     def rest(self, rows: Sequence[int]) -> Stress | None:
-        """Stress in layers `rows` at zero pressure, (points, layers, climates, 1, 1), if any."""
+        """Stress in layers `rows` at zero pressure, (points, layers, climates, 1, 1).
+
+        The climates are the extreme service temperatures. None if all stresses are zero.
+        """
         stresses = [part[rows, :, len(self.paths) :] for part in self.ply]
         if not any(np.any(part) for part in stresses):
             return None
@@ -235,7 +239,8 @@ class _StressField:
 class _Utilisation:
     """Utilisation 1/SR (SR: strength ratio) of layers by one criterion.
 
-    `values` are (modes, points, layers, climates, paths).
+    `values` are (modes, points, layers, climates, paths): by failure mode, point through the
+    thickness, layer, extreme service temperature and load path.
     """
 
     criterion: str
@@ -323,7 +328,7 @@ def _sublayers(layers: Sequence[Layer]) -> list[TubeLayer]:
 
 
 def _points(values: Array) -> Array:
-    """Rearrange values at sublayer faces, (2, sublayers, ...), to (layers, points, ...)."""
+    """Rearrange values at both faces of sublayers, (2, sublayers, ...) to (layers, points, ...)."""
     shaped = values.reshape(2, -1, PARTS, *values.shape[2:])
     return np.concatenate([shaped[0], shaped[1][:, -1:]], axis=1)
 
@@ -331,7 +336,7 @@ def _points(values: Array) -> Array:
 def _stress_field(
     layers: Sequence[Layer], climates: tuple[Climate, ...], pressure: float, g: Geometry, wall: Wall
 ) -> _StressField:
-    """Stresses under all loads at all points; autofrettage adds the same stress in each climate."""
+    """Stresses under all loads at all points; autofrettage stress is equal at both temperatures."""
     tube = layered_tube(layers=_sublayers(layers), inner_radius=float(g.inner_radius))
     pulls = [pressure * single(area) for area in wall.path.per_pressure.values()]
     clamp = single(wall.path.held)
@@ -422,7 +427,7 @@ def _utilisations(layers: Sequence[Layer], field: _StressField) -> list[_Utilisa
 
 
 def _ratios(utilisation: _Utilisation, field: _StressField) -> list[Ratio]:
-    """Least strength ratio of every layer, with its mode, point, climate and load path."""
+    """Least strength ratio of every layer, with failure mode, point, temperature and load path."""
     rows = []
     for k, layer in enumerate(utilisation.layers):
         values = utilisation.values[:, :, k]
@@ -458,7 +463,7 @@ def _profiles(field: _StressField, utilisations: Sequence[_Utilisation]) -> tupl
 
 
 def _at_rest(field: _StressField) -> tuple[WallProfile, ...]:
-    """Stresses at zero pressure in every climate; climates without stress are left out."""
+    """Stresses at zero pressure at the extreme service temperatures; zero stresses are left out."""
     profiles = []
     noise = 1e-6 * max(np.max(np.abs(part[..., : len(field.paths)])) for part in field.tube)
     for s, climate in enumerate(field.climates, len(field.paths)):
@@ -469,7 +474,7 @@ def _at_rest(field: _StressField) -> tuple[WallProfile, ...]:
 
 
 def _shares(layers: Sequence[Layer], field: _StressField, ratios: Sequence[Ratio]) -> Shares | None:
-    """Stress over strength, on the load path and in the climate of the least strength ratio."""
+    """Stress divided by strength, for the load path and temperature of the least strength ratio."""
     loaded = [row for row in ratios if row.ratio is not None]
     if not loaded:
         return None

@@ -75,7 +75,7 @@ def _base64(values: Array, kind: str) -> str:
 
 
 def _column(name: str, label: str, unit: str, values: Array) -> dict[str, Any]:
-    """Return a column as JSON, in its display unit; as a single number if all rows are equal."""
+    """Return a numeric column as JSON; if all rows have the same value, it is stored only once."""
     column: dict[str, Any] = {"name": name, "label": label, "unit": unit_text(unit)}
     if np.isfinite(values[0]) and (values == values[0]).all():
         return column | {"value": float(np.float32(values[0]))}
@@ -107,7 +107,7 @@ def _columns(explored: Explored) -> list[dict[str, Any]]:
 
 
 def _texts(explored: Explored, path: str) -> dict[str, Any]:
-    """Return a column of texts as JSON: the different texts, and each row's index among them."""
+    """Return a text column as JSON: its distinct texts, and an index into them for each row."""
     texts = explored.kept.texts[path]
     number = [texts.index(variant[path]) for variant in explored.variants]
     codes = _base64(np.array(number)[explored.variant], "<u2")
@@ -115,7 +115,7 @@ def _texts(explored: Explored, path: str) -> dict[str, Any]:
 
 
 def _exact(explored: Explored) -> list[dict[str, Any]]:
-    """Return varied inputs in SI, unrounded: the page writes them into the command it shows."""
+    """Return the varied inputs in SI, unrounded, for the command that the page shows."""
     columns = []
     for path in explored.kept.texts:
         column = _texts(explored, path)
@@ -127,9 +127,9 @@ def _exact(explored: Explored) -> list[dict[str, Any]]:
 
 
 def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
-    """Return the limits to show, and a sentence on the others.
+    """Return the limits to show, and a sentence that counts the checks that are not shown.
 
-    Shown are the limits that the user states, then the checks that some designs do not meet.
+    Shown are the limits that the user states, then the checks that at least one design fails.
     """
     study = explored.study
     base = prepare(study.design, plugins=study.plugins).values()
@@ -203,7 +203,7 @@ def _start(explored: Explored, columns: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _summary(explored: Explored) -> str:
-    """Summarise the rows: how many designs are shown, omitted, failed and damaged."""
+    """Summarise the sweep: how many designs were evaluated, are shown, failed, or are damaged."""
     kept = explored.kept
     evaluated, shown = kept.rows - explored.failed, len(explored.numbers)
     feasible = int((explored.numbers[:, -1] == 1.0).sum())
@@ -225,9 +225,9 @@ def _summary(explored: Explored) -> str:
 
 
 def _shapes(explored: Explored) -> dict[str, Any]:
-    """Return templates of the section drawing, and each row's template and dimensions.
+    """Return the section drawings of all rows: templates, and each row's template and dimensions.
 
-    Dimensions that do not change a drawing are omitted.
+    Dimensions that do not change any drawing are omitted.
     """
     count = len(explored.numbers)
     template_of = np.full(count, -1)
@@ -294,7 +294,7 @@ class ExplorerFile:
     path: Path
     sha256: str
     remarks: tuple[str, ...] = ()
-    """Remarks on the rows of the sweep."""
+    """Remarks on the rows of the sweep, such as how many are damaged; only the page has any."""
 
     def to_dict(self) -> dict[str, object]:
         """The JSON form."""
@@ -337,7 +337,7 @@ def write_explorer(
     plugins: Sequence[str] = (),
     remarks: Sequence[str] = (),
 ) -> list[ExplorerFile]:
-    """Write the page, and next to it the base design, which the command on the page reads.
+    """Write the page, and beside it the base design, a file that the command on the page reads.
 
     Parameters
     ----------

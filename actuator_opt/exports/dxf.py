@@ -82,7 +82,11 @@ class Length:
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """A length with its row of dimensions, counted outwards, and the centre of its text."""
+    """A length as drawn: the row of its dimension line (0 is nearest the parts), and its text.
+
+    `middle` is the axial position of the text's centre; `outside` says that the text is beside the
+    dimension line.
+    """
 
     length: Length
     row: int
@@ -282,7 +286,10 @@ def lengths_below(
 
 
 def _diameters(evaluated: Mapping[str, float]) -> list[_Diameter]:
-    """Diameters of rod, bore and barrel, along the stroke; of the end plate, and of the pin."""
+    """Diameters to draw, from left to right: rod, bore, barrel, end plate and pin.
+
+    Those of rod, bore and barrel are spread evenly over the stroke, so that their texts have room.
+    """
     spans = _stations(evaluated)
     low, high = spans["stroke"]
     names = {
@@ -307,7 +314,7 @@ def _diameters(evaluated: Mapping[str, float]) -> list[_Diameter]:
 def diameters_above(
     space: Any, evaluated: Mapping[str, float], profiles: Sequence[Profile], paper: DrawingSizes
 ) -> float:
-    """Draw diameters, with texts in one row above the parts; return the highest y used."""
+    """Draw diameters, with texts in one row above the parts; return the largest y reached."""
     diameters = _diameters(evaluated)
     top = max(r for profile in profiles for _, r in profile)
     widths = [paper.width(diameter.shown) for diameter in diameters]
@@ -351,8 +358,8 @@ _COLOURS = (7, 23, 142, 94, 6, 42, 134, 200, 54, 213, 233, 74)
 adapts)."""
 
 _Corner: TypeAlias = tuple[float, float, float]
-"""Corner of a polyline: x, y and bulge. The bulge is the tangent of a quarter of the angle of the
-arc to the next corner."""
+"""Corner of a polyline: x, y and bulge. The bulge is tan(angle/4), where angle is the included
+angle of the arc to the next corner."""
 
 
 def paper_for(length: float) -> DrawingSizes:
@@ -448,7 +455,7 @@ def _hatch(
 
 
 def _across(angle: float, spacing: float) -> tuple[float, float]:
-    """Offset between neighbouring hatch lines."""
+    """Vector (x, y) from one hatch line to the next, perpendicular to the lines."""
     turn = radians(angle + 90.0)
     return spacing * cos(turn), spacing * sin(turn)
 

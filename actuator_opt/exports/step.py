@@ -26,8 +26,8 @@ _NAMES = {
     "caps": ("cap, cap end", "cap, rod end"),
     "rod.fitting": ("rod.fitting, piston end", "rod.fitting, rod end"),
 }
-"""Names of the bodies of parts that have two, starting at the cap end; other bodies have the name
-of their part."""
+"""For parts that consist of two bodies, the names of these bodies, starting at the cap end. All
+other bodies have the name of their part."""
 _RINGS = tuple(
     f"{place} {ring}"
     for place in ("piston", "rod")
@@ -190,7 +190,7 @@ def _fault(part: str) -> InputError:
 
 
 def _bars(outline: Outline) -> SolidBody:
-    """The round bars of an outline: one body, and its places evenly spaced around the axis.
+    """The round bars of an outline: one body, placed several times, evenly spaced around the axis.
 
     The first bar is in the section plane.
     """
@@ -307,7 +307,10 @@ class Records:
         return self.shared(f"AXIS2_PLACEMENT_3D('',{origin},{axis},{zero})")
 
     def place(self, at: tuple[float, float, float]) -> str:
-        """Add a coordinate system that is only shifted: all CAD programs read that alike."""
+        """Add a coordinate system that is shifted but not rotated.
+
+        All CAD programs read such a coordinate system in the same way.
+        """
         axis, zero = self.direction(0.0, 0.0, 1.0), self.direction(1.0, 0.0)
         return self.shared(f"AXIS2_PLACEMENT_3D('',{self.point(*at)},{axis},{zero})")
 

@@ -1,6 +1,6 @@
 """Write an evaluation as a workbook: limits with margins, section drawing, variables and masses.
 
-Margins and verdicts are formulas, so they follow if the user changes a limit. Numbers are in
+Margins and verdicts are formulas, so they update when the user changes a limit. Numbers are in
 display units. Where a formula needs SI, a cell in the same row has the conversion factor. Excel and
 LibreOffice compute the formulas when they open the file.
 """
@@ -60,7 +60,7 @@ _FIRST = 5
 
 @dataclass(frozen=True, slots=True)
 class _Scale:
-    """Unit of a row: the display unit, or SI if the display unit has an offset (degC)."""
+    """Unit of a row: the display unit, or SI if the display unit has an offset, as degC has."""
 
     name: str
     factor: float
@@ -93,7 +93,7 @@ def _format(value: float | None) -> str:
 
 
 class _Sheet:
-    """A sheet that is filled row by row; no program takes its texts for formulas.
+    """A sheet that is filled row by row; its texts are stored so that none is read as a formula.
 
     Columns have the stated width, or a larger one if texts below the heading need it.
     """
@@ -308,7 +308,7 @@ def _about(book: Any, evaluation: Evaluation, program: str, date: str | None) ->
         ),
         (
             "blue cells",
-            "limits that you can change: margin and verdict follow, results stay as they are",
+            "limits that you can change: margins and verdicts update, results stay as they are",
         ),
         *(("warning", words) for words in evaluation.warnings),
     ]

@@ -44,7 +44,7 @@ def level_pair(section: Assembly, nodes: int, middle: float) -> tuple[int, int]:
 
 
 def wall_pressing(section: Assembly, state: ElementState) -> Floats:
-    """Force that the walls above and below exert on every node, positive as pressing."""
+    """Force that the walls above and below exert on every node, positive if they push it."""
     force = state.reaction.reshape(-1, 2)[:, 1]
     lower = state.at_lower.reshape(-1, 2)[:, 1]
     return np.asarray(np.where(lower, force, -force))
@@ -53,14 +53,20 @@ def wall_pressing(section: Assembly, state: ElementState) -> Floats:
 def barriers(
     section: Assembly, state: ElementState, places: Floats, pressing: Floats, pressure: float
 ) -> Floats:
-    """Contact pressure at every node: contact force per length, plus the fluid pressure if wet."""
+    """Contact pressure at every node, 0 where nothing touches.
+
+    It is the contact force per area, plus the fluid pressure at nodes that the fluid has reached.
+    """
     length = np.abs(equilibrium.shares(section, places)[:, 0]) * section.radii(places)
     total = pressing / np.maximum(length, 1e-12) + state.wet * pressure
     return np.asarray(np.where(pressing != 0, total, 0.0))
 
 
 def both_ways(boundary: Integers, start: int) -> tuple[Integers, Integers]:
-    """The nodes of a closed boundary, from a given node: anticlockwise, and clockwise."""
+    """All nodes of a closed boundary, listed anticlockwise and clockwise.
+
+    `start` is the index in `boundary` of the node at which both lists start.
+    """
     return np.roll(boundary, -start), np.roll(boundary[::-1], start + 1)
 
 
@@ -78,7 +84,7 @@ def wetted(
     ----------
     chain : boundary nodes in order, from the sealed side
     barrier : contact pressure at every node, 0 where nothing touches
-    state : previously wet nodes, and nodes on the outer side wall
+    state : solution, with the nodes that were wet before and those that touch the outer side wall
     pressure : pressure of the fluid
     """
     needed = pressure * np.where(state.wet[chain] > 0, 1.0, 1.0 - HOLDING)
@@ -98,7 +104,9 @@ def profile_on_face(
     pressure: float,
     force: Floats,
 ) -> tuple[float, Floats, Floats, float]:
-    """Start, node positions, contact pressures and load of the dry contact on the sliding face.
+    """The dry contact on the sliding face: where it starts, its pressure profile, and its load.
+
+    The profile consists of positions, counted from the start, and of the contact pressures there.
 
     Parameters
     ----------
@@ -152,7 +160,7 @@ def mounted_contact(
     boundary : boundary nodes of the sliding body in order, anticlockwise
     pressure : sealed pressure divided by the modulus
     length, modulus : reference length [m] and modulus [Pa] of the dimensionless solution
-    wall : position of the outer groove wall divided by the length
+    wall : position of the outer groove wall divided by `length`
     """
     force = state.reaction.reshape(-1, 2)
     start, positions, contact_pressure, line_load = profile_on_face(

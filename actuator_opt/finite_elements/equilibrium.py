@@ -176,13 +176,20 @@ class ContactPair:
     def update(
         self, touching: Booleans, force: Floats, places: Floats, pull: float
     ) -> tuple[Booleans, Floats]:
-        """Update the touching nodes and their forces; nodes under tension separate."""
+        """Update which nodes touch, and their forces.
+
+        An open node touches if it penetrates the lower surface. A touching node separates if its
+        tension reaches `pull`.
+        """
         gap = self.gap(places)
         touches = np.where(touching, force > -pull, gap < -1e-10) & np.isfinite(gap)
         return touches, np.where(touches, force, 0.0)
 
     def _surface_slopes(self, places: Floats, unknowns: int) -> tuple[Floats, csr_matrix]:
-        """Slope of the lower surface at its nodes, averaged at corners; and its derivative."""
+        """Slope of the lower surface at its nodes, and its derivative by all unknowns.
+
+        At a corner between two edges, the slope is the mean of both edges.
+        """
         ends = SLOPES @ places[self.edges]
         slope = ends[..., 1] / ends[..., 0]
         weight = np.ones_like(slope)
@@ -245,9 +252,10 @@ class ContactPair:
 
 
 TOLERANCE = 1e-9
-"""Largest unbalanced force of a converged solution, divided by modulus times section."""
+"""Largest unbalanced force of a converged solution, divided by the rubber's modulus and section."""
 SMALLEST_MOVE = 1e-7
-"""Newton's iteration has converged if its last step is below this share of the section."""
+"""Newton's iteration has converged if its last step moves no node by more than this share of the
+ring's section."""
 FREE = "the bodies can move freely"
 MOST_ITERATIONS = 40
 PATIENCE, STICKING = 15, 5e-4
@@ -280,7 +288,7 @@ class ElementState:
 
     Parameters
     ----------
-    values : displacements and multipliers
+    values : displacements and Lagrange multipliers
     at_lower, at_upper : which displacements are at their lower and upper bounds
     touching : which nodes of the contact pair's upper body touch the lower body
     pair_force : contact force at each of these nodes
@@ -364,7 +372,10 @@ class NotConverged(Exception):
 
 
 def _update_walls(problem: ElementProblem, state: ElementState, force: Floats, pull: float) -> bool:
-    """Hold nodes that pass a bound, release nodes that a wall pulls; return whether any changed."""
+    """Hold nodes that pass a bound, and release nodes that a wall pulls by `pull` or more.
+
+    Return whether any node was held or released.
+    """
     bounds, displacements = problem.bounds, state.values[: problem.section.displacements]
     fixed = bounds.lower == bounds.upper
     slack = 1e-10
@@ -377,7 +388,7 @@ def _update_walls(problem: ElementProblem, state: ElementState, force: Floats, p
 
 @dataclass(slots=True)
 class _Links:
-    """Constraints, each with its force: first of touching nodes, then of the two level nodes."""
+    """Constraints and their forces: one per touching node, then one between the two level nodes."""
 
     gap: Floats
     rows: csc_matrix
@@ -415,7 +426,7 @@ def _step(
     stiffness: csc_matrix,
     links: _Links,
 ) -> tuple[Floats, Floats, float]:
-    """Newton step of unknowns and of constraint forces; and the largest residual before it."""
+    """Changes of unknowns and of constraint forces in a Newton step; largest residual before it."""
     section, bounds = problem.section, problem.bounds
     fixed = np.zeros(section.unknowns, dtype=bool)
     fixed[: section.displacements] = state.at_lower | state.at_upper
@@ -445,7 +456,7 @@ def _step(
 
 
 def _damped(problem: ElementProblem, state: ElementState, move: Floats) -> float:
-    """Share of a step that keeps within the largest displacement and inverts no element."""
+    """Share of a Newton step that moves no node farther than permitted and inverts no element."""
     section = problem.section
     longest = float(np.max(np.abs(move[: section.displacements])))
     share = min(1.0, LONGEST_MOVE / max(longest, 1e-300))
@@ -555,7 +566,8 @@ def check_inputs(
     Parameters
     ----------
     section, squeeze, rubber, pressures, elements_around : as in `o_ring.squeezed_ring`
-    further : further checks: whether the input is wrong, message, remedy
+    further : further checks, each a tuple of a flag (True if the input is wrong), the error message
+        and the remedy
     """
     rising = all(b > a for a, b in zip((0.0, *pressures), pressures, strict=False))
     checks = (
@@ -612,13 +624,13 @@ def follow(
     length: float,
     modulus: float,
 ) -> SealSolution:
-    """Mount a seal and raise its pressure; return the contacts.
+    """Mount a seal and raise its pressure; return its contact at every pressure.
 
     Parameters
     ----------
     seal : seal, made dimensionless by `length` and `modulus`
     squeeze : radial compression of the rubber ring divided by its free section [-]
-    groove_width : width of the groove divided by the length
+    groove_width : width of the groove divided by `length`
     pressures : increasing pressures [Pa]
     length, modulus : reference length [m] and modulus [Pa]
     """

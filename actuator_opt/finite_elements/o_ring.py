@@ -151,7 +151,8 @@ def squeezed_ring(
 
     Returns
     -------
-    contacts of the mounted ring and at every pressure that was reached; the reason if one was not
+    contact of the ring without pressure, then one for every pressure that was reached; if a
+    pressure was not reached, the reason
 
     Notes
     -----

@@ -44,7 +44,7 @@ class MountedContact:
     peak_pressure : highest contact pressure [Pa]
     opposite_load : contact force on the groove bottom per length of circumference [N/m]
     side_load : contact force on the outer side wall of the groove, likewise [N/m]; for a step ring
-        that is only mounted, the axial holding force
+        without pressure, which does not rest on this wall yet, the force that holds it axially
     start : position of the sealed end of the contact, measured from the outer groove wall; negative
         [m]
     field : deformed mesh with stress
@@ -68,10 +68,10 @@ class SealSolution:
 
     Parameters
     ----------
-    contacts : first that of the mounted seal, then one per pressure that was reached
-    failure : reason for a pressure that was not reached; None if all were reached
-    steps, iterations : load steps, and Newton iterations of all of them
-    residual : largest unbalanced force, divided by modulus times section
+    contacts : contact of the seal without pressure, then one for every pressure that was reached
+    failure : reason why a pressure was not reached; None if all were reached
+    steps, iterations : number of load steps, and total number of Newton iterations
+    residual : largest unbalanced force, divided by the rubber's modulus and section
     """
 
     contacts: tuple[MountedContact, ...]

@@ -81,9 +81,10 @@ class Assembly:
         self._pattern()
 
     def _shape(self, bodies: Sequence[MeshedBody]) -> None:
-        """Set the derivatives of F's five components by an element's twelve displacements.
+        """Set the derivatives of the deformation gradient by the displacements of each element.
 
-        Also set the integration weights.
+        The gradient F has five components, an element twelve displacements. Also set the
+        integration weights.
         """
         gradients = np.concatenate([b.mesh.gradients for b in bodies])
         self.weights: Floats = np.concatenate([b.mesh.weights for b in bodies])
@@ -102,7 +103,7 @@ class Assembly:
         self.flat_shape: Floats = self.shape.reshape(count, points * 5, 12)
 
     def _pattern(self) -> None:
-        """Set where the entries of elements and edges go in the sparse stiffness matrix."""
+        """Set which entries of the sparse stiffness matrix each element and edge contributes to."""
         displacement_dofs = (2 * self.triangles[:, :, None] + np.arange(2)).reshape(
             len(self.triangles), 12
         )

@@ -126,9 +126,9 @@ class StepRing:
         return np.minimum(wet, 1.0)
 
     def _wet_back(self, places: Floats, front: float) -> Floats:
-        """Share of the fluid pressure on the back of the slide ring, up to where the fluid ends.
+        """Share of the fluid pressure on the back of the slide ring, which drops to 0 at `front`.
 
-        The result is used until the fluid between the rings reaches another node. If it followed
+        This share is kept until the fluid between the rings reaches another node. If it followed
         every motion of the nodes, the iteration for a tilting ring would oscillate.
         """
         _, back = both_ways(self.flat, self.sealed_end)
@@ -221,7 +221,8 @@ def squeezed_step_ring(
 
     Returns
     -------
-    contacts of the mounted seal and at every pressure that was reached; the reason if one was not
+    contact of the seal without pressure, then one for every pressure that was reached; if a
+    pressure was not reached, the reason
 
     Notes
     -----
@@ -259,7 +260,7 @@ def squeezed_step_ring(
         ),
         (
             not min(shape.thickness, shape.land_width, shape.chamfer_width) > 0,
-            "thickness, land or chamfer of the slide ring is not positive",
+            "thickness, land width or chamfer width of the slide ring is not positive",
             "give all three",
         ),
         (

@@ -14,7 +14,10 @@ from ..seals.seal_type import SealSizes
 
 @dataclass(frozen=True, slots=True)
 class Friction:
-    """Friction in every load case [N]; `slope` is dF/dv at the speed of the load case [N·s/m]."""
+    """Running and breakaway friction in every load case [N].
+
+    `slope` is the derivative of the running friction by speed, at the load case's speed [N·s/m].
+    """
 
     running: Array = 0.0
     breakaway: Array = 0.0
@@ -52,15 +55,16 @@ class MovingFilm(Protocol):
 class FrictionLaw:
     """A friction law; every field must be stated.
 
-    Every seal has `friction_coefficient`, `breakaway_ratio` and `stribeck_speed`, as stated or from
-    its compound. It also has `viscous_friction`, a term proportional to speed that every law adds
-    except a film law. `count` is the number of seals in series.
+    The functions of a law can read these sizes of a seal: `friction_coefficient`, `breakaway_ratio`
+    and `stribeck_speed`, which are stated in the design or else taken from the compound, and
+    `count`, the number of seals in series. `viscous_friction` times the speed is added to the
+    friction of every law except a film law.
 
     Parameters
     ----------
     name : name in a design file
-    help : meaning of the name
-    compound : further properties of the compound that the law uses
+    help : one-line description of the law for help texts
+    compound : further properties of the seal's compound that the law uses
     coefficient : function for the Coulomb friction coefficient of a contact [-]
     breakaway : function for the breakaway friction [N], given the Coulomb friction [N]
     level : function for the friction without its viscous part [N], given Coulomb friction [N] and
@@ -83,7 +87,7 @@ class FrictionLaw:
     def friction(
         self, seal: SealSizes, contact: SealContact, load: Array, speed: Array
     ) -> Friction:
-        """Dry friction of seals in series: sliding friction, or Coulomb friction in a case at rest.
+        """Dry friction of seals in series: sliding friction, or at rest the Coulomb friction.
 
         Parameters
         ----------

@@ -14,18 +14,19 @@ from .conditioning import ConditionedRecord, RecordSection
 
 RESTING, CREEP = 3.0, 2e-5
 """Below a certain speed, the rod may be at rest. That speed is `RESTING` standard deviations of the
-velocity noise, or `CREEP` [m/s] if that is larger (our choices: noise makes only 0.3 % of the
-samples at rest look faster; two sensor steps of 10 um in a second)."""
+velocity noise, or `CREEP` [m/s] if that is larger (our choices: only 0.3 % of the samples at rest
+look faster than 3 standard deviations; 2e-5 m/s is two sensor steps of 10 um in a second)."""
 OPPOSED = 0.5
-"""Smallest `opposing_share` of a plausible record; a smaller one indicates a wrong sign (our
-choice: a quarter of the friction's power then drives the rod, more than noise and offsets
-explain)."""
+"""Smallest `opposing_share` of a plausible record. A smaller share indicates a channel with a wrong
+sign (our choice: at this value, a quarter of the friction's power drives the rod, which is more
+than noise and offsets explain)."""
 SLIDES = 5e-4
 """Smallest travel at which a section of a record counts as sliding [m] (our choice: ten breakaway
 travels of 50 um; within a shorter travel, the contact returns much of its energy like a spring)."""
 SURE = 0.8
 """A correction of the record is suggested only if the `opposing_share` of the corrected record is
-larger than this value (our choice: a tenth of the friction's power then still drives the rod)."""
+larger than this value (our choice: at this value, a tenth of the friction's power drives the
+rod)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,7 +35,7 @@ class Sliding:
 
     Parameters
     ----------
-    piece : motion in the section
+    piece : the section, with its motion
     hydraulic : hydraulic force p_1 A_1 - p_2 A_2 [N]
     resisting : F_L + m a [N], the part of the hydraulic force that is not friction
     pressure : the higher chamber pressure, gauge [Pa]
@@ -114,9 +115,9 @@ def _sliding(
 def opposing_share(slidings: Sequence[Sliding]) -> float:
     """Opposing minus driving power of the friction, divided by their sum.
 
-    It is 1 if friction always opposes the motion, and -1 if it always drives the rod. In a section
-    of the record that hardly slides, friction acts as a spring; there, changes of the friction
-    replace the friction.
+    The share is 1 if friction always opposes the motion, and -1 if it always drives the rod. In a
+    section of the record in which the rod hardly slides, friction acts like a spring. There, the
+    power is that of the change of friction from sample to sample.
     """
     power = np.concatenate([_power(sliding) for sliding in slidings])
     total = float(np.sum(np.abs(power)))
@@ -124,7 +125,10 @@ def opposing_share(slidings: Sequence[Sliding]) -> float:
 
 
 def _power(sliding: Sliding) -> Array:
-    """Power of the friction: F v of moving samples if the section slides, else dF v."""
+    """Power of the friction F at speed v for all moving samples: F v if the section slides.
+
+    In a section that does not slide, it is v dF, with the change dF of F per sample.
+    """
     velocity = sliding.piece.velocity
     if _slides(sliding):
         return (sliding.friction * velocity)[sliding.moving]
@@ -142,9 +146,8 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
     Raises
     ------
     InputError
-        the text names the error that explains the record, if any does. If several do, it names the
-        one whose correction leaves the least friction. A wrong sign of x is named last, as it
-        does not change the size of the friction
+        the text names the wrong or swapped channel whose correction explains the record, if there
+        is one. If there are several, it names the one whose correction leaves the least friction
     """
     share = opposing_share(slidings)
     slides = any(_slides(sliding) for sliding in slidings)
@@ -177,7 +180,7 @@ _ERRORS = {
     ),
     "p": ("p1 and p2 seem swapped", "swap them, e.g. with --column p1=... --column p2=..."),
 }
-"""Possible errors of a single channel: message and remedy."""
+"""Possible sign errors of x and F_L, and swapped pressures: message and remedy of each."""
 
 
 def _mean_friction(slidings: Sequence[Sliding]) -> float:

@@ -163,10 +163,10 @@ def _refuse(message: str, remedy: str) -> None:
 
 
 STRAINS = (0.0005, 0.0025)
-"""Strains between which the slope is determined [ISO178], [ISO14125]."""
+"""Strains of the outer fibre between which the slope is determined [ISO178], [ISO14125]."""
 SHORT = 0.5
 """Share of the range between these strains that a test must cover. If it covers less, the slope is
-determined between shares of its largest deflection instead (our choice)."""
+determined between two shares of the largest deflection instead, `straight.SHARES` (our choice)."""
 SLENDER = 16.0
 """Smallest ratio of span to depth [ISO178], [ASTM-D790]."""
 SHEARED = 0.1
@@ -187,25 +187,26 @@ fourfold)."""
 class BendingResult(Displayed):
     """Results of a bending test, SI.
 
-    The confidence intervals only cover the scatter of the record. In addition, the relative error
-    of the span enters threefold, and that of a solid bar's diameter fourfold.
+    The confidence intervals only cover the scatter of the record. They do not cover wrong
+    dimensions: an error of the span by 1 % changes the modulus by 3 %, an error of a solid bar's
+    diameter by 1 % changes it by 4 %.
 
     Parameters
     ----------
     slope : k_0, mean of the slopes of loading and unloading [N/m]
     loading, unloading : slopes of loading and unloading [N/m]; None if not in the record
-    as_published : E = k_0 L^3/(48 I) without corrections [Pa]
-    modulus : E, corrected for known shear and indentation [Pa]
-    taken_off : names of the corrections made: "shear", "dents"
+    as_published : E = k_0 L^3/(48 I) without corrections, for the span L and second moment I [Pa]
+    modulus : E, corrected for shear and indentation as far as their compliances are stated [Pa]
+    taken_off : names of the corrections made: "shear", "dents" (indentation)
     shear_share : 12 E I/(kappa G A L^2), the ratio of shear deflection to bending deflection; None
         if unknown
     strains : strains of the outer fibre between which the slope is determined; None if the depth is
         unknown
     deflections : deflections between which the slope is determined, counted from zero force [m]
     bent : change of the slope along the straight part, divided by the slope
-    hysteresis : work lost, divided by the work done on loading, mean of the cycles; None if not
-        available
-    cycles : number of loadings or of unloadings
+    hysteresis : work lost in a cycle divided by the work done on loading, mean of the cycles; None
+        if not available
+    cycles : number of loadings or of unloadings, whichever is larger
     samples : number of samples in the straight part
     doubts : reasons to doubt the modulus
     """
@@ -258,11 +259,11 @@ def _percent(share: float) -> str:
 def bending(record: Record, specimen: Specimen) -> BendingResult:
     """The bending modulus from a three-point bending test.
 
-    The slope of force over deflection is fitted in the straight part. Each loading or unloading has
-    its own offsets; loading and unloading have equal weight. Support friction proportional to the
-    load makes one slope too steep by as much as it makes the other too flat. The 95 % confidence
-    intervals allow for correlated noise (`straight.term`) and for the change of slope along the
-    straight part.
+    The slope of force versus deflection is fitted in the straight part, with an own offset for each
+    loading and unloading. Loading and unloading have equal weight, because support friction that is
+    proportional to the load makes one slope too steep by as much as it makes the other too flat.
+    The 95 % confidence intervals allow for correlated noise (`straight.term`) and for the change of
+    slope along the straight part.
 
     Parameters
     ----------
@@ -272,7 +273,8 @@ def bending(record: Record, specimen: Specimen) -> BendingResult:
 
     Returns
     -------
-    slope, published modulus, and modulus corrected for shear and indentation
+    slope, modulus without corrections as in [ElAsswad2018], and modulus corrected for shear and
+    indentation
 
     Raises
     ------
@@ -340,8 +342,8 @@ def _result(loop: Loop, specimen: Specimen, straight_part: Straight) -> BendingR
 def _range(loop: Loop, specimen: Specimen) -> tuple[list[float], float, float, bool]:
     """Range of deflection in which the straight part is searched for.
 
-    Returns the deflection at zero force of each loading and unloading, both limits of the range
-    relative to it, and whether the limits follow from strains.
+    Returns, for each loading and unloading, its deflection at zero force; then the lower and upper
+    limit of the range, counted from there; and whether these limits follow from strains.
     """
     zeros = loop.begins()
     first, last = (specimen.deflection(strain) for strain in STRAINS)
@@ -359,7 +361,10 @@ def _range(loop: Loop, specimen: Specimen) -> tuple[list[float], float, float, b
 
 
 def _parameter(term: Term, unsure: float) -> Parameter:
-    """A slope with its confidence interval, widened by its change along the straight part."""
+    """A slope with its confidence interval, widened by the share `unsure` of the slope.
+
+    `unsure` is the relative change of slope along the straight part that noise does not explain.
+    """
     error = float(np.sqrt(term.variance))
     half = quantile(term.freedom) * error + unsure * abs(term.value)
     identifiable = half <= WEAK * abs(term.value)
@@ -367,7 +372,10 @@ def _parameter(term: Term, unsure: float) -> Parameter:
 
 
 def _modulus(slope: Parameter, specimen: Specimen, *, published: bool = False) -> Parameter:
-    """The modulus that follows from a slope, with its confidence interval."""
+    """The modulus that follows from a slope, with its confidence interval.
+
+    If `published`, shear and indentation are not corrected.
+    """
 
     def modulus(stiffness: float) -> float:
         return float(

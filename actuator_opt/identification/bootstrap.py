@@ -43,12 +43,12 @@ FEWEST = 80
 """Smallest number of resamples. With it, the confidence limits are the second smallest and second
 largest values, not the extremes."""
 STARTS = (1.0, 1 / 3, 3.0)
-"""Initial Stribeck speeds of a new fit, relative to the optimum (our choice: half a decade both
-ways)."""
+"""Stribeck speeds from which a new fit starts, divided by the fitted speed v_s of the record (our
+choice: half a decade to either side)."""
 STEPS, LUGRE_STEPS = 40, 8
-"""Number of Gauss-Newton steps for each draw: of a Stribeck fit, and of a LuGre fit, which keeps
-the derivatives of the optimum (our choice: more steps do not change the confidence limits for
-synthetic records)."""
+"""Number of Gauss-Newton steps for each draw, for a Stribeck fit and for a LuGre fit. The LuGre fit
+uses the derivatives at the optimum in every step (our choice: more steps do not change the
+confidence limits for synthetic records)."""
 LEAST_WINDOWS = 3
 """Smallest number of windows to draw from (our choice: with two windows, a single difference would
 determine the noise)."""
@@ -65,7 +65,7 @@ PHYSICAL = ("static", "viscous", "bristle_damping")
 SIGNED = ("offset", "pressure_slope", "lag")
 """Parameters that may be 0. If their interval contains 0, they still count as known."""
 AT_END = 1e-6
-"""Relative distance from a search limit within which the limit counts as reached."""
+"""A search limit counts as reached if a value is at most this share of its size away from it."""
 
 
 def resampled(
@@ -83,14 +83,15 @@ def resampled(
 
     The fitted values stay as they are. Confidence limits, standard errors (half the interval,
     divided by Student's t) and verdicts are new. A parameter without confidence limits in the
-    linearised model remains without. A parameter whose draws reach a search limit loses its
+    linearised model gets none here either. A parameter whose draws reach a search limit loses its
     confidence limits.
 
     A parameter that is not identifiable gets the wider of its linearised and its resampled
     interval: its optimum lies in a flat valley, and the draws show the scatter around the optimum,
-    not the length of the valley. So do all parameters of the LuGre model if F_C has no confidence
-    limits or no lag is fitted, because the linearised intervals then contain more than scatter. The
-    covariance of the Stribeck curve stays that of the linearised model.
+    not the length of the valley. The bristle parameters and the lag always get the wider interval.
+    So do all parameters of the LuGre model if F_C has no confidence limits, or if neither lag nor
+    bristle damping is fitted, because the linearised intervals then contain more than scatter.
+    The covariance of the Stribeck curve stays that of the linearised model.
 
     Parameters
     ----------
@@ -233,7 +234,10 @@ def _bristles(parameters: Mapping[str, Parameter]) -> list[str]:
 
 
 class LuGreResiduals:
-    """Weighted residuals of points and windows as functions of the searched values."""
+    """Weighted residuals of the points of steady sliding and of the windows around reversals.
+
+    They are functions of the searched values, which are the fitted parameters or their logarithms.
+    """
 
     def __init__(
         self,
@@ -269,7 +273,7 @@ class LuGreResiduals:
         return np.concatenate([self.steady.residual(steady), misfits], axis=1)
 
     def slopes(self, best: Array) -> Array:
-        """Derivatives of the residuals at the optimum, of shape (residuals, searched)."""
+        """Derivatives of the residuals at the optimum, of shape (residuals, searched values)."""
         steps = STEP * sizes(self.names, self.largest, self.steady)
         if "bristle_damping" in self.names:
             steps[self.names.index("bristle_damping")] *= 1e-2 * self.values["bristle_stiffness"]
@@ -298,14 +302,17 @@ def _search(
 
 
 def searched(names: Sequence[str], values: Mapping[str, float]) -> Array:
-    """The searched values of parameters: logarithms for some, and the excess over F_C for F_S."""
+    """The values that the search varies: logarithms of `LOGS`, F_S - F_C for F_S, others as is."""
     numbers = dict(values)
     numbers["static"] = numbers.get("static", numbers["coulomb"]) - numbers["coulomb"]
     return np.array([np.log(numbers[n]) if n in LOGS else numbers[n] for n in names])
 
 
 def natural(names: Sequence[str], rows: Array, values: Mapping[str, float]) -> dict[str, Array]:
-    """Convert searched values, (rows, searched), to parameters, each (rows,); add the others."""
+    """Convert searched values, (rows, searched values), to parameters, each of shape (rows,).
+
+    Parameters that are not searched are added with their entry in `values`.
+    """
     searched_values = {
         name: np.exp(column) if name in LOGS else column
         for name, column in zip(names, rows.T, strict=True)
@@ -332,7 +339,7 @@ def _spreads(slopes: Array, residuals: Array, variance: float) -> Array:
 
 
 def _scales(rng: np.random.Generator, freedom: int, count: int) -> Array:
-    """Random factor on the noise of each draw (count, 1)."""
+    """Random factors sqrt(nu/chi^2_nu) that scale the noise of each draw, of shape (count, 1)."""
     return np.sqrt(freedom / rng.chisquare(freedom, (count, 1)))
 
 

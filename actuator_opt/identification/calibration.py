@@ -54,7 +54,7 @@ def of_curve(
 
 
 def _shape(points: Sequence[FrictionPoint], stribeck: StribeckFit) -> Iterator[str]:
-    """Note on a Stribeck exponent that differs from the design's, with the error of friction."""
+    """Note on a Stribeck exponent that differs from the design's, and on its effect on friction."""
     exponent = stribeck.parameters.get("exponent")
     if exponent is None or exponent.lower <= STRIBECK_EXPONENT <= exponent.upper:
         return
@@ -71,7 +71,7 @@ def _shape(points: Sequence[FrictionPoint], stribeck: StribeckFit) -> Iterator[s
 
 
 def extrapolated(bench: Bench, points: Sequence[FrictionPoint]) -> Iterator[str]:
-    """Notes on speeds and pressures of the design that exceed those of the record."""
+    """Note on extrapolated friction, if the design exceeds speed or pressure of the record."""
     fastest = max(case.speed for case in bench.design.load_cases)
     speed, pressure = max(point.speed for point in points), max(point.pressure for point in points)
     if fastest > FARTHER * speed or bench.supply_pressure > FARTHER * pressure:
@@ -95,8 +95,9 @@ KEYS = ("friction_coefficient", "breakaway_ratio", "stribeck_speed", "viscous_fr
 _FIT_NAMES = ("coulomb", "static", "stribeck_speed", "viscous")
 """Names of the same parameters in the fits."""
 RISEN = 0.05
-"""At the record's speed, the design's friction exceeds its Coulomb part. A note is written if the
-excess is larger than this share of the Coulomb part (our choice: the error of a good record)."""
+"""At the speed of the record, the friction of the design may exceed its Coulomb part. A note is
+written if the excess is larger than this share of the Coulomb part (our choice: the error of a good
+record)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,8 +110,8 @@ class SealParameter:
         viscous_friction
     known : value and confidence interval for the cylinder, SI; for friction_coefficient, the factor
         by which the design's values are multiplied
-    shares : value of each seal divided by that of the cylinder, by PATH
-    before : value in the design, stated or from the compound, by PATH
+    shares : by PATH of each seal's parameter, its value divided by that of the cylinder
+    before : by PATH, the value in the design, stated or from the compound
     source : name of the fit that gives the value
     """
 
@@ -163,7 +164,8 @@ class Calibration:
     identification : result of the identification from the record
     learned : parameters that the record determines
     left : for every key whose value stays as in the design, the reason
-    coulomb, stated : measured Coulomb friction, and that of the design; means over the points [N]
+    coulomb, stated : Coulomb friction as measured, and as computed for the design before the
+        calibration; means over the points of steady sliding [N]
     doubts : reasons to doubt the numbers
     """
 
@@ -196,9 +198,10 @@ def calibration(identification: Identification) -> Calibration:
     The coefficients of all rings and wipers are multiplied by the same factor, because a record of
     a whole cylinder cannot separate the piston's friction from the rod's. With this factor, the
     mean Coulomb friction of the design at the pressures of the steady points equals the measured
-    one. F_S/F_C and v_s are the same for every ring; sigma_2 is distributed by circumference. Each
-    parameter comes from the fit with the narrowest confidence interval; if no fit determines it,
-    the design's value stays. A record of a single speed gives only the factor.
+    one. Every ring gets the same F_S/F_C and v_s; the viscous friction sigma_2 is shared out in
+    proportion to circumference. Each parameter is taken from the Stribeck fit or the LuGre fit,
+    whichever gives it the narrower confidence interval. If neither determines it, the design's
+    value stays. A record of a single speed gives only the factor.
 
     Parameters
     ----------
@@ -245,8 +248,8 @@ def calibration(identification: Identification) -> Calibration:
     doubts += extrapolated(bench, points)
     if len(bench.rings) + len(bench.wipers) > 1:
         doubts.append(
-            "all rings and wipers get the same factor: a cylinder record cannot separate piston "
-            "and rod friction"
+            "the friction coefficients of all rings and wipers get the same factor: a cylinder "
+            "record cannot separate piston and rod friction"
         )
     return Calibration(
         identification,
@@ -304,7 +307,7 @@ def _pressures(points: Sequence[FrictionPoint]) -> tuple[Array, Array]:
 def _from_fits(
     identification: Identification, stribeck: StribeckFit, stated: Array
 ) -> tuple[list[SealParameter], dict[str, str], Array]:
-    """Parameters from both fits, reasons for missing parameters, and F_C at every point.
+    """Parameters from Stribeck and LuGre fit, reasons for missing parameters, F_C at every point.
 
     The factor is the mean measured Coulomb friction divided by that of the design. Its confidence
     interval also covers this ratio at every single point, so a contact law with a wrong pressure
@@ -348,7 +351,8 @@ def _from_level(
     """The factor alone, from a record whose friction was measured at a single speed only.
 
     At other speeds the Stribeck curve of the design is kept. If that curve is above Coulomb
-    friction at the measured speed, the factor's upper limit is computed as if it were not.
+    friction at the measured speed, the upper confidence limit of the factor is computed as if the
+    measured friction were Coulomb friction alone.
     """
     speed = np.array([point.speed for point in points])
     measured = np.array([point.friction * np.sign(point.velocity) for point in points])

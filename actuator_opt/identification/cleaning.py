@@ -14,33 +14,34 @@ standard deviations, `QUANTA` sensor steps, and the share `RANGE` of the channel
 choices: one sample of normal noise in 5e8 lies as far out; rounding alone makes two steps; the
 usual noise of pressures reaches that share)."""
 JUMP, BURST, FLANK = 0.7, 0.45, 0.3
-"""A spike must rise by the share `JUMP` of its height within one sample; otherwise it is a true
-peak of the signal. The share `BURST` is sufficient if the signal just outside the spike does not
-move in the same direction by more than `FLANK` times the step at the spike's edge. All three are
-our choices. Three adjacent stray samples rise by half or more. The top of a triangle as wide as the
-median's window rises by a third, that of a half sine by 0.6."""
+"""A group of outlying samples is a spike if it rises by the share `JUMP` of its height within one
+sample; otherwise it is a true peak of the signal. The smaller share `BURST` is sufficient unless
+the signal already moves towards the group on both sides, by more than `FLANK` times the step at the
+group's edge. All three are our choices. In one sample, three adjacent stray samples rise by half
+their height or more, the top of a triangle as wide as the median's window by a third, and that of a
+half sine by 0.6."""
 WINDOW = 5e-3
 """Half the width of the neighbourhood of a sample [s] (our choice: a sixth of a 30 Hz period)."""
 SAMPLED = 100_000
 """Number of samples from which the spread of a channel is estimated (our choice: accurate to 1
 %)."""
 LEVELS = 20_000
-"""Number of samples from which the resolution of a sensor is estimated (our choice: several for
-each step of a fine sensor)."""
+"""Number of samples from which the resolution of a sensor is estimated (our choice: each step of a
+fine sensor then occurs several times)."""
 CROWD, GARBAGE = 0.15, 0.5
-"""Shares of spikes among the samples of a window. Above the first share the other samples are
-doubtful, above the second they are useless (our choices). With 5 % random stray samples the second
-share is exceeded once in 1e10 samples, with 10 % once in 1e6. If noise is as large as the range,
-three quarters of the samples are spikes."""
+"""Shares of spikes among the samples of a window. Above the first share the remaining samples of
+the window are doubtful, above the second they are useless (our choices). With 5 % random stray
+samples the second share is exceeded once in 1e10 samples, with 10 % once in 1e6. If noise is as
+large as the range, three quarters of the samples are spikes."""
 HELD = 6
 """Smallest number of successive equal samples, at an end of the channel's range, that count as
 clipped (our choice: a fifth of a 30 Hz period at 1 kHz; the filter smooths shorter runs)."""
 FLICKER = 0.6
-"""With noise above this number of sensor steps, a constant level must be clipped (our choice: on a
-true plateau, two of five samples would then leave their step)."""
+"""If the noise exceeds this number of sensor steps, a constant level can only be due to clipping
+(our choice: on a true plateau, two of five samples would leave their step)."""
 LIVE = 0.2
-"""Noise is estimated from the samples away from the ends of the range if they are at least this
-share of all samples (our choice: four times as many as stray samples)."""
+"""Noise is estimated from the samples that are not at an end of the range, provided that they are
+at least this share of all samples (our choice: four times the share of stray samples)."""
 TURNS = 0.3
 """A channel counts as noisy if it changes direction at more than this share of its steps (our
 choice: about half the share of white noise, 2/3)."""
@@ -105,9 +106,9 @@ def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality
 def resolution(values: Array) -> float:
     """Resolution of a sensor: the smallest gap between levels that occur repeatedly.
 
-    Give it the running median of a channel, because stray samples add arbitrary levels. If levels
-    seldom recur, the resolution is the first percentile of the gaps between levels, or of the steps
-    from sample to sample if that is smaller.
+    `values` should be the running median of a channel, because stray samples add arbitrary levels.
+    If levels seldom recur, the resolution is the first percentile of the gaps between levels, or of
+    the steps from sample to sample if that is smaller.
     """
     # one random sample from each part, because equal intervals could alias
     count = min(LEVELS, values.size)
@@ -135,16 +136,16 @@ def _hundredth(values: Array) -> float:
 
 
 def _levels(values: Array) -> tuple[Array, Array]:
-    """Samples at which a channel changes its level, and for how many samples the level lasts."""
+    """Indices at which a channel changes its level, and how many samples each level lasts."""
     first = np.concatenate([[0], np.flatnonzero(np.diff(values)) + 1])
     return first, np.diff(first, append=values.size)
 
 
 def _live(values: Array) -> Array:
-    """Flags for samples away from the ends of the channel's range; there, noise may be cut off.
+    """Flags for samples that are not at an end of the channel's range, where noise may be cut off.
 
-    If only few samples lie away from the ends, all samples are flagged: such a channel is a
-    constant level with some stray samples.
+    If only few samples would be flagged, all are: such a channel is a constant level with some
+    stray samples.
     """
     first, length = _levels(values)
     constant = length >= HELD
@@ -157,7 +158,7 @@ def _live(values: Array) -> Array:
 
 
 def _spread(values: Array, live: Array) -> float:
-    """Robust standard deviation about zero, of the samples flagged in `live`."""
+    """Robust standard deviation about zero of the samples that `live` flags."""
     sample = values[live]
     sample = sample[:: max(1, sample.size // SAMPLED)]
     return ROBUST * float(np.median(np.abs(sample))) if sample.size else 0.0
@@ -170,7 +171,7 @@ def runs(flags: Array) -> tuple[Array, Array]:
 
 
 def _least(values: Array, middle: Array, quantum: float, live: Array) -> float:
-    """Smallest height of a spike above the median of its neighbours."""
+    """Smallest deviation from the median of its neighbours at which a sample counts as a spike."""
     apart = np.abs(values - middle)
     if not np.any(middle != middle[0]) and np.mean(apart > 0) < 0.01:
         return 0.0  # a constant with a few stray samples
@@ -266,9 +267,9 @@ def _peaks(values: Array, apart: Array, first: Array, last: Array) -> tuple[Arra
 def _clipped(values: Array, spikes: Array, quantum: float, *, pressure: bool) -> Array:
     """Flags for samples at the limit of a sensor's range.
 
-    A channel counts as clipped if it stays at its highest or lowest level longer than at any other
-    level, and one of two things shows that the stay is not real: its noise is too large for a
-    constant level, or the channel reaches the level without slowing down.
+    A channel counts as clipped if it stays at its highest or lowest level at least four times as
+    long as at any other level, and if one of two things shows that this is not real: the noise of
+    the channel is too large for a constant level, or it reaches the level without slowing down.
     """
     mask = np.zeros(values.shape, dtype=bool)
     first, length = _levels(values)

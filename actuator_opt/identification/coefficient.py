@@ -14,8 +14,8 @@ from .balance import Sliding
 from .conditioning import ConditionedRecord
 
 WINDOW = 0.1
-"""Time over which friction and contact force are averaged [s] (our choice: six independent samples
-at 30 Hz)."""
+"""Length of the time windows over which friction and contact force are averaged [s] (our choice:
+six independent samples at 30 Hz)."""
 LEAST_SPEED = 1e-3
 """Smallest mean speed of a usable time window [m/s] (our choice: the rod then moves ten sensor
 steps of 10 um, which show the direction)."""
@@ -58,7 +58,7 @@ def coefficient(
 
     Parameters
     ----------
-    slidings, motion : friction along the record, and its sample time
+    slidings, motion : friction along each section of the record, and the conditioned record
     bench : rings of the design
 
     Returns
@@ -93,7 +93,7 @@ def coefficient(
 
 
 def _windows(sliding: Sliding, motion: ConditionedRecord) -> Array:
-    """Means over each time window, an array (windows, 4).
+    """Means over each time window in which the rod slides in one direction, an array (windows, 4).
 
     The columns are friction (positive against the motion), both pressures, and speed.
     """

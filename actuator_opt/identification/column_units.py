@@ -14,7 +14,7 @@ from ..base.files import read_bytes
 from ..design.yaml_source import MAX_BYTES, decode, parse
 
 SI = "SI"
-"""Word by which a user states that every column is in SI units: m, s, Pa, N, m/s, K."""
+"""Word by which a user states that all columns without a unit are in SI: m, s, Pa, N, m/s, K."""
 _WHAT = "units"
 
 

@@ -25,21 +25,21 @@ SLOWEST = 3.0
 """Smallest number of samples per period of the cut-off (our choice: the cut-off is then 2/3 of the
 Nyquist frequency)."""
 SHORTEST = 6.0
-"""Smallest duration of a section of a record, in periods of the cut-off (our choice: a third of it
-remains if `EDGE` is taken off at each end)."""
+"""Smallest duration of a section of a record, in periods of the cut-off (our choice: a third of
+such a section remains after `EDGE` is cut off at each end)."""
 EDGE = 2.0
 """Time at each end of a section in which the filter is inaccurate, in periods of the cut-off (our
-choice: after it a step response is within 0.2 %)."""
+choice: after this time, a step response is within 0.2 % of its final value)."""
 BRIDGE = 5
-"""Largest number of successive missing samples that are interpolated linearly. A larger number is
+"""Largest number of successive missing samples that are interpolated linearly. A longer gap is
 interpolated too if it lasts less than a quarter of a period of the cut-off (our choices: 5 ms at 1
-kHz; a chord of that length misses a sine at a tenth of the cut-off by 0.3 %)."""
+kHz; over a quarter of a period, a chord misses a sine at a tenth of the cut-off by 0.3 %)."""
 ORDERS = 10
-"""Highest order of the filter in a pass (our choice: above it the filter rings for longer than
+"""Highest order of the filter in a pass (our choice: a filter of higher order rings for longer than
 `EDGE`)."""
 CROWDED = 3.0
-"""Largest permitted ratio of mean to median time step (our choice: resampling at even steps then
-triples the number of samples)."""
+"""Largest permitted ratio of mean to median time step (our choice: at this ratio, resampling at
+even steps triples the number of samples)."""
 SAMPLED = 100_000
 """Number of samples of a section from which its noise is estimated (our choice: accurate to 0.3
 %)."""
@@ -118,7 +118,8 @@ def pass_cutoff(*, cutoff: float, order: int) -> float:
 
     References
     ----------
-    [derived] (1 + (f_c/f)^(2 n)) = sqrt 2 of the squared gain
+    [derived] two passes, each with the cut-off f_p, together have the gain 1/(1 + (f/f_p)^(2n)) at
+    a frequency f; the gain is 1/sqrt 2 at f = f_c
 
     Examples
     --------
@@ -147,7 +148,10 @@ def low_pass(*, cutoff: float, order: int, sample_time: float, compensated: bool
 
 
 def zero_phase(sections: Array, values: Array, *, reach: int) -> Array:
-    """Filter forward and backward along the last axis; mirror `reach` samples at the ends."""
+    """Filter forward and backward along the last axis, so that nothing is shifted in time.
+
+    At both ends the values are extended by `reach` mirrored samples.
+    """
     from scipy.signal import sosfiltfilt
 
     length = min(reach, values.shape[-1] - 1)
@@ -172,8 +176,8 @@ def condition(
         passes
     compensated : whether both passes together have -3 dB at the cut-off; if not, they have -6 dB
     pressure_lag : time lag of the pressures to correct [s]
-    before : result for the same record with other settings, from which the cleaned channels are
-        taken
+    before : earlier result for the same record with other settings, so that the channels need not
+        be cleaned again; None to clean them
 
     Returns
     -------
@@ -219,7 +223,7 @@ def condition(
         raise _no_section(record, quality, SHORTEST / cutoff)
     gaps = len(pieces) + len(dropped) - 1
     if gaps:
-        short = f"; sections too short to use last {sum(dropped):.3g} s in total" if dropped else ""
+        short = f"; {sum(dropped):.3g} s are in sections too short to use" if dropped else ""
         notes.append(f"{gaps} gaps split the record; {len(pieces)} sections are used{short}")
     notes += _timing(steps, step, cutoff)
     quality = {
@@ -278,7 +282,7 @@ def _check_settings(record: Record, cutoff: float, order: int, lag: float) -> No
 
 
 def _increasing_time(record: Record) -> Array:
-    """The times of all samples, checked to increase."""
+    """The times of all samples; an error if they do not increase."""
     time = record.time
     if time.size < 2:
         raise record.fault("one sample", "give a record of a second or more")
@@ -342,7 +346,7 @@ def _floor(value: float) -> float:
 
 
 def _bridged(step: float, cutoff: float) -> int:
-    """Number of successive missing samples that are interpolated linearly."""
+    """Largest number of successive missing samples that are interpolated linearly."""
     return max(BRIDGE, round(0.25 / (cutoff * step)))
 
 
@@ -405,14 +409,15 @@ def _noise(time: Array, values: Array, name: str, pieces: Sequence[RecordSection
 
 
 CUTOFFS = (1 / 3, 1 / 8, 1 / 20)
-"""Lower cut-offs that are tried, as shares of the record's cut-off (our choice: down to 1.5 Hz,
-some ten times the frequency of a slow test, in factors of 2 to 3)."""
+"""Lower cut-offs that are tried for the velocity, as shares of the record's cut-off (our choice:
+down to 1.5 Hz, some ten times the frequency of a slow test, in factors of 2 to 3)."""
 BENT = 1.5
-"""A lower cut-off may change the position. This is the largest permitted mean square of the change,
-divided by the mean square error of the sensor (our choice: it is 1 if only errors are removed)."""
+"""Filtering at a lower cut-off changes the position. This is the largest permitted mean square of
+the change, divided by the mean square error of the sensor (our choice: the ratio is 1 if only
+errors are removed)."""
 PADDING = 1.5
 """Time before and after the samples of interest that is filtered with them, in periods of a lower
-cut-off (our choice: after it a step response is within 0.5 %)."""
+cut-off (our choice: after this time, a step response is within 0.5 % of its final value)."""
 
 
 def velocities(piece: RecordSection, motion: ConditionedRecord, first: int, last: int) -> Array:
@@ -450,9 +455,9 @@ def velocities(piece: RecordSection, motion: ConditionedRecord, first: int, last
 def position_error(velocity: Array, motion: ConditionedRecord) -> float:
     """Mean square error of the filtered position during a motion [m^2].
 
-    The filter passes a share 2 f_c dt of white noise s^2, with the cut-off f_c and the sample time
-    dt. The error q^2/12 of sensor steps q passes completely if the rod takes longer than 1/f_c for
-    a step; if not, it counts as white noise [derived].
+    Of white noise with variance s^2, the filter passes the share 2 f_c dt, with the cut-off f_c and
+    the sample time dt. The variance q^2/12 of sensor steps q passes completely if the rod takes
+    longer than 1/f_c for a step; if not, it counts as white noise [derived].
     """
     quality, band = motion.quality["x"], motion.band
     step = quality.resolution**2 / 12

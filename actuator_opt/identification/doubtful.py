@@ -19,21 +19,21 @@ SPREAD, APART = 0.2, 3.0
 pressure, or `APART` times the pressure that overcomes friction alone, whichever is larger (our
 choices: the effect then exceeds the scatter)."""
 UNEQUAL = 2e-3
-"""Relative area error above which it is reported (our choice). A smaller error cannot be
+"""Smallest relative error of an area that is reported (our choice). A smaller error cannot be
 distinguished from seals whose pressure effect differs by a fifth between the directions."""
 MISSED, BEYOND = 0.3, 5.0
-"""A misfit of the curve is reported if it exceeds both the share `MISSED` of the friction and
-`BEYOND` times the standard errors (our choices). The share is `WEAK`, the widest interval of an
-identifiable parameter. The multiple is too large to be due to standard errors that are only half
-the true ones."""
+"""A misfit between curve and points is reported if it exceeds both the share `MISSED` of the
+friction and `BEYOND` times the standard errors (our choices). The share equals `WEAK`, the relative
+interval up to which a parameter is identifiable. Standard errors that are only half the true ones
+cannot explain a misfit of `BEYOND` times their size."""
 SIGNED = ("offset", "pressure_slope")
-"""Parameters that may be 0."""
+"""Parameters that may be 0; they can be known although their interval contains 0."""
 INSEPARABLE = ("coulomb", "viscous", "stribeck_speed", "exponent")
 """Parameters that are unknown if a record cannot separate F_C from sigma_2."""
 
 
 def unbounded(parameters: Mapping[str, Parameter], names: Iterable[str]) -> dict[str, Parameter]:
-    """The same parameters, but those named have infinite confidence limits."""
+    """The same parameters; those in `names` get infinite confidence limits, as they are unknown."""
     unknown = set(names)
     return {
         name: Parameter(parameter.value, -np.inf, np.inf, np.inf, False)
@@ -46,7 +46,10 @@ def unbounded(parameters: Mapping[str, Parameter], names: Iterable[str]) -> dict
 def widened(
     parameters: Mapping[str, Parameter], errors: Mapping[str, float], quantile: float
 ) -> dict[str, Parameter]:
-    """The same parameters, with confidence intervals widened by further independent errors."""
+    """The same parameters, with confidence intervals widened by further independent errors.
+
+    `errors` has a standard error for each parameter to widen; `quantile` is that of Student's t.
+    """
     result = dict(parameters)
     for name, extra in errors.items():
         parameter = result[name]
@@ -59,9 +62,10 @@ def widened(
 
 
 def agreed(parameters: Mapping[str, Parameter], references: Mapping[str, Parameter]) -> list[str]:
-    """Names of parameters that lie within the intervals of their references.
+    """Names of parameters whose values lie within the confidence intervals of another fit.
 
-    Only references that are identifiable, or that may be 0, are compared.
+    `references` are the parameters of that fit. Only those that are identifiable, or that may be 0,
+    are compared.
     """
     known = {
         name: reference
@@ -76,7 +80,7 @@ def agreed(parameters: Mapping[str, Parameter], references: Mapping[str, Paramet
 
 
 class Unequal(NamedTuple):
-    """A force that grows with a chamber pressure in both directions of motion, unlike friction."""
+    """A force that grows with a chamber pressure but, unlike friction, does not reverse."""
 
     chamber: int
     share: float
@@ -99,19 +103,19 @@ class Unequal(NamedTuple):
 
 
 def spread(points: Sequence[FrictionPoint], pressures: Sequence[float], area: float) -> float:
-    """Pressure range of the points, divided by the smallest range that can show its effect."""
+    """Pressure range of the points, divided by the smallest that can show a pressure effect."""
     by_friction = APART * max(abs(point.friction) for point in points) / area
     return (max(pressures) - min(pressures)) / max(SPREAD * max(pressures), by_friction, 1.0)
 
 
 def unequal(points: Sequence[FrictionPoint], area: float) -> Unequal | None:
-    """Detect hydraulic force that counts as friction because an area or a sensor is wrong.
+    """Detect hydraulic force that looks like friction because an area or a sensor is wrong.
 
-    Least squares of F = sgn v [f_k + s (p - p_0)] + F_0 + e A p_i. F is the friction, v the
-    velocity, f_k a friction level fitted for every speed k, s the slope of friction over the
-    pressure p, p_0 a reference pressure, F_0 an offset, e the relative error, A the area, and p_i
-    the pressure of chamber i. Friction changes sign with the velocity; the effect of a wrong area
-    or sensor gain does not [derived].
+    The error e and the other parameters are fitted by least squares to F = sgn v [f_k + s (p -
+    p_0)] + F_0 + e A p_i. F is the friction, v the velocity, f_k a friction level fitted for every
+    speed k, s the slope of friction over the pressure p, p_0 a reference pressure, F_0 an offset, e
+    the relative error, A the area, and p_i the pressure of chamber i. Friction changes sign with
+    the velocity; the effect of a wrong area or sensor gain does not [derived].
 
     Parameters
     ----------
@@ -120,7 +124,9 @@ def unequal(points: Sequence[FrictionPoint], area: float) -> Unequal | None:
 
     Returns
     -------
-    the share e with its error; None if neither chamber's pressure varies enough in both directions
+    the chamber, the relative error e of its pressure force, the standard error of e, and whether e
+    is certain; None if there are too few points, or if neither chamber's pressure varies enough in
+    both directions
     """
     signs = np.array([np.sign(point.velocity) for point in points])
     directions = [[point for point in points if point.velocity * w > 0] for w in (1, -1)]
@@ -158,7 +164,7 @@ def unequal(points: Sequence[FrictionPoint], area: float) -> Unequal | None:
 
 
 def _groups(speed: Array) -> Array:
-    """For every point, the index of its group of points with similar speed."""
+    """Sort points into groups of similar speed; return the index of the group of each point."""
     order = np.argsort(speed)
     first, number = 0.0, -1
     groups = np.zeros(speed.size, dtype=int)

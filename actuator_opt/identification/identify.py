@@ -41,9 +41,9 @@ from .windows import LAG
 LEAST_LAG = 3e-4
 """Smallest lag of the pressures that is corrected [s]."""
 EARLIEST = 6e-3
-"""Largest plausible time by which the pressures may be ahead of the position [s] (our choice). The
-filter of a position sensor makes the position late, but damping of the LuGre bristles can look the
-same."""
+"""Largest plausible time by which the pressures may be ahead of the position [s] (our choice). They
+are ahead if the position sensor's filter delays the position; damping of the LuGre bristles can
+look the same."""
 STATE = "state --pressure-lag if it is known"
 CANNOT = (
     "the record cannot show whether the pressures lag: raise --cutoff, reverse the rod more "
@@ -92,9 +92,10 @@ def lag_to_correct(parameter: Parameter | None) -> tuple[float, str]:
 
 
 def rejected_correction(parameter: Parameter, remaining: Parameter | None) -> str:
-    """Reason to reject the correction of a lag, which is that another lag remains.
+    """Reason to reject the correction of a lag; empty if the correction is accepted.
 
-    The text is empty if the correction is accepted.
+    It is rejected if the corrected record still shows a lag. `parameter` is the lag that was
+    corrected, `remaining` the lag that was fitted afterwards.
     """
     if remaining is None or remaining.lower <= 0 <= remaining.upper:
         return ""
@@ -117,12 +118,13 @@ def with_uncertain_damping(lugre: LuGreFit | str) -> LuGreFit | str:
 LAWS = {"power_law": fit_power_law, "double_exponential": fit_double_exponential}
 """Laws for the secant damping F/v as a function of speed, with the function that fits each."""
 LEAST_SPEEDS = 3
-"""Number of different speeds needed to fit a law: its two parameters, and a degree of freedom."""
+"""Number of different speeds needed to fit a law: two for its parameters, plus one degree of
+freedom."""
 WARMER = 10.0
-"""Temperature difference between record and design above which it is reported [K] (our choice:
-rubber then softens by a few per cent)."""
+"""Temperature difference between record and design above which a note reports it [K] (our choice:
+it changes the stiffness of rubber by a few per cent)."""
 OUTSIDE = 0.02
-"""Share of the stroke by which a position may lie beyond the ends of the stroke."""
+"""Share of the stroke by which positions of the record may lie beyond the ends of the stroke."""
 STEPS, NOISES = 2.0, 10.0
 """Largest measured travel at which the rod still counts as at rest: in sensor steps, and in
 standard deviations of the filtered position (our choice: 10 000 samples of normal noise span 8
@@ -377,8 +379,8 @@ def _sizes(
 
     The confidence interval of the mean follows from the means of several batches of samples. After
     a reversal or rest, the rod is in pre-sliding until it has moved `BENDS` breakaway travels.
-    Pre-sliding enters the largest value, but not the mean. If the rod never slides, the mean is
-    that of the moving rod.
+    Pre-sliding enters the largest value, but not the mean. If the rod never leaves pre-sliding, the
+    mean is that of all samples in which it moves.
     """
     distance = BENDS / SETTLING * settling
     moving = any(sliding.moving.any() for sliding in slidings)

@@ -46,14 +46,14 @@ ms)."""
 STEP = 1e-4
 """Relative step of the central differences (our choice: gives an error of 1e-8)."""
 SYMBOLS = {"bristle_stiffness": "σ₀", "bristle_damping": "σ₁", "lag": "τ"}
-"""Parameters besides those of the Stribeck curve, with their symbols. Units are N/m, N s/m and
-s."""
+"""Symbols of the parameters that a LuGre model has in addition to those of the Stribeck curve.
+Units are N/m, N s/m and s."""
 MODEL = 1e-3
 """Smallest scatter that is assumed for the windows, as a share of the largest friction (our choice,
-as for the points: below it the filtered motion limits the model, not the noise)."""
+as for the points: the filtered motion is not accurate enough for a smaller scatter)."""
 BENDS = 3.0
-"""Number of breakaway travels after which 95 % of the force is reached: 1 - e^-3. The record must
-resolve them in time."""
+"""Number of breakaway travels F_S/sigma_0 after which 95 % of the friction is reached: 1 - e^-3.
+The record must have enough samples within this travel."""
 LATE = 1.5
 """Factor by which the standard error of a lag is increased (our choice, from records of known
 friction: with 25 kPa of noise and position steps of 10 um, the true error is 1.3 to 1.9 standard
@@ -69,8 +69,8 @@ RCOND = 1e-6
 """Singular values of the derivatives below this share of the largest one are ignored (our choice:
 far above rounding errors)."""
 ROUNDS = 2
-"""Number of searches. Each weights the windows by their scatter about the result of the previous
-one (our choice: the second search changes the weights by only a few per cent)."""
+"""Number of searches. Each search weights the windows by their scatter about the model found so far
+(our choice: the second search changes the weights by only a few per cent)."""
 LOGARITHMIC = ("bristle_stiffness", "bristle_damping", "stribeck_speed")
 """Parameters whose logarithms are searched."""
 
@@ -85,8 +85,8 @@ class LuGreFit:
         `bristle_damping`, and the `lag` of the pressures
     held : parameters with fixed values
     count : number of windows around reversals
-    misfit : standard deviation of measured friction from the model in the windows [N]
-    doubts : unknown parameters, and other reasons to doubt the model
+    misfit : standard deviation between measured and modelled friction in the windows [N]
+    doubts : notes on unknown parameters, and other reasons to doubt the model
     """
 
     parameters: Mapping[str, Parameter]
@@ -105,7 +105,7 @@ class LuGreFit:
 
 
 def sizes(names: Sequence[str], largest: float, steady: Steady | None) -> Array:
-    """Typical size of each searched parameter; 1 for a logarithm."""
+    """Typical size of each searched parameter; 1 if its logarithm is searched."""
     speed, change = 1e-3, 1e5
     if steady is not None:
         speed = max(speed, float(np.max(np.abs(steady.velocity))))
@@ -116,13 +116,16 @@ def sizes(names: Sequence[str], largest: float, steady: Steady | None) -> Array:
 
 
 def _rise(static: float) -> dict[str, float]:
-    """Initial values of the Stribeck parameters, if F_S is searched above F_C."""
+    """Initial Stribeck parameters for a search in which friction falls from F_S to F_C."""
     speed = float(np.sqrt(SPEEDS[0] * SPEEDS[1]))
     return {"exponent": EXPONENT, "static": static, "stribeck_speed": speed}
 
 
 class LugreProblem:
-    """Residuals of points and windows as functions of the searched parameters."""
+    """The least-squares problem of a LuGre fit, with the parameters that the search varies.
+
+    Its residuals are those of the points of steady sliding and of the windows around reversals.
+    """
 
     def __init__(
         self,
@@ -203,13 +206,13 @@ class LugreProblem:
         return self.residuals(x[None])[0]
 
     def slopes(self, x: Array) -> Array:
-        """Derivatives of the residuals by central differences, computed in a single call."""
+        """Derivatives of the residuals by central differences; all steps are evaluated at once."""
         steps = STEP * np.diag(self.sizes)
         residuals = self.residuals(np.concatenate([x + steps, x - steps]))
         return ((residuals[: x.size] - residuals[x.size :]) / (2 * STEP * self.sizes[:, None])).T
 
     def limits(self) -> tuple[Array, Array]:
-        """Limits of the search."""
+        """Lower and upper limits of the searched values."""
         stiffest, softest = (self.largest / travel for travel in TRAVELS)
         ends = {
             "coulomb": (1e-3 * self.largest, np.inf),
@@ -227,7 +230,7 @@ class LugreProblem:
         return np.array([pair[0] for pair in pairs]), np.array([pair[1] for pair in pairs])
 
     def start(self) -> Array:
-        """The best point on a grid of bristle stiffnesses, lags and Stribeck speeds."""
+        """Initial values: the best of a grid of bristle stiffnesses, lags and Stribeck speeds."""
         speeds = [self.begin.get("stribeck_speed", SPEEDS[0])]
         if "static" in self.begin and "stribeck_speed" not in self.held:
             speeds = [0.3 * speeds[0], speeds[0], 3 * speeds[0]]
@@ -254,7 +257,7 @@ class LugreProblem:
         return best
 
     def descend(self, x: Array) -> Array:
-        """Least-squares solution within the limits."""
+        """Least-squares solution within `limits`, searched from the values `x`."""
         low, high = self.limits()
         span = np.where(np.isfinite(high - low), high - low, self.sizes)
         return least_squares.solve(
@@ -276,9 +279,9 @@ class LugreProblem:
         return max(float(np.sqrt(square)), MODEL * self.largest)
 
     def whitened(self, residuals: Array, slopes: Array) -> Array:
-        """Derivatives J' with J'^T J' = cov^-1, the covariance of the parameters.
+        """Derivatives J' with J'^T J' = cov^-1, where cov is the covariance of the parameters.
 
-        They are those of an equivalent problem whose residuals are independent, of unit variance.
+        An equivalent problem with independent residuals of unit variance has these derivatives.
         The covariance is cov = H^-1 J^T R J H^-1 with H = J^T J, the derivatives J (`slopes`) and
         the covariance R of the residuals r. Points are independent. Within a window, residuals k
         samples apart have the covariance c_k = sum r_t r_(t+k)/n of n samples, which is the same
@@ -304,12 +307,13 @@ class LugreProblem:
         return solve_triangular(root, singular[:, None] * right, lower=True) / self.sizes
 
     def lane_errors(self, residuals: Array, slopes: Array) -> Array:
-        """Standard errors from differences between windows; zeros if there are few windows.
+        """Standard errors of the parameters from differences between windows, called lanes.
 
-        The windows are assumed to be independent; within a window, any correlation is allowed. The
-        covariance is H^-1 sum (J_l^T r_l)(J_l^T r_l)^T H^-1 n/(n - 3) for n windows l
-        [SeberWild1989], with H, J and r as in `whitened`. It includes the effect of the position
-        sensor's steps, which shift a whole reversal.
+        They are zero if there are too few windows. The windows are assumed to be
+        independent; within a window, any correlation is allowed. The covariance is H^-1 sum (J_l^T
+        r_l)(J_l^T r_l)^T H^-1 n/(n - 3) for n windows l [SeberWild1989], with H, J and r as in
+        `whitened`. It includes the effect of the position sensor's steps, which shift a whole
+        reversal.
         """
         lanes, count = self.windows.judged.shape
         split = residuals.size - lanes * count
@@ -329,9 +333,9 @@ class LugreProblem:
 
     @property
     def missed(self) -> str | None:
-        """Reason why the windows are unusable, if the model misses them by more than noise.
+        """Reason why the windows are unusable; None if they are usable.
 
-        None if they are usable.
+        They are unusable if the model deviates from them by clearly more than the noise.
         """
         if self.steady is None or self.spread <= NOISY * self.noise + MISSED * self.largest:
             return None
@@ -348,7 +352,11 @@ class LugreProblem:
         return BENDS * level / values["bristle_stiffness"]
 
     def changes(self, x: Array, chain: Array, misfit: Array) -> dict[str, float]:
-        """Sizes of the parameters' changes if the windows had the given misfit [N]."""
+        """By how much each parameter changes if the residuals of the windows become `misfit` [N].
+
+        `x` are the searched values. `chain` has, for each of them, the derivative of the parameter
+        by it: 1, or the parameter itself if its logarithm is searched. Changes are absolute values.
+        """
         before = self.residuals_at(x)
         weighted = (misfit / self.spread).reshape(-1)
         change = np.zeros_like(before)
@@ -357,7 +365,11 @@ class LugreProblem:
         return dict(zip(self.names, np.abs(changes * self.sizes * chain), strict=True))
 
     def bounded(self, x: Array) -> dict[str, Parameter]:
-        """Parameters with confidence intervals from residuals, windows and position resolution."""
+        """Parameters with confidence intervals at the searched values `x`.
+
+        The intervals cover the scatter of the residuals, differences between windows, and the
+        resolution of the position sensor.
+        """
         values = self.values_at(x)
         searched = {name: values[name] for name in self.names}
         chain = np.array([searched[name] if name in LOGARITHMIC else 1.0 for name in self.names])
@@ -416,7 +428,7 @@ class LugreProblem:
         )
 
     def _early(self, x: Array) -> float:
-        """Size of the change of the lag if the velocity is filtered at the record's cut-off [s]."""
+        """Change of the lag if the velocity is filtered at the record's cut-off, absolute [s]."""
         windows = self.windows
         if np.array_equal(windows.velocity, windows.options[0]):
             return 0.0
@@ -427,9 +439,9 @@ class LugreProblem:
         return change
 
     def solve(self) -> LuGreFit:
-        """Search, weight the windows by their scatter, and search again.
+        """Fit the model: search, weight the windows by their scatter, and search again.
 
-        Compute confidence intervals.
+        The fit includes confidence intervals and reasons to doubt the result.
         """
         x = self.start()
         for _ in range(ROUNDS):
@@ -468,14 +480,14 @@ BLUR = 40e-3
 """A lag is fitted only if the resolution of the position hides reversals for no longer than this
 time [s] (our choice: ten usual lags)."""
 SURER = 10.0
-"""A friction level that falls with speed is preferred to a constant one if it improves Akaike's
-information by more than this (our choice: very strong evidence)."""
+"""A friction level that falls with speed is preferred to a constant one if it lowers the Akaike
+information criterion by more than this (our choice: very strong evidence)."""
 SLID = 0.95
 """The friction level of sliding is identifiable only if the measured friction reaches this share of
 it (our choice)."""
 FAR = 3.0
 """Multiple of the Stribeck speed that the rod must reach for F_C to be identifiable (our choice: at
-most 5 % of F_S - F_C then remain, for exponent 1)."""
+this speed, friction exceeds F_C by at most 5 % of F_S - F_C, for exponent 1)."""
 
 
 def settling_distance(lugre: LuGreFit | str) -> float:
@@ -584,10 +596,10 @@ def _falling(reversals: Windows, fixed: Mapping[str, float]) -> LuGreFit:
 
 
 def _any_exponent(fit: LuGreFit, reversals: Windows, fixed: Mapping[str, float]) -> LuGreFit:
-    """A fit with falling friction, whose confidence intervals allow for other exponents.
+    """The fit with exponent `EXPONENT`, with intervals that also allow for exponent `OTHER`.
 
-    Each parameter gets the larger uncertainty of the fits with either exponent, plus an uncertainty
-    for their difference.
+    A second fit has the exponent `OTHER`. Each parameter keeps its value, but gets the larger
+    uncertainty of the two fits, increased by an uncertainty for the difference of their values.
     """
     other = _falling(reversals, {"exponent": OTHER, **fixed})
     errors = held_error(fit.parameters, other.values)
@@ -596,7 +608,7 @@ def _any_exponent(fit: LuGreFit, reversals: Windows, fixed: Mapping[str, float])
         if np.isfinite(variances).all():
             errors[name] = float(np.sqrt(extra**2 + max(variances[1] - variances[0], 0.0)))
     doubt = (
-        f"the exponent is fixed at {EXPONENT:g}; the confidence intervals allow for "
+        f"the Stribeck exponent is fixed at {EXPONENT:g}; the confidence intervals allow for "
         f"{OTHER:g} as well"
     )
     parameters = widened(fit.parameters, errors, NORMAL)
@@ -632,9 +644,9 @@ def _unseparated(
     reversals: Windows,
     fixed: Mapping[str, float],
 ) -> LuGreFit:
-    """Widen the intervals of F_S and sigma_0, so that they allow for sigma_2 = 0.
+    """Widen the intervals of F_S and sigma_0 of a model whose F_C and sigma_2 are inseparable.
 
-    This is for a model whose F_C and sigma_2 cannot be separated.
+    The intervals then also cover the values of a fit with sigma_2 = 0.
     """
     held = {"viscous": 0.0, "exponent": EXPONENT, **fixed}
     other = LugreProblem(reversals, points, stribeck, held).solve()

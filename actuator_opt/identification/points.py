@@ -12,8 +12,9 @@ from .balance import Sliding
 from .conditioning import ConditionedRecord, velocities
 
 STEADY, FLOOR = 0.04, 2e-5
-"""Permitted change of speed in a plateau, as a share and in m/s (our choices: viscous friction then
-changes by at most that share; two sensor steps of 10 um in a second)."""
+"""Permitted change of speed within a plateau: the share `STEADY` of the speed or `FLOOR` [m/s],
+whichever is larger (our choices: viscous friction changes by at most that share; 2e-5 m/s is two
+sensor steps of 10 um in a second)."""
 LASTING = 0.15
 """Shortest plateau [s]. The first and last fifth of a plateau are excluded. Samples before the
 settling distance are excluded too, if enough others remain (our choices: five independent samples
@@ -22,11 +23,11 @@ ALIKE = 0.06
 """Relative difference of speed within which plateaus are merged into one point (our choice: more
 than `STEADY`, less than the steps between the speeds of a test)."""
 PER_DECADE = 8
-"""Number of points per decade of speed in a sweep (our choice: speeds differ by a third, so that
-several points show a Stribeck part that drops within a decade)."""
+"""Number of points per decade of speed in a sweep (our choice: neighbouring speeds then differ by a
+third, so that several points lie in the decade in which the Stribeck part drops)."""
 BLURRED = 1.0
-"""Time at each end of a plateau in which the filter mixes it with the adjacent ramp, in periods of
-the cut-off (our choice: after it a step response is within 2 %)."""
+"""Time at each end of a plateau in which the filter mixes plateau and adjacent ramp, in periods of
+the cut-off (our choice: after this time, a step response is within 2 % of its final value)."""
 SETTLED = 5e-4
 """Distance after a reversal beyond which sliding is steady [m] (our choice: ten breakaway travels
 of 50 um). If the breakaway travel of the record is known, the distance is `SETTLING` times that
@@ -35,8 +36,8 @@ SLIDES = 2e-4
 """Smallest travel of a plateau [m] (our choice: four breakaway travels of 50 um; a smaller travel
 may be elastic deflection of the contact)."""
 SETTLING = 8.0
-"""Number of breakaway travels F_S/sigma_0 after which sliding is steady (our choice: 2 e^-8 is
-below 0.1 %)."""
+"""Number of breakaway travels F_S/sigma_0 after which sliding is steady (our choice: after a
+reversal, friction is then within 2 e^-8, less than 0.1 %, of its final value)."""
 LEVELS = 0.1
 """Range within which pressures count as equal, as a share of the highest pressure (our choice: less
 than the steps between the loads of a test, more than friction itself changes them)."""
@@ -80,9 +81,10 @@ class FrictionPoint(NamedTuple):
 def steady_points(
     slidings: Sequence[Sliding], motion: ConditionedRecord, settling: float = SETTLED
 ) -> tuple[FrictionPoint, ...]:
-    """Points of steady sliding: from plateaus if present, or else from sweeps of speed.
+    """Points of steady sliding: from plateaus of constant speed, or else from sweeps of speed.
 
-    Plateaus are used if they have at least three speeds or last more than 40 % of the moving time.
+    Plateaus are used if they have at least three speeds or last more than 40 % of the moving time,
+    or if the record has no usable sweeps.
 
     Parameters
     ----------
@@ -116,7 +118,7 @@ def _ordered(points: Sequence[FrictionPoint]) -> tuple[FrictionPoint, ...]:
 
 
 def independent(count: float, motion: ConditionedRecord) -> float:
-    """Number of independent samples among `count` filtered samples, 2 f_c per second."""
+    """Number of independent samples among `count` filtered samples: 2 f_c per second."""
     return max(count * motion.band, 1.0)
 
 
@@ -139,7 +141,7 @@ def _moderated(points: Sequence[FrictionPoint], motion: ConditionedRecord) -> li
 def _plateaus(
     sliding: Sliding, motion: ConditionedRecord, settling: float
 ) -> Iterator[tuple[FrictionPoint, float]]:
-    """Points from plateaus of constant velocity, each with its error due to pre-sliding [N]."""
+    """Points from plateaus of constant velocity, each with its error by pre-sliding [N]."""
     from scipy.signal import savgol_filter
 
     step = motion.sample_time
@@ -175,17 +177,20 @@ def _plateaus(
 
 
 def _unsettled(friction: float, distance: Array, settling: float) -> float:
-    """Possible error of a mean friction F if bristles are still reversing at the start [N].
+    """Possible error of a plateau's mean friction F, if bristles still reverse at its start [N].
 
-    It is 2 F times the mean of e^(-8 d/settling), where d is the distance from the start of the
-    plateau. After a reversal friction is F (1 - 2 e^(-d sigma_0/F)) [derived from dz/dt = v (1 -
-    sigma_0 z/F)], and the settling distance is `SETTLING` = 8 times F/sigma_0.
+    The error is 2 F times the mean of e^(-8 d/settling), where d is the distance from the start of
+    the plateau. After a reversal friction is F (1 - 2 e^(-d sigma_0/F)) [derived from dz/dt = v (1
+    - sigma_0 z/F)], and the settling distance is `SETTLING` = 8 times F/sigma_0.
     """
     return float(2 * abs(friction) * np.mean(np.exp(-SETTLING * np.abs(distance) / settling)))
 
 
 def _point(sliding: Sliding, motion: ConditionedRecord, at: Array, kind: Kind) -> FrictionPoint:
-    """Mean of some samples; its standard error allows for correlation caused by the filter."""
+    """Point of steady sliding from the samples `at`.
+
+    The standard error of its friction allows for the correlation that the filter causes.
+    """
     piece = sliding.piece
     friction = sliding.friction[at]
     if kind == "plateau":
@@ -242,7 +247,9 @@ def _mean(group: Sequence[FrictionPoint]) -> FrictionPoint:
 def _swept(
     slidings: Sequence[Sliding], motion: ConditionedRecord, settling: float
 ) -> list[FrictionPoint]:
-    """Means over ranges of velocity and pressure, with rising and falling speed weighted equally.
+    """Points from sweeps: means over ranges of velocity and pressure.
+
+    Samples with rising and with falling speed have equal weight in a mean.
 
     A range of velocity that occurs only with rising or only with falling speed is left out, because
     there a lag would look like friction. The velocity is filtered at the lowest cut-off that does

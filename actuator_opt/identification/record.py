@@ -246,7 +246,7 @@ def _commented(lines: Sequence[str], at: int, name: str) -> tuple[int, str, int]
 
 
 def _separator(header: str, following: str) -> str:
-    """The separator of columns, which splits heading and next line into equally many cells."""
+    """The separator that splits the heading and the next line into equally many cells."""
     candidates = [sign for sign in "\t;," if sign in header]
     for sign in candidates:
         if len(_cells(header, sign)) == len(_cells(following, sign)):
@@ -374,7 +374,7 @@ class Record:
         return None if self.first_line is None else self.first_line + sample
 
     def fault(self, message: str, remedy: str, sample: int | None = None) -> InputError:
-        """Create an error that names this record and, if given, the line of a sample."""
+        """Create an error that names this record and, if `sample` is given, the line of it."""
         line = None if sample is None else self.line(sample)
         return InputError(Diagnostic(message, remedy, file=self.name, line=line))
 
@@ -400,8 +400,8 @@ def parse_record(
     ----------
     text : text of the file
     name : name of the file, for messages
-    columns : for a channel whose column has no known name, the column's heading.
-        ``"Channel 3 [bar]"`` also states the unit of a column ``Channel 3`` that has none
+    columns : headings of columns that do not name their channel in a known way, by channel, such as
+        ``{"p1": "Channel 3"}``. ``"Channel 3 [bar]"`` also states the unit, if the file does not
     channels : channels to read, including ``t``
     units : units of columns whose heading states none
     needed : channels that must have a unit, besides ``t`` and those of `columns`. Other channels
@@ -513,7 +513,7 @@ def _is_unit(text: str, dimension: str) -> bool:
 
 
 def _channel(name: str, unit: str, channels: Mapping[str, Channel]) -> str | None:
-    """The channel for a name in a heading; the unit decides between time t and temperature T."""
+    """The channel that a heading names, or None; the unit decides between time and temperature."""
     plain = _plain(name)
     alike = [c for c, known in channels.items() if plain in (_plain(c), *known.others)]
     fitting = [c for c in alike if _is_unit(unit, channels[c].dimension)]
@@ -525,12 +525,15 @@ def _channel(name: str, unit: str, channels: Mapping[str, Channel]) -> str | Non
 
 
 def column_of(sheet: Sheet, cells: list[tuple[str, str]], header: str) -> tuple[int, str]:
-    """Index of the column that the caller named by its heading, and the unit stated with this name.
+    """Index of the column with a given heading, and its unit.
+
+    `header` is the heading as the caller states it, with or without a unit. `cells` are name and
+    unit of every column.
 
     Raises
     ------
     LookupError
-        no column or several columns of that name; the message gives their number
+        no column or several columns have this name; the argument of the error is their number
     """
     stated_name, unit = _named(header)
     names = [cell[0] for cell in cells]
@@ -658,7 +661,7 @@ def _column_notes(
 
 
 def contradicted(column: RecordColumn, name: str, given: ColumnUnits) -> str:
-    """Message if `given` states another unit than the heading of a column; empty if they agree."""
+    """Error message if `given` and a column's heading state different units, else empty."""
     stated = given.stated.get(name, "")
     if not stated:
         return ""
@@ -678,7 +681,10 @@ def _stated_places(
     channels: Mapping[str, Channel],
     fault: Callable[[str, str], None],
 ) -> dict[str, int]:
-    """Columns that the caller named; the units stated with the names are added to `cells`."""
+    """Index of the column of each channel for which the caller stated a heading.
+
+    If the heading was stated with a unit, the unit is written into `cells`.
+    """
     places: dict[str, int] = {}
     for channel, header in stated.items():
         if channel not in channels:
@@ -706,7 +712,7 @@ def _stated_places(
 
 
 def _list(names: Sequence[str]) -> str:
-    """The names in quotes, joined to a text; only as many as fit in a line."""
+    """The names in quotes, joined to a text; names that do not fit in one line are left out."""
     return shown(", ".join(f'"{name}"' for name in names))
 
 

@@ -33,7 +33,7 @@ class Settings:
     cutoff, order, compensated : settings of the zero-phase filter, as for `conditioning.condition`
     mass : moving mass on the actuator's side of the force sensor [kg]. By default, it is that of
         rod, piston and fastening and, if no channel measures the force, of the load
-    load_force : force of the load on the rod, if no channel measures it [N]
+    load_force : constant force of the load on the rod, if no channel measures it [N]
     pressure_lag : lag of the pressures [s]; None to fit it to the record
     bootstrap : number of resamples for the confidence intervals; 0 for intervals of the linearised
         model
@@ -69,9 +69,9 @@ class Identification(Displayed):
     motion, slidings : the conditioned record, and the friction along each of its sections
     mass : moving mass that was used, on the actuator's side of the force sensor [kg]
     pressure_lag : lag by which the pressures were corrected [s]
-    lag_seen : lag of the pressures as fitted before any correction [s]; None if not fitted. Its
-        confidence limits are infinite if the record does not show the lag
-    spectrum : frequencies that show how much motion and noise the filter's cut-off removes
+    lag_seen : lag of the pressures as fitted before any correction [s]; None if no lag was fitted.
+        The confidence limits of the lag are infinite if the record does not show it
+    spectrum : frequencies at which motion ends and noise begins, to judge the filter's cut-off
     mean, largest : mean |F_r| in sliding (not pre-sliding), and largest |F_r| of the record [N]
     slides : whether the rod slides; if not, `mean` is the mean while it moves
     area : piston area of the cap end [m^2]

@@ -17,8 +17,8 @@ from .record import Record
 
 TERMS = 8
 """Number of cosine terms from which the variance of correlated noise is estimated (our choice: few
-enough for noise that is correlated over an eighth of a loading; confidence intervals are 18 % wider
-than for known noise)."""
+enough for noise that is correlated over an eighth of a loading; confidence intervals are then 18 %
+wider than if the noise were known)."""
 PER_TERM = 4
 """Smallest number of degrees of freedom per cosine term (our choice: limits the length of
 correlation that is allowed for in short records)."""
@@ -41,8 +41,8 @@ BENT = 0.02
 """Largest change of slope along the straight part (our choice: the chord is then within 1 % of the
 tangents at both ends)."""
 FOLLOWS = 0.3
-"""Smallest permitted correlation of force and deflection (our choice: it is 0.46 if the press only
-approaches, without force, in 90 % of the record)."""
+"""Smallest permitted correlation of force and deflection (our choice: the correlation is still 0.46
+if the press does not touch the specimen in the first 90 % of the record)."""
 TOP, BEGUN = 0.9, 0.05
 """Shares of the highest force. A loading ends at the last sample above the first share, because
 what follows is slip or failure. The search for zero force begins at the second share (our choices:
@@ -52,11 +52,12 @@ BACK = 0.25
 counts as bent in both directions if at least this share of the range lies on each side of zero (our
 choices: more than noise and offsets)."""
 WON = 0.02
-"""Noise and coarse samples may make a loop return more work than it takes. This is the largest
-permitted share of the work (our choice, as `BENT`)."""
+"""Due to noise and coarse samples, a specimen may seem to return more work on unloading than
+loading took. This is the largest permitted excess, as a share of the work (our choice, as
+`BENT`)."""
 USUAL = (1e-12, 1e12)
-"""Smallest and largest permitted range of force [N] and deflection [m] (our choice: far beyond any
-sensor and machine)."""
+"""Smallest and largest permitted span between the lowest and the highest force [N], or deflection
+[m] (our choice: far beyond any sensor and machine)."""
 CUTS = ((0.0, 1.0), (0.25, 1.0), (0.0, 0.75), (0.5, 1.0), (0.25, 0.75), (0.0, 0.5))
 """Parts of the range that are tested in turn until a part is straight (our choice: the longest part
 first; parts without the toe before parts without the top)."""
@@ -121,12 +122,13 @@ def branches(deflection: Array, least: float) -> list[DeflectionBranch]:
 def term(x: Array, y: Array, degree: int) -> Term:
     """Coefficient of x^degree in a least-squares polynomial, for correlated noise.
 
-    The variance is that of the products c e at frequency zero, where c is the column x^degree made
-    orthogonal to lower powers, and e are the residuals. It is estimated by projecting the products
-    onto the first cosines along the samples [Mueller2007], [Lazarus2018]. Each cosine is a degree
-    of freedom of Student's t. The fit itself removes some variance; this is compensated for noise
-    with the correlation of the residuals [derived]. The result is at least the variance for white
-    noise.
+    The variance of the coefficient is the spectral density, at frequency zero, of the products c e.
+    Here c is the column x^degree made orthogonal to lower powers, and e are the residuals. The
+    density is estimated by projecting the products onto the lowest cosines along the samples
+    [Mueller2007], [Lazarus2018]. Each cosine is a degree of freedom of Student's t. As the fit
+    itself removes some variance, the estimate is increased by the share that the fit would remove
+    from noise with the correlation of the residuals [derived]. The result is at least the variance
+    for white noise.
     """
     scale = float(np.ptp(x)) / 2
     size = (x - np.mean(x)) / scale
@@ -151,8 +153,9 @@ def term(x: Array, y: Array, degree: int) -> Term:
 def _correlation(residuals: Array, degree: int) -> float:
     """Correlation of neighbouring residuals, corrected for the effect of fitting a polynomial.
 
-    For n samples with the correlation r, fitting a constant lowers r by (1 + 3 r)/n, and fitting a
-    line by (2 + 4 r)/n [MarriottPope1954]. Higher degrees continue this series.
+    For n samples whose neighbours have the correlation r, fitting a constant lowers r by (1 + 3
+    r)/n, and fitting a line by (2 + 4 r)/n [MarriottPope1954]. For higher degrees, the series is
+    continued.
     """
     size, power = residuals.size, float(np.sum(residuals**2))
     seen = float(residuals[1:] @ residuals[:-1]) / power if power > 0 else 0.0
@@ -161,7 +164,7 @@ def _correlation(residuals: Array, degree: int) -> float:
 
 
 def _correlated(rows: Array, memory: float) -> Array:
-    """The rows, multiplied by the matrix of correlations memory^|i - j|."""
+    """The rows, multiplied by the correlation matrix with the elements memory^|i - j|."""
     from scipy.signal import lfilter  # slow import, rarely used
 
     ahead = lfilter([1.0], [1.0, -memory], rows, axis=-1)
@@ -179,10 +182,11 @@ def mean(terms: Sequence[Term]) -> Term:
 
 
 def pooled(groups: Sequence[Sequence[Term]]) -> Term:
-    """Mean of the means of several groups; members that scatter beyond noise increase its variance.
+    """Mean of the means of several groups, such as the slopes of loadings and of unloadings.
 
-    An F test at 95 % decides whether they do. Members with the same index in their groups, such
-    as loading and unloading of a cycle, count as correlated.
+    If the members of the groups scatter by more than their own variances explain, by an F test at
+    95 %, their scatter increases the variance of the result. Members with the same index in their
+    groups, such as loading and unloading of a cycle, count as correlated.
     """
     from scipy.special import fdtri  # slow import, rarely used
 
@@ -213,11 +217,11 @@ class Straight(NamedTuple):
 
     Parameters
     ----------
-    parts : its samples from each loading and unloading
-    ends : deflections at both ends, counted from zero force [m]
-    bent : change of slope along the part, divided by the slope
-    unsure : part of `bent` that noise does not explain
-    cut : whether a part of the range is left out
+    parts : samples of each loading and unloading that lie in the straight part
+    ends : deflections at both ends of the straight part, counted from zero force [m]
+    bent : change of slope along the straight part, divided by the slope
+    unsure : size of `bent`, less what noise can explain
+    cut : whether the straight part is only a part of the searched range
     """
 
     parts: list[Part]
@@ -248,7 +252,10 @@ class Loop:
         )
 
     def cut(self, low: float, high: float, zeros: Sequence[float]) -> list[Part]:
-        """Samples of every branch between two deflections, which count from its zero force."""
+        """Samples of every branch between two deflections, counted from the branch's zero force.
+
+        `zeros` are the deflections at which the branches meet zero force.
+        """
         parts = []
         for zero, (samples, loading) in zip(zeros, self.branches, strict=True):
             w, force = self.deflection[samples], self.force[samples]
@@ -279,7 +286,7 @@ class Loop:
         ]
 
     def top(self, zeros: Sequence[float]) -> float:
-        """Largest deflection from zero force: the median of the branches' values."""
+        """Largest deflection, counted from zero force: median of those of all branches."""
         tops = [float(np.max(self.deflection[branch.samples])) for branch in self.branches]
         return float(np.median([a - b for a, b in zip(tops, zeros, strict=True) if isfinite(b)]))
 
@@ -307,7 +314,10 @@ class Loop:
 
 
 def slopes(parts: Sequence[Part], degree: int, record: Record) -> Term:
-    """Coefficient of x^degree, fitted to each branch on its own: mean of loading and unloading."""
+    """Coefficient of x^degree in force versus deflection: mean of loading and unloading.
+
+    A polynomial is fitted to each loading and unloading on its own.
+    """
     groups = by_way(parts, degree)
     if not groups:
         most = max((part.deflection.size for part in parts), default=0)
@@ -318,7 +328,7 @@ def slopes(parts: Sequence[Part], degree: int, record: Record) -> Term:
 
 
 def by_way(parts: Sequence[Part], degree: int) -> dict[bool, list[Term]]:
-    """Coefficients of x^degree of all branches, separately for loading and unloading."""
+    """Coefficients of x^degree of all branches, by direction: True for loading, else False."""
     groups: dict[bool, list[Term]] = {}
     for part in parts:
         if part.deflection.size >= FEWEST and np.unique(part.deflection).size > degree + 1:
@@ -327,10 +337,11 @@ def by_way(parts: Sequence[Part], degree: int) -> dict[bool, list[Term]]:
 
 
 def scatter(parts: Sequence[Part]) -> float:
-    """Scatter 1 - r^2 of force versus deflection, of the branch that scatters least.
+    """Scatter 1 - r^2 of force versus deflection, for the branch that scatters least.
 
-    It is the relative difference between the regressions of force on deflection and of deflection
-    on force. If only the deflection is noisy, the noise lowers the slope by this share [derived].
+    r is the correlation. The scatter is the relative difference between the regressions of force on
+    deflection and of deflection on force. If only the deflection is noisy, the noise lowers the
+    slope by this share [derived].
     """
     shares = [
         1 - float(np.corrcoef(part.deflection, part.force)[0, 1]) ** 2
@@ -407,7 +418,10 @@ def _oriented(w: Array, force: Array) -> tuple[Array, Array, float, bool]:
 
 
 def straight(loop: Loop, zeros: Sequence[float], low: float, high: float) -> Straight:
-    """The longest part of a range in which the slope is constant, or else the whole range."""
+    """Find the longest of some parts of a range in which the slope is constant.
+
+    The parts are listed in `CUTS`. If the slope is constant in none, the result is the whole range.
+    """
     straights: list[Straight] = []
     for first, last in CUTS:
         ends = low + first * (high - low), low + last * (high - low)
@@ -475,9 +489,9 @@ class Spectrum(NamedTuple):
 def spectrum(record: Record, motion: ConditionedRecord) -> Spectrum:
     """Frequencies at which motion ends and noise begins, by Welch's method on the longest section.
 
-    Motion is the spectrum of the velocity, minus that of white noise of the position. At a
-    frequency f the latter is (2 sin(pi f dt)/dt)^2 times a level taken from the upper half of the
-    band; dt is the time step.
+    The spectrum of motion is that of the velocity, minus that which white noise of the position
+    adds to it. At a frequency f, the noise adds (2 sin(pi f dt)/dt)^2 times a constant level, with
+    the time step dt. The level is taken from the upper half of the band.
 
     Parameters
     ----------
@@ -515,9 +529,10 @@ def spectrum(record: Record, motion: ConditionedRecord) -> Spectrum:
 def _moves(frequency: Array, power: Array, slope: Array, loud: Array, variance: float) -> Array:
     """Flags for frequencies at which the excess over white noise is motion.
 
-    A sensor with the step q causes lines in the spectrum at v/q for the speed v. Their power in the
-    position is up to q^2/(2 pi^2), and less than the variance q^2/12 of the steps. Beyond the peak
-    of the motion, a line counts as motion only if it exceeds that variance.
+    A sensor with the step q causes a spectral line at the frequency v/q for the speed v. The power
+    of the line in the position is at most q^2/(2 pi^2), which is less than the variance q^2/12 of
+    the steps. Beyond the peak of the motion, a line therefore counts as motion only if its power
+    exceeds that variance.
     """
     place = np.where(loud, power / np.where(slope > 0, slope, 1.0), 0.0)
     peak = int(np.argmax(place))

@@ -25,9 +25,9 @@ laws)."""
 EXPONENT = 2.0
 """Exponent that is used if the points cannot determine it ([MECE5005], [Huang2017] Table 2)."""
 SHARED = 0.85
-"""Smallest scatter that is assumed for a sweep's points about the curve, as a share of their errors
-(our choice, from records of known friction). The filter correlates neighbouring points, so they
-look smoother than they are."""
+"""Smallest scatter about the curve that is assumed for the points of a sweep, as a share of their
+standard errors (our choice, from records of known friction). The filter correlates neighbouring
+points, so they scatter less than their errors."""
 OTHER = 0.5
 """If the exponent is fixed, the confidence intervals allow for this second exponent as well. Bo and
 Pavelescu use 0.5 to 1, Tustin uses 1, others use 2 [ArmstrongHelouvry1994]."""
@@ -35,10 +35,11 @@ DIFFERENT = 0.05
 """Relative difference above which two speeds count as different (our choice: more than
 `points.STEADY`)."""
 MODEL = 1e-3
-"""Error that every point gets in addition to its scatter, as a share of the largest friction (our
-choice: no curve fits better)."""
+"""Error that every point gets in addition to its standard error, as a share of the largest friction
+(our choice: no curve fits real friction better than that)."""
 _LEVELS = (("coulomb", "viscous"), ("static", "stribeck_speed"), ("exponent",))
-"""Fitted parameters, in groups: each further fit adds the next group."""
+"""Groups of parameters. The first fit has the parameters of the first group; each further fit adds
+those of the next group."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,7 +52,7 @@ class StribeckFit:
     Parameters
     ----------
     parameters : fitted parameters by name
-    held : fixed values of the parameters that are not fitted, such as exponent 2 or offset 0
+    held : values of the parameters that are fixed and not fitted, such as exponent 2 or offset 0
     covariance : covariance of the fitted parameters, in their order
     quantile : quantile of Student's t for the confidence intervals
     reference_pressure : p_0 [Pa]
@@ -133,8 +134,8 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
     F_C and sigma_2 are always fitted. With five different speeds or more, F_S and v_s are fitted if
     they improve the fit (corrected Akaike information). With seven speeds or more the exponent is
     then always fitted, because fitting it only if it improves the fit would bias it and F_S. An
-    offset is fitted if the rod moves in both directions. A pressure effect is fitted if the
-    pressure varies by a fifth.
+    offset is fitted if the rod moves in both directions. A pressure effect is fitted if there are
+    five points or more and the pressure varies enough (`doubtful.spread`).
 
     Parameters
     ----------
@@ -181,8 +182,8 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
         )
     elif "exponent" not in best.parameters:
         doubts.append(
-            f"the exponent is fixed at {EXPONENT:g}, but the confidence intervals allow for "
-            f"{OTHER:g} as well; seven speeds would determine it"
+            f"the Stribeck exponent is fixed at {EXPONENT:g}, but the confidence intervals allow "
+            f"for {OTHER:g} as well; seven speeds would determine it"
         )
     slowest, *_, fastest = sorted(points, key=lambda point: point.speed)
     falls = abs(fastest.friction) < abs(slowest.friction)
@@ -214,7 +215,11 @@ def _allowing_exponents(fit: StribeckFit, points: Sequence[FrictionPoint]) -> St
 
 
 def held_error(parameters: Mapping[str, Parameter], other: Mapping[str, float]) -> dict[str, float]:
-    """Standard errors due to a fixed exponent: d/sqrt 3 if fits with two exponents differ by d."""
+    """Standard error of each parameter because the exponent is fixed rather than fitted.
+
+    It is d/sqrt 3 if the parameter differs by d between fits with two fixed exponents. `other` has
+    the values of the second fit.
+    """
     return {
         name: abs(other[name] - parameter.value) / float(np.sqrt(3))
         for name, parameter in parameters.items()
@@ -223,7 +228,7 @@ def held_error(parameters: Mapping[str, Parameter], other: Mapping[str, float]) 
 
 
 def different(speeds: Sequence[float]) -> list[float]:
-    """The speeds that differ from each other by more than `DIFFERENT`."""
+    """The speeds in rising order, of which those within `DIFFERENT` of another count only once."""
     distinct: list[float] = []
     for speed in sorted(speeds):
         if not distinct or speed > distinct[-1] * (1 + DIFFERENT):
@@ -232,7 +237,7 @@ def different(speeds: Sequence[float]) -> list[float]:
 
 
 def _further(points: Sequence[FrictionPoint], area: float) -> list[str]:
-    """Names of the further parameters, offset and pressure slope, that the points can show."""
+    """Which of the parameters "offset" and "pressure_slope" the points can determine."""
     ways = {point.velocity > 0 for point in points}
     names = ["offset"] if len(ways) == 2 else []
     for way in ways:
@@ -243,9 +248,9 @@ def _further(points: Sequence[FrictionPoint], area: float) -> list[str]:
 
 
 class Steady:
-    """Points of steady sliding as arrays, with weights 1/error.
+    """Points of steady sliding as arrays, and the friction that a Stribeck curve gives for them.
 
-    For each point, the curve is averaged over the speeds that the point contains.
+    A point of a sweep is a mean over a range of speeds, so the curve is averaged over that range.
     """
 
     def __init__(self, points: Sequence[FrictionPoint], error: Array | None = None) -> None:
@@ -260,7 +265,11 @@ class Steady:
         self.change = pressure - self.reference
 
     def predict(self, values: Mapping[str, Array]) -> Array:
-        """Friction of the points: mean of the curve at v - s and v + s, with the spread s."""
+        """Friction that the curve gives for the points.
+
+        It is the mean of the curve at v - s and v + s, with a point's mean velocity v and the
+        standard deviation s of its velocities.
+        """
         velocities = (self.velocity - self.spread, self.velocity + self.spread)
         return sum(curve(velocity, self.change, **values) for velocity in velocities) / 2
 
@@ -275,7 +284,7 @@ class Steady:
 
 
 def _held(names: Sequence[str], coulomb: float, exponent: float) -> dict[str, float]:
-    """Values of parameters that are not fitted."""
+    """Fixed values of the parameters that are not among the fitted `names`."""
     held = {"exponent": exponent, "pressure_slope": 0.0, "offset": 0.0}
     if "static" not in names:
         held |= {"static": coulomb, "stribeck_speed": SPEEDS[0]}
@@ -283,7 +292,10 @@ def _held(names: Sequence[str], coulomb: float, exponent: float) -> dict[str, fl
 
 
 def _fit(points: Sequence[FrictionPoint], names: tuple[str, ...], exponent: float) -> StribeckFit:
-    """Fit some parameters by least squares, starting from the best value of `_search`."""
+    """Fit the parameters `names` by least squares, starting from the result of `_search`.
+
+    The exponent is fixed at `exponent` if it is not among them.
+    """
     data = Steady(points)
     start = _search(data, names, exponent)
     scale = _scales(data)
@@ -400,7 +412,7 @@ def _search(data: Steady, names: Sequence[str], held: float) -> dict[str, float]
 def _slopes(
     velocity: Array, change: Array, values: Mapping[str, float], names: Sequence[str]
 ) -> Array:
-    """Derivatives of the curve with respect to the parameters, (..., parameters)."""
+    """Derivatives of the curve with respect to the parameters, which are the last axis."""
     columns = []
     for name in names:
         moved = {**values, name: values[name] + 1j * STEP}

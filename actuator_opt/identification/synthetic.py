@@ -74,7 +74,7 @@ def plateaus(
     rest: float = 0.1,
     longest: float = 3.0,
 ) -> PrescribedMotion:
-    """Strokes out and back, each at constant speed, with smooth ramps between them.
+    """Strokes out and back, each at constant speed, with smooth ramps and a rest between strokes.
 
     A stroke covers `travel`, or less if it would take more than `longest` seconds.
 
@@ -102,14 +102,17 @@ def plateaus(
 
 
 def course(velocity: Array, *, begin: float, step: float) -> PrescribedMotion:
-    """The motion that a given velocity yields from the initial position `begin`, SI."""
+    """The motion with a given velocity at each time step, from the initial position `begin`, SI."""
     time = step * np.arange(velocity.size)
     distance = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2) * step])
     return PrescribedMotion(time, begin + distance, velocity, np.gradient(velocity, step))
 
 
 def friction_along(truth: Truth, course: PrescribedMotion, pressure: Array) -> Array:
-    """True friction along a motion, for given values of the higher chamber pressure [N]."""
+    """Friction that the LuGre model `truth` gives along a motion, without measuring errors [N].
+
+    `pressure` is the higher chamber pressure at each sample.
+    """
     between = (course.velocity[1:] + course.velocity[:-1]) / 2
     change = (pressure[1:] + pressure[:-1]) / 2 - truth.reference_pressure
     level = friction.stribeck_level(
@@ -203,7 +206,7 @@ def record(
 def _sensed(
     channels: Mapping[str, Array], time: Array, sensors: Sensors, rng: np.random.Generator
 ) -> dict[str, Array]:
-    """The true channels as the sensors show them: with lag, offset, noise, steps and spikes."""
+    """The channels as imperfect sensors show them: with lag, offset, noise, steps and spikes."""
     readings = dict(channels)
     scatter = {
         "p1": sensors.pressure_noise * sensors.pressure_range,

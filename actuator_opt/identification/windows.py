@@ -26,19 +26,19 @@ but only narrow the confidence intervals by 30 %)."""
 LAG = 20e-3
 """Largest pressure lag that is searched for [s] (our choice: five times that of a usual sensor)."""
 PER_PERIOD = 12
-"""Smallest number of integration steps per period of the cut-off (our choice: a method of second
-order then has an error of (2 pi/12)^2/12 = 2 % at the cut-off itself)."""
+"""Smallest number of integration steps per period of the filter's cut-off (our choice: a method of
+second order then has an error of (2 pi/12)^2/12 = 2 % at the cut-off frequency)."""
 SAMPLES, LEFT = 2.0, 0.05
 """Number of independent samples that must lie within the travel in which the bristles deflect, and
-share of that travel that still counts as rest (our choices)."""
+share of that travel up to which the rod still counts as at rest (our choices)."""
 LEAST = 4
 """Smallest number of independent samples in a window (our choice: one more than its three unknowns,
 which are stiffness, lag and friction level)."""
 GRAIN = 0.35
 """The finite resolution of the position causes an error, of which at least this share is assumed to
 shift all reversals alike (our choice, from records of known friction). Divided by the breakaway
-travel, this error is the relative error of the bristle stiffness; divided by the speed there, it is
-the error of the lag."""
+travel, this error is the relative error of the bristle stiffness; divided by the speed at the
+reversal, it is the error of the lag."""
 LASTING = 0.05
 """Shortest motion in one direction that counts [s] (our choice: three independent samples at 30
 Hz)."""
@@ -61,17 +61,20 @@ class Windows:
         shifted in time
     resisting : sum of load and inertia force
     step : time between samples [s]
-    sections, reach : filter of the record, computed for this step
-    kept : indices of the samples in use, which are independent and not at the ends
+    sections, reach : second-order sections of the record's filter for the time step `step`, and the
+        number of mirrored samples that the filter adds at both ends
+    kept : indices of the samples that are compared with the model: independent, not at the ends
     steady : weights (lanes, kept): 0 where points of steady sliding already give the same
         information, else 1
-    judged : weights in use: as `steady`, but 0 in windows in which the rod is too fast
+    judged : weights in use: as `steady`, but 0 in windows in which the rod is too fast for the
+        filter to show the deflection of the bristles
     blur : time for which the position resolution q hides a reversal with acceleration a: sqrt(2
         q/a) [s]
     grain : position error due to resolution that shifts all reversals alike [m]
     noise : position error due to white sensor noise, independent in every reversal [m]
     sample_time : sample time of the record [s]
-    quick : whether the rod is too fast in every window
+    quick : True if the rod is too fast in every window, so that none shows the bristles; all
+        windows are then kept
     """
 
     velocity: Array
@@ -106,8 +109,8 @@ class Windows:
     def resolved(self, travel: float) -> Windows:
         """Ignore windows in which the rod covers `travel` in fewer than `SAMPLES` samples.
 
-        Only independent samples count. The filter blurs the deflection of the bristles in such fast
-        motion. If the rod is too fast in every window, all windows are kept.
+        Only independent samples count. In such fast motion, the filter blurs the deflection of the
+        bristles. If the rod is that fast in every window, all windows are kept.
         """
         place = np.cumsum(self.velocity, axis=-1) * self.step
         distance = np.abs(place - place[:, self.turn, None])[:, self.turn :]
@@ -118,7 +121,7 @@ class Windows:
         return replace(self, judged=judged if slow.any() else self.steady, quick=not slow.any())
 
     def short(self, distance: float) -> Windows:
-        """Add a distance [m] to the motion at the reversal: the resolution may have hidden it."""
+        """Lengthen the motion at each reversal by a distance [m] that the resolution may hide."""
         velocity = self.velocity.copy()
         way = np.sign(np.sum(velocity[:, self.turn :], axis=-1))
         velocity[:, self.turn] -= way * distance / self.step
@@ -176,9 +179,9 @@ class Windows:
         return replace(self, velocity=self.options[best, np.arange(best.size)])
 
     def _integrated(self, values: Mapping[str, Array], measured: Array) -> Array:
-        """LuGre friction along every window, in exact steps by `models.lugre.lugre_step`.
+        """LuGre friction along every window, in exact time steps as in `models.lugre.lugre_step`.
 
-        The bristles start with the deflection that gives the friction measured there.
+        At the start of a window, the bristles have the deflection that gives the measured friction.
         """
         between = (self.velocity[:, 1:] + self.velocity[:, :-1]) / 2
         change = (self.change[:, 1:] + self.change[:, :-1]) / 2
@@ -223,7 +226,8 @@ def windows(
     ----------
     slidings, motion : friction along the record, and the conditioned record with its filter
     reference : reference pressure, which is subtracted from the pressures [Pa]
-    slowest : speed above which the points of steady sliding describe the steady motion [m/s]
+    slowest : lowest speed of the points of steady sliding [m/s]; steady sliding at higher speeds is
+        left to these points
     settling : distance after a reversal beyond which sliding is steady [m]
 
     Returns
@@ -321,7 +325,10 @@ def _grain(places: Sequence[float], step: float) -> float:
 def _lanes(
     slidings: Sequence[Sliding], motion: ConditionedRecord, room: tuple[int, int]
 ) -> list[tuple[Sliding, int]]:
-    """Section and central sample of each window, at reversals and starts or spread evenly."""
+    """Section of the record and sample at the reversal or start of motion, for each window.
+
+    If the rod never reverses or starts, the windows are spread evenly.
+    """
     places = [
         (sliding, at)
         for sliding in slidings
@@ -349,7 +356,10 @@ def _steady_above(sliding: Sliding, slowest: float, settling: float) -> Array:
 
 
 def _fits(sliding: Sliding, at: int, room: tuple[int, int]) -> bool:
-    """Whether a window around a sample lies within the usable part of its section."""
+    """Whether a window around the sample `at` lies within the usable part of its section.
+
+    `room` has the number of samples before and after that sample.
+    """
     first, last = at - room[0], at + room[1]
     sound = sliding.piece.sound
     return first >= 0 and last < sound.size and bool(sound[first] and sound[last])

@@ -62,7 +62,10 @@ def _strength(loaded: Loaded) -> Strength | str:
 
 
 def _envelope(loaded: Loaded, burst: Mapping[str, Array]) -> dict[str, Array]:
-    """Upper bounds of the bond factor, one from each wall; equal if the walls are equally stiff."""
+    """Upper bounds of the bond's safety factor, one computed from the stiffness of each wall alone.
+
+    The two bounds are equal if the walls are equally stiff.
+    """
     overlap = _overlap(loaded)
     if isinstance(overlap, str):
         return {}

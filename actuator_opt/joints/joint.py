@@ -58,7 +58,10 @@ class MaterialProperties(Protocol):
 
 
 class StatedValues(Protocol):
-    """Values of a design file during its check, by path in the file; None if one is unusable."""
+    """Read access to the values of a design file while it is checked; an unusable value is None.
+
+    `loc` is the path of a value in the file, such as ``"retention", "thread", "pitch"``.
+    """
 
     def has(self, *loc: str | int) -> bool:
         """Whether the file states a value here."""
@@ -85,7 +88,7 @@ class KnownMaterials(Protocol):
         ...
 
     def properties(self, name: str) -> Iterable[str]:
-        """Names of the stated properties; empty if unreadable."""
+        """Names of the properties stated for a material; empty if its data are unreadable."""
         ...
 
 
@@ -104,14 +107,20 @@ class JointField(NamedTuple):
 
 
 class FactorBasis(NamedTuple):
-    """Reference of a safety factor: which `measure` of strength, and `of` which parts."""
+    """Words for the strength on which a safety factor is based: a `measure`, `of` some parts.
+
+    For example, the measure "rupture" of "threads and skirt".
+    """
 
     measure: str
     of: str = ""
 
 
 class Usual(NamedTuple):
-    """A ratio that has a usual range in sensible designs; `path` is the input to check if not."""
+    """A ratio, computed by `number`, that is between `least` and `most` in sensible designs.
+
+    `path` is the input that a warning names if the ratio is outside this range.
+    """
 
     path: str
     meaning: str
@@ -146,7 +155,7 @@ class End:
     plate: Array
     """Thickness of the end plate."""
     cache: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
-    """Intermediate results that a joint stores here to use again, by keys of its own choice."""
+    """Intermediate results that the joint's functions store here to use again, under any key."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -165,7 +174,7 @@ class EndDimensions:
 
 
 class EndSpan(NamedTuple):
-    """Axial positions at an end of the barrel in the drawing [m].
+    """Axial positions, in the drawing, of one end of the barrel and of the end plates [m].
 
     `face` is the end face of the barrel, `inwards` the direction from it into the barrel (1 or -1),
     `outside` the outer face of this end's plate, and `opposite` that of the plate at the other end.
@@ -177,7 +186,7 @@ class EndSpan(NamedTuple):
     opposite: float
 
     def over(self, length: float, low: float, high: float) -> Polygon:
-        """A rectangle between two radii, along the last `length` of the barrel at this end."""
+        """A rectangle between the radii `low` and `high`, over the last `length` of the barrel."""
         start, stop = sorted((self.face, self.face + self.inwards * length))
         return rectangle(start, stop, low, high)
 
@@ -192,7 +201,10 @@ def rectangle(start: float, stop: float, low: float, high: float) -> Polygon:
 
 
 class DrawnPart(NamedTuple):
-    """A part of the half-section; `bars` is the number of round bars, or 0 for a turned part."""
+    """A part as drawn in the half-section: a turned part, or a set of equal round bars.
+
+    `bars` is the number of bars, 0 for a turned part.
+    """
 
     part: str
     material: str
@@ -204,8 +216,9 @@ class DrawnPart(NamedTuple):
 class Clamp:
     """Parts that clamp the barrel between both ends, such as tie rods.
 
-    `preload` is the total preload [N], `largest` the largest total force at supply pressure [N],
-    and `closed` the preload divided by the part of it that proof pressure takes away.
+    `preload` is the total preload [N], and `largest` the largest total force at supply pressure
+    [N]. `closed` is the preload divided by the clamping force that proof pressure takes away; the
+    joint stays closed if it is above 1.
     """
 
     preload: Array
@@ -217,9 +230,9 @@ class Clamp:
 class Loaded:
     """An end of the barrel under load.
 
-    `force` is the largest separating force [N]. `paths` are the axial forces in the barrel wall per
-    unit pressure [m^2], by load path. `line_stiffness` is the axial E t of the wall [N/m], and
-    `expansion` its axial thermal expansion [1/K], None if unknown.
+    `force` is the largest force that separates cap and barrel [N]. `paths` are the axial forces in
+    the barrel wall per unit pressure [m^2], by load path. `line_stiffness` is the axial E t of the
+    wall [N/m], and `expansion` its axial thermal expansion [1/K], None if unknown.
     """
 
     end: End
@@ -248,14 +261,15 @@ class Life(NamedTuple):
 
 
 Thermal = Callable[[Array, bool], Array]
-"""Function that returns strength divided by the load that a temperature change [K] alone causes.
-The second argument is True for the strength at the lowest temperature."""
+"""Function that returns the strength divided by the load that a temperature change alone causes.
+Its arguments are the change [K], and whether to use the strength at the lowest temperature."""
 
 
 class Fatigue(NamedTuple):
-    """Fatigue at the joint: stresses to assess with fatigue data of metals, and assessed parts.
+    """Fatigue at the joint.
 
-    `pulsed` are the stresses, `lives` the parts whose fatigue the joint itself has assessed.
+    `pulsed` are stresses that the evaluation still has to assess with the fatigue data of the
+    metal. `lives` are the results, by part, for parts that the joint itself has assessed.
     """
 
     pulsed: tuple[Pulsed, ...] = ()
@@ -263,7 +277,11 @@ class Fatigue(NamedTuple):
 
 
 class WallPressures(NamedTuple):
-    """Pressures at which the barrel yields and bursts at the joint, by location [Pa]."""
+    """Pressures at which the barrel yields and bursts at the joint [Pa].
+
+    Both are dicts whose keys are locations, such as "barrel under the thread, ..." with the load
+    path.
+    """
 
     yields: Mapping[str, Array] = {}
     bursts: Mapping[str, Array] = {}
@@ -271,10 +289,11 @@ class WallPressures(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Strength:
-    """Safety factors (strength divided by load) of an end, by location.
+    """Safety factors (strength divided by load) of the joint at an end of the barrel.
 
-    `working` is the elastic limit and `burst` the breaking load, each divided by the largest force.
-    `thermal` is a function for the factor under temperature alone, or the reason why it is unknown.
+    `working` is the elastic limit and `burst` the breaking load, each divided by the largest force;
+    both are dicts whose keys are locations. `thermal` is a function for the factor under
+    temperature alone, or the reason why that factor is unknown.
     """
 
     working: Mapping[str, Array]
@@ -300,8 +319,8 @@ class Joint:
     kinds: tuple[str, ...]
     """Allowed kinds of the material `retention.material`; empty if the joint has no material."""
     without: Mapping[str, tuple[str, str]]
-    """For some keys that the joint does not use: message and remedy that replace the general
-    ones."""
+    """For some keys that the joint does not use: error message and remedy that replace the general
+    message for an unused key."""
     faults: Callable[[StatedValues], Iterable[Fault]]
     """Function that yields errors in the values of a design file."""
     material_faults: Callable[[StatedValues, KnownMaterials], Iterable[Fault]]
@@ -322,20 +341,21 @@ class Joint:
     yields: Callable[[Loaded], Mapping[str, Array]]
     """Further safety factors against yielding (elastic limit divided by stress), by location."""
     wall: Callable[[Loaded], WallPressures]
-    """Strength of the barrel itself at the joint."""
+    """Failure pressures of the barrel wall itself, where the joint weakens it."""
     fatigue: Callable[[Loaded], Fatigue]
     own: Callable[[Loaded], Mapping[str, Array]]
     """Values of the metrics that only this joint has; `metrics` lists their names."""
     envelope: Callable[[Loaded, Mapping[str, Array]], Mapping[str, Array]] | None
-    """Function for upper bounds of `Strength.working`, given `Strength.burst`. They are needed to
-    prove bounds of an optimum if the working factor is not convex, otherwise None."""
+    """Function for upper bounds of `Strength.working`, given `Strength.burst`; or None. It is
+    needed only if the working factor is not a convex function, to prove a bound on the optimum."""
     metrics: Mapping[str, str]
     """Metrics that only this joint has, each with the text that says why other joints do not have
     it."""
     judged: tuple[FactorBasis, FactorBasis]
-    """References of the working factor and of the burst factor, for texts."""
+    """Words for the strengths on which the working factor and the burst factor are based."""
     models: Mapping[tuple[str, str], str]
-    """Name of the main model, such as `rod.section_area`, by metric and location."""
+    """Names of models, such as `rod.section_area`: for a pair (metric, location), the main model
+    that computes this metric there."""
     usual: tuple[Usual, ...]
     warnings: Callable[[Loaded, Mapping[str, Quantity]], Iterable[tuple[str, str]]]
     """Function that yields a pair (metric, sentence) for each warning; its second argument has the
@@ -375,9 +395,10 @@ def chosen(stated: StatedValues, path: str) -> bool:
 
 
 def judged_later(stated: StatedValues, varied: Iterable[str]) -> bool:
-    """Whether the search checks these sizes (PATHs) later, for every combination of choices.
+    """Whether checking these sizes is left to the search, which tries every combination of choices.
 
-    It does so if one of them is a variable, and one of them or the type of joint has choices.
+    `varied` are the PATHs of the sizes. The check is left to the search if one of the sizes is a
+    variable, and one of them or the type of joint has several choices.
     """
     paths = tuple(varied)
     free = any(stated.has("variables", path) for path in paths)
@@ -385,7 +406,7 @@ def judged_later(stated: StatedValues, varied: Iterable[str]) -> bool:
 
 
 def models_at(joints: Iterable[Joint], metric: str) -> dict[str, str]:
-    """Main models of a metric by location, for all joints."""
+    """Names of the main models of a metric, by location, collected from all joints."""
     return {
         place: model
         for joint in joints
@@ -395,7 +416,10 @@ def models_at(joints: Iterable[Joint], metric: str) -> dict[str, str]:
 
 
 def judged_on(joints: Iterable[Joint], index: int) -> str:
-    """Words for the reference of the working factor (index 0) or burst factor (1) of all joints."""
+    """Words for the strengths on which the safety factors of all joints are based.
+
+    `index` is 0 for the working factor, 1 for the burst factor.
+    """
     groups: dict[str, list[str]] = {}
     for joint in joints:
         judged = joint.judged[index]

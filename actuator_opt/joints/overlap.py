@@ -36,7 +36,7 @@ class Overlap:
     names: tuple[str, str]
 
     def _adhesive(self, materials: MaterialProperties) -> dict[str, Array]:
-        """The overlap as keyword arguments of the lap-joint models."""
+        """Keyword arguments that all lap-joint models share: bond length, thickness and modulus."""
         return {
             "length": self.length,
             "shear_modulus": materials.get(self.adhesive, "shear_modulus"),
@@ -63,7 +63,7 @@ class Overlap:
         return factors
 
     def least_peak_ratio(self, materials: MaterialProperties, stiffness: Array) -> Array:
-        """Lower bound of the ratio of peak to mean shear, from the stiffness of one wall alone."""
+        """Lower bound of the ratio of peak to mean bond shear, given one wall's stiffness."""
         return lap_joint.least_bond_peak_ratio(
             membrane_stiffness=stiffness, **self._adhesive(materials)
         )
@@ -74,7 +74,10 @@ class Overlap:
         return strength * (pi * self.diameter * self.length) / force
 
     def thermal_factor(self, materials: MaterialProperties, warming: Array, cold: bool) -> Array:
-        """Bond strength divided by the edge shear after a change from the joining temperature."""
+        """Bond strength divided by the shear at the edges that a temperature change causes.
+
+        `warming` is the temperature minus that at joining [K].
+        """
         stress = lap_joint.bond_thermal_shear(
             strain_difference=self.mismatch * warming,
             membrane_stiffness_1=self.tube,

@@ -50,11 +50,12 @@ OTHERWISE = "bond the caps (type: bond), or clamp them (type: tie_rods)"
 
 LANDS = ("geometry_barrel_thread", "geometry_skirt_thread")
 CREST = "geometry_thread_crest"
-"""Names of the metrics for the metal left under both thread roots, and for the flank overlap."""
+"""Names of the metrics for the metal left under the thread roots of barrel and skirt, and for the
+overlap of the thread flanks."""
 
 HARD = 830e6
-"""Tensile strength from which on a metal counts as hard [Pa]. Our choice, to separate the grades of
-[Shigley2011] table 8-16."""
+"""Lowest tensile strength of a metal that counts as hard [Pa]. Our choice, to separate the grades
+of [Shigley2011] table 8-16."""
 
 CUT, CUT_HARD = 3.0, 3.8
 """Fatigue notch factors of a cut thread root, for metals below `HARD` and from `HARD` on.
@@ -169,7 +170,8 @@ def _cut_faults(
         )
         yield Fault(
             loc,
-            f"{name}: retention.type thread cuts into {part} {description}; a thread needs metal",
+            f"{name}: the thread (retention.type) is cut into {part} {description}; "
+            "a thread needs metal",
             f"make {path} of metal, {OTHERWISE}",
         )
         return
@@ -211,7 +213,7 @@ def _skirt_wall_faults(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
 
 
 def _size_paths(view: StatedValues) -> Iterator[str]:
-    """PATHs of the sizes that determine the thread's crests and the wall under the thread."""
+    """PATHs of the sizes that determine the barrel thread's crests and the metal under its root."""
     outermost = _layer(view)[-1]
     yield "retention.thread.pitch"
     yield f"barrel.layup[{outermost}].thickness"
@@ -237,7 +239,7 @@ def _fit(end: End) -> EndDimensions:
 
 
 def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
-    """Mass of the skirt, and, as a negative mass, of the ring turned off the barrel."""
+    """Mass of the skirt; and, with a negative sign, that of the ring turned off the barrel."""
     radius = _radius(end)
     caps = {"caps": overlap.weight(end, materials, radius)}
     if radius is end.outer_radius:
@@ -361,7 +363,10 @@ def _yields(loaded: Loaded) -> dict[str, Array]:
 
 
 def _lands(loaded: Loaded) -> dict[str, Array]:
-    """Metal left under both thread roots, and flank overlap; every optimisation limits these."""
+    """Metal left under the thread roots of barrel and skirt [m], and flank overlap [-].
+
+    Every optimisation has limits on these values.
+    """
     end_thread = derive(loaded.end)
     walls = (end_thread.root_diameter / 2 - end_thread.layer_radius, end_thread.skirt_wall)
     return dict(zip(LANDS, walls, strict=True)) | {CREST: end_thread.overlap}
@@ -439,7 +444,10 @@ def _wall(loaded: Loaded) -> WallPressures:
 
 
 def _fatigue(loaded: Loaded) -> Fatigue:
-    """Axial stress at both thread roots under pulsating force; the notch raises only its range."""
+    """Axial stress at both thread roots under pulsating force.
+
+    The notch factor multiplies the range of the stress, but not its mean.
+    """
     end_thread = _assessed(loaded)
     if isinstance(end_thread, str):
         return Fatigue()
@@ -455,7 +463,7 @@ def _fatigue(loaded: Loaded) -> Fatigue:
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
-    """Warn of a thread that leaves too little metal; an optimisation never ends with one."""
+    """Warn of a thread that leaves too little metal; an optimised design never has one."""
     lands = _lands(loaded)
     for name in LANDS:
         least = float(np.min(np.real(lands[name])))

@@ -51,7 +51,7 @@ def _stiffness(end: End, materials: MaterialProperties) -> Array:
 
 
 def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
-    """Mass of half of the tie rods, which is counted at each of both ends."""
+    """Half the mass of all tie rods; as both ends count it, the sum is the full mass."""
     assert end.material is not None
     rods = mass.tie_rod_mass(
         density=materials.get(end.material, "density"),

@@ -35,7 +35,8 @@ from .newton import (
 from .reynolds import Contact, ReynoldsProblem, Vector, fault, flux
 
 LEAST_CONTACT = 1e-12
-"""Ratio of static pressure to asperity stiffness below which surfaces count as barely touching."""
+"""Smallest ratio of static pressure to asperity stiffness. Where it is lower, this value is used,
+so that the film thickness at rest stays finite."""
 SLOWEST = 1e-4
 """If Newton's method does not converge directly, the speed is raised in steps from this first speed
 [m/s]."""
@@ -106,7 +107,10 @@ def pressure_scale(contact: Contact) -> float:
 
 
 def scaled(contact: Contact, scales: Contact | None = None) -> tuple[ReynoldsProblem, Bed]:
-    """Scaled equations of a contact; `scales` is a contact whose scales are used instead."""
+    """Equations of a contact in scaled form: flow, and bed (seal and asperities).
+
+    The scales are those of `contact` itself or, if given, of the contact `scales`.
+    """
     base = scales or contact
     pressure = pressure_scale(base)
     film = float(base.surface.roughness)
@@ -148,7 +152,7 @@ def _bed(contact: Contact, pressure: float, film: float, ratio: Array) -> Bed:
 
 
 def outputs(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> tuple[Array, Array, Array, Array]:
-    """Viscous drag and asperity load [N/m], flow [m^2/s] and mean film thickness [m] of a state."""
+    """Viscous drag [N/m], asperity load [N/m], flow [m^2/s] and mean film thickness [m]."""
     couette_factor, poiseuille_factor = 1.0, 1.0
     if flow.rod_share is not None:
         ratio = state.film / flow.roughness_ratio
@@ -186,7 +190,7 @@ def _at_rest(contact: Contact, bed: Bed) -> FilmState:
 
 
 def _starved(cavitation: Vector, contact: Contact) -> Vector:
-    """The cavitated fractions, but at both ends with the values that the contact states."""
+    """The cavitated fractions, with both end values replaced by those that the contact states."""
     ends = [contact.sealed_cavitation], [contact.outer_cavitation]
     return np.concatenate([ends[0], cavitation[1:-1], ends[1]])
 
@@ -318,7 +322,7 @@ def _imaginary(newton_residual: NewtonResidual) -> NewtonResidual:
 
 
 def _moved(state: FilmState, change: FilmState) -> FilmState:
-    """The state with the change of a state added as a complex step."""
+    """The state plus a complex step: `change` times an imaginary step size is added."""
     return FilmState(
         state.pressure + 1j * STEP * change.pressure,
         state.cavitation + 1j * STEP * change.cavitation,

@@ -32,7 +32,7 @@ TOLERANCE = 1e-9
 """Largest scaled residual of a converged film."""
 MOST_ITERATIONS = 60
 _GROWTH, _LEAST_GROWTH = 8.0, 1.02
-"""Initial and smallest factor between successive values, when `follow` raises a value in steps."""
+"""Initial and smallest factor between the values of successive steps of `follow`."""
 _CLOSED, _PRESSURE_STEP = 0.5, 0.6
 """Largest relative decrease of the film thickness, and largest change of a scaled pressure, in one
 Newton step."""
@@ -70,7 +70,11 @@ class FilmState:
 
 @dataclass(frozen=True, slots=True)
 class NewtonResidual:
-    """Scaled residuals: flow at inner nodes, complementarity, film, load, pressure at both ends."""
+    """Scaled residuals of the film's equations.
+
+    They are those of flow and complementarity (p >= 0, theta >= 0, p theta = 0) at the inner nodes,
+    of the film equation at all nodes, of the load balance, and of the pressures at both ends.
+    """
 
     flow: Vector
     complementarity: Vector
@@ -152,19 +156,19 @@ def _complementarity_slopes(state: FilmState) -> tuple[Vector, Vector]:
 
 
 def _spread(bands: tuple[Vector, Vector, Vector], matrix: Vector) -> Vector:
-    """Tridiagonal matrix times dense matrix, for the rows of the inner nodes."""
+    """Tridiagonal matrix, with one row per inner node, times a dense matrix."""
     lower, middle, upper = (band[:, None] for band in bands)
     return lower * matrix[:-2] + middle * matrix[1:-1] + upper * matrix[2:]
 
 
 def _along(bands: tuple[Vector, Vector, Vector], vector: Vector) -> Vector:
-    """Tridiagonal matrix times vector, for the rows of the inner nodes."""
+    """Tridiagonal matrix, with one row per inner node, times a vector."""
     lower, middle, upper = bands
     return lower * vector[:-2] + middle * vector[1:-1] + upper * vector[2:]
 
 
 def _widened(bands: tuple[Vector, Vector, Vector]) -> Vector:
-    """A tridiagonal matrix of the inner rows as a dense matrix."""
+    """A tridiagonal matrix, with one row per inner node, as a dense matrix."""
     lower, middle, upper = bands
     rows = np.arange(len(middle))
     result = np.zeros((len(middle), len(middle) + 2))
@@ -261,7 +265,7 @@ class LinearSystem:
 
 
 def _allowed(state: FilmState, change: FilmState) -> float:
-    """Share of a Newton step that keeps the film open and the pressure within limits."""
+    """Share of a Newton step that keeps the film open and limits the change of pressure."""
     fall = np.max(-change.film / state.film)
     jump = np.max(np.abs(change.pressure))
     return float(min(1.0, _CLOSED / max(fall, 1e-300), _PRESSURE_STEP / max(jump, 1e-300)))
@@ -270,7 +274,11 @@ def _allowed(state: FilmState, change: FilmState) -> float:
 def _measures(
     flow: ReynoldsProblem, bed: Bed, state: FilmState, newton_residual: NewtonResidual
 ) -> tuple[float, float, float]:
-    """Relative spread of the flux along the film, load residual, largest of all other residuals."""
+    """Three measures of the error: flux, load, and the rest.
+
+    They are the variation of the flux along the film, the load residual (both relative), and the
+    largest of all other residuals.
+    """
     fluxes = flux(flow, state.pressure, state.cavitation, state.film)
     drag_flow = abs(flow.drive) * np.min(flow.gap(state.film)[1])
     spread = np.ptp(fluxes) / (abs(np.mean(fluxes)) + drag_flow + 1e-300)
@@ -324,14 +332,16 @@ def _newton(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResult:
 def follow(
     solve: Callable[[float, FilmState], NewtonResult], state: FilmState, first: float, last: float
 ) -> NewtonResult:
-    """Solve a film for several values of an input from first to last, each from the state before.
+    """Solve a film at the value `last` of an input, such as the speed, in steps from `first`.
+
+    Each step starts from the solution of the previous step. The factor between successive values
+    adapts to whether the steps converge.
 
     Parameters
     ----------
-    solve : function of a value and an initial state that solves the film at this value
+    solve : function that solves the film, given the value of the input and an initial state
     state : initial state at the first value
-    first, last : first and last value, such as speeds, both positive; the factor between successive
-        values is adapted
+    first, last : first and last value of the input, both positive
     """
     outcome = solve(first, state)
     iterations, value, growth = outcome.iterations, first, _GROWTH

@@ -249,7 +249,7 @@ class ReynoldsProblem:
         return density, density / self.lubricant.viscosity_ratio(absolute)
 
     def gap(self, film: Vector) -> tuple[Vector, Vector]:
-        """Terms phi_x h^3 and T of the flux, for scaled films."""
+        """Terms phi_x h^3 and T of the flux (see the module), for scaled film thicknesses."""
         if self.rod_share is None:
             return film**3, film
         ratio = film / self.roughness_ratio
@@ -260,7 +260,10 @@ class ReynoldsProblem:
 
 @dataclass(frozen=True, slots=True)
 class FaceFlux:
-    """Flux through the faces between nodes, and its derivatives by the states of both nodes."""
+    """Flux through each face between two nodes, and its derivatives by the states of these nodes.
+
+    Each pair of derivatives is by the value at the node before the face and at the node after it.
+    """
 
     flux: Vector
     pressure: tuple[Vector, Vector]
@@ -280,7 +283,10 @@ def flux(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vect
 
 
 def faces(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vector) -> FaceFlux:
-    """Flux and its derivatives for a real state; complex steps differentiate oil and gap laws."""
+    """Flux and its derivatives for a real state.
+
+    The laws of oil and gap are differentiated by complex steps, all else by formulas.
+    """
     density, fluidity = flow.oil(pressure + 1j * STEP)
     opening, carried = flow.gap(film + 1j * STEP)
     density_slope, fluidity_slope = density.imag / STEP, fluidity.imag / STEP
@@ -315,7 +321,7 @@ def faces(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vec
 def banded(before: Vector, after: Vector) -> tuple[Vector, Vector, Vector]:
     """Bands of a tridiagonal matrix: derivatives of flux out minus flux in at the inner nodes.
 
-    The bands (lower, middle, upper) are by the states of the node before, the node itself and the
-    node after.
+    The bands (lower, middle, upper) are the derivatives by the states of the node before, the node
+    itself and the node after.
     """
     return -before[:-1], before[1:] - after[:-1], after[1:]

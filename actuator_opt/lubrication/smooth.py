@@ -13,11 +13,11 @@ from .newton import Bed, FilmState, NewtonResult, follow, kernel, newton, weight
 from .reynolds import Elastic, Lubricant, ReynoldsProblem, Vector
 
 _NARROWEST = 0.04
-"""The initial pressure acts on part of the width. Half of that part, divided by the width and
-squared, is at least this value."""
+"""Smallest width of the initial elliptic pressure: the square of its half width divided by the
+width of the face."""
 _FASTER = (1.0, 30.0)
-"""Multiples of the speed at which the solution of a loaded film starts, tried in turn; a larger
-multiple gives a thicker initial film."""
+"""A loaded film is first solved at one of these multiples of its speed, then at its speed itself.
+The multiples are tried in turn; a larger one gives a thicker initial film."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,7 +200,10 @@ def _loaded_gap(gap: Gap) -> SmoothFilm:
 
 
 def _dry(gap: Gap, flow: ReynoldsProblem, bed: Bed, least: float) -> FilmState:
-    """Initial state: elliptic pressure, as of a cylinder in dry contact, and the film under it."""
+    """Initial state: elliptic pressure, as under a cylinder in dry contact, and the film under it.
+
+    `least` is the smallest film thickness, scaled.
+    """
     place = np.linspace(0, 1, flow.nodes)
     ends = bed.sealed + (bed.outer - bed.sealed) * place
     relief = float(np.mean(gap.profile[[0, -1]]) - np.min(gap.profile))

@@ -17,7 +17,8 @@ MATCH = 1e-8
 two, and the flow that the rod drags along."""
 _MOST_TRIALS = 60
 _EMPTY = 0.9
-"""When starved films are solved, initial share of the space between the seals that has no oil."""
+"""Share of the space between the seals that has no oil, where the solution of starved films
+starts."""
 _NO_LIMIT = (
     "with {:.4g} Pa between the seals, the inner seal still passes more oil than the outer seal: "
     "the pressure between them exceeds this value"
@@ -62,7 +63,7 @@ class Tandem:
 
 @dataclass(slots=True)
 class _Row:
-    """Both seals in series; their films are solved from the previous solution."""
+    """Both seals in series, with their last films, from which the next solution starts."""
 
     inner: TandemSeal
     outer: TandemSeal
@@ -182,8 +183,8 @@ def _search(row: _Row, guess: float, low: float, high: float) -> Tandem:
 def _next(trials: list[tuple[float, float]], bottom: float, top: float) -> float:
     """The next pressure to try, by a secant through the last two trials or by halving the range.
 
-    `bottom` and `top` enclose the solution. If all trials lie on the same side of it, the other end
-    is tried early. Every fifth step halves the range.
+    `bottom` and `top` enclose the solution. If all trials lie on the same side of the solution, the
+    end of the range on its other side is tried early. Every fifth step halves the range.
     """
     middle = (bottom + top) / 2
     if len(trials) < 2:

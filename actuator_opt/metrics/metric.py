@@ -12,15 +12,15 @@ from ..base.quantities import INFINITY, Quantity, Sense
 from ..base.units import BASE, unit
 
 Feed = Literal["wall", "oil", "own"]
-"""Model from which a metric inherits validity warnings: "wall" is the wall model of the barrel (by
-bore growth), "oil" the bulk modulus of the oil. With "own", the warnings are those of the metric's
-own model."""
+"""Source of a metric's validity warnings: "wall" is the wall model of the barrel, on which the
+metric depends through the growth of the bore, "oil" the model of the oil's bulk modulus, and "own"
+the metric's own model."""
 
 Wall = Literal["layered", "thin_laminate"]
 """Wall models of a laminated barrel."""
 
 CRITERION = "criterion"
-"""Placeholder for a model's name: that of the failure criterion that the design selects."""
+"""Placeholder for the name of a model, which is the failure criterion that the design selects."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ class CheckLine:
 
 @dataclass(frozen=True, slots=True)
 class Least:
-    """Smallest value (SI) for which a part can be made, and the source of this value."""
+    """Smallest value (SI) of a dimension for which the part can be made, and the source of it."""
 
     value: float
     source: str
@@ -65,9 +65,9 @@ class MetricRow:
     ----------
     name, symbol, dimension, unit, label, lower, upper : fields of its `quantities.Quantity`
     worst : whether the smallest ("min") or the largest ("max") value of all load cases and places
-        is the worst
+        is the worst; the worst value is reported
     model : ``"module.function"`` of `actuator_opt.models`; None for plain geometry
-    feeds : where its validity warnings come from
+    feeds : sources of its validity warnings, names of `Feed`
     check : its line of the check list; None if it has no check
     by_wall : models that replace `model` for a laminated barrel, by its wall model
     at : models that replace `model` at some locations; a key may be a pattern (``"* yield, *"``)
@@ -148,5 +148,5 @@ def table(rows: Iterable[MetricRow]) -> Mapping[str, MetricRow]:
 
 
 def fed_by(feed: Feed, rows: Mapping[str, MetricRow]) -> Iterator[str]:
-    """Names of the metrics that inherit the warnings of `feed`."""
+    """Names of the metrics whose validity warnings come from the source `feed`."""
     return (name for name, row in rows.items() if feed in row.feeds)

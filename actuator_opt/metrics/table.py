@@ -1,4 +1,4 @@
-"""Table of all metrics: quantity, worst value, model, sources of warnings, check line, labels.
+"""Table of all metrics: quantity, worst value, model, sources of warnings, check, labels.
 
 Evaluation, check list, limits of the optimiser, warnings, tables, reports, JSON Schema and help all
 use this table. To add a metric, write a row here and a line that computes it (`MetricArrays.put`).
@@ -64,8 +64,8 @@ ROWS = table((
               "smallest seal squeeze after growth and tolerance", worst="min",
               model="gland.squeeze_extremes", feeds=("wall",),
               check=CheckLine("5.1", "smallest seal squeeze", 0.08,
-                          "our choice: 8 % after bore growth and tolerances (gland tables: from "
-                          "8 % for 5.33 mm sections to 15 % for 1.78 mm sections)")),
+                          "our choice: 8 % after growth and tolerances (gland tables: 8 % for "
+                          "5.33 mm sections, 15 % for 1.78 mm)")),
     MetricRow("seal_squeeze_max", "C_max", "ratio", "%", "largest seal squeeze at assembly",
               worst="max", model="gland.squeeze_extremes", feeds=(),
               check=CheckLine("5.2", "largest seal squeeze", 0.25,
@@ -418,7 +418,7 @@ ROWS = table((
               "remaining wall around the rod seal groove",
               worst="min", model=None, feeds=(), check=None, least=_LEAST_WALL),
     MetricRow("geometry_skirts", "-", "length", "mm",
-              "barrel length that remains between the skirts",
+              "barrel length that remains between the skirts of the caps",
               worst="min", model=None, feeds=(), check=None, least=_LEAST_WALL),
     MetricRow("geometry_barrel_thread", "-", "length", "mm",
               "metal that remains under the barrel thread in the threaded layer", worst="min",
@@ -458,7 +458,8 @@ CHECKS: tuple[tuple[MetricRow, CheckLine], ...] = tuple(
         key=lambda line: line[1].order,
     )
 )
-"""The check list: each metric with its line, by number. A limit applies to the worst value."""
+"""The check list: every metric that has a limit, with its line of the list, in the order of the
+line numbers. A limit applies to the worst value of its metric."""
 
 WALL_FED = tuple(fed_by("wall", ROWS))
 """Metrics that inherit the validity warnings of the barrel's wall model."""
@@ -470,9 +471,9 @@ OIL_FED = tuple(fed_by("oil", ROWS))
 """Metrics that inherit the validity warnings of the oil's bulk modulus."""
 
 OWN = frozenset(fed_by("own", ROWS))
-"""Metrics whose warnings concern their own model, not another model whose results they use."""
+"""Metrics whose validity warnings concern the model named in their own row."""
 
 
 def of_metric(name: str) -> Quantity:
-    """Quantity of a metric; a user's metric without a declaration is a plain ratio."""
+    """Quantity (label, dimension, unit) of a metric; if it is not declared, a plain ratio."""
     return METRICS.get(name) or Quantity(name, "", "ratio", "", name.replace("_", " "))

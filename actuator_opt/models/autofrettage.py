@@ -21,8 +21,8 @@ combine into one equation for y = ln x,
 
 Its left side increases with y, and its curvature has one sign. Newton's method therefore converges
 in a few steps from a start that is exact at the double root (m = 1, s = 0: collapse of a bare
-liner); a complex step at the end makes every derivative exact. Unloading is elastic: the residual
-state is the state at p minus the elastic state at p.
+liner). The last step carries the imaginary parts, so complex-step derivatives are exact. Unloading
+is elastic: the residual state is the state at p minus the elastic state at p.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ class Autofrettage:
 
 
 class _Liner(NamedTuple):
-    """Elastic constants, radii squared, free strain alpha dT, axial force divided by 2 pi p."""
+    """Elastic constants of the liner, radii squared, free strain alpha dT, and N/(2 pi p)."""
 
     modulus: Array
     ratio: Array
@@ -117,7 +117,7 @@ class _Contact(NamedTuple):
 
 
 def _liner(layer: TubeLayer, inner_radius: Array, change: Array, force: Array) -> _Liner:
-    """Constants of the liner, which must be isotropic."""
+    """Collect the constants of the liner; an error if it is not isotropic."""
     c11, c12, c13, c22, c23, c33, _ = layer.stiffness
     for one, other in ((c22, c11), (c33, c11), (c13, c12), (c23, c12)):
         if np.any(array_of(real(absolute(one - other)) > 1e-6 * real(c11))):
@@ -308,7 +308,7 @@ def autofrettage(
 
 
 def _share(value: Array) -> Array:
-    """Hoop minus radial stress, divided by the yield strength: at most 1; NaN stays NaN."""
+    """Hoop minus radial stress, divided by the yield strength and limited to 1; NaN stays NaN."""
     return minimum(1 + 0 * value, value)
 
 

@@ -1,14 +1,15 @@
 """Burst pressure by ply discount, for one design or many at once, with any model of the wall.
 
-The load grows from zero. The mode with the largest utilisation by maximum stress fails first. A
-matrix or shear failure softens every ply of that material and |angle|; a fibre failure is the last.
-The sequence of failures is called the ladder, and burst is its largest load. An isotropic liner
-yields by von Mises and then keeps its stress at yield, while the fibres take the further load:
-yielding is no failure.
+The load grows from zero. The mode with the largest utilisation by the maximum-stress criterion
+fails first. A matrix or shear failure softens every ply of that material and |angle|; a fibre
+failure ends the sequence. The sequence is called the ladder, and burst is its largest load. An
+isotropic liner yields by von Mises and then keeps its stress at yield, while the fibres take the
+further load: yielding is no failure.
 
 All designs of an array take the same fixed number of steps; masks exclude designs that have failed
-already. A complex step follows the branch of its design. `Mechanics` gives the stresses under a
-load: for the thin laminate in this module, for the exact tube in `tube_burst`.
+already. Derivatives by complex step are those of the sequence of failures that the design takes.
+`Mechanics` gives the stresses under a load: for the thin laminate in this module, for the exact
+tube in `tube_burst`.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ class WallLayer:
     ----------
     youngs_modulus_1, youngs_modulus_2, poissons_ratio_12, shear_modulus_12 : elastic constants
         [Pa], [-]; E, E, nu, G for an isotropic layer
-    thickness : thickness of the layer, of the whole pair [m]
+    thickness : thickness of the layer [m]; of a pair, both plies together
     angle : winding angle from the tube axis [rad]
     strength : ply strengths of a composite; None for a metal
     yield_strength : yield strength of a metal [Pa]; None for a composite
@@ -78,7 +79,7 @@ class WallLayer:
 
 @dataclass(frozen=True, slots=True)
 class LadderStep:
-    """One failure on the way to burst: the layer (from the bore), the mode, the pressure [Pa]."""
+    """One failure on the way to burst: layer (counted from the bore), mode, pressure [Pa]."""
 
     layer: int
     mode: str
@@ -94,8 +95,8 @@ class BurstLadder:
     first_ply_pressure : first failure of a composite ply
     burst_pressure : largest load of the ladder
     liner_yield_pressure : first yield of a metal layer in the intact wall; infinite without one
-    record : for each step the row of its mode in `intact`, its pressure, and whether the design
-        took this step
+    record : for each step the row of the failing mode in `intact`, its pressure, and whether each
+        design took this step
     order : position from the bore of each layer in the internal order, which lists metals first
     intact : 1/p for the pressure p at which each mode fails in the intact wall: rows over modes,
         faces and layers, then over the yield of metals
@@ -118,7 +119,7 @@ class BurstLadder:
         return plies + [(self.order[i % metals], "yield") for i in range(metals * self.faces)]
 
     def steps(self, index: tuple[int, ...] = ()) -> tuple[LadderStep, ...]:
-        """List the failures of the design at an index of the arrays; a single design has none."""
+        """List the failures of the design at `index` of the arrays; () if there is one design."""
         named = self.modes()
         ladder = []
         for code, pressure, counted in self.record:
@@ -130,7 +131,10 @@ class BurstLadder:
 
 
 class Mechanics(Protocol):
-    """Model of a wall: its stresses per pressure with some layers softened; metals come first."""
+    """Model of a wall: its stresses under pressure, with failed layers softened.
+
+    In all its arrays, the metal layers come first.
+    """
 
     @property
     def faces(self) -> int:
@@ -206,7 +210,7 @@ def stacked_rows(xp: Any, columns: Sequence[Sequence[Array]], dims: int) -> Arra
 
 
 def _above(value: Array) -> Array:
-    """Raise `value` to a small positive number, in case the strength is used up already."""
+    """Raise the strength left over for the load to a small positive number if none is left."""
     return where(real(value) > _FLOOR, value, 0 * value + _FLOOR)
 
 
@@ -243,7 +247,7 @@ def _utilisations(
 
 
 def _critical(xp: Any, values: Array, rows: Array, shape: Array) -> tuple[Array, ...]:
-    """Code, one-hot mask and load of the largest utilisation; whether any mode is loaded."""
+    """Code, one-hot mask and failure load of the most utilised mode; whether any is loaded."""
     code = xp.argmax(real(values), axis=0)
     hit = rows == code
     inverse = xp.sum(where(hit, values, 0.0), axis=0)
@@ -284,8 +288,8 @@ def climb(xp: Any, mechanics: Mechanics, layers: Sequence[WallLayer], shape: Arr
 
     References
     ----------
-    [derived] ply discount: the weakest mode fails and its layers lose it, until the wall carries no
-    more load
+    [derived] ply discount: the weakest mode fails and its layers lose their stiffness in it, until
+    the wall carries no more load
     """
     walls = [layers[i] for i in mechanics.order]
     count, metals, faces = len(walls), mechanics.metals, mechanics.faces
@@ -345,7 +349,11 @@ def _elastic(layer: WallLayer) -> tuple[Array, ...]:
 
 
 def _table(xp: Any, angle: Array, thickness: Array, moduli: tuple[Array, ...]) -> Array:
-    """Rows of values per layer: stresses 1, 2, 12 per axial and hoop strain, line stiffnesses."""
+    """Rows of values per layer, for `_Membrane`.
+
+    First stresses 1, 2, 12 per unit axial strain, then per unit hoop strain, then the membrane
+    stiffnesses zz, zt, tt.
+    """
     double = 2 * angle
     along = (1 + xp.cos(double)) / 2
     across, shift = 1 - along, xp.sin(double)
@@ -425,7 +433,7 @@ def burst_by_ply_discount(
     Parameters
     ----------
     layers : the wall from the bore outwards
-    radius : R, mid-radius of the wall [m] (a choice)
+    radius : R of the wall [m]; the mid-radius is our choice
     axial_force_per_pressure : N/p [m^2]; 0 for open ends, pi R^2 for closed ends
     residual : share of the stiffness that a failed ply keeps [-]
     liner_share : share of its stress that a yielded metal keeps [-]: 1 if perfectly plastic, 0 if

@@ -24,7 +24,7 @@ def density_ratio(
     polytropic_index: Array = 1.4,
     atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
 ) -> Array:
-    """Density divided by the density at zero gauge pressure, (1 + alpha)/(f + alpha r).
+    """Density of oil with air, relative to zero gauge pressure: (1 + alpha)/(f + alpha r).
 
     Oil: f = e^(-p/K), or (1 + m p/K)^(-1/m) with a slope m. Air: r = (p_a/(p_a + p))^(1/n).
 
@@ -149,8 +149,8 @@ def _shares(
 ) -> tuple[Array, Array, Array]:
     """Change of the oil volume f - 1, gas volume alpha r, and -d(f + alpha r)/dp.
 
-    `total` is the absolute pressure. If the gauge `pressure` is known too, pass it: its small
-    values have more digits.
+    f, alpha and r are those of `density_ratio`; `total` is the absolute pressure. If the gauge
+    `pressure` is known too, pass it: near zero it has more significant digits.
     """
     modulus, slope, air, index, atmosphere = law
     strain = (total - atmosphere if pressure is None else pressure) / modulus
@@ -171,11 +171,12 @@ def cavity(
     polytropic_index: Array = 1.4,
     atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
 ) -> tuple[Array, Array, Array]:
-    """Cavity volume G per oil volume at zero gauge pressure, its -dG/dp, and the work to open it.
+    """Volume G of a cavity in the oil, -dG/dp, and the work to open it, all per oil volume.
 
-    G = c (r - 1)^2 with r = (p_a/(p_a + p))^(1/n) below zero gauge pressure, and 0 above. Volume
-    and slope are continuous, and the pressure never falls to a vacuum. The work to open the cavity
-    is -int p dG = c p_a ((r - 1)^2 - 2 ((r^(2-n) - 1)/(2 - n) - (r^(1-n) - 1)/(1 - n))).
+    The oil volume is that at zero gauge pressure. G = c (r - 1)^2 with r = (p_a/(p_a + p))^(1/n)
+    below zero gauge pressure, and 0 above. Volume and slope are continuous, and the pressure never
+    falls to a vacuum. The work to open the cavity is
+    -int p dG = c p_a ((r - 1)^2 - 2 ((r^(2-n) - 1)/(2 - n) - (r^(1-n) - 1)/(1 - n))).
 
     Parameters
     ----------

@@ -3,7 +3,7 @@
 The stepped column is in `stepped`; local buckling forces and moments are in `shell_buckling`. The
 beam carries its own weight, a side load and an off-centre push. The push amplifies the moment by a
 factor that is exact only if the moment has the shape of the buckling mode. A side force F at the
-rod's eye, which the guides carry, gives the moment F times overhang at the head.
+rod's eye, which the guides carry, bends the rod at the head by F times the distance to the eye.
 """
 
 from __future__ import annotations
@@ -246,7 +246,7 @@ def amplified_moment(
 
     Parameters
     ----------
-    bending_moment : M, largest without the push [N m]
+    bending_moment : M, largest along the beam before the push amplifies it [N m]
     axial_force : P, push positive [N]
     critical_load : P_cr of the same column [N]
     shape : psi, correction for the shape of the moment [-]
@@ -260,8 +260,8 @@ def amplified_moment(
     Valid: P < P_cr; elastic.
 
     For the largest moment in the rod of a stepped cylinder, with psi = 0 and P/P_cr up to 1/3.5,
-    the result is from 4 % low to 14 % high under the weight, and 4 to 8 % low under a push
-    off-centre at both ends.
+    the result is between 4 % too low and 14 % too high if the moment is due to weight, and 4 to 8 %
+    too low if it is due to a push that is off-centre at both ends.
 
     References
     ----------

@@ -1,4 +1,4 @@
-"""Compact double-acting seals (DAS type): an elastomer block between guide parts, face outwards.
+"""Compact double-acting seals (DAS type): a squeezed elastomer block between guide parts.
 
 The block has the free radial height h and the face width w. It is squeezed by the share C of h
 between groove floor and sliding surface, without strain along the circumference. Pressure from
@@ -27,7 +27,7 @@ def energised_share(*, poissons_ratio: Array) -> Array:
 
     Notes
     -----
-    Valid: block kept by floor and face, wall friction neglected (it lowers k away from the side).
+    Valid: block kept by floor and face; no wall friction (it lowers k away from the pressure).
 
     References
     ----------

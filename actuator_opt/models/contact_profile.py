@@ -1,8 +1,8 @@
 """Static contact pressure along a seal's contact width: closed forms in t = x/b, and line loads.
 
 There are profiles of O-rings (`o_ring_*`), lips (`lip_*`) and worn-in lands (`land_*`), and tables
-(`table_*`). t = 0 is the sealed side, t = 1 the outer side; at both ends the closed forms equal the
-pressure of that side. All pressures are on one scale, gauge or absolute.
+(`table_*`). t = 0 is the sealed side, t = 1 the outer side; at either end the closed forms equal
+the pressure on that side. All pressures are on one scale, gauge or absolute.
 
 Each closed form has one free parameter, a pressure called its excess. `*_mean` is the mean of the
 profile over t. `*_excess` is the excess at which a contact of width b carries the line load
@@ -28,8 +28,9 @@ LIP_PLACES, LIP_SHARE = (0.0, 0.2, 0.6, 1.0), 0.42
 second (*choice*, surrogate)."""
 O_RING_POWER = 10
 """Exponent of the part that the sealed pressure p adds, p (1 - t^10). It is within 0.18 p of this
-project's finite-element profiles at a squeeze of 0.10 to 0.20 and p up to E; the difference is
-largest near the outer edge. The mean of those profiles is 0.89 to 0.94 p."""
+project's finite-element profiles at a squeeze of 0.10 to 0.20 and p up to the rubber's Young's
+modulus; the difference is largest near the outer edge. The mean of those profiles is 0.89 to
+0.94 p."""
 
 
 def o_ring_profile(
@@ -457,8 +458,8 @@ def land_peak(
 
     Returns
     -------
-    peak pressure, on the scale of both pressures [Pa]; the outer pressure without width (no
-    contact)
+    peak pressure, gauge or absolute like `sealed_pressure` and `outer_pressure` [Pa]; without
+    width (no contact) it is the outer pressure
 
     Notes
     -----

@@ -221,7 +221,7 @@ def double_exponential(
     coefficient_2: Array,
     rate_2: Array,
 ) -> Array:
-    """Double-exponential fit of the secant VDC, B = a1 e^(b1 v) + a2 e^(b2 v); b < 0.
+    """Double-exponential fit of the secant VDC, B = a1 e^(b1 v) + a2 e^(b2 v); b1, b2 < 0.
 
     Parameters
     ----------

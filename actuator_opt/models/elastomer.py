@@ -89,7 +89,7 @@ class ModulusFunction(Protocol):
     """Function that gives Young's modulus (Pa) from Shore A hardness."""
 
     def __call__(self, *, hardness: Array) -> Array:
-        """Evaluate at a hardness (Shore A)."""
+        """Young's modulus (Pa) at a hardness (Shore A)."""
 
 
 @dataclass(frozen=True, slots=True)

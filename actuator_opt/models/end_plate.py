@@ -114,7 +114,7 @@ def hub_plate_stress(
     Plate clamped at radius b and free at a, with pressure p in between and a ring force F at a:
     M = [F/(2 pi) + p a^2/2 - p b^2/2] L/C8 - p a^2 L17/C8, s = b/a,
     L = (1 + nu)/2 ln(a/b) + (1 - nu)/4 (1 - s^2), C8 = [1 + nu + (1 - nu) s^2]/2,
-    L17 = {1 - (1 - nu)/4 (1 - s^4) - s^2 [1 + (1 + nu) ln(a/b)]}/4; 6 M/t^2.
+    L17 = {1 - (1 - nu)/4 (1 - s^4) - s^2 [1 + (1 + nu) ln(a/b)]}/4. The stress is 6 M/t^2.
 
     Parameters
     ----------

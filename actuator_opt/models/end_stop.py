@@ -35,7 +35,7 @@ def stop_stiffness(*, area: Array, pressure: Array, travel: Array = STOP_TRAVEL)
 
     Notes
     -----
-    Valid: a stand-in for the ends' own stiffness, stiff against the oil.
+    Valid: a stand-in for the stiffness of the ends, which are much stiffer than the oil.
 
     References
     ----------

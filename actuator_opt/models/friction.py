@@ -65,7 +65,7 @@ def coulomb_as_published(
     pressure : pressure difference, the same at both seals [Pa]
     friction_coefficient : [-]
     piston_contact_width, rod_contact_width : `seals.width_as_published` [m]
-    bore, rod_diameter : at pressure (D + 2 delta_r) [m]
+    bore, rod_diameter : D and d under pressure, the bore grown by 2 delta_r [m]
 
     Returns
     -------
@@ -259,7 +259,7 @@ def stribeck_slope(
 
 @dataclass(frozen=True, slots=True)
 class StribeckParameters:
-    """Stribeck parameters identified at one chamber pressure, SI."""
+    """Stribeck parameters that were identified at one chamber pressure, in SI units."""
 
     pressure: float
     static: float
@@ -275,5 +275,5 @@ HUANG_TABLE_2 = (
     StribeckParameters(4.0e6, 1100.0, 362.8, 1.3, 2.2e-3, 1.3e4),
     StribeckParameters(6.0e6, 1100.0, 300.0, 2.0, 1.2e-3, 1.6e4),
 )
-"""[Huang2017] Table 2, 125 mm plunger cylinder with step ring and Yx seal; v_s printed in mm/s,
-sigma2 in 1e4 N s/m, here in SI."""
+"""Parameters of a 125 mm plunger cylinder with step ring and Yx seal, [Huang2017] Table 2. The
+table prints v_s in mm/s and sigma2 in 1e4 N s/m; here they are in SI."""

@@ -146,7 +146,7 @@ def extrusion_gap(*, clearance: Array, growth: Array) -> Array:
 
     Parameters
     ----------
-    clearance : radial [m] (twice it when side load pushes the piston over)
+    clearance : radial [m]; pass twice this value where a side load pushes the piston over
     growth : radial bore growth at the seal [m]
 
     Returns
@@ -314,7 +314,7 @@ def squeeze_at_volume(*, squeeze: Array, volume_ratio: Array) -> Array:
 
     Notes
     -----
-    Valid: the ring lies on its groove diameter, whose length it follows.
+    Valid: the ring stays on the groove's diameter, and only its section grows or shrinks.
 
     References
     ----------
@@ -391,7 +391,7 @@ ROUNDING = 1e-9
 
 
 def gap_limit(*, pressure: Array, points: Points) -> Array:
-    """Largest gap at a pressure, ln g linear in p between the points, constant beyond them.
+    """Largest permitted gap g at a pressure: ln g is linear between the points, constant beyond.
 
     Parameters
     ----------
@@ -410,7 +410,8 @@ def gap_limit(*, pressure: Array, points: Points) -> Array:
 
     References
     ----------
-    [SealAndDesignExtrusion] form of the table; [derived] ln g is never above a straight line in g
+    [SealAndDesignExtrusion] form of the table; [derived] interpolation in ln g is never above a
+    straight line in g
 
     Examples
     --------
@@ -422,7 +423,9 @@ def gap_limit(*, pressure: Array, points: Points) -> Array:
 
 
 def extrusion_gap_limit(*, hardness: Array, pressure: Array, table: Table) -> Array:
-    """Largest gap at a hardness and a pressure, ln g linear in both, constant beyond the table.
+    """Largest permitted gap at a hardness and a pressure: ln g is linear in both inside the table.
+
+    Beyond the table the gap is constant.
 
     Parameters
     ----------
@@ -500,9 +503,9 @@ def backed_gap_limit(
 ) -> Array:
     """Largest gap with a back-up ring: the larger limit of those that cover the pressure.
 
-    A back-up ring bridges the gap for the seal, so the larger of both limits counts. Beyond its
-    last stated pressure, a limit is not data but a constant continuation. There, only the other
-    limit counts. Beyond both pressures, the limit that is stated up to the higher pressure counts.
+    A back-up ring bridges the gap for the seal, so the larger of both limits counts. Above the last
+    pressure of its data, a limit is only continued as a constant and does not count: the limit
+    whose data reach higher counts alone, even above the end of its own data.
 
     Parameters
     ----------
@@ -512,7 +515,7 @@ def backed_gap_limit(
 
     Returns
     -------
-    radial gap [m]; it steps down where the larger of two limits ends
+    radial gap [m]; it steps down where the data of the larger limit end
 
     Notes
     -----

@@ -8,12 +8,12 @@ from ..base.numeric import Array, maximum, minimum, real, where
 from .valve import edge_conductance, edge_flow
 
 LEAST = 1e-12
-"""Smallest flow per flow coefficient at which an edge counts as able to supply oil [sqrt(Pa)]; it
-belongs to a pressure drop of 1e-10 Pa."""
+"""Smallest flow per flow coefficient at which an edge counts as able to supply oil [sqrt(Pa)]. By
+`valve.edge_flow`, which is linear near zero, this is the flow at a pressure drop of 1e-10 Pa."""
 
 
 class FeedingEdges(NamedTuple):
-    """Flow coefficients of both edges of a chamber whose load the valve holds [m^3/s/sqrt(Pa)]."""
+    """Flow coefficients of a chamber's two valve edges while it holds a load [m^3/s/sqrt(Pa)]."""
 
     supply: Array
     tank: Array

@@ -30,7 +30,7 @@ def membrane(*, plies: Sequence[Sequence[Any]], thicknesses: Sequence[Array]) ->
     Parameters
     ----------
     plies : stiffness of each layer in tube axes, Qzz, Qzt, Qtt first, as from `ply.rotated` [Pa]
-    thicknesses : thickness of each layer, of the whole pair [m]
+    thicknesses : thickness of each layer [m]; of a pair, both plies together
 
     Returns
     -------

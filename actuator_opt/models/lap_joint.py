@@ -8,7 +8,7 @@ from ..base.numeric import Array, geometry, namespace, positive, sqrt
 
 
 def _edge_ratio(*, loaded: Array, free: Array, reach: Array) -> Array:
-    """Ratio of edge to mean shear; `loaded` and `free` are the walls' K, reach = G L^2/t_a."""
+    """Ratio of edge to mean shear; `loaded` is K_l, `free` is K_f, and `reach` is G L^2/t_a."""
     half = sqrt(positive(reach * (1 / loaded + 1 / free))) / 2
     wave = namespace(half).tanh(half)
     return half * ((1 / wave - wave) + 2 * free / (free + loaded) * wave)  # no term below zero
@@ -74,7 +74,8 @@ def bond_edge_shear(
 ) -> Array:
     """Shear stress at one edge of a bonded cap.
 
-    For one edge, the function is smooth; the larger stress of both edges would have a kink.
+    Call it for each edge: the stress at one edge is a smooth function, but the larger of both has a
+    kink where they are equal.
 
     tau = F/(pi D L) (w/2) [coth(w/2) + ((K_f - K_l)/(K_f + K_l)) tanh(w/2)],
     w^2 = (G L^2/t_a)(1/K_l + 1/K_f); K_l belongs to the wall that carries the whole force at this

@@ -41,8 +41,8 @@ class TubeState:
     radius : of both faces of each layer, (2, layers, ...) [m]
     hoop_strain, radial_strain, shear_strain : at those faces [-]
     radial_stress : at those faces [Pa]
-    held : thermal and frozen stresses z, t, r, s [Pa], which are subtracted from the stresses by
-        strain; None if there are none
+    held : stresses z, t, r, s [Pa], thermal and frozen ones (see `tube_state`), which are
+        subtracted from the stresses that the strains cause; None if there are none
     temperature_change : from the stress-free state [K]
     """
 
@@ -84,8 +84,9 @@ def closed(
     """Solve for bore strain, axial strain and twist by a march through all layers.
 
     The march goes outwards and carries these columns together: unit bore hoop strain, unit axial
-    strain, (unit twist,) and the loads. `transfer` is that of a `LayeredTube`; `driven`, (outputs,
-    layers, ...), is from `forcing`, or None. All arrays have the same number of batch axes.
+    strain, (unit twist,) and the loads. `transfer` is that of a `LayeredTube`; `driven`, with axes
+    (outputs of `transfer`, layers, ...), is from `forcing`, or None. All arrays have the same
+    number of batch axes.
 
     References
     ----------
@@ -145,7 +146,9 @@ def _unknowns(
 
 
 def forcing(xp: Any, transfer: Array, inner: Array, outer: Array, held: tuple[Array, ...]) -> Array:
-    """Effect of thermal and frozen stresses z, t, r (and s) on the outputs of every layer.
+    """Effect of thermal and frozen stresses on the outputs of `LayeredTube.transfer`, per layer.
+
+    `held` contains these stresses: z, t, r (and s).
 
     References
     ----------
@@ -225,7 +228,7 @@ def tube_state(
 
 
 def _polar(xp: Any, tube: LayeredTube) -> Array:
-    """Torsional stiffness divided by 2 pi, of layers without coupling."""
+    """Torsional stiffness divided by 2 pi, if no layer couples twist with tension."""
     square_a, square_b = tube.inner * tube.inner, tube.outer * tube.outer
     return xp.sum(tube.wall[9] * (square_b * square_b - square_a * square_a) / 4, axis=0)
 

@@ -1,7 +1,7 @@
 """Linear model of the held actuator: load, piston, coupled chambers, lines and their ends.
 
-Every response is a ratio of polynomials in s whose coefficients are differentiable by the design's
-numbers; `loop` finds modes, margins and bandwidth from their roots.
+Every response is a ratio of polynomials in s whose coefficients are differentiable functions of the
+design's numbers; `loop` finds modes, margins and bandwidth from their roots.
 """
 
 from __future__ import annotations
@@ -50,9 +50,10 @@ class LinearActuator:
 
 
 class _Eliminated(NamedTuple):
-    """Polynomials of a chamber without its line's far node: m p + e (A v + q) = d G o.
+    """Polynomials e, m, d of a chamber after its line's far end is eliminated.
 
-    v is the piston's speed and q the flow that the other chamber's pressure causes.
+    m p + e (A v + q) = d G o with the chamber's pressure p, the piston's speed v, the flow q that
+    the other chamber's pressure causes, the flow gain G and the spool signal o.
     """
 
     e: Polynomial
@@ -61,11 +62,14 @@ class _Eliminated(NamedTuple):
 
 
 def _eliminated(side: Side, leakage: Array) -> _Eliminated:
-    """Eliminate the far node, (C s + Y) p_f = G o - q, and the line, (R + 1/g + L s) q = p_f - p.
+    """Eliminate the far end's pressure p_f and the line's flow q into the chamber.
+
+    Far end: (C s + Y) p_f = G o - q, with the admittance Y beyond the line. Line:
+    (R + 1/g + L s) q = p_f - p, with the conductance g of the throttle.
 
     Everything is multiplied by the line end's denominator and by the throttle's conductance, so
     that a closed throttle (g = 0) causes no division by zero. With a closed end and no oil at the
-    far node, nothing flows.
+    far end, nothing flows.
     """
     far = add(multiply((0.0, side.far_compliance), side.end.denominator), side.end.numerator)
     if not far:
@@ -100,12 +104,12 @@ def linear_actuator(
     Parameters
     ----------
     side_a, side_b : chambers with lines (`Side`)
-    mass : at the rod's end, rod and piston included [kg]
-    damping : incremental friction damping at the piston [N s/m]
-    coupling : C_AB, volume of one chamber per pressure of the other [m^3/Pa]
-    leakage : across the piston per pressure difference [m^3/s/Pa]
-    seal_stiffness : of sticking seals [N/m]; 0 sliding
-    flexibility : of rod, mount and load cell in series [m/N]
+    mass : m at the rod's end, rod and piston included [kg]
+    damping : B, incremental friction damping at the piston [N s/m]
+    coupling : c, volume change of one chamber per pressure in the other [m^3/Pa]
+    leakage : g, across the piston per pressure difference [m^3/s/Pa]
+    seal_stiffness : k_s of sticking seals [N/m]; 0 for sliding seals
+    flexibility : f of rod, mount and load cell in series [m/N]
 
     Returns
     -------

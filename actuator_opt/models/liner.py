@@ -107,8 +107,8 @@ def layer_thickness_for_strain(
     """Thickness of a layer that limits the bore's hoop strain to a value.
 
     Solves u(t)/r_i = strain by Newton's method on 1/strain, which is nearly linear in t, and by
-    halving the bracket where a step would leave it. A complex step at the end makes every
-    derivative exact.
+    halving the bracket where a step would leave it. A last Newton step carries the imaginary parts,
+    so complex-step derivatives are exact.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def layer_thickness_for_strain(
 
     Notes
     -----
-    Valid: as `tube_state`; where the strain does not fall steadily, one of several solutions.
+    Valid: as `tube_state`; one of several solutions if the strain does not fall steadily with t.
 
     References
     ----------
@@ -205,7 +205,7 @@ def _search(
     start: tuple[Array, Array, Array],
     spare: Array,
 ) -> tuple[Array, Array]:
-    """Thickness near the solution, and the slope of the bore strain there."""
+    """Thickness near the solution, and the slope of the bore strain by thickness there."""
     thickness, value, slope = start
     low, high = 0 * thickness, thickness
     for _ in range(_STEPS):

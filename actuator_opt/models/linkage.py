@@ -84,7 +84,7 @@ def linkage_angle(
 
     Notes
     -----
-    Valid: the elbow on one side; steep at both ends of the reach.
+    Valid: the joint bent to one side; at both ends of the reach, theta changes steeply with l.
 
     References
     ----------

@@ -7,7 +7,7 @@ difference, >= 0. Without interference (delta <= 0) there is no contact: load, w
 zero.
 
 Under pressure the lip lies down on the surface, from the rim towards the body. The part next to the
-root, of length s, still bridges the root clearance g.
+root, of length s, still bridges the root clearance g, the gap between root and surface.
 """
 
 from __future__ import annotations
@@ -187,7 +187,7 @@ def line_load(
 
     While only the rim touches, f = k delta + 3 p l/8 (propped cantilever). Once the lip lies down
     with a free span s, f = (k - 3 D/l^3) delta + p s/3 + 2 D theta/s^2 + p (l - s); the transition
-    is continuous. A span shorter than the lip's thickness is no beam; its bending term keeps its
+    is continuous. A span shorter than the lip's thickness is no beam, so the bending term keeps its
     value at s = t.
 
     Parameters

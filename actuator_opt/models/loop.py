@@ -339,7 +339,7 @@ class PositionLoopMargins(NamedTuple):
 
 
 def margins(*, loop: PositionOpenLoop, gain: Array) -> PositionLoopMargins:
-    """Phase margin, the crossover where it occurs and -3 dB bandwidth of the closed position loop.
+    """Phase margin, the crossover where it occurs, and -3 dB bandwidth of the position loop.
 
     |K N|^2 = |D|^2 gives the crossovers, |D + K N|^2 = 2 |K N|^2 the bandwidth (its first root);
     the phase margin is the smallest angle between K N/D and -1 over all crossovers.
@@ -436,7 +436,9 @@ def ziegler_nichols(*, law: str, ultimate_gain: Array, ultimate_period: Array) -
 
     Notes
     -----
-    Valid: K_u without dry friction, which inflates it: such a loop overshoots by half.
+    Valid: K_u without dry friction, which inflates it.
+
+    With these PI and PID gains, a step response typically overshoots by about half the step.
 
     References
     ----------

@@ -293,7 +293,7 @@ class ViscosityLaw:
 
 
 def _warm(oil: Properties, temperature: Array, pressure: Array) -> Array:
-    """Bulk modulus at the pressure for which it is stated, corrected to a temperature."""
+    """Stated bulk modulus of the oil (at its stated pressure), corrected to `temperature`."""
     modulus, decay = oil("bulk_modulus"), oil("bulk_modulus_decay")
     if decay is None:
         return modulus
@@ -329,7 +329,10 @@ def _tait(oil: Properties, temperature: Array, pressure: Array) -> Array:
 def _compressed(
     modulus: Callable[[Properties, Array, Array], Array], *, sloped: bool
 ) -> Callable[[Properties, Array, Array, Array], Array]:
-    """Density for a bulk modulus that is linear in pressure (`sloped`) or constant."""
+    """Function that gives the density if the bulk modulus is linear in pressure or constant.
+
+    It is linear if `sloped`.
+    """
 
     def density_at(oil: Properties, rho: Array, temperature: Array, pressure: Array) -> Array:
         return density_compressed(

@@ -66,7 +66,7 @@ def rotated(
 ) -> tuple[Array, Array, Array, Array, Array, Array]:
     """Stiffness of a ply in tube axes.
 
-    With Q's invariants: Qzz, Qtt = U1 +- U2 cos 2a + U3 cos 4a, Qzt = U4 - U3 cos 4a,
+    With the invariants U1 to U4 of Q: Qzz, Qtt = U1 +- U2 cos 2a + U3 cos 4a, Qzt = U4 - U3 cos 4a,
     Qss = (U1 - U4)/2 - U3 cos 4a, Qzs, Qts = U2 sin(2a)/2 +- U3 sin 4a.
 
     Parameters

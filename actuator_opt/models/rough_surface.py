@@ -3,7 +3,7 @@
 The film ratio is H = h/sigma: the distance of the mean planes divided by the composite roughness
 of a Gaussian surface. Flow and shear factors are those of isotropic surfaces (Patir and Cheng);
 `rod_share` is V = (sigma_rod/sigma)^2, the part of the composite roughness on the moving rod: 0 for
-a smooth rod under a rough seal, 1 for a rough rod under a smooth seal. It sets the sign of the two
+a smooth rod under a rough seal, 1 for a rough rod under a smooth seal. V sets the sign of the two
 factors for sliding: with a smooth rod, less oil flows than in a smooth gap, and the shear stress on
 the rod is higher.
 """
@@ -137,7 +137,7 @@ def asperity_stiffness(
 
     Returns
     -------
-    contact pressure over F_3/2 [Pa]
+    contact pressure divided by F_3/2 [Pa]
 
     Notes
     -----
@@ -319,8 +319,8 @@ def pressure_flow_factor(*, film_ratio: Array) -> Array:
 def shear_flow_factor(*, film_ratio: Array, rod_share: Array) -> Array:
     """Flow carried by the roughness, divided by (U/2) sigma: phi_s = (2 V - 1) Phi_s.
 
-    Phi_s = 1.899 H^0.98 e^(-0.92 H + 0.05 H^2) to H = 5, 1.126 e^(-0.25 H) beyond. The flow of
-    the motion is (U/2)(h_T + sigma phi_s) for a rod of speed U.
+    Phi_s = 1.899 H^0.98 e^(-0.92 H + 0.05 H^2) to H = 5, 1.126 e^(-0.25 H) beyond. A rod
+    of speed U drags along the flow (U/2)(h_T + sigma phi_s).
 
     Parameters
     ----------
@@ -357,8 +357,8 @@ def shear_flow_factor(*, film_ratio: Array, rod_share: Array) -> Array:
 def shear_stress_factor(*, film_ratio: Array) -> Array:
     """Mean of h/(local gap), phi_f: the shear stress by sliding, relative to a smooth gap.
 
-    The heights have the polynomial density of Patir and Cheng, z = H/3; the gap is cut off at 1/300
-    of its range.
+    The roughness heights have the polynomial density of Patir and Cheng, which spans 3 sigma to
+    either side; local gaps below sigma/100 are left out of the mean.
 
     Parameters
     ----------

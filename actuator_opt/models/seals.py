@@ -64,7 +64,7 @@ def width_as_published(*, section: Array, gland_height: Array) -> Array:
 
 
 class ContactFunction(Protocol):
-    """Function for one quantity of a contact law; it takes all arguments, used or not."""
+    """Function for one quantity of a contact law; it takes all four arguments, used or not."""
 
     def __call__(
         self, *, squeeze: Array, section: Array, youngs_modulus: Array, pressure: Array
@@ -292,7 +292,7 @@ LAWS = kinds(
     # p_max = 4 f0/(pi b0) + p; k_p 0.72 to C 0.15, 0.80 from 0.20.
     SealLaw(
         "plane_strain",
-        "an older fit; under pressure, up to 38 % more force than energised",
+        "an older fit; under pressure, up to 38 % more force than the law energised",
         _plane_strain_load,
         _plane_strain_width,
         _plane_strain_peak,
@@ -328,7 +328,7 @@ LAWS = kinds(
     # b = (pi W/4)[1/(1 - C) - (1 - C)] by area conservation, f = p b (choice).
     SealLaw(
         "stadium",
-        "a flattened ring of unchanged cross-section area, also without force at zero pressure",
+        "a flattened ring of unchanged cross-section area; gives no force at zero pressure either",
         _stadium_load,
         _stadium_width,
         _uniform_peak,

@@ -1,11 +1,12 @@
 """Step seals: a sliding ring of filled PTFE pressed on rod or bore by an O-ring behind it.
 
-The ring is in radial balance. On its back act the line load of the energiser (a law of
-`seals.LAWS`) and, beside the energiser's foot on the pressure side, the pressure. On its front the
-pressure acts on the relief of the running face, on the pressure side of the land. The land carries
-the difference. Loads are per length of circumference; the pressure is the one-sided
-difference, >= 0. If the energiser is not squeezed, there is no contact: load and width are zero.
-The peak pressure is that of the worn-in land, `contact_profile.land_peak`.
+The ring is in radial balance. Two loads act on its back: the line load of the energiser (a law of
+`seals.LAWS`), and the pressure on the part of the back that lies on the pressure side of the
+energiser's contact. On its front, the pressure acts on the relief of the running face, on the
+pressure side of the land. The land carries the difference. Loads are per length of circumference;
+the pressure is the one-sided difference, >= 0. If the energiser is not squeezed, there is no
+contact: load and width are zero. The peak pressure is that of the worn-in land,
+`contact_profile.land_peak`.
 """
 
 from __future__ import annotations
@@ -18,8 +19,8 @@ def wetted_back(*, ring_width: Array, foot_width: Array, section: Array, squeeze
     """Length of the ring's back that the pressure wets, a_b = w - b - W (1 - C)/2, at least 0.
 
     The pressure has pushed the O-ring to the outer side. A dry corner, bounded by the rounded side
-    of the squeezed section, remains between its contact b and the groove's outer wall. Under
-    pressure the contact widens into that corner, so a_b does not change.
+    of the squeezed section, remains between the O-ring's contact and the groove's outer wall. Under
+    pressure this contact widens into that corner, so a_b does not change.
 
     Parameters
     ----------

@@ -44,8 +44,8 @@ _UNIFORM = {
     ("fixed", "pinned"): (2.045748, 5),
     ("fixed", "fixed"): (4.0, 5),
 }
-"""P L^2/(pi^2 EI) of the uniform column, and the number of iteration steps for a stiffness ratio of
-1000."""
+"""For each pair of ends: P L^2/(pi^2 EI) of the uniform column, and the number of iteration steps
+for a stiffness ratio of 1000."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +145,7 @@ class _Waves:
 
 
 def _ordered(ends: Ends, *pairs: Pair) -> tuple[tuple[str, str], list[Pair]]:
-    """Fixity in the order of `_UNIFORM`, and properties of both segments in the same order."""
+    """Swap ends and segment properties if only the swapped ends are in `_UNIFORM`."""
     key = (str(ends[0]), str(ends[1]))
     if key in _MIRRORED:
         return key[::-1], [(second, first) for first, second in pairs]
@@ -308,11 +308,11 @@ def mode_shear_stiffness(
 
     Notes
     -----
-    Valid: EI ratio to 100; load within 0.5 % to P/S_i = 0.1, 4 % to 0.3.
+    Valid: EI ratio to 100; the load is within 0.5 % up to P/S_i = 0.1, within 4 % up to 0.3.
 
     For fixed-pinned columns these errors are 2 % and 11 %, for fixed-fixed columns 2 % and 16 %.
-    For other ends the load is an upper bound, and Engesser's load with the smaller S_i a lower
-    bound.
+    For all other ends the load is an upper bound on the exact one, and Engesser's load with the
+    smaller S_i is a lower bound.
 
     References
     ----------

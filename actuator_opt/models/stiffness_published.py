@@ -100,6 +100,7 @@ def barrel_stiffness_as_published(
 ) -> Array:
     """Barrel expansion stiffness of one chamber, k_c = E A/(2 l (lambda + nu)).
 
+    lambda = (D_o^2 + D^2)/(D_o^2 - D^2), with the bore D and the outer diameter D_o.
     With A = A_A (eq. 22) it equals A^2/(dV/dp). With A = A_B (eq. 23) it is too stiff by the factor
     A_A/A_B, since the wall swells over the full bore in both chambers.
 
@@ -150,6 +151,8 @@ def line_stiffness_as_published(
     poissons_ratio: Array,
 ) -> Array:
     """Expansion stiffness of one chamber's pipe or hose, k = 2 E A^2/(pi D^2 l (lambda + nu)).
+
+    lambda = (D_o^2 + D^2)/(D_o^2 - D^2), with the inner diameter D and the outer diameter D_o.
 
     Parameters
     ----------

@@ -8,11 +8,12 @@ utilisation is
 
 - never negative, at most 1 where the ply carries the present load, and 0 where the ply never fails
   in this mode;
-- proportional to the load without residual stress, and finite at zero stress;
+- proportional to the load if there is no residual stress, and finite at zero stress;
 - infinite (SR = 0) where the residual stress alone fails the ply.
 
 The largest utilisation of the modes is that of the ply; `strength_modes.load_multiplier` gives SR.
-Branches are chosen by real parts, so a complex step stays on the branch of the real value.
+Branches are chosen by the real parts of numbers, so that complex-step
+derivatives are those of the branch that applies.
 
 The criteria use the same few strengths, yet their results for one tube differ by 20-25 %: a
 first-ply pressure means little without the name of its criterion. No uniaxial test gives Tsai-Wu's
@@ -45,7 +46,10 @@ from .strength_modes import (
 
 
 def _largest_root(square: Array, half: Array, left: Array | None) -> Array:
-    """1/SR for the least SR > 0 with square SR^2 + 2 half SR = left (1 if None), else 0."""
+    """1/SR, where SR is the least positive root of square SR^2 + 2 half SR = left.
+
+    The result is 0 if there is no positive root. A `left` of None means 1.
+    """
     inside = half * half + (square if left is None else square * left)
     never = real(inside) < 0
     total = half + namespace(inside).sqrt(where(never, 0.0, inside))
@@ -141,7 +145,8 @@ def tsai_wu_modes(
 
 
 _LEAST = 1e-9
-"""Lower limit of 1 - <r, r>: keeps the result finite if residual stress alone yields the metal."""
+"""Lower limit of 1 - <r, r>, where r is the residual stress: keeps the result finite if the
+residual stress alone yields the metal."""
 
 
 def mises_product(*, first: Stress, second: Stress) -> Array:
@@ -180,7 +185,7 @@ def mises_product(*, first: Stress, second: Stress) -> Array:
 def yield_utilisation(
     *, stress: Stress, yield_strength: Array, residual: Stress | None = None
 ) -> Array:
-    """Utilisation 1/SR of a metal, where the von Mises stress of residual + SR stress is at yield.
+    """Utilisation 1/SR of a metal: residual stress plus SR times the load's stress just yield it.
 
     u = (<s, r> + sqrt(<s, r>^2 + (1 - <r, r>) <s, s>))/(1 - <r, r>), where s is the load's stress,
     r the residual stress and <a, b> = `mises_product`(a, b) / yield^2.

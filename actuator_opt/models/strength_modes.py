@@ -211,7 +211,7 @@ def max_stress_modes(
 
 
 def _strains(stress: Stress, elastic: PlyRatios) -> tuple[Array, Array, Array]:
-    """Strains of a stress, scaled to stresses: E_1 epsilon_1, E_2 epsilon_2 and tau_12."""
+    """Strains that a stress causes, times moduli: E_1 epsilon_1, E_2 epsilon_2 and tau_12."""
     along, across, radial, slip = stress
     e = elastic
     first = along - e.poissons_ratio_12 * across - e.poissons_ratio_13 * radial
@@ -275,7 +275,7 @@ def _exit_root(square: Array, half: Array, left: Array) -> Array:
     """1/SR where the growing load leaves the region square SR^2 + 2 half SR <= left.
 
     The load may start outside and enter the region first. Of the two equal forms
-    (half + root)/left and square/(root - half), the code uses that which loses no digits.
+    (half + root)/left and square/(root - half), the code uses the form that loses no digits.
     """
     inside = half * half + square * left
     root = namespace(inside).sqrt(where(real(inside) > 0, inside, 0.0))
@@ -286,7 +286,7 @@ def _exit_root(square: Array, half: Array, left: Array) -> Array:
 
 
 def _fails_pulled(across: Array, slip: Array, held: Array, held_slip: Array) -> Array:
-    """Whether sigma_2 >= 0 where the growing load fails the ply; shears are divided by S."""
+    """Whether sigma_2 >= 0 at the load that fails the ply; `slip` and `held_slip` are tau/S."""
     across, slip, held, held_slip = real(across), real(slip), real(held), real(held_slip)
     at_zero = held_slip * across - held * slip
     passes = at_zero * at_zero < across * across
@@ -334,7 +334,8 @@ def _fibre_tension_with_shear(
 ) -> Array:
     """Utilisation by (sigma_1/X_t)^2 + share (tau/S)^2 = 1 where sigma_1 >= 0.
 
-    The arguments are stresses divided by X_t or S.
+    `along` and `slip` are the load's stresses divided by X_t and S; `held` and `held_slip` are the
+    residual stresses divided likewise. `share` is the weight of the shear term.
 
     A load may pull a fibre out of residual compression under more shear than this surface allows;
     the fibre then fails where sigma_1 changes sign.
@@ -377,8 +378,8 @@ def hashin_modes(
 
     Returns
     -------
-    utilisation of each mode [-], 0 where the stress at failure has the other sign; infinite where
-    the residual stress alone fails the ply
+    utilisation of each mode [-], 0 where the sign of the stress at failure belongs to the opposite
+    mode; infinite where the residual stress alone fails the ply
 
     Notes
     -----
@@ -442,7 +443,8 @@ def _puck_mode_c(
 ) -> tuple[Array, Array]:
     """1/SR on Puck's surface weight (tau/S)^2 + (sigma_2/Y_c)^2 + sigma_2/Y_c = 0 of mode C.
 
-    Also whether the residual stress `held` is outside this surface.
+    The function also returns whether the residual stress `held` (sigma_2, tau/S) alone lies outside
+    this surface. `limit` is Y_c.
     """
     crush, held_crush = across / limit, held[0] / limit
     weighted = weight * held[1]
@@ -467,7 +469,7 @@ def puck_modes(
     sqrt(t^2 + (1 - p Y_t/S)^2 (sigma_2/Y_t)^2) + p sigma_2/S = 1; mode B
     sqrt(t^2 + (q sigma_2/S)^2) + q sigma_2/S = 1 up to |sigma_2/tau| = R_A/tau_c; beyond it, mode C
     (t/(2 (1 + q_t)))^2 + (sigma_2/Y_c)^2 = -sigma_2/Y_c; fibre sigma_1 = X_t, -sigma_1 = X_c.
-    Here R_A = Y_c/(2 (1 + q_t)), q_t = q R_A/S and tau_c = S sqrt(1 + 2 q_t). Without the roots,
+    Here R_A = Y_c/(2 (1 + q_t)), q_t = q R_A/S and tau_c = S sqrt(1 + 2 q_t). Squared,
     mode A is t^2 + (1/Y_t^2 - 2 p/(S Y_t)) sigma_2^2 + 2 p sigma_2/S = 1 and mode B is
     t^2 + 2 q sigma_2/S = 1.
 

@@ -145,7 +145,7 @@ def reducing_valve_acceleration(
     """Acceleration q'' of a reducing valve's flow, q'' = w^2 (G (p_set - p) - q) - 2 zeta w q'.
 
     The spool is a second-order system. The state q has no limits: it may exceed the flow to which
-    `reducing_valve_flow` limits the valve, and then takes part of a period to return.
+    `reducing_valve_flow` limits the valve, and then takes part of an oscillation to return.
 
     Parameters
     ----------
@@ -201,7 +201,8 @@ def reducing_valve_flow(
     pressure : p of the line whose pressure the valve regulates [Pa]
     set_pressure : p_set [Pa]
     largest_flow : q_max of the fully open spool, in either direction [m^3/s]
-    passive_conductance : g of the spool's opening, felt without any spool motion [m^3/s/Pa]
+    passive_conductance : g, change of flow per unit pressure while the spool stays in place
+        [m^3/s/Pa]
 
     Returns
     -------

@@ -300,7 +300,7 @@ def stripping_reductions(*, strength_ratio: Array) -> tuple[Array, Array]:
 
 @geometry
 def spread_stress(*, force: Array, thickness: Array, engagement: Array) -> Array:
-    """Hoop stress in a thin ring with a female thread, whose flanks the axial force spreads.
+    """Hoop stress in a thin ring with a female thread, which the force on the flanks widens.
 
     sigma = p_s d_2/(2 t) = F tan(30 deg)/(2 pi L_e t), as p_s = F tan(30 deg)/(pi d_2 L_e) is the
     radial pressure on the thread.

@@ -1,10 +1,10 @@
-"""Round lines as functions of frequency, plugged side branches, and waves after a sudden stop.
+"""Frequency response of round hydraulic lines, plugged side branches, waves after a sudden stop.
 
-The distributed model gives the impedance at one end. Results are complex; arguments are real and
-the convention is e^(+i omega t), so that a result at -f is the conjugate of that at f. Pressure and
-flow at the near end follow from those at the far end by a matrix, p1 = A p2 + B q2,
-q1 = C p2 + D q2, flow positive from near to far [Merritt1967]. The friction models have
-the names that `lines` gives them.
+The distributed model gives the impedance p/q at one end of a line. Results are complex; arguments
+are real and the convention is e^(+i omega t), so that a result at -f is the conjugate of that at f.
+Pressure and flow at the near end follow from those at the far end by a matrix, p1 = A p2 + B q2,
+q1 = C p2 + D q2, flow positive from near to far [Merritt1967]. The friction
+models `lossless`, `steady` and `distributed` are explained in `lines`.
 
 A plugged side branch (T-pipe) whose length is an odd number of quarter waves takes in flow without
 any pressure oscillation at the junction; the pressure oscillates most at the plugged end. With an
@@ -41,6 +41,9 @@ def line_matrix(
     friction: str = "distributed",
 ) -> LineMatrix:
     """Matrix of a distributed line: A = D = cosh Gamma, B = Z_c sinh Gamma, C = sinh Gamma/Z_c.
+
+    Gamma is the complex propagation constant times the length, and Z_c is the characteristic
+    impedance.
 
     Parameters
     ----------
@@ -160,7 +163,7 @@ def _shunt_admittance(
 
 
 def _finite(value: Array) -> tuple[Array, Array]:
-    """Mask of the finite values, and the values with zeros in place of the others."""
+    """Mask of the finite values, and the values with zeros in place of those not finite."""
     xp = namespace(value)
     finite = xp.isfinite(value)
     return finite, where(finite, value, 0.0)
@@ -289,7 +292,7 @@ def plugged_branch_impedance(
     """Impedance at the mouth of a plugged T-pipe, Z_c coth Gamma.
 
     It is small at odd numbers of quarter waves and large at even numbers. Without friction it is
-    -i Z_c cot(omega l/a).
+    -i Z_c cot(omega l/a). `line_matrix` defines Gamma and Z_c.
 
     Parameters
     ----------

@@ -1,9 +1,10 @@
-"""Bounds from trial shapes: stiffness of two chambers in one wall, critical load of a column.
+"""Upper bounds from assumed shapes: stiffness of two chambers in one wall, load of a column.
 
-Stiffness: in the trial motion the piston moves by 1, and one chamber's wall grows by the volume by
-which the other chamber's wall shrinks. One end moves too: that on which a chamber's pressure pulls.
-The energy of oil and wall in this motion bounds the stiffness from above [Gurtin1972]. Critical
-load: any trial shape of a stepped column gives an upper bound.
+Stiffness: an assumed (trial) motion of barrel and piston has at least the energy of the true motion
+[Gurtin1972], so its energy gives an upper bound on the stiffness. In the trial motion the piston
+moves by 1, the wall of one chamber widens, and the wall of the other chamber narrows by the same
+volume. The cylinder end that a chamber's pressure pulls on moves too. Critical load: any trial
+shape of a buckled stepped column gives an upper bound.
 """
 
 from __future__ import annotations
@@ -18,10 +19,11 @@ Chamber: TypeAlias = Literal["a", "b"]
 
 @dataclass(frozen=True, slots=True)
 class TrialMotion:
-    """Trial motions of wall and end per unit piston motion; the rest compresses the oil.
+    """Assumed (trial) motions of wall and cylinder end per unit piston motion.
 
-    `exchange` is the volume by which the wall of one chamber grows and that of the other shrinks,
-    divided by area B. `pull` is the motion of the end on which a chamber's pressure pulls.
+    `exchange` is a volume divided by the piston area B: the wall of one chamber widens by this
+    volume, and the wall of the other chamber narrows by it. `pull` is the motion of the end that a
+    chamber's pressure pulls on. The oil takes up the rest of the piston's displacement.
     """
 
     exchange: Array
@@ -43,7 +45,7 @@ def least_energy_motion(
     """Trial motion that gives `trial_motion_stiffness` its least value for one actuator.
 
     v = (A_a/(A_b c_a) + 1/c_b)/(1/c_a + 1/c_b + 1/w_a + 1/w_b), where s is added to the c of the
-    pulling chamber. c, w and s are the compliances of oil, wall and stretch.
+    pulling chamber (c, w and s are explained below).
 
     Parameters
     ----------
@@ -94,10 +96,10 @@ def trial_motion_stiffness(
     stretch: Array,
     pulling: Chamber,
 ) -> Array:
-    """Upper bound on the stiffness of two closed chambers whose wall grows and stretches.
+    """Upper bound on the stiffness of two closed chambers whose common wall is elastic.
 
     k <= ((1 - h_a) A_a - v A_b)^2/c_a + ((1 - h_b - v) A_b)^2/c_b + (v A_b)^2 (1/w_a + 1/w_b)
-    + (h A)^2/s, with h and A of the pulling chamber; the other chamber's h is 0.
+    + (h A)^2/s, where h and A are those of the pulling chamber; the other chamber's h is 0.
 
     Parameters
     ----------
@@ -118,8 +120,8 @@ def trial_motion_stiffness(
     -----
     Valid: one wall over both chambers.
 
-    One part of the wall grows by the volume by which the other shrinks. The coupling energy of
-    radial growth and axial strain is therefore zero over the whole wall.
+    One part of the wall widens and the other narrows by the same volume. The energy that couples
+    radial growth with axial strain is therefore zero over the whole wall.
 
     References
     ----------
@@ -146,10 +148,11 @@ def trial_motion_stiffness(
 
 @dataclass(frozen=True, slots=True)
 class TrialMode:
-    """Integrals of a stepped column's bent shape between two pins; its deflection at the step is 1.
+    """Integrals over the bent shape of a stepped column between two pins.
 
-    For each segment, scaled to length 1: the integrals of the squared deflection and of the squared
-    slope.
+    For each of the two segments: the integral of the squared deflection (`square_1`, `square_2`)
+    and of the squared slope (`slope_1`, `slope_2`). The shape is scaled to a deflection of 1 at the
+    step, and each segment to a length of 1.
     """
 
     square_1: Array

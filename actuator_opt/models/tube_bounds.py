@@ -1,4 +1,4 @@
-"""Bounds for all layered tubes of given layers: bore growth, axial stiffness, pressure.
+"""Bounds on layered tubes: bore growth, axial stiffness and pressure before damage.
 
 They are energy bounds: any compatible displacement stores at least the energy of the true
 displacement, and any equilibrium stress at least the true complementary energy [Gurtin1972]. The
@@ -80,7 +80,7 @@ def least_growth(
 def axial_stiffness(
     *, moduli: Sequence[Array], thicknesses: Sequence[Array], inner_radius: Array
 ) -> Array:
-    """Axial stiffness of layers in parallel, sum q_k A_k.
+    """Axial stiffness of layers in parallel: sum of q_k A_k, modulus times cross-section area.
 
     For a bonded tube the sum is a lower bound if q_k are the moduli of layers that are free to
     contract, and an upper bound if they are the moduli of layers that all contract alike. With

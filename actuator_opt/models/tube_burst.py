@@ -1,7 +1,7 @@
 """Burst of the exact layered tube by ply discount: leak, liner yield and fibre failure.
 
 The sequence of failures is that of `burst_ladder`. Stresses come from `layered_tube` at both faces
-of every layer, so that the fibres or the liner at the bore govern where they are stressed most.
+of every layer, because the stresses at the two faces differ.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def _isotropic(modulus: Array, ratio: Array) -> dict[str, Array]:
 
 
 def _recovery(xp: Any, tube: LayeredTube) -> Array:
-    """Coefficients for a ply's stresses 1, 2, 12 by hoop strain, radial stress, axial strain."""
+    """Factors from hoop strain, radial stress and axial strain to a ply's stresses 1, 2, 12."""
     c11, c12, c13, c22, c23, _, c66 = tube.ply
     _, _, zr, _, tr, rr, *_ = tube.wall
     along, slip = (1 + xp.cos(2 * tube.angle)) / 2, xp.sin(2 * tube.angle) * c66
@@ -107,19 +107,19 @@ class _Tube:
 
     @property
     def sorted(self) -> bool:
-        """Whether the ladder lists the layers in the order of the wall."""
+        """Whether the burst calculation lists the layers in the order of the wall, bore first."""
         return self.order == tuple(range(len(self.order)))
 
     def _chosen(self, table: Array, mask: Array | None) -> Array:
-        """The table with failed values for the layers in `mask`, which is in the wall's order."""
+        """Values from `table`: failed for layers in `mask` (bore first), intact for all others."""
         intact = table[:, :, :, 0, ...]
         return intact if mask is None else where(mask, table[:, :, :, 1, ...], intact)
 
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
         """Stresses per unit pressure, and stresses from clamp, cooling and yielded metals.
 
-        The latter are None if absent. One pass through the layers gives both: an axis before the
-        axes of the batch has the two loads.
+        The second result is None if there are no such stresses. One pass through the layers gives
+        both results: an additional axis, before the axes of the batch, holds the two loads.
         """
         xp = namespace(self.axial)
         mask = soft
@@ -204,7 +204,7 @@ class _Tube:
 def _both_states(
     xp: Any, layers: Sequence[WallLayer], inner_radius: Array, residual: float, dims: int
 ) -> LayeredTube:
-    """The tube with intact and failed layers, on an axis before the axes of the designs."""
+    """The tube with every layer intact and failed, on an axis before the axes of the designs."""
 
     def spread(value: Array) -> Array:
         """The value reshaped to the axes of the designs, after the axis of the states."""
@@ -268,8 +268,8 @@ def burst_of_tube(
 
     The maximum-stress criterion applies at both faces of each layer. A matrix or shear failure
     multiplies E2, G12, nu12 and nu23 by `residual` for all plies of that material and |angle|, and
-    removes their matrix limits. A yielding metal keeps the deviator of its stress and its bulk
-    modulus. Burst is the largest pressure reached until a fibre fails.
+    removes their limits of matrix and shear stress. A yielding metal keeps the deviator of its
+    stress and its bulk modulus. Burst is the largest pressure reached until a fibre fails.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The layers of the exact tube: isotropic, orthotropic or monoclinic, bonded, of any thickness.
+"""Exact elastic solution for each layer of a tube: isotropic to monoclinic, any thickness.
 
 Generalised plane strain: eps_z is constant, eps_t = u/r, eps_r = u', gamma_zt = gamma_0 r. In a
 layer of inner radius a, with x = r/a, tau = ln x, l^2 = C_tt/C_rr, radial equilibrium has the

@@ -1,6 +1,7 @@
-"""Proportional valve with four edges: flows, effect of viscosity, motion and geometry of the spool.
+"""Proportional valve with four control edges: flows, effect of viscosity, spool motion, geometry.
 
-A signal U > 0 opens the edges P to A and B to T; U < 0 opens the edges A to T and P to B.
+An edge is the orifice between two ports. A signal U > 0 opens the edges P to A and B to T; U < 0
+opens the edges A to T and P to B.
 """
 
 from __future__ import annotations

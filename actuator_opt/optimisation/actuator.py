@@ -34,12 +34,14 @@ from .kkt import KktResidual
 from .problem import BoxProblem, ParametricProblem, PointValues, Vector
 
 Fault = Callable[[str, str, str], Diagnostic]
-"""Function of PATH, message and remedy that builds the Diagnostic for a faulty variable, with the
-variable's line in the file."""
+"""Function that builds the Diagnostic for a faulty variable, with the variable's line in the file.
+Its arguments are PATH, message and remedy."""
 
 
 def variant(subject: PreparedDesign, values: Mapping[str, Any], library: Library) -> PreparedDesign:
-    """Prepare the design with other values by PATH; a new material is taken from the library.
+    """Prepare the design with some values replaced; materials new to it come from the library.
+
+    `values` maps each PATH, such as "barrel.bore", to its new value.
 
     Raises
     ------
@@ -109,7 +111,10 @@ def worst_value(computed: MetricArrays, metric: str, cases: tuple[str, ...], aim
 
 
 def goal_of(subject: PreparedDesign) -> Goal:
-    """The objective of a design file; present values scale the metrics of a weighted sum."""
+    """The objective of a design file.
+
+    A weighted sum divides each metric by the value that it has at the design of the file.
+    """
     objective = subject.design.objective
     sign = 1.0 if objective.aim == "min" else -1.0
     weights = objective.minimise if objective.minimise is not None else objective.maximise
@@ -126,7 +131,10 @@ def goal_of(subject: PreparedDesign) -> Goal:
 
 @dataclass
 class Refusals:
-    """Counts designs for which a custom metric has no value although their mass has one."""
+    """Counts designs at which a custom metric has no value although the built-in models have.
+
+    The built-in models count as having values if they give the design a mass.
+    """
 
     names: frozenset[str] = frozenset()
     points: int = 0
@@ -134,7 +142,7 @@ class Refusals:
     raised: dict[str, str] = field(default_factory=dict)
 
     def add(self, computed: MetricArrays, count: int) -> None:
-        """Count the designs of one evaluation that lack a value."""
+        """Add one evaluation of `count` designs, and count those at which a metric has no value."""
         self.points += count
         sound = np.isfinite(np.broadcast_to(computed.metrics["mass"][""], (count,)))
         for name in self.names:
@@ -283,7 +291,10 @@ def _margins(
     count: int,
     reserves: Mapping[str, float],
 ) -> Array:
-    """Margins (rows, designs) of all limits, less their reserves, in one vectorised operation."""
+    """Margins (rows, designs) of all limits, in one vectorised operation.
+
+    From each margin its reserve is subtracted: an additional margin required because of scatter.
+    """
     if not rows:
         return np.empty((0, count))
     values, bounds = [], [row.limit_of.value(numbers) for row in rows]
@@ -459,6 +470,8 @@ RELATIVE_STEP = 1e-5
 class Responses:
     """Derivatives at one point with respect to q parameters, bounds included.
 
+    nf is the number of free variables.
+
     Parameters
     ----------
     names, values : names and values of the parameters
@@ -484,7 +497,10 @@ class Responses:
 def responses(
     parametric: ParametricProblem, evaluator: Evaluator, point: Point, weights: Vector
 ) -> Responses:
-    """Derivatives by the parameters; `weights` (rows,) are the rows' factors in the Lagrangian."""
+    """Derivatives of all results by the parameters.
+
+    `weights` (rows,) are the factors of objective, constraints and equalities in the Lagrangian.
+    """
     count, nf = len(parametric.parameters), evaluator.space.size
     steps = RELATIVE_STEP * np.where(parametric.parameters == 0, 1.0, parametric.parameters)
     rows, fallen = _row_slopes(parametric, point, steps)
@@ -529,8 +545,8 @@ def with_bounds(derivatives: Responses, evaluator: Evaluator, multipliers: Vecto
 def perturbed(parametric: ParametricProblem, name: str, k: int, value: float) -> BoxProblem | None:
     """The problem with parameter k, or a variable's bound, set to `value`.
 
-    A k beyond the last parameter means the bound that `name` labels. The result is None if a lower
-    bound would exceed its upper bound.
+    If k is beyond the last parameter, the bound labelled `name` is changed instead. The result is
+    None if a lower bound would exceed its upper bound.
     """
     if k < len(parametric.parameters):
         parameters = parametric.parameters.copy()

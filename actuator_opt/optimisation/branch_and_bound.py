@@ -4,8 +4,8 @@ The search first re-optimises all roundings of the continuous optimum together. 
 most promising box (part of the search space) again and again; among nearly equal boxes, it takes
 the newest, which is the most divided. The bound of a box is the objective of its continuous
 optimum, which starts from the optimum of the enclosing box. This optimum is local, so the best
-point of the search is not proven to be the best of all. If a small box has no other free variables,
-all its points are evaluated in one model call.
+point of the search is not proven to be the best of all. If a small box has no continuous free
+variables, all its points are evaluated in one model call.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class Listed:
         return np.unique(self.rows[list(rows), column])
 
     def parts(self, rows: Rows, row: int) -> list[Rows]:
-        """Split all rows but `row` into parts that lie on one side of `row` in some variable."""
+        """Split all rows except `row` into parts, each below or above `row` in one variable."""
         parts: list[Rows] = []
         for column, value in enumerate(self.rows[row]):
             of = self.rows[:, column]
@@ -87,7 +87,11 @@ class Listed:
         return rows[int(positions[0])] if len(positions) else None
 
     def around(self, x: Vector) -> list[int]:
-        """For each rounding up or down of a point (k,), its nearest row; on a row, only that."""
+        """Rows to which a point (k,) can be rounded, the nearest first.
+
+        For each combination of roundings (every value up or down), the nearest such row. A point
+        that is on a row has only this row.
+        """
         all_rows = tuple(range(len(self.rows)))
         own_row = self.at(x, all_rows)
         if own_row is not None:
@@ -105,7 +109,7 @@ class Listed:
 
 
 def with_rows(box: Box, k: int, rows: Rows) -> Box:
-    """The box (see `Box`) with other rows for group k."""
+    """A copy of the box (see `Box`) in which group k has the given rows."""
     return (*box[:k], rows, *box[k + 1 :])
 
 
@@ -129,7 +133,8 @@ MOST_MISSED = 4
 """Maximum number of combinations examined to find the least infeasible combination."""
 
 MOST_LISTED = 1024
-"""A box with at most so many combinations, and no other free variable, is evaluated in one call."""
+"""A box with at most this many combinations, and no continuous free variable, is evaluated in one
+call."""
 
 TIE = 0.01
 """Bounds this close count as equally promising. The difference is relative to the distance between
@@ -271,7 +276,7 @@ class Memory:
         return end[1].x, self.hessians[box]
 
     def note(self, box: Box, evaluator: Evaluator, end: Nearest) -> None:
-        """Store the result of a box, unless a few steps from a stored result lead to it."""
+        """Store the result of a box, unless it was reached in a few steps from a stored result."""
         if end.optimum is not None and not (end.followed and box in self.ends):
             self.ends[box] = evaluator, end.optimum
             self.hessians.pop(box, None)
@@ -318,7 +323,7 @@ class _Run:
 
     @property
     def best(self) -> float:
-        """The objective that a further design must beat."""
+        """The objective that a new design must beat to be of interest."""
         return min(self.cutoff, self.lowest)
 
     def note(self, assignment: Assignment, objective: float) -> None:
@@ -351,7 +356,7 @@ class _Run:
     def reoptimised_together(
         self, assignments: list[Assignment]
     ) -> list[tuple[Assignment, Vector | None]]:
-        """Re-optimise assignments together; return the unsolved, each with a start or None."""
+        """Re-optimise assignments together; return those not solved, each with a start or None."""
         present = self.x[self.index]
         point, evaluator = self._nearest_point(present, present, self.x)
         names = [self.problem.names[i] for i in self.index]
@@ -415,7 +420,7 @@ class _Run:
         return self.only_listed and math.prod(map(len, box)) <= MOST_LISTED
 
     def evaluate(self, box: Box) -> None:
-        """Evaluate every assignment of a box without other free variables."""
+        """Evaluate every assignment of a box that has no continuous free variables."""
         assignments = list(itertools.product(*box))
         points = np.repeat(self.x[:, None], len(assignments), axis=1)
         for group, rows in zip(self.listed, np.array(assignments).T, strict=True):
@@ -430,7 +435,7 @@ class _Run:
         self.ends.append((self.reference, None))  # the box has no optimum for comparison
 
     def relax(self, parts: Sequence[Box], x: Vector, boxes: _Boxes) -> None:
-        """Keep the boxes whose continuous optimum is good enough to improve on the best design."""
+        """Evaluate small boxes; keep larger ones if their continuous optimum beats the best."""
         large = []
         for box in parts:
             if self.can_evaluate(box):
@@ -521,7 +526,7 @@ class _Run:
         return assignment, point
 
     def _restricted(self, lower: Vector, upper: Vector) -> Evaluator:
-        """The problem with these bounds on its listed variables."""
+        """Evaluator of the problem, with these bounds on the listed variables."""
         lowest, highest = self.problem.lower.copy(), self.problem.upper.copy()
         lowest[self.index], highest[self.index] = lower, upper
         evaluator = Evaluator(replace(self.problem, lower=lowest, upper=highest, start=None))

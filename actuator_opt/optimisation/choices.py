@@ -66,7 +66,7 @@ class ChoiceSettings:
     until: float | None
 
     def left(self, share: float = 1.0, began: float = 0.0) -> float | None:
-        """Seconds that remain of a share of the time from `began` to the limit, or None."""
+        """Seconds left of a share of the time from `began` to the limit; None without a limit."""
         if self.until is None:
             return None
         return began + share * (self.until - began) - time.perf_counter()
@@ -80,7 +80,7 @@ class ChoiceSearch:
     looks: list[Look] = field(default_factory=list)
 
     def mendable(self) -> frozenset[str]:
-        """Checks that the design misses but that another combination meets."""
+        """Checks that some combinations miss and others meet."""
         lists = [
             look.checks for look in self.looks if look.how not in ("not tried", "not possible")
         ]
@@ -415,10 +415,10 @@ def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
 
 
 _SIZING = {
-    "found": "the best design with listed sizes",
+    "found": "the search found its best design with listed sizes",
     "sizes of the best": "computed with the listed sizes of the best design",
-    "none better": "no better design with listed sizes",
-    "none": "no design with listed sizes",
+    "none better": "the search found no better design with listed sizes",
+    "none": "the search found no feasible design with listed sizes",
     "no size fits": "no listed size lies within the bounds",
 }
 """Words for each result of the search for listed sizes."""
@@ -432,7 +432,7 @@ _WAYS: dict[How, str] = {"multistart": "many starts: ", "quick": "quick look: ",
 
 
 def _sentence(choices: Choices) -> str:
-    """Sentence with the numbers of combinations: all, feasible, and searched in each way."""
+    """Sentence that counts the combinations: all, feasible ones, and those searched in each way."""
     total, feasible = len(choices.combinations), choices.feasible
     result = (
         f"none of {total} combinations meets all requirements; the combination that misses them "

@@ -53,8 +53,8 @@ ENOUGH = 3
 """The search for a kind of remedy stops after this number of remedies: our choice."""
 
 WORTH = 0.1
-"""A number is only tried if doubling or halving it would, by its slope, close at least this share
-of the missed margins. Our choice."""
+"""A number is only tried if its derivative predicts that doubling or halving it makes up at least
+this share of the missed margins. Our choice."""
 
 DIGITS = 4
 """Significant digits of a dimension; a design with the rounded dimension confirms the remedy."""
@@ -242,7 +242,8 @@ def _least_first(enough: Sequence[Cure]) -> tuple[Cure, ...]:
 def with_variables(actuator: ActuatorProblem, paths: Sequence[str]) -> BoxProblem:
     """The problem with the numbers at `paths` as further variables, fixed at their present values.
 
-    Includes the limits that only these variables affect, but no checks that no variable can fix.
+    Limits that only these variables affect are included. Missed checks that no variable can correct
+    are left out.
     """
     subject, numbers = actuator.subject, actuator.subject.numbers
     values = {path: numbers[path] for path in paths}

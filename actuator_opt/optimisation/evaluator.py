@@ -55,6 +55,9 @@ class Point:
 class Evaluator:
     """Values, gradients and Hessians of a problem, in solver coordinates.
 
+    The rows of an array are the objective, the constraints and the equalities; nf is the number of
+    free variables.
+
     Parameters
     ----------
     problem : the problem
@@ -91,7 +94,7 @@ class Evaluator:
         self.trace: list[tuple[int, float, float]] = []
         self.best: Point | None = None
         self.precomputed: dict[bytes, npt.NDArray[np.generic]] = {}
-        """By a point's coordinates: rows computed in advance at the `columns` of that point."""
+        """By a point's coordinates: results computed in advance at the complex points `columns`."""
         self._cache: dict[bytes, Point] = {}
 
     @property
@@ -127,7 +130,7 @@ class Evaluator:
         return self._store(z, rows, slopes)
 
     def adopt_check(self, checked: Evaluator) -> None:
-        """Reuse the gradient check of another evaluator whose problem has the same rows."""
+        """Reuse the gradient check of another evaluator; its problem has the same constraints."""
         self.complex_works = checked.complex_works
         self.difference_rows = checked.difference_rows
 
@@ -137,7 +140,7 @@ class Evaluator:
         return self.complex_works and not self.difference_rows.any() and self.space.size > 0
 
     def _store(self, z: Vector, rows: Vector, slopes: Vector | None) -> Point:
-        """Count a point, and store it with its rows in the cache."""
+        """Count a point, and store it with its values in the cache."""
         valid = bool(np.isfinite(rows).all())
         self.evaluations += 1
         self.invalid += not valid
@@ -154,7 +157,7 @@ class Evaluator:
         return point
 
     def enter(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
-        """The point at z (nf,), given the rows computed at its `columns`."""
+        """The point at z (nf,), from results computed before at the complex points `columns`."""
         return self._store(z, *self.values_and_slopes(rows))
 
     def enter_precomputed(self) -> None:
@@ -174,7 +177,7 @@ class Evaluator:
         self.trace.append((self.evaluations, point.objective, point.violation))
 
     def batch(self, z: Vector) -> Vector:
-        """Rows (rows, k) at coordinates (nf, k), in one call; NaN where the model is undefined."""
+        """Values (rows, k) at coordinates (nf, k), in one call; NaN where the model has none."""
         return self.screen(self.problem.rows(self.space.to_x(z)))
 
     @staticmethod
@@ -228,7 +231,7 @@ class Evaluator:
         return self.space.complex_steps(self.space.to_x(z))
 
     def values_and_slopes(self, rows: npt.NDArray[np.generic]) -> tuple[Vector, Vector]:
-        """Values (rows, 1) and gradients (rows, nf) of a point, from the rows of its `columns`.
+        """Values (rows, 1) and gradients (rows, nf) of a point, from results at its `columns`.
 
         Outside its domain, a complex root or logarithm has a large imaginary part instead of NaN.
         Such rows become NaN.
@@ -306,7 +309,7 @@ class Evaluator:
     def check_gradients(self, point: Point) -> tuple[str, ...]:
         """Compare the complex step with finite differences; return warnings.
 
-        Rows that differ use finite differences from then on.
+        The objective or constraints that differ use finite differences from then on.
         """
         if not self.problem.has_complex_step:
             return (

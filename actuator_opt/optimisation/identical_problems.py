@@ -1,10 +1,10 @@
-"""Detects problems for which a search of listed sizes gives the same result.
+"""Detects problems for which a search of listed sizes would repeat an earlier search.
 
 Combinations of choices often differ only in numbers that enter inactive limits, such as the
 viscosity of oils with the same bulk modulus. The search of listed sizes depends on the result of
 each box (part) of the search space: the box's optimum or its least infeasible point. If values and
-slopes of two problems agree at these points, both searches give the same results. A limit may have
-different values if its distance from these points exceeds their accuracy.
+slopes of two problems agree at these points, both searches give the same results. A limit may
+differ between the problems if all these points are farther from it than their accuracy.
 """
 
 from __future__ import annotations

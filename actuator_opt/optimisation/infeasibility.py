@@ -34,8 +34,8 @@ class Conflict:
 
     Parameters
     ----------
-    joint : limits that must be relaxed together, by the least total; largest first; empty if only
-        laws conflict
+    joint : limits to relax together so that the total relaxation is least, the most relaxed first;
+        empty if only laws conflict
     sole : for each conflicting requirement, the relaxation that is enough if only it is relaxed
     bounds : bounds of variables that are active at `x`, the most helpful first
     laws : constraints that cannot be relaxed but conflict with each other
@@ -146,7 +146,7 @@ def _smaller_relaxation(
 def _conflicting(
     evaluator: Evaluator, point: Point, quality: kkt.KktResidual
 ) -> npt.NDArray[np.bool_]:
-    """Mask of the constraints that cause the conflict, even if all others are dropped.
+    """Mask of the constraints that conflict with each other even if all others are dropped.
 
     The multipliers of the relaxation prove this locally, and globally for a convex problem. If the
     relaxation is not optimal, every active constraint counts as a possible cause.

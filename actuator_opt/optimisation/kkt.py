@@ -43,7 +43,7 @@ class Active:
 
     Parameters
     ----------
-    gradients : gradients of the margins (a, nf)
+    gradients : gradients of the margins (a, nf), for a active limits and nf free variables
     margins : margins (a,), at least 0 where met
     constraint, lower, upper : indices of the active constraints, and of the variables at their
         lower and upper bounds; `gradients` and `margins` are in this order
@@ -311,7 +311,8 @@ def _curvature(
 
 
 DAMPING = 1e3
-"""Weight of the condition margin times multiplier = 0 in multipliers estimated near an optimum."""
+"""Weight of the condition "margin times multiplier is 0" when multipliers are estimated near an
+optimum."""
 FEASIBLE = 1e-9
 """Violation up to which a point from Newton steps counts as exactly feasible."""
 RADIUS = 0.5

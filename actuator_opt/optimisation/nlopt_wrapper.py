@@ -79,17 +79,17 @@ ALGORITHMS = _table("""
  LD_VAR1                    |local  |- |1000| 2000| shifted limited-memory variable metric, rank 1
  LD_VAR2                    |local  |- |1000| 2000| shifted limited-memory variable metric, rank 2
  LN_BOBYQA                  |local  |- | 200| 2000| quadratic models without gradients, Powell
- LN_NEWUOA_BOUND            |local  |- | 200| 2000| quadratic models without gradients, older
+ LN_NEWUOA_BOUND            |local  |- | 200| 2000| forerunner of BOBYQA, without gradients
  LN_NELDERMEAD              |local  |- | 100| 2000| simplex, Nelder and Mead
  LN_SBPLX                   |local  |- | 200| 2000| simplex in subspaces, Rowan
  LN_PRAXIS                  |local  |- | 100| 2000| principal axes, Brent
  GN_ISRES                   |global |ie| 200| 8000| evolution strategy with stochastic ranking
  GN_ORIG_DIRECT             |global |i |  30| 1000| dividing rectangles, original code
- GN_ORIG_DIRECT_L           |global |i |  30| 1000| dividing rectangles, biased, original code
+ GN_ORIG_DIRECT_L           |global |i |  30| 1000| dividing rectangles, locally biased, original
  GN_AGS                     |global |i |  10| 5000| Peano curves with Lipschitz bounds
  GN_DIRECT                  |global |- |  30| 5000| dividing rectangles
  GN_DIRECT_L                |global |- |  30| 5000| dividing rectangles, locally biased
- GN_DIRECT_L_RAND           |global |- |  30| 5000| dividing rectangles, biased, randomised
+ GN_DIRECT_L_RAND           |global |- |  30| 5000| dividing rectangles, locally biased, randomised
  GN_CRS2_LM                 |global |- | 200|10000| controlled random search
  GN_ESCH                    |global |- | 200|10000| evolutionary algorithm
  GD_STOGO                   |global |- |  10| 1500| branch and bound with gradients

@@ -60,7 +60,11 @@ class FrontPoint:
 
 @dataclass(frozen=True, slots=True)
 class Knee:
-    """The design where the front bends most; its normalised distance from the anchors' plane."""
+    """The design where the front bends most: its index, and how far the front bulges there.
+
+    `depth` is the normalised distance from the plane (for two objectives, the line) through the
+    designs that are best in one objective each.
+    """
 
     index: int
     depth: float
@@ -81,7 +85,7 @@ class ParetoFront(Displayed):
     passed : objectives of dominated designs that the search found
     gaps : normalised distances between neighbours; for three or more objectives, to the nearest
         design
-    wide : with two objectives, gaps above three times the median and the reason for them
+    wide : with two objectives, gaps above three times the median, and whether the front jumps there
     checked, improved : number of checking searches between designs, and how many improved the front
     failed : number of levels without a design nearby
     infeasibility : reason why no design is feasible, if there is no front for that reason
@@ -122,7 +126,7 @@ class ParetoFront(Displayed):
 
     @property
     def steps(self) -> tuple[float, ...]:
-        """The gaps that are not jumps."""
+        """Distances between neighbouring designs of the front, except across jumps."""
         jumps = {gap.after for gap in self.jumps}
         return tuple(gap for k, gap in enumerate(self.gaps) if k not in jumps)
 

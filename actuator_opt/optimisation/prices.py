@@ -44,7 +44,10 @@ linear programming is used."""
 
 @dataclass(frozen=True)
 class Optimum:
-    """Vectors and matrices at an optimum; margins are of constraints, lower and upper bounds.
+    """Vectors and matrices at an optimum.
+
+    The M margins are those of the constraints, then of the lower and of the upper bounds. The
+    number of free variables is nf.
 
     Parameters
     ----------
@@ -266,9 +269,9 @@ def _without_copies(
 
 
 def _vertices(rows: Vector, target: Vector, rank: int, free_count: int) -> Vector:
-    """Vertices (v, a) of {m : rows.T @ m = target, m >= 0}; `free_count` entries have any sign.
+    """Vertices (v, a) of {m : rows.T @ m = target, m >= 0}.
 
-    These entries are the last.
+    The last `free_count` entries of m may have either sign.
     """
     count = len(rows)
     vertices = []

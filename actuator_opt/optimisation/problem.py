@@ -174,7 +174,8 @@ class ParametricProblem:
 
 
 ON_BOUND = 1e-12
-"""A coordinate this close to a bound, as a share of the range, is set to the bound (1e-23 to 0)."""
+"""A coordinate this close to a bound, as a share of the range, is set to the bound (for
+example, 1e-23 to 0)."""
 
 
 @dataclass(frozen=True)
@@ -220,7 +221,7 @@ class Space:
         return np.asarray(np.clip(z, self.lower, self.upper))
 
     def to_x(self, z: Vector, *, inside: bool = True) -> Vector:
-        """Points (n, k) at coordinates z (nf, k), exactly on a bound where z is.
+        """Points (n, k) at coordinates z (nf, k); a coordinate on a bound gives exactly the bound.
 
         `inside=False` permits points beyond the bounds, for finite-difference steps.
         """

@@ -66,8 +66,8 @@ class Look:
     """Missed checks that no variable can correct."""
     solution: Solution | None = None
     hessian: ScaledHessian | None = None
-    """Hessian at the optimum of this combination, or of the neighbour from whose optimum steps led
-    here."""
+    """Hessian at the optimum of this combination, or of a similar combination from whose optimum
+    Newton steps led here."""
     sizing: str = ""
     """Result of the search for listed sizes, in one or a few words; empty without a search."""
     rounded: float | None = None
@@ -85,7 +85,7 @@ class LookStart(NamedTuple):
     x: Vector
     descend: bool
     hessian: ScaledHessian | None = None
-    """Hessian at the start if the start is an optimum of a neighbour; else None."""
+    """Hessian at the start if the start is the optimum of a similar combination; else None."""
 
 
 def look_quickly(
@@ -133,7 +133,7 @@ def look_quickly(
 
 
 def _follow_neighbour(look: Look, evaluator: Evaluator, starts: Sequence[LookStart]) -> bool:
-    """Take Newton steps from a neighbour's optimum; return whether they reach the new optimum."""
+    """Take Newton steps from the optimum of a similar combination; return whether they converge."""
     neighbour = next((start for start in starts if start.hessian is not None), None)
     if neighbour is None or neighbour.hessian is None or not evaluator.space.size:
         return False

@@ -171,7 +171,7 @@ def solved(optimisation: Optimisation) -> bool:
 
 
 def _values(name: str, *optima: Optimisation) -> list[float | None]:
-    """Look up the value of a metric in designs that meet their requirements."""
+    """The value of a metric at each optimum; None where no design meets the requirements."""
     return [
         optimum.evaluation.metrics[name].value if solved(optimum) else None for optimum in optima
     ]

@@ -1,9 +1,10 @@
 """Single changes of a requirement or a bound that make an infeasible problem feasible.
 
-Each candidate change drops one requirement or widens one bound. For all candidates at once,
-shortest steps to the linearised limits search for a point that meets all other limits. If the steps
-fail, an elastic problem (with slacks on the constraints) minimises the worst violation from several
-points. From the feasible point, the search then finds the least change that is enough.
+Each candidate change drops one requirement or widens one bound. For each candidate, the
+search first looks for a point that meets all unchanged limits; it takes shortest steps to the
+linearised limits, for all candidates at once. If the steps fail, an elastic problem (with slacks on
+the constraints) minimises the worst violation from several points. From the feasible point, the
+search then finds the least change that is enough.
 """
 
 from __future__ import annotations

@@ -62,24 +62,25 @@ class Infeasibility:
     they are all relaxed together. `sole` lists limits each of which is enough if it alone is
     relaxed. An entry of either contains requirement, origin, parameter (PATH), metric, sense,
     limit, needed (the relaxed limit that is enough; None if no change of this limit alone is
-    enough), relaxation (given-up fraction of the margin), change (of the limit, a fraction),
-    safety_factor (True for the check list and safety factors, whose relaxation is not advised) and
-    both limits as text in the display unit. The text of `needed` is rounded towards the safe side,
-    so that the printed value is enough. If the requirement is a torque at a lever, limit and needed
-    are torques.
+    enough), relaxation (margin given up, as a fraction of the limit), change (of the limit, a
+    fraction), safety_factor (True for the check list and safety factors, whose relaxation is not
+    advised) and both limits as text in the display unit. The text of `needed` is rounded towards
+    the safe side, so that the printed value is enough. If the requirement is a torque at a lever,
+    limit and needed are torques.
 
     An entry of `bounds` is a bound of a variable that is active at the joint relaxation. It
-    contains variable, parameter (PATH), quantity, bound (side), value, gain (decrease of `total`
-    per relative change of the bound, so that a change of 1 % decreases `total` by 0.01 of it),
-    needed (the bound that is enough if it alone is moved; None if no bound is), change and texts.
+    contains variable, parameter (PATH), quantity, bound (side), value, gain, needed (the bound that
+    is enough if it alone is moved; None if no bound is), change and texts. The gain is the decrease
+    of `total` (see below) per relative change of the bound: moving the bound by 1 % decreases
+    `total` by 0.01 times the gain.
 
     An entry of `cures` is a single change that is enough, the most advisable first. It contains
     kind (dimension, choice, bound, requirement, safety factor), parameter (PATH), now and needed
     (SI, or a word), change, texts, and advised (False for safety factors). A cure of kind
     "dimension" is an input that is not a variable of the design. `together` lists dimensions that
-    are enough only if they change together. `beside` lists, by PATH, other inputs that must change
-    with a choice. Each cure was confirmed by a feasible design. `untried` lists candidates that
-    were not tried.
+    are enough only if they change together. If the change is a choice, `beside` lists, by PATH, the
+    other inputs that must change at the same time. Each cure was confirmed by a feasible design.
+    `untried` lists candidates that were not tried.
 
     `laws` lists geometrical conditions that conflict. `total` is the sum of the joint relaxations.
     `sentence` is the advice in one line, and `evidence` states what is proven.
@@ -172,11 +173,11 @@ class Rounding:
     are None, like `design` and `evaluation`, if no rounded design was feasible. `plies` gives the
     number of plies of every layer with a ply thickness. `tried` and `feasible` are the numbers of
     rounded designs tried and found feasible; `solves` is the number of re-optimisations. `complete`
-    is True if the search did not stop at its time limit. The result is not proven, because branch
-    and bound used local optima as bounds. `unmade` lists the PATHs of values that are not whole
-    plies or allowed angles because the requested sizes leave them free; such a design cannot be
-    built yet. `remedies` lists small changes of a limit, load or pressure that make better sizes
-    possible; they are computed only if rounding costs much.
+    is True if the search did not stop at its time limit. The result is not proven to be the best,
+    because branch and bound used local optima as bounds. `unmade` lists the PATHs of values that
+    are not whole plies or allowed angles because the requested sizes leave them free; such a design
+    cannot be built yet. `remedies` lists small changes of a limit, load or pressure that make
+    better sizes possible; they are computed only if rounding costs much.
     """
 
     met: bool
@@ -362,7 +363,11 @@ class Optimisation(Displayed):
 
     @property
     def tight(self) -> tuple[str, ...]:
-        """Limits that the design to build only just meets; empty if a requested yield is met."""
+        """Limits that the design to build only just meets.
+
+        Empty if the search already ensured a requested yield (share of actuators that meet all
+        limits).
+        """
         return () if self.robust and self.robust.reached else self.best_evaluation.tight
 
     @property

@@ -7,10 +7,10 @@ proves nothing; see `branch_and_bound`.
 
 Remedies are small changes of a limit, a load or the supply pressure that make better sizes
 possible. If rounding costs much, the variable that rounding changed most is moved to the
-neighbouring size on the other side of its continuous value; some limit forbids this size. If no
-design with listed sizes is feasible, the least infeasible sizes are used instead. For these sizes,
-the smallest sufficient relaxation of each limit is computed. An optimisation with the relaxed limit
-then confirms the remedy.
+neighbouring size on the other side of its continuous value, a size that some limit forbids. If no
+design with listed sizes is feasible, the least infeasible sizes are used instead. With these
+sizes fixed, the smallest sufficient relaxation of each limit is computed. An optimisation with the
+relaxed limit then confirms the remedy.
 """
 
 from __future__ import annotations
@@ -99,9 +99,10 @@ def size_remedies(
 
 
 def _other_sizes(listed: Sequence[Listed], x: Vector, size_search: SizeSearch) -> list[Assignment]:
-    """Assignments in which the variable that rounding changes most has its other neighbouring size.
+    """Infeasible combinations of sizes that move the variable which rounding changed most.
 
-    If no design with sizes is feasible, returns the least infeasible assignment.
+    This variable takes the neighbouring size on the other side of its continuous value. If no
+    design with sizes is feasible, only the least infeasible combination is returned.
     """
     if size_search.assignment is None:
         return [] if size_search.nearest is None else [size_search.nearest]
@@ -134,7 +135,7 @@ def _limits(actuator: ActuatorProblem, solution: Solution, size_search: SizeSear
 
 @dataclass(frozen=True)
 class _FixedSizes:
-    """The problem in which every variable with sizes is fixed at the size of an assignment."""
+    """The problem with its sizes fixed: `assignment` chooses a size for each listed variable."""
 
     actuator: ActuatorProblem
     listed: Sequence[Listed]
@@ -212,7 +213,7 @@ class _FixedSizes:
     def remedy(
         self, eased: BoxProblem, x: Vector, entry: Mapping[str, Any]
     ) -> Iterator[SizeRemedy]:
-        """The remedy, with the best design of these sizes after the change, if it is better."""
+        """Yield the remedy if, after its change, the best design with these sizes is better."""
         point = repairs.near(eased, x)
         if point is None:
             return

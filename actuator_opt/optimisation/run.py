@@ -36,9 +36,9 @@ from .rounding import Wanted, design_at, rounded, sizes_of
 from .solver import solve
 
 CHANCE = 0.95
-"""Confidence level for the evidence from the starts."""
+"""Confidence level of the statistical evidence for the optimum (see `Certificate.evidence`)."""
 SAME = 1e-3
-"""Two starts count as equal up to this relative difference of their objectives."""
+"""Relative difference of the objective up to which a start counts as having reached the optimum."""
 
 
 def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
@@ -353,7 +353,7 @@ def _enumerated(
     if not best.feasible:
         status, remedy = (
             "infeasible",
-            "relax the requirement that is missed, or add values under choices",
+            'relax the requirement that is missed, or add values in the block "choices:"',
         )
     optimisation = Optimisation(
         status=status,

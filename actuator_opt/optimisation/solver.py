@@ -1,7 +1,7 @@
 """The optimiser: sweeps the design space, descends from the best starts, refines and verifies.
 
 On the default path, a low-discrepancy sweep suggests starts. From each start, SLSQP runs in
-logarithmic variables, and after a failure in linear variables. If all runs fail, the augmented
+logarithmic variables and, if that fails, in linear variables. If all runs fail, the augmented
 Lagrangian method with LBFGS follows. Active-set Newton steps reduce the remaining error to
 rounding. Feasibility and optimality are then verified, independently of what a solver reports.
 
@@ -361,7 +361,10 @@ def _best_seen(search: Descents, swept: Sweep) -> SearchResult:
 
 
 def _settle(search: Descents, best: SearchResult) -> tuple[Point, tuple[str, ...]]:
-    """Reset variables without effect to their start, or else to the middle of their bounds."""
+    """Reset variables that affect nothing to their start, or else to the middle of their bounds.
+
+    Returns the new point and the names of these variables.
+    """
     evaluator = search.evaluator
     space, problem = evaluator.space, evaluator.problem
     if not best.point.valid or space.size == 0:

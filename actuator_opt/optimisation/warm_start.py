@@ -31,16 +31,16 @@ STARTS = 3
 """Number of starts in the search that follows if the steps fail."""
 
 SAMPLES = 1024
-"""Number of sweep points in that search."""
+"""Number of sweep points in the search that follows if the steps fail."""
 
 AGREES = 1e-9
-"""Allowed difference of margins, due to rounding errors, when testing whether a parameter describes
-a changed problem."""
+"""Largest difference of margins, due to rounding errors, at which changing a parameter and building
+the problem anew count as the same."""
 
 
 @dataclass(frozen=True, slots=True)
 class SearchEffort:
-    """Effort of a search: number of starts, number of sweep points, and the seed."""
+    """Settings of a search: number of starts, number of sweep points, and random seed."""
 
     starts: int
     samples: int
@@ -131,8 +131,9 @@ class WarmStart:
     ) -> list[Point | None]:  # fmt: skip
         """Find the optimum for each value of one number, in parallel.
 
-        For values that the parallel steps do not solve, single searches follow, from the value
-        nearest to the optimum outwards. On each side they stop at the first value without a design.
+        For values that the parallel steps do not solve, single searches follow, beginning with the
+        values nearest to the present one. Above and below it, they stop at the first value for
+        which no design exists.
 
         Parameters
         ----------
@@ -172,7 +173,7 @@ class WarmStart:
         Parameters
         ----------
         changes : difference of each number by PATH
-        size : number of these joint changes that make up a change of 100 %
+        size : change of 100 %, as a multiple of this joint change
         """
         optimum = self.optimum
         derivatives = self._along(changes, size)
@@ -198,7 +199,7 @@ class WarmStart:
         return self._optimum
 
     def _along(self, changes: Mapping[str, float], size: float) -> Responses:
-        """Derivatives with respect to one parameter that changes several numbers in proportion."""
+        """Derivatives by one parameter that moves several numbers by fixed multiples of itself."""
         self.differentiate(changes)
         parts = [(self._responses[path], change) for path, change in changes.items()]
         first = parts[0][0]

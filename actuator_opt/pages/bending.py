@@ -51,7 +51,7 @@ def _strains(bending: BendingResult) -> str:
 def _parameters(bending: BendingResult) -> list[tuple[str, Parameter]]:
     """Slope, and the modulus before and after the known compliances are subtracted."""
     rows = [
-        ("slope of force over deflection", bending.slope),
+        ("slope of force versus deflection", bending.slope),
         ("modulus, no compliance subtracted", bending.as_published),
     ]
     if bending.taken_off:
@@ -119,7 +119,7 @@ def _basis(bending: BendingResult) -> list[str]:
 
 
 def _loop(bending: BendingResult, room: float) -> Ink:
-    """Recorded force over deflection."""
+    """Plot of the recorded force versus deflection."""
     record = bending.record
     curve = Curve("", 1e3 * record["w"], record["F_L"], weight="thin")
     panel = Panel("Force, N", Axis("deflection, mm"), curves=[curve])

@@ -307,7 +307,7 @@ def _friction(points: Sequence[FrictionPoint], stated: Bench, measured_: Bench) 
 
 
 def _against(point: FrictionPoint) -> tuple[float, float]:
-    """Friction as a force that opposes the motion, and its standard error [N]."""
+    """Friction, positive if it opposes the motion, and its standard error [N]."""
     return math.copysign(1.0, point.velocity) * point.friction, point.error
 
 

@@ -51,7 +51,7 @@ _STEP, _LEAST_STEP, _SHARE, _LINE = 7.6, 3.8, 5.6 / 7.6, 4.2
 """Usual and least spacing of bars [mm], bar height as a share of the spacing, and line height [mm].
 """
 _GAP, _TOP, _SMALL = 5.0, 8.4, 3.3
-_NOTE = "Parts of a bar: in the order of the key. Bold: best value."
+_NOTE = "The parts of each bar are in the order of the key. Bold: best value."
 
 
 def page(comparison: Comparison) -> Page:

@@ -30,9 +30,9 @@ COMPACT, MODES, RESPONSE, OPEN, CLOSED = 56.0, 54.0, 105.0, 97.0, 58.0
 """Heights of the figures [mm]."""
 _END = {
     "closed": "ports closed",
-    "valve": "lines end at the centred valve",
-    "constant_pressure": "lines end at constant pressure",
-    "reducing_valve": "each line ends at a pressure reducing valve",
+    "valve": "hydraulic lines end at the centred valve",
+    "constant_pressure": "hydraulic lines end at constant pressure",
+    "reducing_valve": "each hydraulic line ends at a pressure reducing valve",
 }
 
 
@@ -64,12 +64,12 @@ def damping_sentence(study: DynamicsStudy) -> str:
     whole = friction + ends
     small = 1e-4 * abs(whole)
     circle = " (open circle)" if abs(ends) >= small else ""
-    shares = {f"friction and oil shear{circle}": friction, "leakage and lines": ends}
+    shares = {f"friction and oil shear{circle}": friction, "leakage and hydraulic lines": ends}
     causes = ", ".join(
-        f"from {name} {_ratio(share) if abs(share) >= small else 'next to nothing'}"
+        f"{name} give {_ratio(share) if abs(share) >= small else 'next to nothing'}"
         for name, share in shares.items()
     )
-    words = f"At the weakest position the damping ratio is {_ratio(whole)} ({causes})."
+    words = f"At the weakest position the damping ratio is {_ratio(whole)}: {causes}."
     if whole >= 1:
         words += " At 1 or above, the load does not oscillate."
     if whole < 0:
@@ -86,7 +86,7 @@ def _compact(evaluation: Evaluation, study: DynamicsStudy) -> Block:
         study, required(evaluation, "natural_frequency"), required(evaluation, "damping_ratio")
     )
     note = (
-        f"Load case {study.case}, {_line_end(study)}, {text.number(1.0 * study.mass)} kg at the "
+        f'Load case "{study.case}", {_line_end(study)}, {text.number(1.0 * study.mass)} kg at the '
         f"rod. {damping_sentence(study)} Dynamic stiffness includes the inertia of the load, "
         "which dominates above the resonance."
     )
@@ -98,14 +98,14 @@ def _modes(evaluation: Evaluation, study: DynamicsStudy) -> Block:
         study, required(evaluation, "natural_frequency"), required(evaluation, "damping_ratio")
     )
     note = (
-        f"Load case {study.case}, {text.number(study.mass)} kg at the rod; with an oscillating "
+        f'Load case "{study.case}", {text.number(study.mass)} kg at the rod; with an oscillating '
         f"load, {_line_end(study)}. {damping_sentence(study)}"
     )
     return Chart("Dynamics along the stroke", panels, note, height=MODES)
 
 
 def shaken_cases(study: DynamicsStudy) -> list[Shaken]:
-    """Load cases with excitation, each with its least stiffness and the phase along the stroke."""
+    """Load cases with excitation, each at its stroke position of least dynamic stiffness."""
     return [
         Shaken(clean(case.name), case.frequency, case.stiffness, case.phase)
         for case in study.shaken
@@ -120,7 +120,7 @@ def _response(evaluation: Evaluation, study: DynamicsStudy) -> Block:
         required(evaluation, "dynamic_stiffness"),
         required(evaluation, "dynamic_phase"),
     )
-    note = f"Curves: load case {study.response_case}, {_line_end(study)}."
+    note = f'Curves: load case "{study.response_case}", {_line_end(study)}.'
     if cases:
         note += (
             " Circles: load cases with an oscillating load, each at its frequency and its "
@@ -133,7 +133,7 @@ def _response(evaluation: Evaluation, study: DynamicsStudy) -> Block:
 
 
 def lumped_sentence(study: DynamicsStudy) -> str:
-    """Sentence: up to which frequency the lumped and the distributed model of the lines agree.
+    """Sentence on the frequency up to which two models of the lines agree: lumped, distributed.
 
     Empty if the design has no lines.
     """
@@ -151,7 +151,7 @@ def lumped_sentence(study: DynamicsStudy) -> str:
         return "1 kHz" if frequency is None else f"{text.number(frequency, 2)} Hz"
 
     words = (
-        " With the lines modelled as transmission lines instead of lumped masses, the "
+        " With hydraulic lines modelled as transmission lines instead of lumped masses, the "
         f"magnitude differs by less than 1 % up to {upto(0.01)}"
     )
     return words + (
@@ -180,7 +180,7 @@ def _poles(study: DynamicsStudy) -> Block:
         Column("what", "left", 2.0),
     ]
     fast = len(study.poles) - len(shown)
-    note = f"At the weakest position, load case {study.case}, {_line_end(study)}."
+    note = f'At the weakest position, load case "{study.case}", {_line_end(study)}.'
     if fast:
         plural = "poles lie" if fast > 1 else "pole lies"
         note += f" {fast} {plural} above 10 kHz and not listed, as the model is not valid there."
@@ -206,8 +206,8 @@ def _loop(
     if any(_passes_behind(loop) for loop in loops):
         note += (
             " Above the resonance of the load the phase is below -180 degrees. There, the phase "
-            "margin is the angle up to -180 degrees, and the loop is stable as long as the "
-            "gain margin is above 1."
+            "margin is the angle by which the phase lies below -180 degrees, and the loop is "
+            "stable as long as the gain margin is above 1."
         )
     return [
         Chart("Position loop, open", [open_panels(study, loops, limits)], note, height=OPEN),

@@ -35,7 +35,7 @@ ALONG = "piston position from the cap end, mm"
 
 @dataclass(frozen=True, slots=True)
 class Shaken:
-    """A load case with excitation: its frequency (Hz), least stiffness (N/m) and phase (rad)."""
+    """A load case with excitation: frequency (Hz), least dynamic stiffness (N/m), phase (rad)."""
 
     name: str
     frequency: float
@@ -76,7 +76,7 @@ def _frequency_panel(study: DynamicsStudy, requirements: Sequence[Requirement]) 
         words = (
             "including the moving oil in the lines"
             if study.end == "closed"
-            else f"lines end at: {end}"
+            else f"oil lines end at: {end}"
         )
         curves.append(Curve(words, xs, ended))
     least = min(closed)

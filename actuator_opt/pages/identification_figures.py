@@ -132,7 +132,10 @@ def measured(
     across: Callable[[FrictionPoint], float],
     up: Callable[[FrictionPoint], tuple[float, float]],
 ) -> list[Points]:
-    """Points of both directions with 95 % error bars; `up` returns value and standard error."""
+    """Points of both directions of motion, with 95 % error bars.
+
+    `across` returns the x value of a point, and `up` its y value with the standard error.
+    """
     groups = []
     for style, (words, way) in enumerate((("out", 1), ("in", -1))):
         here = [point for point in points if way * point.velocity > 0]

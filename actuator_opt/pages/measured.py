@@ -36,7 +36,7 @@ MOST_PLACES = 6
 TALL = 50.0
 """Height of the chart of a channel with its residual [mm]."""
 ALONE = 3
-"""Up to this number of channels, the charts of each channel fill a whole row."""
+"""Up to this number of channels, each channel has a row of its own; more channels share rows."""
 BAND = 2.0
 """Half width of the drawn noise band in standard deviations; the band contains 95 % of samples."""
 

@@ -81,7 +81,8 @@ def _place(row: VariableResult) -> float:
 def best_values(optimisation: Optimisation, room: float) -> list[Block]:
     """Best values of the variables side by side.
 
-    Only the values that fit into the height `room` [mm] are shown; a line refers to the others.
+    Only the values that fit into the height `room` [mm] are shown; a note refers to the
+    table with all variables.
     """
     best = optimisation.best_variables
     lines = (len(best) + 1) // 2
@@ -317,7 +318,7 @@ def infeasibility_blocks(card: Infeasibility) -> list[Block]:
     words = ""
     if card.cures:
         words = (
-            "Each of these changes alone is enough, and no smaller change of the same input was. "
+            "Each of these changes alone is enough; a smaller change of the same input was not. "
             "The most advisable is first. "
         )
     if others:
@@ -429,7 +430,7 @@ def robust_tables(optimisation: Optimisation) -> Iterator[Table]:
         f"{percent(robust.lower)} to {percent(robust.upper)})."
     )
     columns = [Column(head, width=1.0) for head in ("round", quantity.label, "all limits met")]
-    title = f"Towards a yield of {percent(robust.target)}"
+    title = f"Search for a yield of {percent(robust.target)}"
     yield Table(title, columns, rounds, note=note, on="paper")
     kept: list[list[Cell]] = [
         [soft(name), f"{100 * share:.1f} %"]
@@ -440,6 +441,6 @@ def robust_tables(optimisation: Optimisation) -> Iterator[Table]:
         columns = [Column(head, width=1.0) for head in ("limit", "added, of the limit")]
         note = (
             "Added margin: the margin that the nominal design needs so that, with scatter, no more "
-            "draws miss this limit than the yield allows."
+            "draws miss this limit than the required yield allows."
         )
         yield Table("Margins added for scatter", columns, kept, note=note, on="paper")

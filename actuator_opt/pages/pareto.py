@@ -275,7 +275,7 @@ def front_figure(front: ParetoFront) -> Ink:
 
 
 def _panel(front: ParetoFront, across: tuple[Wish, int], up: tuple[Wish, int]) -> Panel:
-    """The designs of the front, those that they dominate, the knee and the limits."""
+    """Panel with the designs of the front, the designs that these dominate, the knee and limits."""
     (x_wish, i), (y_wish, j) = across, up
     xs, ys = _along(front, x_wish), _along(front, y_wish)
     x_range, y_range = _range(xs, x_wish, front), _range(ys, y_wish, front)
@@ -318,7 +318,7 @@ def _label(wish: Wish) -> str:
 
 
 def _range(values: list[float], wish: Wish, front: ParetoFront) -> tuple[float, float]:
-    """Range of the axis: that of the designs with free space around them, and limits nearby."""
+    """Range of the axis: covers the designs, free space around them, and limits that lie near."""
     low, high = min(values), max(values)
     span = (high - low) or abs(high) or 1.0
     for row in _required(front, wish):

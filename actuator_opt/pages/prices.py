@@ -13,15 +13,15 @@ from ..rendering.text import DASH
 from ..rendering.tornado import MOST, TornadoBar, bars
 
 MOVING = 3
-"""Largest number of dimensions named per row of the table of changed dimensions."""
+"""Largest number of dimensions named in each row of the table of changed dimensions."""
 MOST_MOVES = 8
-"""Largest number of rows in that table; the largest changes are shown."""
+"""Largest number of rows in the table of changed dimensions."""
 LEAST_MOVE = 1e-4
 """Relative change per +1 % below which a dimension counts as unchanged."""
 LEAST_EFFECT = 1e-5
 """Smallest change of the objective that is drawn, as a share of the objective."""
 NO_DESIGN = "no design"
-"""Words at an end of a bar if no feasible design exists for this change."""
+"""Words beside a bar if no feasible design exists for its change."""
 
 
 def price_blocks(optimisation: Optimisation, *, moving: bool = False) -> list[Block]:

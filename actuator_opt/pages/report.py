@@ -59,7 +59,7 @@ FLAG = " (!)"
 FLAGGED = "(!) EXTRAPOLATED: a model was used outside its valid range"
 
 _SHORT_OF = ("missed", "infeasible")
-"""States of an optimum with less than the required yield."""
+"""States in which the badge of a robust search says that margins for scatter are not included."""
 _MET = ("met", "checks")
 """States in which every requirement is met: without cautions (green), and with cautions
 (amber)."""
@@ -209,9 +209,10 @@ def sentences(optimisation: Optimisation) -> list[str]:
 
 
 def reserve_sentences(subject: Evaluation | Optimisation) -> list[str]:
-    """Sentences on limits without reserve and on the yield.
+    """Sentences on limits without reserve, and on the yield.
 
-    Empty if a requirement is missed, or if the search already included scatter (robust search).
+    The yield is the share of actuators that meet all limits in spite of scatter. The result is
+    empty if a requirement is missed, or if the search already included scatter (robust search).
     """
     evaluation, optimisation = parts_of(subject)
     robust = optimisation is not None and optimisation.robust is not None
@@ -299,7 +300,7 @@ def _counts(evaluation: Evaluation) -> dict[str, int]:
 
 
 def _misfit(optimisation: Optimisation | None) -> str:
-    """Clause on the geometrical conditions that no design meets together."""
+    """Clause that names geometrical conditions that no design can meet all at once."""
     card = None if optimisation is None else optimisation.infeasibility
     return (
         f"; conflicting conditions of the geometry: {', '.join(card.laws)}"
@@ -321,7 +322,7 @@ def key_figures(subject: Evaluation | Optimisation) -> list[Tile]:
     for name in names:
         metric, quantity = evaluation.metrics[name], text.metric(name)
         row = _limited(evaluation, name)
-        value, note = metric.value, f"case {metric.case}" if metric.case else ""
+        value, note = metric.value, f'load case "{metric.case}"' if metric.case else ""
         state: State = ""
         before = _before(optimisation, name)
         if name in first and before is not None and metric.value is not None:
@@ -620,7 +621,10 @@ def warnings(subject: Evaluation | Optimisation) -> list[str]:
 
 
 def _remarks(evaluation: Evaluation, optimisation: Optimisation | None) -> Iterator[Block]:
-    """Warnings; on the terminal also a short form of the appendix, which is only on paper."""
+    """Warnings; on the terminal also a summary of the appendix.
+
+    The full appendix is printed only on paper.
+    """
     if lines := warnings(optimisation or evaluation):
         yield Notes("Warnings", [text.pretty(line) for line in lines], style="yellow")
     data = []

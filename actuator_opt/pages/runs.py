@@ -234,7 +234,7 @@ def convergence(head: Mapping[str, Any], trace: Sequence[Sequence[float]]) -> Ta
         rows.append((f"{count:.0f}", of_metric(metric).text(value, 5), miss))
     columns = [
         Column("evaluation", "right"),
-        Column("objective of the best so far", "right"),
+        Column("objective, best so far", "right"),
         Column("worst limit missed by", "right"),
     ]
     return Table("", columns, rows)

@@ -256,7 +256,7 @@ def operating_rows(study: SealStudy) -> list[tuple[str, str, str]]:
         row("friction, film", lambda point: _force(point.friction)),
         row("part by oil shear", lambda point: _force(point.viscous)),
         row("part by asperities", lambda point: _force(point.asperity)),
-        row("friction, range by scatter of the moduli", _scatter),
+        row("friction, range due to scatter of moduli", _scatter),
         row("friction by friction coefficient", lambda p: _force(p.coefficient_friction)),
         row("breakaway, dry", lambda point: _force(point.breakaway)),
         row("secant damping at this speed", lambda point: _damping(point.damping)),
@@ -478,7 +478,7 @@ def _speeds(study: SealStudy, curves: FilmMap) -> Chart:
             f"{_damping(point.damping)}, which applies to this speed only. "
         )
     note += (
-        f"By the coefficient of friction, friction is {_force(point.coefficient_friction)};"
+        f"Computed by a friction coefficient, friction is {_force(point.coefficient_friction)};"
         f" breakaway takes {_force(point.breakaway)}.{missing(curves)}"
     )
     title = f"{_seals(study)}: friction and damping over speed"

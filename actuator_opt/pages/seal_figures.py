@@ -260,7 +260,7 @@ def _map_panel(study: SealStudy, film_map: FilmMap, title: str, values: Array) -
 def elements_panels(study: SealStudy) -> list[list[Panel]]:
     """Finite elements compared with the closed form.
 
-    Panels of the contact pressure, and of peak and contact width over the sealed pressure.
+    Panels of the contact pressure, and of its peak and the contact width versus sealed pressure.
     """
     ring = study.out.rings[0].ring
     pressures = np.linspace(0.0, study.elements[-1].pressure, 41)
@@ -294,7 +294,7 @@ def elements_panels(study: SealStudy) -> list[list[Panel]]:
 
 
 def _profiles(study: SealStudy, ring: Ring) -> list[Panel]:
-    """Contact pressure over the contact width, at every sealed pressure, by both methods."""
+    """Contact pressure along the contact at every sealed pressure, by elements and closed form."""
     solved = [(contact.positions, contact.contact_pressure) for contact in study.elements]
     closed = [_closed_profile(ring, contact.pressure) for contact in study.elements]
     highest = max(float(np.max(values)) for _, values in [*solved, *closed]) / 1e6

@@ -188,7 +188,7 @@ def gland_drawing(study: SealStudy, *, width: float = 180.0) -> GlandDrawing:
 
 
 def _true_land(study: SealStudy, grooves: Sequence[FilledGroove]) -> float:
-    """Land between two grooves [m], if the grooves are evenly spaced over piston or head."""
+    """Length of the land between two grooves [m], if grooves are evenly spaced along the part."""
     part = study.design.piston if study.place == "piston" else study.design.head
     counts = [float(filled.groove.count) for filled in grooves]
     used = sum(n * filled.width for n, filled in zip(counts, grooves, strict=True))

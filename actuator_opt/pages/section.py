@@ -186,7 +186,7 @@ def _edges(outline: Outline, frame: _Frame) -> list[list[Point]]:
 def _uncovered(
     a: Point, b: Point, others: Sequence[tuple[Point, Point]]
 ) -> list[tuple[Point, Point]]:
-    """The parts of an axis-parallel edge outside the edges of all other polygons."""
+    """The parts of an axis-parallel edge that no edge of another polygon covers."""
     axis = next((k for k in (0, 1) if abs(a[k] - b[k]) < 1e-9), None)
     if axis is None:
         return [(a, b)]
@@ -213,7 +213,7 @@ def _balloon_rows(count: int, width: float) -> int:
 
 
 def _spans(outline: Outline, position: float) -> list[tuple[float, float]]:
-    """Radial intervals of a part at an axial position."""
+    """Radial intervals [m] in which a part has material at an axial position."""
     spans = []
     for polygon in outline.polygons:
         hits = []

@@ -66,7 +66,8 @@ ZERO_BELOW = {
 """Results below these values (SI) are shown as 0, as they are within the tolerance of the
 integration."""
 CLOSED = 1e-3
-"""Least error of a balance that raises a warning (our choice: one digit of the printed value)."""
+"""Least relative error of the oil or energy balance that raises a warning (our choice: one digit of
+the printed value)."""
 AGREE = 1e-2
 """Least difference of two integrators that raises a warning, as a share of a signal's range
 (our choice)."""
@@ -137,7 +138,7 @@ def series(simulation: Simulation) -> list[Series]:
 
 
 def _grid(simulation: Simulation) -> tuple[Array, Array]:
-    """Evenly spaced times [s], and indices of their samples (the later of two at a time)."""
+    """Evenly spaced times [s], and indices of their samples (of two at one time, the later)."""
     time, duration = simulation.time, simulation.scenario.duration
     step = simulation.scenario.sample_time or duration / SAMPLES
     count = max(round(duration / step), 1)
@@ -311,7 +312,7 @@ def results(simulation: Simulation) -> list[ShownResult]:
 
 
 def reasons(simulation: Simulation) -> dict[str, list[str]]:
-    """Reasons for missing values, each with its results; expected reasons are left out."""
+    """Why results have no value: reason, then the results; expected reasons are left out."""
     missing: dict[str, list[str]] = {}
     limited = {requirement.metric for requirement in simulation.requirements}
     bench = simulation.scenario.held_ports is not None

@@ -125,9 +125,9 @@ def kind_of(simulations: Sequence[Simulation]) -> str:
 
 
 def styles(names: Sequence[str]) -> list[Pen]:
-    """Pen of every run, chosen by its name.
+    """Pen (colour, dash) of every run, chosen by its name.
 
-    The words before the last comma of the name determine the colour, those after it the dash.
+    Words before the last comma of the name determine the colour, words after it the dash.
 
     If the names form no such groups, every run has a different colour and dash.
 
@@ -211,7 +211,7 @@ def _least(shown: Curve, span: tuple[float, float]) -> float:
 
 
 def _taken(run: Simulation) -> dict[str, float]:
-    """Energy taken by each of `SINKS` [J]; all other sinks are summed, with stored energy."""
+    """Energy taken by each of `SINKS` [J]; all other sinks and the stored energy are one sum."""
     taken: dict[str, float] = {}
     for flow in run.balance.flows:
         if flow.energy < 0:
@@ -311,7 +311,7 @@ def comparison(
     notes: Sequence[str] = (),
     columns: Sequence[str] = (),
 ) -> RunComparison:
-    """Runs to compare.
+    """Collect several runs for a page that compares them.
 
     Parameters
     ----------

@@ -208,10 +208,11 @@ POWERS: dict[str, Callable[[Simulation], Array | None]] = {
 
 
 def _summed(simulation: Simulation) -> tuple[dict[str, Array], dict[str, float]]:
-    """Energy over time [J] for every flow of known power, and the error of its final value.
+    """Energy over time [J] for every flow of known power, and its error at the end of the run.
 
     Energy that leaves the machine is positive, but energy of the supply is positive if it enters.
-    The error is a share of all energy.
+    The error is the difference from the energy that the simulation integrated, as a share of all
+    energy.
     """
     flows: dict[str, float] = {flow.name: flow.energy for flow in simulation.balance.flows}
     ways = [sum(abs(e) for e in flows.values() if (e > 0) == way) for way in (True, False)]
@@ -247,8 +248,8 @@ def over_time(simulation: Simulation) -> dict[str, Array]:
 
 
 _LOADED = ("load", "valve edges")
-"""Flows whose power can be computed from the signals only if the machine has no lines, no joint and
-no machine outside."""
+"""Flows whose power can be computed from the signals only if the system has no hydraulic lines, no
+joint, and no external machine that moves the rod."""
 
 
 def doubts(simulation: Simulation) -> list[str]:
@@ -264,7 +265,7 @@ def doubts(simulation: Simulation) -> list[str]:
     )
     return [
         f"energies summed from the sampled powers differ from the integrated energies: {errors} of "
-        "all energy; take shorter samples, and do not trust the energies if that does not help"
+        "all energy; sample more often; if that does not help, do not trust the energies"
     ]
 
 

@@ -499,7 +499,9 @@ def travelled(windows: Sequence[Window], stroke: float) -> bool:
 def along(
     shaken: HarmonicLoad, over: str, style: int = 0, dash: int | None = None
 ) -> StrokeProfile:
-    """Dynamic stiffness in the evaluation windows (kN/mm, degrees), over stroke (mm) or time (s).
+    """Dynamic stiffness in the evaluation windows (kN/mm, degrees).
+
+    `over` states what it is drawn over: "stroke" (mm) or time (s).
 
     A relative error of the stiffness changes its phase by at most the same number of radians.
     """

@@ -41,7 +41,7 @@ def stiffness_blocks(evaluation: Evaluation, *, curve_shown: bool = True) -> lis
     rows = evaluation.requirements
     required = next((r for r in rows if r.metric == "stiffness_min" and r.sense == "min"), None)
     curve, title = evaluation.curve, "Stiffness over the stroke"
-    note = f"Load case {curve.case}, ports closed. {_topology(evaluation)}."
+    note = f'Load case "{curve.case}", ports closed. {_topology(evaluation)}.'
     panels = stiffness_panels(curve, required)
     if not panels:
         words = "No stiffness curve: the stroke was not evaluated."
@@ -66,7 +66,7 @@ def _terminal_curve(curve: StrokeCurve, required: Requirement | None) -> Termina
         note += f", required {trimmed(limit)}"
     if shares := summary(curve):
         note += f"; compliance there: {shares}"
-    title = f"Stiffness over the stroke, kN/mm (load case {curve.case})"
+    title = f'Stiffness over the stroke, kN/mm (load case "{curve.case}")'
     return TerminalFigure(title, points, limit, note=note)
 
 

@@ -65,7 +65,7 @@ def proof(optimisation: Optimisation, *, shortened: bool = False) -> list[str]:
     if certificate.covers and not shortened:
         names = ", ".join(certificate.covers)
         lines.append(
-            f"The proof covers, by the models or by bounds that no model can fall below: {names}."
+            f"The proof covers these limits, each by its model or by a bound on its model: {names}."
         )
     if certificate.dropped:
         shown = [
@@ -73,7 +73,7 @@ def proof(optimisation: Optimisation, *, shortened: bool = False) -> list[str]:
         ]
         covered = f"It covers {len(certificate.covers)} limits and does" if shortened else "It does"
         lines.append(
-            f"{covered} not include the following limits, which can only lower the bound: "
+            f"{covered} not include these limits, and leaving them out can only lower the bound: "
             f"{'; '.join(shown)}."
         )
     if certificate.evidence:
@@ -201,8 +201,8 @@ def _course_block(optimisation: Optimisation) -> list[Block]:
         points = [Points("", numbers, heights, style=3)]
         panels.append(Panel("End of each start", x, _decades(heights), points=points))
     note = (
-        "Designs that meet every limit, as a share of the evaluations of all starts; none: "
-        "below 0.0001 %."
+        "Left: evaluations of all starts together. Only designs that meet every limit are drawn; "
+        "none: excess below 0.0001 %."
     )
     return [Chart("How the search went", panels, note, height=52.0, widths=(98.0, 64.0))]
 

@@ -1,4 +1,7 @@
-"""The page of an uncertainty study: yield, scatter of the requirements, causes, and inputs."""
+"""The page of an uncertainty study: yield, scatter of the margins, causes, and inputs.
+
+The yield is the share of the random draws (actuators with scatter) that meet all requirements.
+"""
 
 from __future__ import annotations
 
@@ -124,7 +127,7 @@ def _sentence(study: Uncertainty) -> str:
 
 
 def weakest(study: Uncertainty) -> str:
-    """Sentence on the requirement with the lowest yield."""
+    """Sentence on the requirement that the fewest draws meet."""
     if not study.required:
         return "The design states no requirement."
     worst = study.required[0]

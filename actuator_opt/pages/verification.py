@@ -19,10 +19,10 @@ BESIDE = 0.02
 result, and the result at the position of the time simulation."""
 MEANING = (
     "Evaluation: worst result of the linear models. Linear: result of the same models at the "
-    "position of the experiment and for the side to which its spool is open; the difference "
-    "refers to this value. Beside: the worst linear result is for the other side of the spool. "
-    "The spool only passes through this side while the load drifts, so no experiment, which "
-    "starts at rest, can reach it."
+    "position of the experiment and with the valve spool open in the same direction; the "
+    "difference refers to this value. Beside: the worst linear result is for the opposite spool "
+    "direction. The spool only passes through it while the load drifts, so no experiment, which "
+    "starts at rest, can check it."
 )
 UNSURE = "?"
 """Mark behind an effect that a run with half the parameter step does not confirm."""
@@ -107,7 +107,7 @@ def tables(verification: Verification) -> tuple[Table, ...]:
         return (both,)
     heads = ("requirement", "case and place", "experiment", "difference, as seen")
     note = (
-        "The shares of the difference are computed: the experiment is repeated without sticking "
+        "To find each cause's share of the difference, the experiment is repeated without sticking "
         "friction, then with a fiftieth of the amplitude. The rest is due to the operating point."
     )
     widths = (1, 1.2, 1.5, 3.5)

@@ -305,12 +305,12 @@ def _layers(study: WallStudy) -> Block:
         Column("E₂, GPa", "right"),
         Column("G₁₂, GPa", "right"),
         Column("ν₁₂", "right"),
-        Column("allowables at highest temperature, MPa (share left)", "left", 2.6),
+        Column("allowables at highest temperature, MPa (share of library value)", "left", 2.6),
     ]
     note = (
         "From the bore outwards; angles are from the tube axis; ± is a balanced pair. X: "
         "strength along the fibre, Y: across it, S: in shear; t: tension, c: compression. "
-        "Share left: allowable as a share of the library value, after knock-downs for "
+        "Share of library value: the part that remains after knock-downs for "
         "temperature, moisture, statistical basis and process."
     )
     return Table("Barrel wall: layers", columns, rows, note=note, on="paper")
@@ -335,7 +335,7 @@ def _strength(study: WallStudy) -> Block:
     if study.shares is not None:
         climate = {"cold": ", coldest", "hot": ", hottest"}.get(study.shares.climate, "")
         right = (
-            f" Right: stress over strength for the most severe load "
+            f" Right: stress / strength for the most severe load "
             f"({study.shares.path}{climate}), including stress without pressure; negative: "
             "compression, or negative shear."
         )
@@ -376,10 +376,10 @@ def _criteria(study: WallStudy) -> Block:
         for row in study.ratios
         if row.criterion == YIELD and row.ratio is not None
     ]
-    key = "; ".join(f"{letter} {name}" for name, letter in letters.items())
+    key = "; ".join(f"{letter}: {name}" for name, letter in letters.items())
     note = (
         "Strength ratio: factor on the supply pressure at which the ply first fails, including "
-        f"cure stress, with failure mode and face. Load paths: {key}; cold, hot: climates. ●: "
+        f"cure stress, with failure mode and face. Load paths: {key}. Cold, hot: climates. ●: "
         "criterion of the design. Spread: ratio of the largest to the smallest value in the row."
     )
     if any(row.ratio == 0.0 for row in study.ratios):
@@ -517,7 +517,7 @@ def _thicknesses(study: WallStudy) -> Block:
         f"{text.trimmed(100 * share, 3)} % at {text.trimmed(1e3 * at, 2)} mm"
         for at, share in settling.shares
     )
-    shell = f"thin shell, radius over thickness {text.number(settling.radius_ratio, 2)}"
+    shell = f"thin shell, radius / thickness {text.number(settling.radius_ratio, 2)}"
     if settling.radius_ratio < 5:
         shell += ": below 5, so this is a rough value"
     note = (
@@ -566,15 +566,15 @@ def _metals(study: WallStudy) -> Block:
         Column("for\nburst, mm", "right"),
         Column("wall, mm", "right", strong=True),
         Column("bore growth,\nµm", "right"),
-        Column("burst over\nworking", "right"),
-        Column("yield over\nworking", "right"),
+        Column("burst /\nworking", "right"),
+        Column("yield /\nworking", "right"),
         Column("mass,\ng/m", "right", strong=True),
         Column("against this\ndesign", "right"),
     ]
     note = (
         "For each metal of the library: the thinnest tube of the same bore that has at most the "
         "bore growth of this design (without axial load), and at least the required burst "
-        "pressure (or that of this design, if it is lower). Computed by Lamé and Faupel, under "
+        "pressure (or this design's own, if that is lower). Computed by Lamé and Faupel, under "
         "the same axial forces, without a minimum wall for turning."
     )
     return Table(

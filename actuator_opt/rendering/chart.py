@@ -221,7 +221,7 @@ def known(values: Iterable[float], *, log: bool = False) -> list[float]:
 
 
 def _sized(values: Array) -> Array:
-    """Values, of which those too small for an axis become zero, and those too large NaN."""
+    """The values, with those too small for an axis set to zero and those too large set to NaN."""
     sizes = np.abs(values)
     return np.where(sizes <= LARGEST, np.where(sizes < SMALLEST, 0.0, values), np.nan)
 

@@ -399,7 +399,7 @@ def _small(ink: Ink, x: float, y: float, style: int) -> None:
 
 
 def _level(axes: Axes, level: Level, y: Scale, x: Scale) -> None:
-    """Draw a horizontal level; the forbidden side of a limit is hatched."""
+    """Draw a `Level` as a horizontal line; the forbidden side of a limit is hatched."""
     place = y.place(level.value)
     if not axes.y_range[0] <= place <= axes.y_range[1]:
         return
@@ -415,7 +415,7 @@ def _level(axes: Axes, level: Level, y: Scale, x: Scale) -> None:
 
 
 def _upright(axes: Axes, level: Level, x: Scale) -> None:
-    """Draw a vertical level; the forbidden side of a limit is hatched."""
+    """Draw a `Level` as a vertical line; the forbidden side of a limit is hatched."""
     place = x.place(level.value)
     if not axes.x_range[0] <= place <= axes.x_range[1]:
         return
@@ -442,7 +442,10 @@ def _stretches(axes: Axes, stretches: Sequence[Stretch], x: Scale) -> None:
 
 
 def _ends(axes: Axes, between: tuple[float, float], x: Scale) -> tuple[float, float]:
-    """Ends of a short level inside the frame [mm]; an end that x cannot show lies at the left."""
+    """Positions on paper of both ends of a short horizontal line, cut at the frame [mm].
+
+    An end with no position on the x axis (zero on a logarithmic axis) is put at the left edge.
+    """
     low, high = axes.x_range
     start, end = np.clip(np.nan_to_num(x.at(between), nan=low), low, high)
     return axes.x(float(start)), axes.x(float(end))
@@ -521,7 +524,7 @@ def _right_words(axes: Axes, frame: Frame, lines: Sequence[Sequence[Line]]) -> N
 
 
 def _beside(axes: Axes, level: Level, y: Scale, x: Scale, drawn_points: Sequence[Point]) -> None:
-    """Write the name of a short level on the side where it crosses the fewest lines."""
+    """Write the name of a short `Level` line on the side where it crosses the fewest lines."""
     place = y.place(level.value)
     if level.between is None or not axes.y_range[0] <= place <= axes.y_range[1]:
         return
@@ -572,7 +575,7 @@ def _written(
 
 
 def _level_lines(axes: Axes, frame: Frame, x: Scale) -> Iterator[Line]:
-    """The lines of all levels, in mm of paper."""
+    """The lines of all `Level` objects, in mm of paper."""
     left, right = axes.left, axes.left + axes.width
     for level in frame.panel.levels:
         place = (x if level.upright else frame.y).place(level.value)

@@ -193,7 +193,10 @@ def _overhang(frame: Frame, wide: float) -> tuple[float, float]:
 
 
 def _x_scale(panels: Sequence[Panel]) -> Scale:
-    """The common scale of x; its ends are the extreme values if all panels show functions of x."""
+    """The common scale of x.
+
+    If the panels show only curves that are functions of x, it ends at the extreme values of x.
+    """
     axis = panels[-1].x
     values = [
         value
@@ -246,7 +249,7 @@ def frame_of(panel: Panel, x: Scale) -> Frame:
 
 
 def _seen(curve: Curve, values: Values, x: Scale, log: bool) -> list[float]:
-    """Those values of a curve (or of a bound of its band) that are within the range of x."""
+    """The values of a curve (or of a bound of its band) at points within the range of x."""
     if not len(values):
         return []
     places = x.at(curve.xs)
@@ -262,9 +265,9 @@ def _near(
     *,
     cut: bool = True,
 ) -> list[float]:
-    """Values near a range: at most `most` times its width beyond its ends.
+    """The values that lie in a range or near it: beyond its ends by at most `most` times its width.
 
-    Values farther away are moved to this distance if `cut`, and else left out.
+    Values farther away are moved to this distance if `cut` is True; otherwise they are left out.
     """
     low, high = (math.log10(f(ends)) if log else f(ends) for f in (min, max))
     spare = most * ((high - low) or max(abs(high), 1.0))
@@ -309,7 +312,7 @@ def _fit_head(frame: Frame, wide: float, right: float) -> None:
 
 
 def _entries(frame: Frame, wide: float) -> Iterator[Entry]:
-    """Legend entries of points, curves and full-width levels, without duplicates."""
+    """Legend entries of points, curves and full-width `Level` lines, without duplicates."""
     panel, entries = frame.panel, dict[str, Entry]()
 
     def add(words: str, **sketch: Any) -> None:
@@ -351,7 +354,7 @@ def line_style(curve: Curve, index: int) -> dict[str, Any]:
 
 
 def level_style(level: Level) -> dict[str, Any]:
-    """Colour, width and dashes of a level; limits are red."""
+    """Colour, width and dashes of a `Level` line; limits are red."""
     if level.sense and level.between is not None:
         return LIMIT | {"pen": 0.4, "dash": ()}
     return LIMIT if level.sense else LINES[level.style % len(LINES)] | {"pen": 0.3}

@@ -191,7 +191,10 @@ def _place(key: Key, nodes: np.ndarray, values: np.ndarray, levels: Sequence[flo
 
 
 def _rings(polygons: Iterable[Sequence[Name]]) -> list[list[Name]]:
-    """Common outlines of polygons with equal orientation, without the edges that two share."""
+    """Outlines of the area that polygons of equal orientation cover together.
+
+    An edge that two polygons share is not part of an outline.
+    """
     edges: dict[tuple[Name, Name], bool] = {}
     for polygon in polygons:
         for start, end in zip(polygon, [*polygon[1:], polygon[0]], strict=True):

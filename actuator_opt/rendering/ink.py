@@ -2,7 +2,7 @@
 
 Figures and drawings consist of two kinds of marks, paths and texts, which all renderers can draw.
 Widths of texts are estimated from the advance widths of the report's typeface, so that labels can
-be placed by rule and tested for overlaps.
+be placed automatically and tested for overlaps.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ class PathMark(TypedDict):
 class TextMark(TypedDict):
     """A line of text.
 
-    `at` is x, and y at half the height of the capitals [mm]. The type size is in points, the angle
-    in degrees, clockwise.
+    `at` is the point (x, y) in mm, with y at half the height of the capital letters. The type size
+    is in points, the angle in degrees, clockwise.
     """
 
     text: str
@@ -141,7 +141,7 @@ def spread(targets: Sequence[float], gaps: Sequence[float]) -> list[float]:
 def spread_within(
     targets: Sequence[float], gaps: Sequence[float], lower: float, upper: float
 ) -> list[float]:
-    """`spread` within [lower, upper]; gaps are reduced if they do not fit."""
+    """Like `spread`, but within [lower, upper]; gaps are reduced if they do not fit."""
     room = upper - lower
     total = sum(gaps[: max(len(targets) - 1, 0)])
     if total > room > 0:
@@ -163,7 +163,8 @@ def hatch(
 ) -> list[tuple[Point, Point]]:
     """Parallel lines inside the polygons (even-odd rule), at `angle` degrees, `spacing` apart.
 
-    The phase is fixed to the page, so that the hatches of both halves of a section match.
+    The lines lie at fixed positions on the page, so that the hatching of separate polygons lines
+    up.
     """
     cosine, sine = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     edges = []
@@ -214,7 +215,7 @@ class Ink:
         dash: Sequence[float] = (),
         closed: bool = False,
     ) -> None:
-        """Polylines as one mark; `pen` is the line width, lengths in mm."""
+        """Add polylines as one mark; `pen` is the line width, lengths in mm."""
         rounded = [[[round(x, 3), round(y, 3)] for x, y in line] for line in lines]
         rounded = [line for line in rounded if len(line) > 1]
         if rounded:

@@ -51,7 +51,7 @@ class ReportFile:
 
 
 def with_input(page: Page, origin: Origin | None) -> list[Block]:
-    """The blocks of a page; a page that lists its input ends with the text of the design file."""
+    """The blocks of a page; at the end the text of the design file if the page lists its input."""
     blocks = [*page.blocks]
     if page.lists_input and origin is not None:
         blocks.append(Listing(f"Input: {origin.source_name}", origin.source_text))

@@ -73,7 +73,7 @@ def write(
     page : to write
     origin : design file and command of the page, attached to the PDF
     folder, stem : target; the folder is made if missing
-    all_pages : whether to write the later sheets, too, as ``STEM-page-N.png``
+    all_pages : whether to write images of the other sheets, too, as ``STEM-page-N.png``
     format : "pdf" (with PNG), "html", or "both"
     run : further facts about the run, attached to the PDF
 
@@ -327,7 +327,7 @@ def font_folders() -> list[str]:
 
 
 def _remove_later_pages(folder: Path, stem: str, count: int) -> None:
-    """Remove images of later sheets that an earlier report of the same name has left."""
+    """Delete old images of sheets after the last, left over from a report of the same name."""
     index = max(count + 1, 2)
     while (path := folder / f"{stem}-page-{index}.png").is_file():
         path.unlink()

@@ -155,7 +155,7 @@ def _block(flow: _Flow, block: Mapping[str, Any]) -> None:
 
 
 def _widths(block: Mapping[str, Any]) -> list[float]:
-    """Column widths (mm); columns with a share divide the width left by the other columns."""
+    """Column widths (mm); columns of relative width share the space beside the other columns."""
     columns, rows = block["columns"], block["rows"]
     widths = [0.0] * len(columns)
     room = RIGHT - LEFT

@@ -17,15 +17,14 @@ from .blocks import Block, Column, Table
 from .paper import TEMPLATE, plain_blocks, sheets
 
 Numbers: TypeAlias = Mapping[str, Any]
-"""Results of a study, SI: plain numbers, lists and records."""
+"""Results of a study in SI units, by name: numbers, lists and nested mappings."""
 Sheets: TypeAlias = tuple[bytes, list[bytes]]
 """A report as PDF, and an image of every sheet."""
 Study = TypeVar("Study")
 
 SHEET = Path(__file__).with_name("script_sheet.typ")
 _MARK = "// ---- sheet ----"
-"""Line of the report template that separates its definitions, above it, from the sheet of a
-design."""
+"""Line of the report template that ends its definitions; the sheet for a design follows."""
 
 
 def rounded(study: Numbers, digits: int = 7) -> dict[str, Any]:
@@ -91,8 +90,8 @@ def study_report(
     study : numbers of the study, attached to the PDF as JSON
     title, heading : title of the PDF, and printed heading
     lead : paragraphs below the heading
-    blocks : from top to bottom; plain data is also allowed
-    whole : whether tables must not break across sheets
+    blocks : blocks of the sheet from top to bottom, or their plain data for the template
+    whole : whether every table must stay on one sheet
     """
     data = {
         "script": Path(script).stem,

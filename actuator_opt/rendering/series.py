@@ -86,7 +86,8 @@ def _cell(value: Any, form: str) -> str:
 class FileColumn:
     """A column of a file that is written row by row: its head, kind of cells, and label.
 
-    `name` is the PATH or metric in the column; columns of numbers have a `unit`.
+    `name` is the name of the metric in the column, or the path of a design variable in the design
+    file (PATH). Columns of numbers have a `unit`.
     """
 
     head: str

@@ -49,7 +49,7 @@ def curve(
 ) -> list[str]:
     """Lines of a plot of (x, y) points with an optional horizontal limit.
 
-    `ends` are the labels below the first and the last point; by default these are its x in mm.
+    `ends` are the labels below the first and the last point; by default, their x values in mm.
     """
     points = [(x, y) for x, y in points if math.isfinite(x) and math.isfinite(y)]
     if len(points) < 2 or points[-1][0] <= points[0][0]:
@@ -201,7 +201,7 @@ def heading(name: str, verdict: Verdict, sentence: str, console: Console) -> lis
 
 
 def block_text(block: Block, console: Console) -> str:
-    """A block as text; empty for a block that only paper shows."""
+    """A block as text; empty for a block that appears only on paper."""
     if isinstance(block, Pair):
         parts = [block_text(part, console) for side in block.sides for part in side]
         return "\n\n".join(part for part in parts if part)
@@ -232,7 +232,7 @@ def _figure(figure: TerminalFigure, console: Console) -> str:
 
 
 def _tables(table: Table, console: Console) -> str:
-    """A table; one that may repeat its first columns is split into parts if it is too wide."""
+    """A table as text, split into parts if it is too wide and its first columns may be repeated."""
     if not table.repeat:
         return _table(table, console)
     cells = [[_cell(cell, console) for cell in cells_of(row)] for row in table.rows]
@@ -258,7 +258,7 @@ def _table(table: Table, console: Console) -> str:
 
 
 def _paint(column: Column, cell: Cell, state: State) -> str:
-    """Colour and font weight of a cell."""
+    """Name of the colour and font weight in which a cell is printed."""
     if isinstance(cell, Status):
         return PAINTS[cell.state]
     if isinstance(cell, Bar):

@@ -163,18 +163,18 @@ def with_unit(text: str, unit: str) -> str:
 
 
 def metric(name: str) -> Quantity:
-    """The quantity of a metric; a user's own metric without a declared one is a pure ratio."""
+    """The quantity of a metric; a user's own metric that declares none is taken as a pure ratio."""
     return of_metric(name)
 
 
 def input_quantity(name: str) -> Quantity:
-    """The quantity of an input; an input without a declared quantity is a pure ratio."""
+    """The quantity of an input; an input that declares none is taken as a pure ratio."""
     quantity = quantities.INPUTS.get(name) or METRICS.get(name)
     return quantity or Quantity(name, "", "ratio", "", name)
 
 
 def display(quantity: Quantity, value: float | None) -> float | None:
-    """SI value in the display unit, None stays None."""
+    """An SI value, converted to the display unit of its quantity; None stays None."""
     return None if value is None else quantity.to_display(value)
 
 

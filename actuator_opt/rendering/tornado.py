@@ -1,4 +1,4 @@
-"""Tornado diagram: bars show how a result changes at both ends of each input, largest first."""
+"""Tornado diagram: changes of a result at both ends of each input's range, largest first."""
 
 from __future__ import annotations
 
@@ -17,18 +17,19 @@ LABELS, FIGURES = 64.0, 34.0
 """Widths of the columns with the names, at the left, and with the changes in figures, at the right
 (mm)."""
 LIGHT = "#9ec3da"
-"""Fill of the bars for lower ends of inputs. Bars for upper ends are dark, so a grey print also
-shows the difference."""
+"""Fill of the bars for the lower end of an input's range. Bars for the upper end are dark, so that
+a grey print also shows the difference."""
 BEYOND = 1.4
-"""Predictions may widen the axis by at most this factor on the range of the re-solved changes."""
+"""To show predicted changes, the axis may be up to this factor longer than the range of the changes
+that the bars show."""
 
 
 @dataclass(frozen=True, slots=True)
 class TornadoBar:
-    """An input, with the changes of the result (display units) at its upper and at its lower end.
+    """An input, with the changes of the result (display units) at the two ends of its range.
 
-    A predicted change is drawn as a short line. `words` are printed at the right, in red if no
-    design exists at that end of the input.
+    The upper end comes first. A predicted change is drawn as a short line. `words` are printed at
+    the right, in red if no design exists at that end.
     """
 
     name: str
@@ -47,16 +48,16 @@ def bars(
     predicted: bool = False,
     width: float = 180.0,
 ) -> Ink:
-    """Bars of changes about a centre, dark for the upper end and light for the lower end.
+    """Draw a bar for each change, dark for the upper and light for the lower end of an input.
 
-    The figure is an ink drawing instead of a chart, so that each input can have its name and both
-    changes in figures beside its bars.
+    The bars start at a common centre line. The figure is an `Ink` drawing instead of a chart, so
+    that the name of each input and the numbers of both changes can be printed beside its bars.
 
     Parameters
     ----------
-    rows : from top to bottom
+    rows : inputs from top to bottom
     axis, centre : words under the axis and above the centre
-    ends : names of the upper and the lower end
+    ends : names of the upper and the lower end, for the legend
     columns : heads of the words at the right; default: the names of the ends
     predicted : whether the legend explains the short lines of predicted changes
     """
@@ -80,7 +81,7 @@ def bars(
 
 
 def _frame(solved: list[float], predicted: list[float]) -> tuple[float, float]:
-    """Range of the axis: all re-solved changes, and predictions that are not far beyond."""
+    """Range of the axis: all changes shown as bars, and predicted changes not far beyond them."""
     low, high = min([0.0, *solved]), max([0.0, *solved])
     span = (high - low) or max(map(abs, predicted), default=0.0) or 1.0
     room = (BEYOND - 1.0) * span / 2

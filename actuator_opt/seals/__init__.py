@@ -1,6 +1,6 @@
 """Seal types: one module each, listed in `kinds.TYPES`.
 
-To add a type, write a module with `TYPE = SealType(...)` and one line in `kinds`. Its `SealType`
-defines the choices and help of the design file, JSON Schema, faults, groove, contact, outline,
-provenance and finite elements.
+To add a type, write a module with `TYPE = SealType(...)` and one line in `kinds`. This `SealType`
+supplies everything that depends on the type: its name, sizes and help text in the design file and
+JSON Schema, the checks of its sizes, groove, contact, outline, sources and finite elements.
 """

@@ -35,7 +35,7 @@ def contact(seal: SealSizes) -> SealContact:
 
 
 def groove(sizes: Mapping[str, Array]) -> SealGroove:
-    """Groove for a block with the seal's free section."""
+    """Groove for a block with the seal's section before mounting."""
     section, width = sizes["section"], sizes["width"]
     depth = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
     return SealGroove(depth, width, AXIAL_PLAY * width, (SealPart(section * width, depth / 2),))
@@ -56,7 +56,7 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
 TYPE = SealType(
     name="compact",
     title="compact seal",
-    help="a rubber body between two guides, effective in both directions",
+    help="a rubber body between two guides, which seals in both directions",
     fields=(SizeField(WIDTH, None), SizeField(LAND, lambda sizes: 1.0 * sizes["width"])),
     faults=no_faults,
     groove=groove,

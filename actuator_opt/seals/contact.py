@@ -22,7 +22,7 @@ class Size(NamedTuple):
     Parameters
     ----------
     key : key in the design file
-    quantity : its name in `quantities.INPUTS`
+    quantity : name of the physical quantity in `quantities.INPUTS`
     help : its meaning, for the JSON Schema
     example : valid value, for messages
     """
@@ -71,21 +71,22 @@ LAND = Size(
     "land",
     "part_length",
     "axial width of the contact without pressure; default: half the width of a step ring, the "
-    "whole width of a compact seal; for a U-cup it is twice the radius of its lip's edge "
+    "whole width of a compact seal; for a U-cup, state twice the edge radius of its lip "
     "(default: a tenth of the lip length)",
     "2 mm",
 )
 RELIEF = Size(
     "relief",
     "length",
-    "width of a step ring's face in front of its land, on which the oil pressure acts; default: "
-    "half of the width outside the land",
+    "axial width of the part of a step ring's face between its sealed side and its land, on which "
+    "the oil pressure acts; default: half of the ring width minus the land",
     "1 mm",
 )
 TAPER = Size(
     "taper",
     "taper",
-    "angle of the tapers beside a step ring's land against the sliding counterface; default: 6 deg",
+    "angle between the counterface and the tapers on both sides of a step ring's land; default: "
+    "6 deg",
     "6 deg",
 )
 ROOT_CLEARANCE = Size(
@@ -100,8 +101,8 @@ SHARED = (THICKNESS, WIDTH, GROOVE_WIDTH, LAND, RELIEF, TAPER, ROOT_CLEARANCE)
 
 
 WITHIN, TOUCHING = 1e-6, 1.0
-"""Least excess of contact pressure over oil pressure, as a share of the sealed pressure and in Pa.
-With a smaller excess, the sealed pressure would open the contact."""
+"""Least excess of the contact pressure over the oil pressure: as a share of the sealed pressure,
+and in Pa. With a smaller excess, the sealed pressure would open the contact."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,6 +200,6 @@ def stadium(middle: float, low: float, high: float, section: float) -> Polygon:
 
 
 def round_ring(middle: float, low: float, high: float, section: float) -> tuple[Shape, ...]:
-    """Outlines of a round ring: squeezed between two heights, and free."""
+    """Outlines of a round ring: squeezed between two heights, and before mounting."""
     free = stadium(middle, high - section, high, section)
     return Shape("elastomer", stadium(middle, low, high, section)), Shape("free", free)

@@ -33,7 +33,7 @@ def law_inputs(seal: SealSizes) -> dict[str, Array]:
 
 
 def contact(seal: SealSizes) -> SealContact:
-    """Contact of the ring by its contact law; its width is limited to that of the groove."""
+    """Contact of the ring by its contact law, with a contact width of at most the groove width."""
     law, inputs, pressure = seals.LAWS[seal.law], law_inputs(seal), seal["pressure"]
     width = gland.limited_width(
         contact_width=law.contact_width(**inputs), groove_width=seal["groove_width"]
@@ -61,7 +61,7 @@ def round_piece(section: Array, depth: Array) -> SealPart:
 
 
 def groove(sizes: Mapping[str, Array]) -> SealGroove:
-    """The standard gland for the section."""
+    """The standard O-ring gland for the section diameter of the ring."""
     section = sizes["section"]
     depth = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
     width = gland.groove_width(section=section)
@@ -97,7 +97,7 @@ def law_warnings(seal: SealSizes) -> Iterable[str]:
     if ratio > law.pressure_range[1]:
         yield (
             f"pressure is {ratio:.1f} times Young's modulus, but the {law.name} contact law was "
-            f"only compared with data up to {law.pressure_range[1]:g} times"
+            f"only compared with data up to {law.pressure_range[1]:g} times this modulus"
         )
 
 

@@ -27,9 +27,10 @@ class SealSizes:
         size of the type. In addition: `gland_depth`, `groove_width`, `diameter` of the counterface,
         `youngs_modulus` of the squeezed part, sealed `pressure`, and `squeeze_left`, the squeeze
         that remains under pressure; `hardness` if needed; `face_modulus` and `face_poissons_ratio`
-        of the sliding face if the type has `face`
+        of the sliding face if `face` of the type is true
     law : contact law of a round ring (`models.seals.LAWS`)
-    hardness_model : law that gives its modulus from its hardness (`models.elastomer.MODULUS_LAWS`)
+    hardness_model : law that gives the modulus of the rubber from its hardness
+        (`models.elastomer.MODULUS_LAWS`)
     on_rod : whether the counterface is a rod, not a bore
     """
 
@@ -92,9 +93,9 @@ class Elements(NamedTuple):
 
     Parameters
     ----------
-    solve : function that computes the contacts of a seal whose numbers are floats, from the groove
-        width without back-up rings [m] and increasing sealed pressures [Pa]; it imports its own
-        libraries
+    solve : function that computes the contacts of a single seal (its numbers are floats, not
+        arrays) at increasing sealed pressures [Pa], for a groove width without back-up rings [m].
+        It imports the finite-element modules only when called
     note : remark for the user on how far the contact peak depends on the mesh
     """
 
@@ -121,13 +122,14 @@ class SealType:
     round_ring : whether the squeezed part is a round ring. Its contact then follows from a law of
         `LAWS` and its modulus from its hardness; each law is valid for a range of squeeze or
         hardness
-    modulus_by : source of the modulus of the squeezed part. "hardness": always its hardness, as the
-        modulus that the compound states is that of a plastic ring; "stated": the stated modulus or,
-        if there is none, the hardness
+    modulus_by : source of the modulus of the squeezed part. "hardness": always its hardness,
+        because the modulus in the data of the compound is that of the plastic ring; "stated": the
+        modulus in the data of the compound or, if there is none, the hardness
     face : whether the contact depends on the elastic constants of the sliding face
     o_ring_gland : whether the seal is an O-ring alone in a standard gland; gland fill, stretch and
         section are then checked, and the standard sizes and compounds of O-rings apply
-    model : function that computes the line load, for reports to cite; None if a law of `LAWS` does
+    model : function that computes the line load, whose sources reports cite; None if the line load
+        follows from a law of `LAWS`
     contact_model : description of this model for reports; {law} is replaced by the name of the law
     warnings : function that yields reasons to doubt the contact of a seal
     elements : finite-element solution; None if the type has none
@@ -152,17 +154,17 @@ class SealType:
 
     @cached_property
     def keys(self) -> tuple[str, ...]:
-        """Keys of its sizes."""
+        """Keys of the sizes of this type in a design file."""
         return tuple(field.key for field in self.fields)
 
     @cached_property
     def needed(self) -> tuple[str, ...]:
-        """Keys of the required sizes."""
+        """Keys of the sizes that a design must state, as they have no default."""
         return tuple(field.key for field in self.fields if field.default is None)
 
     @property
     def width_key(self) -> str:
-        """Key of its axial width; for a round ring its section."""
+        """Key of the axial width of the seal; for a round ring, that of its section diameter."""
         return "width" if "width" in self.keys else "section"
 
     def sizes(

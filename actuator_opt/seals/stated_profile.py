@@ -70,7 +70,10 @@ def contact(tables: Sequence[PressureProfile], pressure: Array) -> SealContact:
 
 
 def _share(pressure: Array, pressures: Sequence[float], index: int) -> Array:
-    """Weight of a profile: 1 at its own sealed pressure, 0 at or beyond those of its neighbours."""
+    """Weight of a stated profile in the interpolation over the sealed pressure.
+
+    It is 1 at the sealed pressure of this profile and 0 at those of its neighbours.
+    """
     table_pressure = pressures[index]
     rising: Array = 1.0
     falling: Array = 1.0

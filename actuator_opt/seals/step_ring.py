@@ -115,7 +115,7 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
 
 
 def faults(sizes: Mapping[str, float]) -> Iterable[SizeFault]:
-    """Faults of an O-ring wider than the step ring, and of land and relief too wide for it."""
+    """Faults if the O-ring, or land and relief together, are wider than the step ring."""
     width, section = sizes.get("width"), sizes.get("section")
     if width is None or section is None:
         return

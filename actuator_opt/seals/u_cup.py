@@ -109,7 +109,7 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
 
 
 def lip_faults(width: float, thickness: float) -> Iterable[SizeFault]:
-    """Fault of a lip shorter than it is thick, for which the beam model does not apply."""
+    """A fault if the lip is shorter than it is thick, as the beam model then does not apply."""
     if width < thickness:
         yield SizeFault(
             "width",
@@ -119,7 +119,7 @@ def lip_faults(width: float, thickness: float) -> Iterable[SizeFault]:
 
 
 def faults(sizes: Mapping[str, float]) -> Iterable[SizeFault]:
-    """Faults of lips that are shorter than thick, or have no space between them."""
+    """Faults if the lips are shorter than thick, or if there is no space between them."""
     width, thickness, section = (sizes.get(key) for key in ("width", "thickness", "section"))
     if width is None or thickness is None or section is None:
         return

@@ -24,7 +24,7 @@ PRESSURES = INPUTS["pressure"]
 
 
 def ends_of(scenario: Scenario, plant: Plant) -> str:
-    """Component at the far ends of the lines, by name: a valve or closed ends, for example."""
+    """Name of the component at the far ends of the lines, such as "valve" or "closed"."""
     if scenario.ends is not None:
         return scenario.ends
     return "valve" if plant.valve is not None else plant.design.ports.end
@@ -79,7 +79,8 @@ def assemble(
     scenario, plant : inputs over time, and the actuator
     records : columns of the files that the scenario's signals name
     gains : controller gains; None without a controller
-    linear : open the loop at a free variable ``u`` and omit sticking friction
+    linear : replace the valve signal by a free variable ``u``, which opens the control loop, and
+        omit sticking friction
     """
     circuit = Circuit(
         scenario=scenario,
@@ -100,7 +101,7 @@ def assemble(
 
 
 def _command(circuit: Circuit, measured: Feedback) -> Expression:
-    """Signal to the valve: a free variable, prescribed over time, or from the controller."""
+    """Signal to the valve: a free variable, a given function of time, or the controller output."""
     system, loop, control = circuit.system, circuit.loop, circuit.scenario.control
     circuit.measured = measured.value
     if circuit.linear:
@@ -117,7 +118,7 @@ def _command(circuit: Circuit, measured: Feedback) -> Expression:
 def _driven(
     circuit: Circuit, valve_signal: Expression, pressures: tuple[Expression, Expression]
 ) -> valve.Port:
-    """Add valve and supply; return the flows of the valve for these pressures at its ports."""
+    """Add valve and supply; return the flows of the valve for the given pressures at its ports."""
     data = circuit.plant.valve
     if data is None:
         message = "the design has no valve"

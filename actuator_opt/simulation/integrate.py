@@ -7,8 +7,8 @@ Radau serves as an independent check.
 CVODES of SUNDIALS is called through CasADi (extra `fast`) and runs without Python code. The
 expressions of a system are translated to CasADi, with each shared operation only once; CasADi
 derives the exact Jacobian. No compiler is needed. If CVODES fails, another integrator takes over
-that section or reports why it cannot. For a servo, CVODES takes about half the time of LSODA at the
-same error.
+that section or reports why it cannot. For a servo drive, CVODES takes about half the time of LSODA
+at the same error.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ RELATIVE: Final = {"lsoda": 1e-6, "radau": 1e-8, "cvodes": 1e-7}
 
 
 CHUNK = 200
-"""Number of samples between two checks of the switches (our choice: few enough, as the samples
-after a switch change are computed in vain)."""
+"""Number of samples after which the integration checks whether a switch of the model has changed
+(our choice: few, because the samples after a change are discarded)."""
 
 
 MOST = 100_000
-"""Maximum steps between two samples."""
+"""Maximum number of integration steps between two samples."""
 
 
 Advance = Callable[[Array, Array, tuple[bool, ...], int], Array]
@@ -188,7 +188,7 @@ def translate(outputs: Sequence[Any]) -> tuple[dict[str, Any], list[Any]]:
 
     Parameters
     ----------
-    outputs : expressions that share their parts
+    outputs : expressions, which may have parts in common
 
     Returns
     -------
@@ -370,8 +370,8 @@ MOST_CHANGES = 20_000
 APART = 1e-9
 """Largest difference between times that count as equal [s] (our choice)."""
 FEW = 2_000
-"""Maximum steps between two samples in a first attempt, which may continue past a switch change,
-where the equations are no longer valid."""
+"""Maximum number of integration steps between two samples in a first attempt. The attempt may run
+past a switch change, where the equations are no longer valid and the steps become tiny."""
 TRIES = 12
 """Number of ever shorter sections in which the first switch change is searched for, if the
 integration over the full section fails."""
@@ -479,7 +479,11 @@ def integrate(
 
 
 def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> tuple[bool, ...]:
-    """Flags after a restart of the integration; switches keep their state, if they have one yet."""
+    """On/off flags of the equations after a restart of the integration.
+
+    The flag of an instant follows from the time. A switch keeps its state; at the very start, the
+    state follows from its guard.
+    """
     instants = tuple(t + APART >= instant for instant in compiled.instants)
     if before:
         return instants + before[len(instants) :]
@@ -488,7 +492,7 @@ def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> 
 
 
 def _margins(run: _Run, t: Array, states: Array, m: tuple[bool, ...]) -> tuple[Array, Array]:
-    """Margin of every guard before its switch changes, and its rate; each (switches, samples)."""
+    """Distance of every switch from its next change, and its rate; arrays (switches, samples)."""
     signs = np.where(m[len(run.compiled.instants) :], 1.0, -1.0)[:, None]
     margin = _at_switches(run.compiled, run.compiled.guards, t, states, m) * signs
     return margin, _at_switches(run.compiled, run.compiled.guard_rates, t, states, m) * signs
@@ -501,7 +505,7 @@ def _at_switches(
     states: Array,
     m: tuple[bool, ...],
 ) -> Array:
-    """Guards, or their rates, of every switch at all samples, as (switches, samples)."""
+    """Guard of every switch, or its rate, at all samples; array (switches, samples)."""
     count = len(compiled.system.switches)
     if not count:
         return np.empty((0, len(t)))
@@ -550,14 +554,14 @@ def _segment(
 
 
 SwitchChange = tuple[int, float, Array, int]
-"""Index of the sample before a switch change, time and states of the change, index of the
+"""A switch change: index of the sample before it, time and states at the change, and index of the
 switch."""
 
 
 def _section_to_change(
     run: _Run, times: Array, y: Array, m: tuple[bool, ...]
 ) -> tuple[Array, Array, SwitchChange | None]:
-    """States at least up to the first switch change, after which the integration may fail."""
+    """Integrate past the first switch change; if that fails, at least up to this change."""
     try:
         states = run.advance(times, y, m, FEW)
         return times, states, _first_change(run, times, states, m)
@@ -678,7 +682,7 @@ def sampled(*, time: Array, fewest: int = 2, **channels: Array) -> tuple[np.ndar
     shape = arrays[0].shape
     for name, values in zip(names, arrays, strict=True):
         if values.shape != shape or values.ndim != 1:
-            message = f"{name} has shape {values.shape}, but time {shape}"
+            message = f"{name} has shape {values.shape}, but time has shape {shape}"
             raise InputError(Diagnostic(message, "give one number per sample in every channel"))
         broken = np.flatnonzero(~np.isfinite(values))
         if broken.size:

@@ -109,7 +109,7 @@ class OpenLoop:
 
 
 class LoopsAtPoint(NamedTuple):
-    """Open loops about a point, for both spool directions."""
+    """Open control loops, linearised at an operating point, for both spool directions."""
 
     loops: list[OpenLoop]
     held: bool
@@ -168,9 +168,9 @@ class Linear:
         """Open loops for both spool directions; the valve holds the load at the given states.
 
         To hold a load, the spool rests on one side of its centre. The loop of that direction is
-        taken at this equilibrium. In the other direction, and in both if there is no load, the loop
-        is taken with the spool just off its centre, which it passes when the load drifts. If the
-        valve cannot hold the load, the given states are used.
+        taken at this equilibrium. In the other direction, and in both directions if there is no
+        load, the loop is taken with the spool just off its centre. If the valve cannot hold the
+        load, the loops are taken at the given states.
         """
         at_rest = {name: 0.0 for name in ("speed", "shaft_speed") if self._known(name)}
         centre = self.circuit.centre
@@ -377,7 +377,7 @@ def margins(loop: OpenLoop, law: ControllerLaw) -> LoopMargins:
 
 
 def least(loops: Sequence[OpenLoop]) -> tuple[Ultimate, OpenLoop]:
-    """The loop with the smallest ultimate gain.
+    """The smallest ultimate gain of all loops, and the loop that has it.
 
     For a loop that is unstable even without control, the ultimate gain counts as zero.
     """
@@ -390,7 +390,8 @@ MARGIN = {"p": 2.0, "pi": 3.0}
 ultimate gain, the default for a design. An integral part reduces the phase, so a PI controller gets
 a larger margin."""
 PHASE = radians(60.0)
-"""Phase margin that suffices with an integral part, even if it is larger without (our choice)."""
+"""Phase margin that suffices for a controller with an integral part, even if the loop has a larger
+margin without this part (our choice)."""
 MARGIN_SHARE = 0.9
 """Share of the proportional loop's margins that must remain when an integral part is added (our
 choice)."""
@@ -398,7 +399,7 @@ NO_GAIN = 1e-9
 """Factor on the proportional gain that replaces a factor of zero, so that an integral or derivative
 part can be expressed relative to it."""
 UNHELD = "the valve cannot hold the load"
-CAUSES = "lower the load or the piston's leakage, raise supply.pressure or the valve's flow"
+CAUSES = "lower the load or the piston's leakage, or raise supply.pressure or the valve's flow"
 
 
 @dataclass(frozen=True, slots=True)
@@ -409,7 +410,7 @@ class Tuned:
     origin: str
     ultimate: Ultimate
     margins: LoopMargins
-    """Margins of the linear loop with these gains, multiplied by the scenario's factors."""
+    """Margins of the linear loop with these gains times the scenario's factors."""
     unit: str
     notes: tuple[str, ...] = ()
     unheld: str = ""
@@ -420,12 +421,14 @@ class Tuned:
 def tune(
     scenario: Scenario, plant: Plant, records: Records, *, previous: Tuned | None = None
 ) -> Tuned | None:
-    """Gains of a scenario's controller; if `previous` is given, its gains with new margins.
+    """Gains of a scenario's controller, with the margins of the control loop.
 
-    The linear loop has no sticking friction. The valve holds the initial load, even if the scenario
-    starts at other pressures. The loop is evaluated for both spool directions, at the start and,
-    for a position loop, wherever the reference comes to rest. A speed loop is also evaluated at
-    steady speed. The smallest ultimate gain is used for tuning.
+    If `previous` is given, its gains are kept and only the margins are computed.
+
+    The loop is linear and has no sticking friction. The valve holds the initial load, even if the
+    scenario starts at other pressures. The loop is evaluated for both spool directions, at the
+    start and, for a position loop, wherever the reference comes to rest. A speed loop is also
+    evaluated at steady speed. The smallest ultimate gain is used for tuning.
 
     Raises
     ------
@@ -501,7 +504,7 @@ def _loops(
 
 
 def _places(parts: Sequence[SignalSegment], start: float, stroke: float) -> list[float]:
-    """Initial position of a position reference, and its position after each of its steps."""
+    """Positions at which a position reference rests: initially, and after each of its steps."""
     places, position = {start}, start
     for segment in sorted(parts, key=lambda segment: segment.start or 0.0):
         position += steady_value([segment])
@@ -538,8 +541,8 @@ def _gains_by_rule(
         return gains, "Ziegler and Nichols", (note,)
     if control.law == "pid":
         message = (
-            "tuning by margins supports only p and pi, as a derivative part would reduce the "
-            "margins"
+            "tuning by margins supports only the laws p and pi, as a derivative part would reduce "
+            "the margins"
         )
         remedy = "write law: pi, or tuning: ziegler_nichols"
         raise InputError(Diagnostic(message, remedy, path="control.tuning"))

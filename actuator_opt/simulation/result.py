@@ -464,8 +464,8 @@ def values(
 def _settled_from(parts: Sequence[SignalSegment], duration: float) -> float:
     """Time at which the following error is first evaluated.
 
-    This is one period of the slowest sine after the start of the reference, or its start if it has
-    no sine, but at most 90 % of the duration.
+    This is the start of the reference, plus one period of its slowest sine if it has one, but at
+    most 90 % of the duration.
     """
     tones = frequencies(parts)
     begin = min(part.start for part in parts)
@@ -555,7 +555,7 @@ def balance(circuit: Circuit, run: Trajectory) -> Balance:
 
 
 def _values(system: System, expressions: list[object], run: Trajectory) -> list[Array]:
-    """Values at every sample of expressions in the states."""
+    """Values of some expressions at every sample; expressions are functions of the states."""
     unpack = system.unpack([state.symbol for state in system.states], "y")
     values = vectorised("stored", "t, y, m", unpack, expressions)(
         run.time, run.states, tuple(run.flags)
@@ -566,8 +566,8 @@ def _values(system: System, expressions: list[object], run: Trajectory) -> list[
 EXPLAINING = ("position", "speed", "shaft_speed", "pressure_a", "pressure_b", "pressure_supply")
 """Signals whose values at the time of failure are reported if an integration fails."""
 OUT = 0.1
-"""Travel past the end of the stroke, as a share of the stroke, above which the model of the end
-stops counts as overloaded (our choice)."""
+"""Travel past the end of the stroke, as a share of the stroke, above which the end stops count as
+too soft for the load (our choice)."""
 
 
 def failed(stuck: Stuck, compiled: Compiled, plant: Plant) -> Unsolvable:
@@ -592,7 +592,7 @@ def _outside(signals: Mapping[str, Array], plant: Plant) -> str:
     position = float(signals["position"][0])
     beyond = max(-position, position - plant.stroke)
     if plant.design.linkage is not None and beyond > 0:
-        return "beyond the end stop, the joint reaches its dead centre: lower its load"
+        return "beyond the end stop, the joint reaches its dead centre: lower the load on the joint"
     if beyond > OUT * plant.stroke:
         return (
             "the piston is beyond its stops: lower the load, or stiffen the stops (smaller "

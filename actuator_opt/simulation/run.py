@@ -45,8 +45,8 @@ SETTLED = 0.02
 """Relative difference between the initial pressure of a pump line and its equilibrium pressure,
 above which a note reports it (our choice)."""
 WARN_PLANE = 0.02
-"""Relative error of the plane fitted to the friction over the pressures, above which a note reports
-it."""
+"""A simulation uses a simple function of the chamber pressures, fitted to the friction of the
+seals. If its relative error exceeds this value, a note reports the error."""
 
 
 def simulate(
@@ -62,7 +62,7 @@ def simulate(
     Parameters
     ----------
     scenario : inputs over time
-    subject : the design, in which the values that the scenario sets are already changed
+    subject : the design, already with the values that the scenario sets
     records : columns of the files that the scenario's signals name
     verify : whether to integrate again by another method and compare the results
     method : integration method

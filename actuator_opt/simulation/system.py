@@ -28,8 +28,9 @@ determine the step size)."""
 PRESSURE = 1.0
 """Error tolerance of a pressure [Pa]."""
 EMPTY = -40.0
-"""Smallest value of a pressure state, in units of the atmospheric pressure. Below it, the distance
-to vacuum is lost in rounding."""
+"""Lower limit of a pressure state, in units of the atmospheric pressure. Negative states are
+logarithmic (see `System.pressure`); below this limit, the distance to vacuum is lost in
+rounding."""
 VACUUM = 1e-6
 """Smallest absolute initial pressure, in units of the atmospheric pressure."""
 
@@ -148,7 +149,7 @@ class System:
     def switch(self, name: str, guard: Expression) -> Symbol:
         """A flag that is true while the guard is positive.
 
-        The integration computes the times at which it changes.
+        The integration computes the times at which the flag changes.
         """
         flag = f"s_{len(self.switches)}"
         self.switches.append(Switch(name, flag, guard))
@@ -244,7 +245,7 @@ class Compiled:
 
 
 def _below(state: Symbol) -> Expression:
-    """Gauge pressure below zero, down to vacuum, from its state."""
+    """The state of a pressure below zero, not below `EMPTY`; 0 for a pressure above zero."""
     return clip(state, EMPTY * ATMOSPHERIC_PRESSURE, 0.0)
 
 

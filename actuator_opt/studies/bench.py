@@ -31,9 +31,9 @@ class Bench:
     ----------
     design : the design of the tested actuator
     growth : radial growth of the bore at the piston seal per unit chamber pressure [m/Pa]
-    mass : moving mass inside the force sensor: rod, piston, fastening [kg]
-    rings, wipers : sealing rings and wipers in the first load case
-    springs : stiffness budget, part by part
+    mass : moving mass on the actuator's side of the force sensor: rod, piston, fastening [kg]
+    rings, wipers : sealing rings and wipers, with their properties in the first load case
+    springs : stiffness of the actuator, as contributions of its parts
     oil_pressures : pressures of chambers A and B in the first load case [Pa]
     temperature : oil temperature [K]
     bulk_modulus : bulk modulus [Pa] of the oil with air, as a function of gauge pressure, at the
@@ -88,7 +88,7 @@ class Bench:
     def _rubbing(
         self, pressure_1: Array, pressure_2: Array
     ) -> Iterator[tuple[Ring, SealContact, Array]]:
-        """Yield every ring, its contact, and the normal force [N] of all such rings in series."""
+        """Yield each type of ring, its contact, and the normal force [N] of its rings in series."""
         for ring in self._loaded(pressure_1, pressure_2):
             contact = seal_contact(ring)
             load = contact.line_load
@@ -111,7 +111,7 @@ class Bench:
         return sum((friction for _, friction in self._coulomb(pressure_1, pressure_2)), wiped)
 
     def _coulomb(self, pressure_1: Array, pressure_2: Array) -> Iterator[tuple[Ring, Array]]:
-        """Yield every ring with the Coulomb friction [N] of all such rings in series."""
+        """Yield every type of ring with the Coulomb friction [N] of its rings in series."""
         for ring, contact, force in self._rubbing(pressure_1, pressure_2):
             yield ring, ring.element.friction_law.coefficient(ring.sizes, contact) * force
 
@@ -152,7 +152,7 @@ class Bench:
         )
 
     def _loaded(self, pressure_1: Array, pressure_2: Array) -> list[Ring]:
-        """Return the rings under given chamber pressures; the first ring of each seal is loaded."""
+        """Return the rings at given chamber pressures; a seal's first ring bears the pressure."""
         p1, p2 = (
             np.maximum(pressure, 0.0) for pressure in np.broadcast_arrays(pressure_1, pressure_2)
         )

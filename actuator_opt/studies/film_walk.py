@@ -1,4 +1,7 @@
-"""Oil films of one seal or two in series over pressure and speed; each solution starts the next."""
+"""Oil films of one or two seals in series, solved point by point over pressure and speed.
+
+The solution at each point is the initial guess for the next.
+"""
 
 from __future__ import annotations
 
@@ -52,7 +55,7 @@ class Sealing:
         return self.growth * (pressure + float(self.rings[-1]["outer_pressure"]))
 
     def row(self, pressure: float, speed: float, **changes: float) -> FilmRow:
-        """Return the inputs of the film model; `changes` replace numbers of the first ring."""
+        """Return the inputs of the oil-film model; `changes` replace data of the first ring."""
         grown = self.grown(pressure)
         rings = []
         for ring in self.rings:
@@ -87,7 +90,7 @@ class Missing(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class FilmMap:
-    """Friction of rings in series as a function of pressure and speed; NaN without a film.
+    """Friction of one ring or of two in series, at p pressures and v speeds; NaN without a film.
 
     Parameters
     ----------
@@ -132,7 +135,7 @@ class FilmMap:
 def film_map(
     sealing: Sealing, pressures: Sequence[float], speeds: Sequence[float], **changes: float
 ) -> FilmMap:
-    """Solve the films at every pressure and speed; `changes` replace numbers of the first ring."""
+    """Solve the oil films at every pressure and speed; `changes` replace data of the first ring."""
     shape = len(pressures), len(speeds)
     count = len(sealing.rings)
     parts, thickness = np.full((2, *shape, count), nan)

@@ -1,6 +1,7 @@
 """The plant of a simulation: the numbers of a design in its equations of motion, SI.
 
-Oil properties are taken at the temperature of the first load case.
+The plant is the mechanical and hydraulic system that the controller acts on. Oil properties are
+taken at the temperature of the first load case.
 """
 
 from __future__ import annotations
@@ -23,12 +24,13 @@ from ..models import end_stop, lines, linkage
 from .bench import Bench, bench, first_case
 
 LEAST_AIR = 1e-4
-"""Free air content above which the expansion of the air limits a vacuum. Our choice: 0.01 %."""
+"""Free air content above which the expanding air keeps the pressure above absolute vacuum. Our
+choice: 0.01 %."""
 
 CAVITY = 1e-6
-"""Content of the vapour cavity that limits a vacuum in oil with less air, as a share of the volume.
-The cavity exists only below atmospheric pressure. Our choice: at 0.05 bar absolute it takes 0.006 %
-of the volume."""
+"""Content of the vapour cavity that keeps the pressure above absolute vacuum in oil with less air
+than `LEAST_AIR`, as a share of the volume. The cavity exists only below atmospheric pressure. Our
+choice: at 0.05 bar absolute it takes 0.006 % of the volume."""
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Chamber pressures at which the friction is fitted, as shares of the supply pressure."""
 
@@ -52,7 +54,7 @@ class Oil:
 
     @property
     def cavity(self) -> float:
-        """Return the content of the cavity in a vacuum; zero if air limits the vacuum."""
+        """Return the content of the vapour cavity; zero if the oil contains enough air."""
         return CAVITY if self.air_content < LEAST_AIR else 0.0
 
     @property
@@ -84,7 +86,10 @@ class ValveData:
 
 @dataclass(frozen=True, slots=True)
 class LineData:
-    """The lines of one chamber in two parts: up to and beyond a throttle, or else two halves."""
+    """The lines of one chamber, in two parts: near the chamber and far from it.
+
+    The parts meet at the throttle; without a throttle, each part is half of every line.
+    """
 
     near_volume: float = 0.0
     near_wall: float = 0.0
@@ -96,7 +101,10 @@ class LineData:
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """A force as a function of pressures: c0 + c1 |p_A - p_B| + c2 p_B + c3 max(p_A, p_B) [N]."""
+    """A force as a function of the chamber pressures [N].
+
+    It is c0 + c1 |p_A - p_B| + c2 p_B + c3 max(p_A, p_B), with the four numbers in this order.
+    """
 
     constant: float
     difference: float = 0.0
@@ -129,8 +137,8 @@ class Plant:
     """Properties of a design in its equations of motion, SI.
 
     At position x from the cap end, with stroke s, the chamber volumes are A_A x + dead volume and
-    A_B (s - x) + dead volume, without lines. `walls` is the volume by which the elastic walls of
-    the chambers give way per unit pressure, without oil and lines.
+    A_B (s - x) + dead volume, without lines. `walls` is the volume by which pressure expands the
+    elastic walls of the chambers, per unit pressure; oil and lines are not included.
     """
 
     design: Design
@@ -158,7 +166,7 @@ class Plant:
     films: dict[str, bool]
     """Whether the piston and rod seals run on an oil film in the design."""
     oil_damping: float
-    """Damping by oil shear in pipes and annular gaps, referred to the piston [N s/m]."""
+    """Force on the piston by oil shear in pipes and annular gaps, per piston speed [N s/m]."""
     stop_stiffness: float
     closed_length: float
 
@@ -249,7 +257,7 @@ _NOT_WALLS = (*OIL, "pipes", "hoses")
 
 
 def _extra(done: ModelRun) -> float:
-    """Return the barrel length in excess of stroke and parts."""
+    """Return the barrel length minus stroke and the lengths of piston and head [m]."""
     g = done.geometry
     return first_case(g.barrel_length - g.piston_length - g.head_length - g.stroke)
 
@@ -338,7 +346,7 @@ def _numbers(v: Values, section: Any, at: str) -> dict[str, float] | None:
 
 
 def _seals(v: Values, own: Bench, supply: float) -> SealData:
-    """Return the friction: planes over both pressures, fitted to the friction law of the seals."""
+    """Return the seal friction, fitted as a function of both chamber pressures."""
     p_a, p_b = (pressure.ravel() for pressure in np.meshgrid(*2 * (supply * np.array(SHARES),)))
     loads = [(ring, force) for ring, force in own.normal_forces(p_a, p_b)]
     coulomb = own.coulomb(p_a, p_b)

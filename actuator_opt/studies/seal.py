@@ -1,6 +1,7 @@
 """Study of a seal: contact, oil film, friction, leakage and gland, at one point or over a map.
 
-The study works for every sealing ring, whether the design uses an oil film or a coefficient.
+The study works for every sealing ring, whether the friction in the design follows from an oil film
+or from a friction coefficient.
 """
 
 from __future__ import annotations
@@ -102,12 +103,12 @@ class SealPoint:
 
     @property
     def viscous(self) -> float:
-        """Return the oil friction [N]."""
+        """Return the friction of all rings due to oil shear [N]."""
         return sum(ring.viscous for ring in self.rings)
 
     @property
     def asperity(self) -> float:
-        """Return the asperity friction [N]."""
+        """Return the friction of all rings due to asperities [N]."""
         return sum(ring.asperity_friction for ring in self.rings)
 
     @property
@@ -173,12 +174,13 @@ class SealStudy(Displayed):
     Parameters
     ----------
     place : piston or rod
-    out, back : the operating point on outstroke and instroke, at one speed and pressure
+    out, back : the seal on outstroke and on instroke, both at the same speed and pressure
     outer_pressure : gauge pressure on the outer side [Pa]; for a piston seal, in the chamber
         towards which the piston moves
     stroke : stroke of the actuator [m]
     clearance : radial clearance behind the seal [m]
-    growth : radial growth of the bore at the piston seal under this pressure [m]; 0 at the rod
+    growth : radial growth of the bore at the piston seal under the sealed pressure [m]; 0 for a rod
+        seal
     squeezes : range of the squeeze due to tolerances, at several temperatures and pressures
     curves : friction over speed at three pressures, if requested
     map : friction over speed and pressure, if requested
@@ -201,12 +203,12 @@ class SealStudy(Displayed):
 
     @property
     def drive(self) -> SealPoint:
-        """Return the operating point of the stroke on which the oil drives the actuator."""
+        """Return the seal on the stroke on which the oil drives the actuator."""
         return self.out if drives(self.place) == "out" else self.back
 
     @property
     def other(self) -> SealPoint:
-        """Return the point of the other stroke: rod moving in, or piston overrun by a load."""
+        """Return the seal on the opposite stroke: rod moving in, or piston overrun by a load."""
         return self.back if drives(self.place) == "out" else self.out
 
     @property
@@ -348,15 +350,16 @@ SLOWEST = 1e-6
 """Lowest permitted speed of a seal study, m/s: 0.1 mm in 100 s."""
 
 HARDEST = 98.0
-"""Upper limit of hardness plus scatter, Shore A; at 100 no law gives a modulus."""
+"""Upper limit of hardness plus scatter, Shore A; at a hardness of 100 no law gives a modulus."""
 
 CURVE_SPEEDS = tuple(float(v) for v in np.geomspace(1e-4, 1.0, 17))
 CURVE_SHARES = (0.02, 0.5, 1.0)
-"""Speeds [m/s] and pressures (as shares of the supply pressure) of the friction curves."""
+"""Speeds [m/s] and pressures of the friction curves; the pressures are shares of the supply
+pressure."""
 
 MAP_SPEEDS = tuple(float(v) for v in np.geomspace(5e-4, 0.5, 13))
 MAP_SHARES = (0.02, 0.1, 0.25, 0.5, 0.75, 1.0)
-"""Speeds [m/s] and pressures (as shares of the supply pressure) of a map."""
+"""Speeds [m/s] and pressures of a friction map; the pressures are shares of the supply pressure."""
 
 
 def study(
@@ -375,8 +378,8 @@ def study(
     ----------
     subject : a design in which all rings of this piston or rod seal use the oil film
     speed, pressure : speed of the counterface [m/s], sealed pressure above the outer pressure [Pa].
-        The defaults are those of the load case with the highest pressure among those with motion,
-        which also sets outer pressure and oil
+        By default, both are those of the load case with the highest pressure, which also determines
+        outer pressure and oil. If no speed is given, only load cases with motion count
     curves : whether to compute friction against speed at three pressures
     mapped : whether to compute a map over speed and pressure
     elements : contacts from `with_elements`, stored in the result
@@ -464,8 +467,8 @@ def _within(seal_row: Sequence[Ring], place: Place, pressure: float) -> None:
         tables = ring.element.contact
         if tables and pressure > tables[-1].pressure * (1 + 1e-9):
             message = (
-                f"pressure {pressure / 1e5:g} bar: the stated profiles of the {ring.label} end at "
-                f"{tables[-1].pressure / 1e5:g} bar"
+                f"pressure {pressure / 1e5:g} bar: the contact profiles stated for the "
+                f"{ring.label} end at {tables[-1].pressure / 1e5:g} bar"
             )
             raise InputError(
                 Diagnostic(
@@ -477,7 +480,7 @@ def _within(seal_row: Sequence[Ring], place: Place, pressure: float) -> None:
 
 
 def _case(ring: Ring, speed: float | None) -> int:
-    """Return the load case of the study: of the cases with motion, that of highest pressure."""
+    """Return the load case with the highest pressure; without a speed, of the cases with motion."""
     pressures, speeds = (
         np.atleast_2d(np.asarray(ring[name], dtype=float))[:, 0] for name in ("pressure", "speed")
     )
@@ -546,7 +549,10 @@ def _bounds(solved: Solved) -> tuple[float, float]:
 
 
 def _face_factor(ring: Ring) -> tuple[float, float, float]:
-    """Return lowest, assumed and highest modulus of the sliding face; the assumed modulus is 1."""
+    """Return lowest, assumed and highest relative modulus of the sliding face.
+
+    The assumed modulus is 1.
+    """
     if ring.element.seal_type.modulus_by == "hardness":  # the face is plastic, its modulus stated
         return 1 / STATED_FACTOR, 1.0, STATED_FACTOR
     low, value, high = modulus_range(ring)

@@ -35,8 +35,8 @@ takes some 20 ms."""
 
 NO_ANSWER = "not computable for these dimensions"
 MARGIN, MISSED, FEASIBLE = "least_margin", "governing_limit", "feasible"
-"""Names of the columns after the metrics: least margin of all limits, number of the limit with this
-margin, and whether all limits are met."""
+"""Names of the columns that follow the metrics in each row: least margin of all limits, number of
+the limit with this margin, and whether all limits are met."""
 
 
 @dataclass(frozen=True)
@@ -44,8 +44,8 @@ class Chunk:
     """Results of consecutive points of a sweep, one row per point, starting with point `first`.
 
     `computed` is the number of rows that were computed instead of read from a database. A reduced
-    chunk only has the rows of the points with the numbers `places`, because no other point can be
-    among the best.
+    chunk only contains the points with the numbers `places`; all other points of the chunk cannot
+    be among the best designs.
     """
 
     first: int
@@ -117,12 +117,12 @@ class Study:
         return self.__dict__ | {"_screens": {}}
 
     def chunk(self, first: int, count: int, places: Array | None = None) -> Chunk:
-        """Return the rows of consecutive points, or only of those with the indices `places`."""
+        """Return the rows of consecutive points, or only of the points at the indices `places`."""
         points = self.plan.points(first, count)
         return self.evaluated(first, points if places is None else points.some(places))
 
     def evaluated(self, first: int, points: SweepPoints, keep_best: int | None = None) -> Chunk:
-        """Return the rows of points.
+        """Return the rows of results for some points.
 
         A feasible design also counts as failed if the reader of design files would reject it. With
         `keep_best`, feasible designs are checked from the best on, until that many are valid.
@@ -198,7 +198,8 @@ class Study:
     def _screen(self, variant: int, fixed: Mapping[str, float]) -> Scores | None:
         """Return a screen for designs that differ only in numbers, if there are enough of them.
 
-        None if the user has added metrics, as these are not closed expressions.
+        None if the user has added metrics, because these are Python functions and not closed-form
+        expressions.
         """
         axes = [axis for axis in self.plan.numeric if axis.path not in self.designs.apart]
         group_size = self.plan.count / self.plan.variants / self.designs.apart_count
@@ -301,7 +302,7 @@ class Study:
 
 
 def key_head(texts: Mapping[str, str]) -> hashlib.blake2b:
-    """Return the hash of the texts of a point; updating it with the numbers gives the key."""
+    """Return a hash object for the texts of a point; updating it with the numbers gives the key."""
     return hashlib.blake2b(json.dumps(dict(texts), sort_keys=True).encode(), digest_size=16)
 
 

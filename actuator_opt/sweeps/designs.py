@@ -24,7 +24,8 @@ CACHED = 64
 """Number of prepared designs that a process keeps in memory."""
 
 VARIANTS = 8
-"""Whether a number can vary as an array is checked in at most this number of text combinations."""
+"""Maximum number of text combinations in which the program checks whether a number can vary as an
+array. Texts are choices such as materials."""
 
 AT_ONCE = 4096
 """Maximum number of designs in one model call; more would take memory without saving time."""
@@ -52,8 +53,8 @@ class Designs:
     """The designs of a sweep plan, each prepared when it is needed.
 
     `apart` are the PATHs of numbers that need a new design for each value, such as temperatures
-    that change strengths. A number raises `InputError` if no model reads it in any combination of
-    texts.
+    that change strengths. `InputError` is raised for a number that no model reads in any
+    combination of texts (choices such as materials).
     """
 
     design: Design
@@ -94,9 +95,9 @@ class Designs:
     def _same_extremes(self) -> bool:
         """Whether the lowest and highest temperature stay the same over the sweep.
 
-        Strengths are prepared at these two temperatures. Neither falls if a temperature of the
-        design rises, so both are constant if they are the same with all temperatures at their lower
-        and with all at their upper ends.
+        Strengths are prepared at these two temperatures. A rise of any temperature in the design
+        lowers neither of the two. Both are therefore constant if they are the same with all
+        temperatures at their lower ends and with all at their upper ends.
         """
         temperatures = {a.path: a.ends for a in self.plan.numeric if self._is_temperature(a)}
         all_extremes = []
@@ -138,7 +139,7 @@ class Designs:
         return varies
 
     def _varies_in(self, axis: SweepAxis, texts: Mapping[str, str]) -> _Variation:
-        """Whether an array of all `_test_values` gives the same results as setting each in turn."""
+        """Whether one array of all `_test_values` gives the same results as a design for each."""
         separate: dict[float, Many] = {}
         for value, mandatory in _test_values(axis):
             if len(separate) >= 2 and not mandatory:
@@ -162,7 +163,11 @@ class Designs:
         return _Variation(agrees, axis.path in combined.read)
 
     def alike(self, points: SweepPoints) -> Iterator[tuple[Array, int, dict[str, float]]]:
-        """Group points by prepared design; yield indices, text combination and `apart` values."""
+        """Group the points that share a prepared design.
+
+        Yield for each group the indices of its points, the number of its text combination, and the
+        values of its `apart` numbers by PATH.
+        """
         paths = [axis.path for axis in self.plan.numeric]
         separate_axes = [k for k, path in enumerate(paths) if path in self.apart]
         if not separate_axes and self.plan.variants == 1:
@@ -210,10 +215,11 @@ class Designs:
 
 
 def _test_values(axis: SweepAxis) -> Iterator[tuple[float, bool]]:
-    """Yield test values of an axis, and whether each must be tested; of all others, two suffice.
+    """Yield test values of an axis, and whether each of them must be tested.
 
-    All values of a short list must be tested. Zero must be tested too, because it may make another
-    kind of design (no speed, no angle).
+    All values of a short list must be tested; of the values in a range, two that give valid designs
+    suffice. Zero must be tested too, because it may make another kind of design (no speed, no
+    angle).
     """
     assert axis.values is not None
     low, high = axis.values[[0, -1]]

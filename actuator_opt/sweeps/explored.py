@@ -28,7 +28,8 @@ BEST = 100
 """Number of best feasible designs that are kept even if rows are thinned out."""
 
 VARIANTS = 1_000_000
-"""Maximum number of combinations of texts (our choice, far above those of real sweeps)."""
+"""Maximum number of combinations of texts, such as materials (our choice, far above those of real
+sweeps)."""
 
 
 @dataclass(frozen=True)
@@ -43,8 +44,9 @@ class RowGroup:
 class Explored:
     """Rows of a study, one row per design, SI.
 
-    `numbers` is (rows, columns), with the varied numbers first. `variant` is the index in
-    `variants` of the text combination of each row. `margins` is (limits, rows).
+    `numbers` is (rows, columns), with the varied numbers first. `variants` are the combinations of
+    texts (choices such as materials); `variant` is the index of the combination of each row.
+    `margins` is (limits, rows).
     """
 
     kept: StoredRows
@@ -158,7 +160,7 @@ def explored_designs(
 
     Parameters
     ----------
-    design : the design that all have in common, without free variables
+    design : the common design, without free variables; each point changes some of its numbers
     points : numbers of each design, by PATH (SI)
     plugins : the user's metrics and constraints
     origin, shown : as in `Explored`
@@ -232,7 +234,7 @@ def _hidden(study: Study) -> tuple[str, ...]:
 
 def _variants(stored: StoredRows, path: Path) -> tuple[dict[str, str], ...]:
     if math.prod(len(texts) for texts in stored.texts.values()) > VARIANTS:
-        message = f"study {stored.number} has over {VARIANTS} combinations of texts"
+        message = f"study {stored.number} has over {VARIANTS} combinations of text values"
         raise InputError(Diagnostic(message, "vary fewer of them", str(path)))
     paths = list(stored.texts)
     return tuple(
@@ -244,7 +246,7 @@ def _study(stored: StoredRows, plugins: tuple[Plugin, ...], path: Path, ends: Ar
     """Return the study that made the rows, from the design stored in the database.
 
     The plan of the study has the varied texts, and the varied numbers in column order, each with
-    its `ends` in the rows. The plan contains no points.
+    its smallest and largest value in the rows (`ends`). The plan contains no points.
     """
     metrics = with_own(plugins)
     try:
@@ -318,7 +320,7 @@ def _text_numbers(
     variants: tuple[dict[str, str], ...],
     path: Path,
 ) -> Array:
-    """Return the index of the text combination of each row, found from the key of the row."""
+    """Return the index of the text combination of each row, found from its database key."""
     data = np.ascontiguousarray(numbers[:, : len(study.order)], dtype="<f8")
     heads = [key_head(texts) for texts in variants]
     text_numbers = np.empty(len(keys), dtype=np.int64)
@@ -332,6 +334,6 @@ def _text_numbers(
                 text_numbers[row] = last = number
                 break
         else:
-            message = "contains rows with texts that the study does not list"
+            message = "contains rows with text values that the study does not list"
             raise InputError(Diagnostic(message, "run the sweep again with --store", str(path)))
     return text_numbers

@@ -20,7 +20,7 @@ FINEST = 161
 nodes are used."""
 
 FAR = 2.0
-"""Margins are clipped to +-200 % (our choice)."""
+"""Margins are limited to the range from -200 to +200 % (our choice)."""
 
 NOTHING = -1.0
 """Margin below which a wall or clearance counts as negative."""
@@ -34,7 +34,7 @@ CLOSE = 1e-9
 
 @dataclass(frozen=True)
 class Boundary:
-    """Zero line of one limit, SI; `number` is the index of the limit in `Study.binding`.
+    """Lines of zero margin of one limit, SI; `number` is its index in `Study.binding`.
 
     `lines` are (n, 2) points of zero margin. `missed` are the areas where the limit is missed, each
     as a list of closed lines.
@@ -70,7 +70,7 @@ class Field:
         return values
 
     def boundaries(self) -> Iterator[Boundary]:
-        """Yield the zero line of every limit that is met at some nodes and missed at others."""
+        """Yield the lines of zero margin of each limit that is met at only some of the nodes."""
         from contourpy import FillType, LineType, contour_generator
 
         for number, margins in enumerate(self.margins):
@@ -163,7 +163,7 @@ class Field:
 
 
 def margins_at(study: Study, numbers: Array) -> Array:
-    """Return the margin of every limit, (limits, n), at numbers (axes, n) of the plan."""
+    """Return the margin of every limit, (limits, n), at n points; `numbers` is (axes, n)."""
     count = numbers.shape[1]
     margins = np.full((len(study.binding), count), np.nan)
     for places, subject, varied in study.designs.groups(

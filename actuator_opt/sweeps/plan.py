@@ -220,7 +220,7 @@ BITS = 30
 """Number of bits of a Sobol coordinate."""
 
 DIGITS = 12
-"""Number of low bits in the number of a Sobol point that are looked up in a table."""
+"""Number of the lowest bits of a point number for which Sobol points are read from a table."""
 
 ROUNDS = 6
 """Number of Feistel rounds in the permutation of a Latin hypercube."""
@@ -363,9 +363,9 @@ def plan(axes: Sequence[SweepAxis], *, method: Method, count: int | None, seed: 
 def _sobol(index: Array, dimension: int, count: int, seed: int) -> Array:
     """Return scrambled Sobol points (dimension, n) for their numbers [Sobol1967] [Owen1998].
 
-    Each nonzero binary digit in the Gray code of k, which is k ^ k/2, has a direction number. Point
-    k is the exclusive or of the first point and these direction numbers. The points for the lower
-    `DIGITS` digits come from a table.
+    Each nonzero binary digit in the Gray code of k, which is k xor floor(k/2), has a direction
+    number. Point k is the exclusive or of the first point and these direction numbers. For the
+    lower `DIGITS` digits of k, the result is read from a table.
     """
     table, digits = _sobol_parts(dimension, max(count - 1, 1).bit_length(), seed)
     low, high = index & (len(table) - 1), index >> DIGITS
@@ -395,7 +395,7 @@ def _sobol_parts(dimension: int, bits: int, seed: int) -> tuple[Array, Array]:
 
 
 def _latin(index: Array, dimension: int, count: int, seed: int) -> Array:
-    """Return points of a Latin hypercube: each of n equal parts of every axis has one [McKay1979].
+    """Return points of a Latin hypercube: one in each of n equal parts of every axis [McKay1979].
 
     On each axis, a permutation of k gives the part in which point k lies. It needs no table: a
     Feistel network, which permutes the numbers below the next power of four, is applied to k until

@@ -126,7 +126,8 @@ class Sample:
     def front(self, study: Study, pair: tuple[str, str]) -> tuple[Array, bool]:
         """Return the Pareto line (2, n) of two metrics (SI), and whether it is complete.
 
-        Empty if it is unknown whether more or less of a metric is better.
+        The line is empty if it is unknown for a metric whether a larger or a smaller value is
+        better.
         """
         for order in (pair, pair[::-1]):
             if order in self._fronts:
@@ -181,8 +182,8 @@ class Swept(Displayed):
     """Number of feasible designs; None if only the best are kept, because most designs are then not
     evaluated."""
     screened: int = 0
-    """Number of designs that a reduced sweep excluded, by its screen or for better designs in the
-    same chunk."""
+    """Number of designs that a reduced sweep excluded, either by its screen or because the same
+    chunk contains enough better designs."""
     best: list[Best] = field(default_factory=list)
     failures: dict[str, int] = field(default_factory=dict)
     """Number of failed designs, by reason."""
@@ -209,7 +210,7 @@ class Swept(Displayed):
         return {path: numbers[path] for path in paths}
 
     def limit(self, keep: int) -> float:
-        """Return the objective below which a further design is among the best."""
+        """Return the objective that a further design must undercut to be among the best `keep`."""
         return self.best[-1].objective if len(self.best) >= keep else np.inf
 
     def to_dict(self) -> dict[str, Any]:

@@ -229,7 +229,7 @@ def _chunk_size(study: Study) -> int:
 
 
 def _explain(swept: Swept) -> None:
-    """Count the missed limits at some places of a sweep, in place of those counted before."""
+    """Count the limits that designs miss at some places of a sweep; replace earlier counts."""
     count, size = swept.study.plan.count, CHUNK // SECTIONS
     swept.missed = {}
     starts = range(0, count, size)

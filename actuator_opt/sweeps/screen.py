@@ -1,7 +1,7 @@
-"""Screen of a sweep: fast closed expressions exclude most designs before full evaluation.
+"""Screen of a sweep: fast closed-form expressions exclude most designs before full evaluation.
 
 The models run once with symbols instead of numbers. The objective and those limits that become
-closed expressions of the varied numbers are compiled for NumPy, or for JAX if it is chosen and
+closed-form expressions of the varied numbers are compiled for NumPy, or for JAX if it is chosen and
 installed. Designs that pass are evaluated in full, so a screen never changes the result.
 """
 
@@ -32,8 +32,9 @@ ENGINES: tuple[Engine, ...] = get_args(Engine)
 
 
 Scores: TypeAlias = Callable[[Array, Array], Array]
-"""Function that estimates the objective of each design, (n,), from its numbers (axes, n). Excluded
-designs get inf. The second argument is the objective that a design must not exceed."""
+"""Function that estimates the objective of each of n designs, (n,), from their numbers, (axes, n),
+with one row per varied number. Excluded designs get inf. The second argument is the objective that
+a design must not exceed."""
 
 
 LEAST_BATCH = 1024
@@ -97,14 +98,17 @@ TEST_POINTS = 512
 
 @dataclass(frozen=True)
 class Limits:
-    """Compiled expressions of some limits, with their bounds and signs (1 for a lower bound)."""
+    """Compiled expressions of some limits, with their bounds.
+
+    The sign of a limit is 1 for a lower bound and -1 for an upper bound.
+    """
 
     compiled: Any
     bounds: Array
     signs: Array
 
     def missed(self, numbers: Array) -> Iterator[Array]:
-        """Yield for each limit whether it is missed: (n,), or a single value for all designs."""
+        """Yield for each limit which designs miss it: (n,), or one value that applies to all."""
         with np.errstate(all="ignore"):
             for value, bound, sign in zip(
                 self.compiled(numbers), self.bounds, self.signs, strict=True
@@ -168,8 +172,8 @@ def screen(
 ) -> Scores | None:
     """Return a screen for designs whose numbers at `paths` vary between `ends` (axes, 2).
 
-    None if the objective is no closed expression of these numbers, or if a number cannot vary as an
-    array.
+    None if the objective is no closed-form expression of these numbers, or if a number cannot vary
+    as an array.
     """
     variables = {
         path: Variable(lower=float(low), upper=float(high), start=float((low + high) / 2))
@@ -229,7 +233,7 @@ def _decisive(limits: Limits, points: Array) -> list[int]:
 
 
 def _is_closed(value: Any, names: dict[Symbol, str]) -> bool:
-    """Whether a traced value depends only on the varied numbers."""
+    """Whether a value, computed with symbols, depends only on the varied numbers."""
     if not isinstance(value, Symbol):
         return True
     return all(node in names for node in needed([value]) if node.op == "variable")

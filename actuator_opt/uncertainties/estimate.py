@@ -23,7 +23,8 @@ LEVEL = 0.95
 """Confidence level of all bounds."""
 
 Outputs = Callable[[Vector], Vector]
-"""Function that returns the outputs (k, n) at points (d, n) of the unit cube."""
+"""Function that returns k outputs, (k, n), at n points, (d, n), of the unit cube in d
+dimensions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +131,8 @@ class Indices:
 
 
 TOGETHER = 2048
-"""Maximum number of points in one call; up to it, the points for several inputs are joined."""
+"""Maximum number of points in one model call. Where a sample is smaller, the samples for several
+inputs are computed in one call."""
 REPLICATES = 8
 """Number of independent randomisations, from whose scatter the confidence intervals of indices
 follow."""

@@ -47,7 +47,7 @@ class Input:
 
     Parameters
     ----------
-    path : PATH
+    path : path of the input in the design file (PATH)
     quantity : its quantity
     value : nominal value in the design, SI
     distribution : distribution of its draws
@@ -191,9 +191,10 @@ def _compounds(subject: PreparedDesign) -> list[str]:
 
 
 def _moduli(subject: PreparedDesign) -> Iterator[Input]:
-    """Yield a factor on the modulus of each seal compound, as laws for it from hardness differ.
+    """Yield an uncertain factor on the modulus of each seal compound.
 
-    Its logarithm is uniform; its bounds give the smallest and the largest modulus of these laws.
+    Published laws give different moduli for the same hardness. The bounds of the factor give the
+    smallest and the largest of these moduli; its logarithm is uniformly distributed.
     """
     laws: dict[str, set[str]] = {}
     for place in ("piston", "rod"):
@@ -323,11 +324,11 @@ class UncertainModel:
         return self.where(np.array(quantiles).reshape(len(self.inputs), shares.shape[1]))
 
     def outputs(self, shares: Vector) -> Vector:
-        """Return (m + 1 + k, n): margins, least margin of the requirements, and metrics."""
+        """Return the m margins, least margin of the requirements, k metrics: (m + 1 + k, n)."""
         return np.concatenate([self.flat(self.at(part)) for part in chunks(shares)], axis=1)
 
     def flat(self, drawn_inputs: ModelDraws) -> Vector:
-        """Stack margins, least margin and metrics; a margin of 1e9 or more counts as missing."""
+        """Stack margins, least margin and metrics; a margin of 1e9 or more becomes NaN."""
         margins = np.where(np.abs(drawn_inputs.margins) < 1e9, drawn_inputs.margins, np.nan)
         with np.errstate(all="ignore"):
             least = np.min(drawn_inputs.margins[self.own], axis=0, initial=np.inf)

@@ -3,8 +3,9 @@
 The design is optimised repeatedly. At each optimum, random draws of the uncertain inputs show how
 the margin of every limit scatters. Each limit then needs a reserve, which is its nominal margin
 minus a low quantile of its drawn margins. The design is optimised again with these reserves until
-they converge. In doing so, the failure probability allowed for a single limit is adjusted until any
-limit fails as often as permitted. Further independent draws then verify the last design.
+they converge. In doing so, the failure probability allowed for each single limit is adjusted until
+the permitted share of draws misses at least one limit. Further independent draws then verify the
+last design.
 """
 
 from __future__ import annotations
@@ -28,15 +29,16 @@ from .inputs import TOLERANCE, UncertainModel, inputs, read_by_models
 from .study import draw
 
 Search = Callable[[PreparedDesign, bool], Optimisation]
-"""Function that optimises a design without draws. Its flag requests how much each limit costs."""
+"""Function that optimises a design without draws. The flag, if true, requests in addition how much
+the objective would gain if each limit were relaxed."""
 
 LEAST, MOST = 0.5, 0.9999
 """Range of yields that a user may request."""
 ROUNDS = 12
 """Maximum number of optimisation rounds."""
 REFUSALS = 3
-"""Maximum number of times that reserves which no design can provide are reduced to those of the
-nearest design."""
+"""If no design can provide the reserves, the search repeats with the reserves that the nearest
+design needs. It does so at most this many times."""
 STILL = 2e-3
 """Relative change of the objective that counts as converged."""
 FAR = 1.0
@@ -44,9 +46,9 @@ FAR = 1.0
 needs no reserve. For a service life, for example, the reserve could otherwise exceed the margins of
 all other designs."""
 AIM, ROOM = 0.85, 0.15
-"""Share of the allowed failures at which the search aims, and the relative tolerance on it. The
-search aims at fewer failures than allowed so that the confidence bounds of the verifying draws lie
-above the requested yield."""
+"""Failure rate at which the search aims, as a share of the allowed failure rate, and the relative
+tolerance on it. The search aims at fewer failures than allowed so that the confidence bounds of the
+verifying draws lie above the requested yield."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +134,7 @@ def _prepared(design: Design, subject: PreparedDesign) -> PreparedDesign:
 
 
 class _FailureLevel:
-    """Failure probability allowed for a single limit, adjusted to how often any limit fails."""
+    """Failure probability allowed for each limit, adjusted to the share of draws that miss any."""
 
     def __init__(self, aim: float) -> None:
         self.aim = self.value = aim
@@ -224,8 +226,8 @@ class _RobustSearch:
     def _nearer(self, nearest: _DesignDraws, level: float) -> dict[str, float]:
         """Return reserves for the next search, after one that found no feasible design.
 
-        The draws at the least infeasible design, `nearest`, may still meet the target, if one limit
-        fails more often and others fail less often than the level. Reserves no larger than the
+        The draws at the least infeasible design, `nearest`, may still meet the requested yield: one
+        limit fails more often than `level`, and others less often. Reserves no larger than the
         margins of this design are then enough.
         """
         reserves = nearest.reserves(level)
@@ -327,7 +329,7 @@ class _RobustSearch:
             f"{_percent(outcome.rate)} ({_percent(outcome.lower)} to {_percent(outcome.upper)})"
         )
         cost = (
-            f"{quantity.label} is {after}, against {before} without margins for scatter, at a "
+            f"{quantity.label} is {after}; without margins for scatter it is {before}, at a "
             f"yield of {_percent(outcome.nominal_rate)}"
         )
         remarks = ""

@@ -143,7 +143,7 @@ def uncertainty(
 
 @dataclass(frozen=True, slots=True)
 class HitCounts:
-    """Numbers of draws (m + 2, blocks) that meet each limit, all requirements, and all limits."""
+    """Numbers of draws that meet each of m limits, all requirements, all limits (m + 2, blocks)."""
 
     hits: Vector
     per_block: int
@@ -248,7 +248,7 @@ def _indices(
 
 
 def _swings(model: UncertainModel, outputs: Sequence[str]) -> tuple[Swing, ...]:
-    """Return every output with one input after another at its `ENDS`, and the others nominal."""
+    """Vary one input at a time to its `ENDS`, the others nominal; return the outputs."""
     if not model.inputs:
         return ()
     values = np.repeat(

@@ -121,7 +121,7 @@ FACTS = {"actuator_opt": "0.6.0", "command": "actuator-opt evaluate a.yaml", "so
         ({"command": "actuator-opt evaluate a --frob 3"}, "cannot be repeated"),
         ({"command": "actuator-opt optimise a --seed x"}, "cannot be repeated"),
         ({"command": "actuator-opt optimise"}, "cannot be repeated"),
-        ({"command": "actuator-opt evaluate a --plugin own.py"}, "which is a program"),
+        ({"command": "actuator-opt evaluate a --plugin own.py"}, "a plug-in is a program"),
         ({"command": "actuator-opt evaluate a --set bore"}, "PATH=VALUE"),
         ({"command": "actuator-opt optimise a --verify-dynamics no.yaml"}, "no such file"),
         ({"command": 3}, "does not state its command"),

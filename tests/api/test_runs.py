@@ -321,7 +321,7 @@ def test_damaged_newer_and_foreign_records(folder, design, tmp_path):
         "in a newer format": [('"record": 2', '"record": 3')],
         "damaged": [('"kind": "optimise"', '"kind": "sweep"'), ('"state"', '"State"')],
         "does not fit this version": [('"samples"', '"Samples"')],
-        "no such report": [('"kind": "optimise"', '"kind": "simulate"')],
+        "can be restored": [('"kind": "optimise"', '"kind": "simulate"')],
     }
     parts = [json.dumps(part) for part in run_store.read(path)]
     other = tmp_path / "x.run"

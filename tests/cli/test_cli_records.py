@@ -124,7 +124,7 @@ def test_columns_may_be_named(tmp_path, found):
         (lambda h: [*h[:1], "pressure one", *h[2:]], ("no column p1", "--column")),
         (lambda h: [*h[:2], "p2", *h[3:]], ("states no unit", "bar")),
         (lambda h: [*h[:2], "p2 [mm]", *h[3:]], ("p2", "mm is a length")),
-        (lambda h: [*h[:2], "p1 [bar]", *h[3:]], ("both p1", "rename")),
+        (lambda h: [*h[:2], "p1 [bar]", *h[3:]], ("both name the channel p1", "rename")),
     ],
 )
 def test_wrong_headers_are_one_line(tmp_path, change, said):

@@ -55,7 +55,7 @@ CASES = [
     (f"{O_RING}, friction: film, secondary: {{{O_RING}}}", "secondary.friction", "while"),
     (f"{O_RING}, secondary: {{{O_RING}, friction: film}}", "secondary.friction", "while"),
     (f"{O_RING}, secondary: {{{O_RING}, {WIPER}}}", "secondary.wiper", "unknown key"),
-    (TABLE.replace("pressure: 0 bar", "pressure: 5 bar"), "contact[0].pressure", "without"),
+    (TABLE.replace("pressure: 0 bar", "pressure: 5 bar"), "contact[0].pressure", "zero"),
     (TABLE.replace("pressure: 120 bar", "pressure: 90 bar"), "contact[1].pressure", "below"),
     (TABLE.replace("pressure: 120 bar", "pressure: 0 bar"), "contact[1].pressure", "not above"),
     (TABLE.replace("40 bar, 0 bar", "40 bar"), "contact[0].stresses", "2 stresses at 3"),

@@ -115,7 +115,7 @@ def test_nearest_standard_size(kind, value, direction, expected):
 
 def test_no_size_beyond_the_series():
     """Above the largest bore there is nothing to round up to."""
-    with pytest.raises(InputError, match="no standard bore up"):
+    with pytest.raises(InputError, match='no standard bore in direction "up"'):
         standards.nearest_standard("bore", 0.6, "up")
 
 

@@ -113,7 +113,7 @@ def test_a_wider_band_settles_sooner():
     [
         ({"target": 0.0}, "a step from 0 to 0; give different values for start and target"),
         ({"band": 0.0}, "settling band 0 of the step; give one between 0 and 1"),
-        ({"response": [0.0, 1.0]}, r"response has shape \(2,\), but time \(3,\)"),
+        ({"response": [0.0, 1.0]}, r"response has shape \(2,\), but time has shape \(3,\)"),
         ({"response": [0.0, math.nan, 1.0]}, "response of sample 1 is nan; remove the sample"),
         ({"time": [0.0, 2.0, 1.0]}, "time decreases after sample 1; sort the samples"),
         ({"time": [1.0, 1.0, 1.0]}, "time does not advance; give samples over a longer time"),
@@ -235,7 +235,10 @@ def test_standard_error_of_the_stiffness_is_its_scatter():
             {"frequency": 50.0},
             "samples every 0.01 s do not resolve 50 Hz; give more than two samples",
         ),
-        ({"force": np.zeros(100)}, r"force has shape \(100,\), but time \(101,\); give one number"),
+        (
+            {"force": np.zeros(100)},
+            r"force has shape \(100,\), but time has shape \(101,\); give one number",
+        ),
     ],
 )
 def test_records_without_that_swing_are_one_clear_line(changes, line):

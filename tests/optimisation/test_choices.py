@@ -68,13 +68,13 @@ FAULTS = [
     ("seals.rod.type: [o_ring, o_rng]", '"o_rng" is not a choice', "o_ring"),
     ("seals.rod.compond: [nbr_70]", "unknown PATH", "seals.rod.compound"),
     ("seals.rod: [nbr_70]", "names a block", "add one of"),
-    ("name: [a, b]", "is not a value of an actuator part", "write the PATH of a number"),
+    ("name: [a, b]", "is not a value of an actuator part", "write the PATH of a part's number"),
     (
         "requirements.seal_gap.max: [1 um]",
         "is not a value of an actuator part",
-        "write the PATH of a number",
+        "write the PATH of a part's number",
     ),
-    ("load_cases[stance].name: [walk]", "is free text", "write the PATH of a number"),
+    ("load_cases[stance].name: [walk]", "is free text", "write the PATH of a part's number"),
     ("load_cases[0].force: [1 kN]", "is not the canonical PATH", "load_cases[stance].force"),
     ("barrel.layup[7].material: [t700_epoxy]", "has no entry 7", "use one of"),
     (f"seals.rod.count: [{', '.join(['1'] * 51)}]", "51 values are too many", "at most 50"),
@@ -430,7 +430,7 @@ def test_many_combinations_are_cut_in_the_table_not_in_the_record():
     result = optimum(listed(lists, FIXED))
     assert len(result.choices.combinations) == 48
     shown = fixture.shown(result, width=120)
-    assert f"The best {MOST_ROWS} are shown" in shown
+    assert f"The best {MOST_ROWS} combinations" in shown
     assert "head.length 1" in shown
     (table,) = sizes_and_choices(result)
     assert len(table.rows) == MOST_ROWS

@@ -265,7 +265,7 @@ def test_ports_case_and_a_published_topology_are_named():
     """The figure says ports closed and its case; another topology than ours is named as such."""
     evaluation = fixture.build_evaluation()
     note = stiffness_blocks(evaluation)[0]["note"]
-    assert note.startswith("Load case stance, ports closed. Computed per chamber")
+    assert note.startswith('Load case "stance", ports closed. Computed per chamber')
     stiffness = evaluation.design.stiffness
     for topology, words in (
         ("aalto_as_published", "As published in [AaltoThesis], not per chamber"),
@@ -313,7 +313,7 @@ def test_modes_carry_the_metrics_and_the_limits():
     value = evaluation.metrics["natural_frequency"].value
     assert any(t.startswith(f"minimum {value:.1f} at") for t in texts(ink))
     assert {"≥ 110", "≥ 0.01"} <= set(texts(ink))
-    assert "lines end at: valve" in texts(ink)
+    assert "oil lines end at: valve" in texts(ink)
 
 
 def test_damping_adds_up_from_its_causes():
@@ -326,7 +326,7 @@ def test_damping_adds_up_from_its_causes():
     study = evaluated("knee").dynamics
     assert study.conductance_share == 0.0
     note = blocks_of(evaluated("knee"))["Dynamics"]["note"]
-    assert "leakage and lines next to nothing" in note
+    assert "leakage and hydraulic lines give next to nothing" in note
 
 
 def test_friction_share_is_the_closed_form():

@@ -325,9 +325,9 @@ def test_a_record_in_another_unit_is_told():
         }
     )
     made = ao.simulate(trial())
-    told = [one for one in overlay(made, wrong).notes if "check its unit" in one]
+    told = [one for one in overlay(made, wrong).notes if "check the unit" in one]
     assert [one.split()[0] for one in told] == ["position", "pressure_a"]
-    assert not any("check its unit" in one for one in overlay(made, record()).notes)
+    assert not any("check the unit" in one for one in overlay(made, record()).notes)
 
 
 def test_a_record_of_a_million_samples_is_thinned_for_a_fit():
@@ -348,7 +348,7 @@ def test_a_record_that_stands_still_is_not_fitted_to():
     """No channel that moves: one line, not a search."""
     still = AlignedRecord({"position": (np.linspace(0, 0.1, 50), np.full(50, 0.055))})
     own = plant(trial().actuator.subject())
-    with pytest.raises(InputError, match="every channel is constant; fit to a record with motion"):
+    with pytest.raises(InputError, match="every channel is constant; choose a record with motion"):
         fit(trial().scenario, own, {}, still, ("air_content",))
 
 

@@ -390,7 +390,7 @@ ONE = [
      "supply.pump", "both pump and flow are stated", "keep one of them"),
     (LOOP, ("  pump:\n    displacement: 6.3 ml\n    slip: 1.5e-7\n    coulomb: 0.02\n"
             "    viscous: 1e5\n    shaft_speed: 1500 rpm\n", ""), "supply:", "supply.flow",
-     "missing: a fixed_pump needs this or pump", 'or a block "pump:"'),
+     "missing: a fixed_pump needs flow or pump", 'or a block "pump:"'),
     (LOOP, ("  volume: 0.5 l", "  volume: 0.5 l\n  gain: 9 l/min/bar"), "gain: 9", "supply.gain",
      "without effect on a fixed_pump", "remove the line"),
     (BENCH, ("  flow: 30 l/min\n", ""), "supply:", "supply.flow",

@@ -379,7 +379,7 @@ def test_parameters_without_effect_are_told():
     even = case(static=TRUE["coulomb"])[0]
     assert entries(["stribeck_speed", "static"], even, own)
     for name, there, body, why in (
-        ("stribeck_speed", even, own, "static and Coulomb friction are equal; fit static too"),
+        ("stribeck_speed", even, own, "static and Coulomb friction are equal; also fit static"),
         ("valve_offset", scene, replace(own, valve=None), "the design has no valve"),
         ("mass", held, own, "the ports of the valve are blocked"),
         ("valve_leakage", scene, tight, "design's valve, which is zero"),

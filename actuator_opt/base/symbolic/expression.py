@@ -24,7 +24,7 @@ ANY: Final[Bounds] = (-math.inf, math.inf)
 
 
 def bounds_of(value: Any) -> Bounds:
-    """Lower and upper bound of a symbol or number; NaN is unbounded."""
+    """Lower and upper bound of a symbol or number; those of NaN are infinite."""
     if hasattr(value, "bounds"):
         limits: Bounds = value.bounds
         return limits
@@ -142,7 +142,7 @@ def _hull(*values: float) -> Bounds:
 
 
 def _of_choice(condition: Any, yes: Any, no: Any) -> Bounds:
-    """Bounds of a choice; a condition that compares the branches makes it a minimum or maximum."""
+    """Bounds of a choice, which is a minimum or maximum if its condition compares its branches."""
     (a, b), (c, d) = bounds_of(yes), bounds_of(no)
     if getattr(condition, "op", None) in ("lt", "le"):
         less, more = condition.args
@@ -184,7 +184,7 @@ class Graph:
     tables: list[Callable[..., Any]] = field(default_factory=list)
     """Tabulated functions of time, such as measured inputs."""
     slopes: dict[int, int] = field(default_factory=dict)
-    """By the index of a tabulated function, the index of its slope in `tables`."""
+    """For each tabulated function, by its index in `tables`, the index of its slope there."""
     truth: Callable[[Symbol], bool] | None = None
     """Decides a truth value that a model asks for; given for exact graphs only, whose operations
     are those of NumPy (NaN and rounding included) and are never simplified."""
@@ -615,7 +615,7 @@ def _scaled(factor: Any) -> Callable[..., Any]:
 
 
 def _steep(value: Any) -> Any:
-    """Replace a square root of 0 by infinity, so that its derivative, 1/(2 root), is zero."""
+    """Replace 0 by infinity, so that the derivative of a root is zero there instead of infinite."""
     return choose(less(0.0, value), value, math.inf)
 
 

@@ -193,7 +193,7 @@ def drives(view: FileView) -> Iterator[Fault]:
 
 
 def reference(view: FileView) -> Iterator[Fault]:
-    """Check that control has exactly one reference, of the rod or, with a motor, of the shaft."""
+    """Check that control has exactly one reference, for the rod or, with a motor, for the shaft."""
     if not isinstance(child_at(view.tree, ("control",)), dict):
         return
     references = stated_references(view)
@@ -312,7 +312,7 @@ def supply(view: FileView) -> Iterator[Fault]:
     flow, pump = view.has("supply", "flow"), view.has("supply", "pump")
     if kind == "fixed_pump" and not flow and not pump:
         remedy = f'{how_to_add("flow", keys["flow"])}, or a block "pump:"'
-        yield Fault(("supply", "flow"), f"missing: a {kind} needs this or pump", remedy)
+        yield Fault(("supply", "flow"), f"missing: a {kind} needs flow or pump", remedy)
     if kind == "fixed_pump" and flow and pump:
         message = "both pump and flow are stated, and both define the delivery"
         yield Fault(("supply", "pump"), message, "keep one of them", at_key=True)
@@ -363,7 +363,7 @@ def load_cylinder(view: FileView) -> Iterator[Fault]:
 
 
 def friction(view: FileView) -> Iterator[Fault]:
-    """Check that stated friction includes Coulomb friction, and breakaway friction is not below."""
+    """Check that Coulomb friction is stated where needed and does not exceed breakaway friction."""
     model = view.text("friction", "model")
     friction_model = FRICTIONS.get(model or "")
     if friction_model is not None:

@@ -24,12 +24,12 @@ from ..kinds import Choice, Position, PositionKind, Text, ValueFault, choice_of
 
 @dataclass(frozen=True, slots=True)
 class SupplyType:
-    """Type of supply of the valve.
+    """Type of hydraulic supply that feeds the valve.
 
     Attributes
     ----------
     name, help : name in a scenario, and its meaning
-    needed, unread : required keys, and keys without effect
+    needed, unread : required keys, and keys that have no effect with this type
     pumps : whether a pump delivers into a volume whose pressure is a state variable
     words : text for a report
     """
@@ -44,12 +44,12 @@ class SupplyType:
 
 @dataclass(frozen=True, slots=True)
 class SealFriction:
-    """Friction model of the seals over time.
+    """Friction model of the seals in a simulation.
 
     Attributes
     ----------
     name, help : name in a scenario, and its meaning
-    unread : keys of `friction` without effect
+    unread : keys of the block `friction` that have no effect with this model
     words : text for a report
     """
 
@@ -61,7 +61,7 @@ class SealFriction:
 
 @dataclass(frozen=True, slots=True)
 class PortEnd:
-    """Connection of the cylinder's ports, or of the lines at them.
+    """Component to which the cylinder's ports, or the lines at these ports, are connected.
 
     Attributes
     ----------
@@ -309,7 +309,7 @@ def _end(part: SignalPart) -> float:
 
 
 def _turns_at(*names: str) -> Callable[[SignalPart, float, Records], bool]:
-    """Return a function: whether one of these times of a part is after a given time."""
+    """Return a function that checks whether any of these times of a part is after a given time."""
 
     def after(part: SignalPart, moment: float, records: Records) -> bool:
         instants = (_end(part) if name == "end" else part.start for name in names)

@@ -47,7 +47,7 @@ class ValveSignal(SignalSegment):
 
 
 class PositionSignal(SignalSegment):
-    """A part of a position over time."""
+    """A part of a signal that states a position over time."""
 
     value: Annotated[
         float | None, Of("position_value", "height of this part, or amplitude of a sine")
@@ -55,7 +55,7 @@ class PositionSignal(SignalSegment):
 
 
 class SpeedSignal(SignalSegment):
-    """A part of a speed over time."""
+    """A part of a signal that states a speed over time."""
 
     value: Annotated[
         float | None, Of("speed_value", "height of this part, or amplitude of a sine")
@@ -63,7 +63,7 @@ class SpeedSignal(SignalSegment):
 
 
 class ForceSignal(SignalSegment):
-    """A part of the load force, positive against extension."""
+    """A part of the signal of the load force, which is positive against extension."""
 
     value: Annotated[
         float | None, Of("force_value", "height of this part, or amplitude of a sine")
@@ -71,7 +71,7 @@ class ForceSignal(SignalSegment):
 
 
 class TorqueSignal(SignalSegment):
-    """A part of the load torque on a shaft or joint."""
+    """A part of the signal of the load torque on a shaft or joint."""
 
     value: Annotated[
         float | None, Of("torque_value", "height of this part, or amplitude of a sine")
@@ -79,7 +79,7 @@ class TorqueSignal(SignalSegment):
 
 
 class ShaftSpeedSignal(SignalSegment):
-    """A part of a shaft's speed over time."""
+    """A part of a signal that states a shaft's speed over time."""
 
     value: Annotated[
         float | None, Of("shaft_speed_value", "height of this part, or amplitude of a sine")
@@ -87,7 +87,7 @@ class ShaftSpeedSignal(SignalSegment):
 
 
 class ShaftAngleSignal(SignalSegment):
-    """A part of a shaft's angle over time."""
+    """A part of a signal that states a shaft's angle over time."""
 
     value: Annotated[
         float | None, Of("shaft_angle_value", "height of this part, or amplitude of a sine")
@@ -287,7 +287,7 @@ class LoadCylinder(Section):
     valve: Valve
     signal: Annotated[tuple[ValveSignal, ...], Field(max_length=100)] = ()
     force: Annotated[
-        float, Of("force_value", "mean force on the rod at the start, positive outwards")
+        float, Of("force_value", "initial force of the load cylinder on the rod, positive outwards")
     ] = 0.0
 
 

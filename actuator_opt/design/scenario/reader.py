@@ -202,7 +202,7 @@ def recorded_notes(scenario: Scenario, records: Records) -> Iterator[str]:
 
 
 def gaps(time: Array, values: Array) -> list[SampleGap]:
-    """Intervals without samples: NaN values, and time steps missing in an even sampling."""
+    """Intervals without samples: NaN values, and time steps that an evenly sampled record lacks."""
     absent = np.concatenate(([False], ~np.isfinite(values), [False])).astype(np.int8)
     turns = np.flatnonzero(np.diff(absent))
     sample_gaps = [

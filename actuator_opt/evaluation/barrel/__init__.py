@@ -1,4 +1,4 @@
-"""The barrel in an evaluation: its wall, by the tube model that suits it, and its axial force."""
+"""The barrel of a design: its wall, by the tube model that suits it, and its axial force."""
 
 from .choice import LAMINATES, compute, kind
 from .wall import SEAL_STEP, Cycle, Swelling, Wall

@@ -1,4 +1,4 @@
-"""The barrel in an evaluation: the only place that selects a tube model.
+"""Calculation of the barrel wall; the only module that selects a tube model.
 
 The models are: isotropic (Lamé), exact layered tube (default for all laminates), thin laminate
 (fast), and the formula of a published paper. Each returns a `Wall`, the only form in which

@@ -181,7 +181,7 @@ class _ResidualStress:
     autofrettage: Autofrettage | None
 
     def cured(self) -> bool:
-        """Whether a service temperature differs from the stress-free temperature, that of cure."""
+        """Whether a service temperature differs from the cure temperature (stress-free state)."""
         return any(bool(np.any(real(state.change))) for state in self.states)
 
     def from_cure(self) -> _ResidualStress:
@@ -189,7 +189,11 @@ class _ResidualStress:
         return replace(self, path=replace(self.path, clamp=None), autofrettage=None)
 
     def of(self, rows: list[int]) -> Stress | None:
-        """Residual stress of the layers in `rows`, (faces, layers, climates, 1, designs)."""
+        """Residual stress of the layers in `rows`, (faces, layers, climates, 1, designs).
+
+        The faces are the inner and outer face of each layer, the climates the coldest and hottest
+        service temperature.
+        """
         clamped = self.path.clamp is not None
         if not clamped and self.autofrettage is None and not self.cured():
             return None
@@ -234,7 +238,8 @@ def _autofrettage(
 def _load(solution: WallSolution, rows: list[int], axial: Array) -> Stress:
     """Stress per unit pressure in the layers `rows`, (faces, layers, 1, paths, designs).
 
-    `axial` is the axial force per pressure, (paths, designs).
+    The faces are the inner and outer face of each layer. `axial` is the axial force per pressure on
+    each load path, (paths, designs).
     """
     parts = []
     for part in solution.stress:
@@ -244,7 +249,7 @@ def _load(solution: WallSolution, rows: list[int], axial: Array) -> Stress:
 
 
 def _by_climate(values: Sequence[Array]) -> Array:
-    """Arrange the strengths of a layer, one per climate, on the same axes as its stresses."""
+    """Arrange a layer's strengths, one per service temperature, on the axes of its stresses."""
     rows = np.stack(np.broadcast_arrays(*[np.atleast_1d(value) for value in values]))
     return rows[None, None, :, None]
 
@@ -282,8 +287,8 @@ def _rows(
 ) -> Iterator[tuple[str, Array]]:
     """Yield values (climates, paths, designs) for each climate and load path, with their names.
 
-    The optimiser treats each pair as a separate smooth limit, because an optimum may lie where two
-    of these limits intersect.
+    A climate is the coldest or hottest service temperature. The optimiser treats each pair as a
+    separate smooth limit, because an optimum may lie where two of these limits intersect.
     """
     for t in range(values.shape[0]):
         for p, place in enumerate(paths):
@@ -325,7 +330,7 @@ def _metal(
 def _cooling(
     layers: Sequence[Layer], residual: _ResidualStress, wall: Wall, *, exact: bool
 ) -> None:
-    """Compute strength over stress of the liner (yield) and its bond after cooling from cure."""
+    """Compute strength divided by stress, after cooling from cure, of the liner and of its bond."""
     liners = [i for i, layer in enumerate(layers) if layer.yields]
     if not liners or len(liners) == len(layers):
         wall.why_no_mismatch = "the wall has no liner under plies"
@@ -369,7 +374,7 @@ def _ladder(
     *,
     exact: bool,
 ) -> None:
-    """Compute burst pressures by climate and load path.
+    """Compute burst pressures for each extreme service temperature and load path.
 
     In a wall with a liner, also compute first-ply failure with a liner that yields.
     """

@@ -57,10 +57,10 @@ class Swelling:
 class LoadPath:
     """Axial forces in the barrel wall.
 
-    `per_pressure` is the force per unit pressure for each load path, (designs,) [m^2]. `held` is
-    the force at zero pressure [N]. `cases` are the forces in the load cases, including `held`,
-    (cases, designs) [N]. `share` is the barrel's share of a force that separates
-    its ends.
+    A load path is a way in which pressure loads the wall: without axial force, or with the largest
+    axial force. `per_pressure` is the force per unit pressure for each load path, (designs,) [m^2].
+    `held` is the force at zero pressure [N]. `cases` are the forces in the load cases, including
+    `held`, (cases, designs) [N]. `share` is the barrel's share of a force that separates its ends.
     """
 
     per_pressure: dict[str, Array]
@@ -122,8 +122,8 @@ def _clamped(
 ) -> LoadPath:
     """Axial forces in a barrel between tie rods, as two preloaded springs in parallel.
 
-    `worst` has the name of the severest load path, and the area on which pressure separates the
-    ends.
+    `worst` has one entry: the name of the load path with the largest axial force, and the area on
+    which pressure separates the ends.
     """
     springs = {
         "barrel_stiffness": 1 / (swelling.stretch * g.barrel_length),
@@ -173,9 +173,10 @@ class Cycle:
 class Wall:
     """The wall of a design.
 
-    Each pressure has its location (part, mode, load path) as key; Pa, (designs,). `cycles` are the
-    stresses of metals under pulsating pressure, by location. `ply_fatigue` is the fatigue strength
-    of fibres divided by their stress amplitude.
+    The pressures at yield, first-ply failure and burst are dicts keyed by location (part, failure
+    mode, load path), in Pa, (designs,). `cycles` are the stresses of metals under pulsating
+    pressure, by location. `ply_fatigue` is the fatigue strength of fibres divided by their stress
+    amplitude.
 
     `growth` is the bore growth at supply pressure: the larger of the values with and without the
     axial force of the load cases. `case_growth` is the growth at the pressures of the load cases.
@@ -315,6 +316,7 @@ PRESSURE, FORCE, WARMTH = range(3)
 class WallSolution:
     """Response of the wall to unit loads; ply stresses are (faces, layers, loads, designs).
 
+    The faces are the inner and outer face of each layer; a thin laminate has only its mid-radius.
     `walls` are the stiffnesses of the layers in tube axes, as `rod.layered_section` expects them.
     """
 

@@ -5,10 +5,11 @@ in every box; a tangent is added where the solution violates the curve [Kelley19
 side, the chord across the box bounds the curve. The bound is computed from the multipliers alone,
 so it is valid for any tolerance of the solver [Neumaier2004].
 
-Sums whose terms vary widely are also stated without logarithms, because their bounds are loose in
-logarithms but exact without. Four planes bound each product [McCormick1976]. They relate a monomial
-to the factor with the widest range and the remaining factor. Thus mass and stiffness of a layer,
-for example, both follow the layer's thickness.
+The relaxation uses the logarithms of all quantities. In logarithms, the bounds on a sum are loose
+if its terms vary widely. Such a sum is therefore also stated with the quantities themselves, as a
+linear and so exact row. A product is then not linear: four planes bound it [McCormick1976]. Its two
+factors are the quantity with the widest range and the rest of the product. Thus mass and stiffness
+of a layer, for example, both follow the layer's thickness.
 """
 
 from __future__ import annotations
@@ -127,10 +128,11 @@ TANGENT_GAIN = 2e-5
 """The rounds of tangents end once a round raises the bound by less than this."""
 
 TANGENT_DISTANCES = (1e-5, 1e-3)
-"""Limits on the setting of the distance from a curve at which a tangent is added."""
+"""Least and greatest value of the distance from a curve at which a tangent is added."""
 
 FINE = 0.01
-"""Distance from a curve at which a tangent is added, as a share of the gap still to be closed."""
+"""Distance from a curve at which a tangent is added, as a share of the gap still to be closed. The
+limits `TANGENT_DISTANCES` apply to it."""
 
 PROVEN = 1e-6
 """A dual ray proves that a box has no design if its value is at least this, well above rounding
@@ -164,8 +166,8 @@ class Bounding:
     """The relaxation as one linear programme that is solved again for every box.
 
     The columns are atoms (elementary positive quantities), directions (logarithms of ratios) and
-    curves. The rows define directions and curves, state the limits, and hold lines that bound a
-    curve by its direction: one chord per curve, and the tangents.
+    curves. The rows define directions and curves, state the limits, and bound every curve by
+    straight lines: one chord and some tangents.
     """
 
     def __init__(self, layout: Layout, objective: Form) -> None:
@@ -283,7 +285,7 @@ class Bounding:
         return ends
 
     def _purge(self) -> None:
-        """Delete inactive tangents if there are too many lines."""
+        """Delete inactive tangents if there are more lines than `LINES_PER_CURVE` permits."""
         first, count = len(self.low) + self.moving, len(self.lines.low)
         if count < LINES_PER_CURVE * self.moving:
             return
@@ -550,11 +552,12 @@ def ranges(nodes: Sequence[Symbol]) -> dict[Symbol, tuple[float, float]]:
 
 
 WIDE = 0.3
-"""A sum is also stated without logarithms if the log ratio of its terms varies by this much."""
+"""A sum is also stated with the quantities themselves, not only with their logarithms, if the log
+ratio of its two terms varies by at least this."""
 
 
 class _PlainAtoms:
-    """Adds atoms for monomials that enter the relaxation as values, not as logarithms."""
+    """Adds atoms for the values of monomials, which the relaxation otherwise has as logarithms."""
 
     def __init__(self, relaxation: Relaxation) -> None:
         self.relaxation = relaxation
@@ -572,7 +575,7 @@ class _PlainAtoms:
         return high - low
 
     def atom(self, powers: Powers) -> int:
-        """Number of the atom that is a monomial (not its logarithm), scaled to at most 1."""
+        """Number of the atom for a monomial's value (not its logarithm), scaled to at most 1."""
         if powers not in self.known:
             relaxation, form = self.relaxation, Form(0.0, powers)
             low, high = relaxation.reach(form)
@@ -616,7 +619,7 @@ class _PlainAtoms:
 
 
 def add_plain_sums(relaxation: Relaxation) -> None:
-    """Also state, without logarithms, the sums of a relaxation whose terms vary widely."""
+    """State sums whose terms vary widely a second time, with values instead of logarithms."""
     plain = _PlainAtoms(relaxation)
     for whole, part, remainder in list(relaxation.splits):
         if plain.width(part - remainder) < WIDE:

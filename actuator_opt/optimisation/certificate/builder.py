@@ -56,7 +56,7 @@ from .relaxation import (
 )
 
 WIDEST = 20.0
-"""Longest logarithmic range that is sampled."""
+"""Widest range of a logarithm over which a function is sampled."""
 
 LARGEST = 8
 """Maximum number of terms of a sum that is expanded to let terms cancel."""
@@ -86,7 +86,7 @@ class Builder:
         if not isinstance(value, Symbol):
             number = float(value)
             if number == 0 or not math.isfinite(number):
-                raise Unknown(f"a factor or term in the model is {number:g}")
+                raise Unknown(f"a factor or term in the model is always {number:g}")
             return math.copysign(1.0, number), Form(math.log(abs(number)))
         if value.index not in self._forms:
             try:
@@ -106,7 +106,10 @@ class Builder:
         return self._composed(node)
 
     def _repeats(self, node: Symbol) -> bool:
-        """Whether both factors of a product depend on one value, and not only as powers of it."""
+        """Whether both factors of a product are functions of one value, neither just a power of it.
+
+        Such a product has tighter bounds as a sampled function of that value.
+        """
         if node.op not in ("mul", "div"):
             return False
         lead, (first, second) = self._leads.of(node), node.args
@@ -146,7 +149,7 @@ class Builder:
         """Sign and logarithm, by samples, of a value that is a function of a single other value."""
         lead = self._leads.of(node)
         if lead is node:
-            raise Unknown("the model has a function of several values")
+            raise Unknown("the model has a function of several quantities")
         sign, argument = self.form(lead)
         if sign < 0:
             raise Unknown("the model has a function with a negative argument")
@@ -314,11 +317,11 @@ class Builder:
             return self.form(choice)
         kind = extreme(node)
         if kind is None:
-            raise Unknown("the model depends on a condition that the bounds do not decide")
+            raise Unknown("the model has a condition that may hold for only some of the designs")
         (s, a), (t, b) = self.form(node.args[1]), self.form(node.args[2])
         low, high = node.bounds
         if s != t:
-            raise Unknown("the model chooses between two values that may differ in sign")
+            raise Unknown("the model takes a minimum or maximum of values that may differ in sign")
         ends = (low, high) if s > 0 else (-high, -low)
         is_larger = (kind == "max") == (s > 0)
         pick = max if is_larger else min
@@ -346,7 +349,10 @@ class Builder:
     def _logarithm(
         self, graph: object, argument: Any, low: float, high: float
     ) -> tuple[float, Form]:
-        """Sign of ln x and logarithm of |ln x|, a curve of ln x, which is affine in the atoms."""
+        """Sign of ln x and the logarithm of |ln x|, which is a curve of ln x.
+
+        ln x is affine in the logarithms of the atoms.
+        """
         parts = self.expanded(argument)
         if parts is not None:  # the terms of a sum such as 1.2 + t/r show that it exceeds 1
             plus, minus = parts.sides()
@@ -416,7 +422,7 @@ class EnvelopeProblem(Protocol):
 
 
 class Envelopes:
-    """Upper and lower estimates of the models in one load case, exact at the `reference` design."""
+    """Bounds on models without a closed formula, in one load case; exact for `reference`."""
 
     def __init__(
         self,
@@ -468,9 +474,10 @@ class Envelopes:
         )
 
     def column(self, mode: TrialMode | None) -> Callable[..., Array]:
-        """Model of the buckling load: an unknown, at most the load of a trial shape.
+        """Model of the buckling load: an unknown quantity with an upper bound.
 
-        The load for the trial shape uses the shear stiffness of the stiffer segment.
+        The bound is the load for an assumed (trial) buckling shape `mode`, with the shear stiffness
+        of the stiffer segment. Without a shape, the load is computed from its formula.
         """
 
         def critical(
@@ -724,7 +731,7 @@ def _bearable(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> 
 
 
 def _hoop(layer: plies.Layer) -> Array:
-    """Largest hoop strength of a ply over its climates; at least its strength along the fibres.
+    """Largest hoop strength of a ply at its service temperatures; at least its fibre strength.
 
     Axial strain and temperature alone cause far less hoop stress, by the equilibrium of the wall
     (`tube_bounds.greatest_pressure`).

@@ -141,8 +141,8 @@ def _along_the_stroke(
 ) -> Iterator[tuple[Any, Any]]:
     """Bound the minimum stiffness from above by its values at some piston positions.
 
-    The compliance of the two chambers is a 2 x 2 matrix, to which walls can only add. So its
-    determinant and diagonal are at least those of the oil alone.
+    The compliance of the two chambers is a 2 x 2 matrix. Elastic walls only add to that
+    of the oil alone, so its determinant and diagonal are at least those of the oil.
     """
     springs, stroke = case_statics.springs, case_statics.base.geometry.stroke
     if springs.topology != "per_chamber" or springs.seals is not None:
@@ -229,11 +229,11 @@ MIDDLE = 0.2
 WORTH = 1e-9
 """Least estimated gain in the bound that justifies a split."""
 FAR_OFF = 0.2
-"""Upper limit on a curve's `Bound.excess` in the estimated gain of a split, since the first split
-gains most."""
+"""Upper limit on a curve's `Bound.excess` when the gain of a split is estimated, since the first
+split gains most."""
 FLOOR = 0.003
-"""Added to a curve's `Bound.price` in the estimated gain of a split, since the price of some of
-several loose curves in series is 0."""
+"""Added to a curve's `Bound.price` in the estimated gain of a split. Among loose curves
+in a chain (each the argument of the next), some have a price of 0."""
 SQUEEZES = 2
 """Maximum number of rounds that cut the ranges of the first box."""
 DIRECTIONS = 16
@@ -430,7 +430,7 @@ class Relaxed:
 
 
 def relax(traced: Traced, best: float) -> Relaxed:
-    """Relax the problem for all designs that meet the limits and are at most as bad as `best`.
+    """Relax the problem for all designs that meet the limits, with an objective of at most `best`.
 
     Raises
     ------

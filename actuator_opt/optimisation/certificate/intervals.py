@@ -233,7 +233,11 @@ def _forward(node: Symbol) -> Bounds:
 
 
 def _difference(node: Symbol) -> Bounds:
-    """Bounds on a difference; on that of squares also as (a - b)(a + b), if a - b is traced."""
+    """Bounds on a difference.
+
+    If it is a difference of squares a^2 - b^2 and a - b is also a traced value, the bounds of
+    (a - b)(a + b) are used too.
+    """
     low, high = bounds("sub", node.args)
     first, second = (_root_of(arg) for arg in node.args)
     if first is not None and second is not None:
@@ -452,7 +456,7 @@ class Layout:
 
     @cached_property
     def _linked(self) -> tuple[Tables, np.ndarray, Vector]:
-        """For every `Link`: its table, the number of its curve, the constant in its log ratio."""
+        """For every `Link`: its table, the number of its curve, and its `level`."""
         number = np.array([self._of_curve[id(link.curve)] for link in self.links])
         kinds = [link.curve.kind for link in self.links]
         tables = Tables([kind for kind in kinds if isinstance(kind, SampledFunction)])
@@ -472,7 +476,7 @@ class Layout:
 
     @cached_property
     def parts(self) -> tuple[slice, slice, slice]:
-        """Slices of the forms: outputs of curves, directions (log ratios), constraint rows."""
+        """Where the list of forms has curve outputs, directions (log ratios), constraint rows."""
         outputs_end, directions_end = self.curves, self.curves + self.directions
         return (
             slice(0, outputs_end),

@@ -393,9 +393,10 @@ class AtomFunction(NamedTuple):
 
 
 class Link(NamedTuple):
-    """An atom as a sampled function f of another atom, without logarithms: out = e^level f(base).
+    """Relation out = e^level f(base) between the values of two atoms; f is a sampled function.
 
-    `curve` is the table of log f as a function of the argument's logarithm.
+    `out` and `base` are the numbers of the atoms; `level` is the logarithm of a constant factor.
+    `curve` has the samples of f: log f as a function of the logarithm of its argument.
     """
 
     out: int
@@ -405,7 +406,11 @@ class Link(NamedTuple):
 
 
 class Product(NamedTuple):
-    """Three atoms without logarithms, where out = e^level * first * second."""
+    """Relation out = e^level * first * second between the values of three atoms.
+
+    `out`, `first` and `second` are the numbers of the atoms; `level` is the logarithm of a constant
+    factor.
+    """
 
     out: int
     first: int
@@ -438,7 +443,7 @@ class Relaxation:
     rows: list[ConstraintRow] = field(default_factory=list)
     curves: list[AtomFunction] = field(default_factory=list)
     splits: list[tuple[Form, Form, Form]] = field(default_factory=list)
-    """Every sum of two terms: the sum, the first term, the second term."""
+    """Every sum of two terms, as the logarithms of the sum, of its first and of its second term."""
     links: list[Link] = field(default_factory=list)
     products: list[Product] = field(default_factory=list)
     sums: dict[tuple[Form, Form], Form] = field(default_factory=dict)

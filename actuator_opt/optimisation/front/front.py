@@ -7,8 +7,8 @@ their neighbours and in shared steps. Each design is compared with all others at
 a better design replaces it. Independent full searches at some levels then check whether a better
 design was overlooked.
 
-The difference of the levels of two designs limits the length of a continuous front between them.
-If close levels lead to distant designs, the front jumps and no design lies between them.
+On a continuous front, designs at nearly equal levels are close together. If two designs are farther
+apart than their levels permit, the front jumps and no design lies between them.
 """
 
 from __future__ import annotations
@@ -67,7 +67,10 @@ class FrontEffort:
 
 @dataclass(frozen=True)
 class Anchors:
-    """The anchors' variables (n, objectives), and all feasible local optima (n, k)."""
+    """The best design of each objective (the anchors), and all feasible local optima.
+
+    Both are arrays of variables, with the shapes (n, objectives) and (n, k).
+    """
 
     x: Vector
     others: Vector
@@ -216,7 +219,10 @@ ROUNDS = 24
 
 
 def overlooked(tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort) -> list[Vector]:
-    """Search for better designs at the levels of some designs; return the variables (n,) found."""
+    """Search for better designs within the levels (upper limits of the objectives) of some designs.
+
+    Returns the variables (n,) of the designs found.
+    """
     run_ends: list[list[Point]] = [[] for _ in designs]
     if tracer.exact and designs:
         run_ends = _feasible_ends(tracer, designs, effort)
@@ -238,7 +244,7 @@ def overlooked(tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffo
 def _feasible_ends(
     tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort
 ) -> list[list[Point]]:
-    """Feasible points at which runs ended, for each level."""
+    """Feasible points at which runs ended, for the levels of each design."""
     evaluators = [tracer.evaluator_of(tracer.at(d.level, d.direction)) for d in designs]
     parameters = np.stack(
         [np.concatenate([design.level, design.direction]) for design in designs], axis=1
@@ -261,7 +267,7 @@ def _feasible_ends(
 def _overlooked_starts(
     tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort
 ) -> list[list[Vector]]:
-    """Starts for each level: the problem's start, and the best points of a shared sweep."""
+    """Starts for the levels of each design: the problem's start, and the best of shared samples."""
     inner = Evaluator(tracer.objectives.single_problem(0))
     space, start = inner.space, tracer.objectives.problem.start
     cube = Halton(space.size, effort.seed, max_points=max(2, effort.samples)).points(
@@ -323,7 +329,8 @@ class Front:
     passed : values (objectives, p) of dominated designs that the search found
     checked, improved : number of checking searches, and how many of them improved a design
     failed : number of levels at or near which the search found no design
-    wide : with two objectives, gaps wider than `plane.WIDEST` and the reason for them
+    wide : with two objectives, gaps wider than `plane.WIDEST` times the median gap, and whether the
+        front jumps there
     """
 
     x: Vector

@@ -4,8 +4,9 @@ A level is a set of upper limits for the normalised objectives. Levels lie on th
 anchors (the best design of each objective). With two objectives they lie on the line
 u -> (u, 1 - u). Along a front one objective falls as the other rises, so the front's length between
 two positions is at most twice their difference in u. With three or more objectives, levels are
-lattice points on the plane sum = 1. Only those lattice points are used whose lines of equal
-improvement meet the box between ideal and nadir (best and worst values of the anchors).
+lattice points on the plane sum = 1. Along a line through each lattice point, all
+objectives improve by equal amounts. Only those points are used whose line meets the box between
+ideal and nadir (best and worst values of the anchors).
 
 A front may extend beyond its anchors. So the search tries the neighbours of every level that has a
 design, until it reaches the edge of the front. There it improves the objectives that can still
@@ -47,7 +48,9 @@ def on_line(places: Vector) -> Vector:
 
 
 def lengths(places: Vector, units: Vector) -> Vector:
-    """Length (k - 1,) of the front between neighbouring designs, without jumps.
+    """Upper limit (k - 1,) on the length of the front between neighbouring designs.
+
+    Across a jump, only the length that a continuous front may have there counts.
 
     Parameters
     ----------
@@ -370,7 +373,7 @@ MOST_ROUNDS = 12
 
 
 def fill_line(search: FrontSearch, count: int) -> None:
-    """Add designs between the two anchors, always in the longest piece of the front."""
+    """Add designs between the two anchors, always in the longest gap between neighbours."""
     for number in range(MOST_ROUNDS):
         missing = count - len(search.front_indices())
         if missing <= 0:
@@ -398,7 +401,7 @@ def between_on_line(search: FrontSearch, places: Sequence[float] | Vector) -> li
 def _start_between(
     designs: Sequence[FrontDesign], k: int, u: float, direction: Vector
 ) -> FrontStart:
-    """A start between designs k - 1 and k: interpolated, or at a jump the nearer of the two."""
+    """A start between designs k - 1 and k: interpolated, or at a jump the nearer design."""
     left, right = designs[k - 1], designs[k]
     low, high = left.level[0], right.level[0]
     nearer = left if u - low < high - u else right
@@ -518,7 +521,7 @@ def middle_designs(search: FrontSearch, count: int) -> list[int]:
 
 
 def lost_levels(search: FrontSearch, indices: Indices) -> int:
-    """Number of levels without a design nearby; with two objectives, those inside gaps."""
+    """Number of levels without a design nearby; for two objectives, in wide gaps without a jump."""
     units = search.units[:, indices]
     if len(units) > 2:
         widest = nearest(units).max(initial=0.0)

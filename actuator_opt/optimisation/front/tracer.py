@@ -219,11 +219,11 @@ class Tracer:
         return units * self.width[:, None] + self.ideal[:, None]
 
     def at(self, level: Vector, direction: Vector) -> BoxProblem:
-        """The single-objective problem for given levels."""
+        """The single-objective problem for given levels (upper limits of the objectives)."""
         return self.parametric.at(np.concatenate([level, direction]))
 
     def initial_designs(self, x: Vector) -> list[FrontDesign]:
-        """Designs at the variables (n, k), with their objectives as levels and no Hessian."""
+        """Designs at the variables (n, k), with their own objectives as levels and no Hessian."""
         units = self.unit(x)
         size = self.evaluator.space.size
         return self._at_own(
@@ -234,7 +234,7 @@ class Tracer:
         )
 
     def at_own_levels(self, designs: Sequence[FrontDesign]) -> list[FrontDesign]:
-        """The designs, with the values of their own objectives as levels."""
+        """The designs, with the values of their own objectives as levels (upper limits)."""
         if not designs:
             return []
         units = self.unit(np.stack([design.point.x[:-1] for design in designs], axis=1))
@@ -286,7 +286,7 @@ class Tracer:
     def exchange(
         self, designs: list[FrontDesign], other_x: Vector, other_units: Vector
     ) -> list[FrontDesign]:
-        """Replace each design where the variables of another design reach a better level.
+        """Replace each design for which another is better at its levels, after a descent from it.
 
         Parameters
         ----------
@@ -361,7 +361,7 @@ class Tracer:
         return self._follow(starts)
 
     def _changed(self, starts: Sequence[FrontStart]) -> ChangedProblems:
-        """The problems for the levels of some starts."""
+        """The single-objective problems for the levels of some starts."""
         levels = np.stack(
             [np.concatenate([start.level, start.direction]) for start in starts], axis=1
         )
@@ -495,7 +495,10 @@ class FrontSearch:
     def designs_at(
         self, starts: Sequence[FrontStart], *, firmly: bool = True
     ) -> list[FrontDesign | None]:
-        """The designs at the levels of some starts, not added yet; see `solve`."""
+        """Compute the design at the levels of each start, without adding it to the front.
+
+        The result is None for a start that leads to no design. `firmly` is explained in `solve`.
+        """
         designs = self.tracer.solve(starts, self.designs if firmly else ())
         self.empty_levels += [
             s.level for s, design in zip(starts, designs, strict=True) if design is None
@@ -503,7 +506,10 @@ class FrontSearch:
         return designs
 
     def improved_designs(self, starts: Sequence[FrontStart]) -> list[FrontDesign | None]:
-        """As `designs_at`, but restarted from a known design where that is better at the level."""
+        """Compute the designs as `designs_at`, then improve them from better known designs.
+
+        If a known design is better at the levels of a start, the search restarts from it.
+        """
         designs = self.designs_at(starts)
         indices = [k for k, d in enumerate(designs) if d is not None]
         known_x = np.stack([design.point.x[:-1] for design in self.designs], axis=1)
@@ -515,7 +521,7 @@ class FrontSearch:
         return designs
 
     def add(self, designs: Sequence[FrontDesign]) -> None:
-        """Add designs, then let all designs exchange their results."""
+        """Add designs, then recompute each design from any other that is better at its levels."""
         previous = [*self.designs, *designs]
         self.designs = self.tracer.exchange(list(previous), self.others, self.other_units)
         changed = [new for old, new in zip(previous, self.designs, strict=True) if old is not new]
@@ -566,7 +572,7 @@ class FrontSearch:
         self.add([])
 
     def retry_jumps(self) -> None:
-        """Where variables jump between neighbours, retry each neighbour from the other."""
+        """Where variables jump between two neighbours, recompute each design from the other."""
         self.sort()
         z = np.stack([design.point.z[:-1] for design in self.designs], axis=1)
         steps = np.abs(np.diff(z, axis=1)).max(axis=0)

@@ -27,14 +27,14 @@ from .steps import (
 
 
 def applicable(parametric: ParametricProblem, evaluator: Evaluator) -> bool:
-    """Whether there are no equalities, and complex steps give all gradients exactly."""
+    """Whether `ChangedProblems` can solve it: no equalities, all gradients by complex steps."""
     exact = evaluator.complex_works and not evaluator.difference_rows.any()
     return exact and not parametric.problem.equality_names
 
 
 @dataclass(frozen=True)
 class ChangedProblems:
-    """A solved problem, with K sets of other values for its parameters.
+    """A solved problem with nf free variables, and K sets of other values for its parameters.
 
     Parameters
     ----------
@@ -112,10 +112,10 @@ class ChangedProblems:
         return Evaluator.screen(problem.rows(np.repeat(x, count, axis=1))).reshape(-1, size, count)
 
     def near_optimum(self, valley: Valley, starts: Vector) -> list[Point | None]:
-        """The optimum of each problem, by full steps with the Hessian at the unchanged optimum.
+        """The optimum of each problem, by full steps with the Hessian of the solved problem.
 
-        None if the steps do not converge, or if they end at a worse point than the unchanged
-        optimum.
+        None if the steps do not converge, or if the optimum of the solved problem is feasible and
+        better in the changed problem.
 
         Parameters
         ----------
@@ -147,7 +147,10 @@ class ChangedProblems:
     def descend_from(
         self, valley: Valley, starts: Vector
     ) -> tuple[list[Point | None], list[Point | None]]:
-        """Optima reached by descents; second, where no optimum is reached, a feasible point.
+        """The optimum of each problem, reached by descents, or else a feasible point.
+
+        Two lists: the optima (None if not reached), and a feasible point for each problem without
+        an optimum (None if not found).
 
         Parameters
         ----------

@@ -1,8 +1,9 @@
 """Re-solves many problems near a solved problem, by increasingly robust methods.
 
 1. Full steps from the predicted optima, all problems together.
-2. Where they fail, a restoration and a descent. Descents also start in the other known valleys, and
-   the optimum of each problem is a start for all others: a small change may favour another valley.
+2. Where they fail, a restoration finds a feasible point, and a descent starts there. Descents also
+   start in the other known valleys (local optima), and the optimum of each problem is a start for
+   all others, because a small change may favour another valley.
 3. Where both fail, Newton's method and SLSQP from the known points, then a search with a sweep.
 
 A problem counts as unsolvable only after the last method has failed.
@@ -30,13 +31,14 @@ BETTER = 1e-8
 """An objective better by this share means that the point lies in another valley (local optimum)."""
 
 ROUNDS = 3
-"""Maximum number of rounds in which problems exchange optima; they end when nothing improves."""
+"""Maximum number of rounds in which problems exchange optima; fewer if a round improves none."""
 
 BEYOND = 1.0
-"""A descent towards another local optimum starts beyond it as seen from the best optimum.
+"""A descent towards another local optimum starts beyond it, as seen from the best optimum.
 
-It starts beyond by this share of the distance between the two. The ridge between two local optima
-often moves as fast as the optima, so a start on the optimum itself could be on the wrong side."""
+The start lies on the straight line through both optima, beyond the other optimum by this share of
+the distance between them. The ridge that separates them often moves as fast as they do, so a start
+on the other optimum itself could be on the wrong side of the ridge."""
 
 SAMPLES = 1024
 """Number of points of the sweep for a feasible problem whose optimum is not yet known."""
@@ -143,7 +145,7 @@ class _Ends:
     feasible: dict[int, Vector] = field(default_factory=dict)
 
     def descend(self, valley: Valley, starts: Mapping[int, Vector | None]) -> None:
-        """Descend from a start for each of these problems, and store the improved results."""
+        """Run a descent for each problem that has a start, and store the improved results."""
         feasible_starts = {i: z for i, z in starts.items() if z is not None}
         numbers = list(feasible_starts)
         if not numbers:
@@ -156,7 +158,7 @@ class _Ends:
             self.best_feasible[i] = _better(self.best_feasible[i], stop)
 
     def better_designs(self, valleys: Sequence[Point]) -> dict[int, Vector]:
-        """For each problem, the best result of the other problems if it beats the own result."""
+        """For each problem, the best optimum of another problem, if it beats its own result."""
         points = [*valleys, *(optimum for optimum in self.optima if optimum is not None)]
         rows = self.changed.margins_at(points)
         missed = self.changed.evaluator.violations(rows.reshape(len(rows), -1), "worst")

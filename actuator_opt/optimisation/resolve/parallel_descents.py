@@ -36,8 +36,8 @@ NEARER = 1e-3
 
 
 ELSEWHERE = 1.0
-"""If a restoration ends with a violation that exceeds the least known by this share, a descent is
-tried from its end."""
+"""If a restoration ends with a violation that exceeds the least known violation by this share, a
+descent starts from the point where the restoration ended."""
 
 
 LOCAL_EVALUATIONS = 150
@@ -292,7 +292,7 @@ def run_together(
 
 
 def _share(runs: Sequence[SlsqpRun], batch: Batch[None], finished: set[int]) -> None:
-    """Pass new optima on to the other runs of the same task, in order."""
+    """Tell the other runs of a task about new optima, so that a run that reaches one stops."""
     for number in sorted(set(batch.results) - finished):
         if runs[number].new:
             runs[number].known.append(runs[number].best)
@@ -333,7 +333,7 @@ class SlsqpRun:
         )
 
     def steps(self) -> Steps[None]:
-        """The run as a solver for `Batch`; closed early, it keeps its best point so far."""
+        """The run as a solver for `Batch`; if closed early, it keeps its best point so far."""
         thread = Thread(target=self._run, daemon=True)
         thread.start()
         try:
@@ -344,7 +344,7 @@ class SlsqpRun:
             thread.join()
 
     def enter(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
-        """The point at z (nf,), from its computed rows, which the task's evaluator stores."""
+        """Store the computed rows of the point z (nf,) in the evaluator; return the point."""
         self.evaluator.precomputed[z.tobytes()] = rows
         return self._evaluator.enter(z, rows)
 
@@ -441,7 +441,9 @@ def converged_from(
     parameters: Vector,
     starts: Sequence[Sequence[Point]],
 ) -> list[list[Point | None]]:
-    """The optimum reached from each point by steps with the Hessian there; None if not reached.
+    """The optimum that quadratic steps reach from each point; None if they reach none.
+
+    The first step uses the Hessian at the point.
 
     Parameters
     ----------
@@ -490,7 +492,7 @@ def distinct_ends(points: Sequence[Point]) -> list[Point]:
 
 
 def _near(point: Point, known: Point) -> bool:
-    """Whether a point has arrived at a known point."""
+    """Whether a point is so close to a known point that both count as the same."""
     distance, share, _ = ARRIVAL
     similar = abs(point.objective - known.objective) <= share * abs(known.objective)
     return similar and bool(np.abs(point.z - known.z).max(initial=0.0) <= distance)

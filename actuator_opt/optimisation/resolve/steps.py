@@ -37,7 +37,7 @@ Steps: TypeAlias = Generator[Vector, Point, Result]
 
 
 BatchEvaluator: TypeAlias = Callable[[Mapping[int, Vector]], Sequence[Point]]
-"""Function that evaluates the requested points; they are given by the number of their solver."""
+"""Function that evaluates the requested points, given as a mapping from solver number to point."""
 
 
 class Batch(Generic[Result]):
@@ -95,7 +95,7 @@ LONGEST = 60
 """Maximum number of evaluations in a descent within a trust region."""
 
 MEMORY = 3
-"""A trial point must be better than the worst of this number of past merits (see `Descent`)."""
+"""A trial point must beat the worst of this many most recent merits (see `Descent`)."""
 
 RADIUS = 0.1
 """First trust radius, in solver coordinates: 10 % for a logarithmic variable."""
@@ -250,11 +250,11 @@ class Valley:
     price: float
 
     def full(self) -> Descent:
-        """A descent by full steps."""
+        """A new descent by full steps, with the Hessian of this optimum."""
         return Descent(self.hessian, self.scale, self.rows, 1.0, radius=kkt.RADIUS)
 
     def trusted(self) -> Descent:
-        """A descent within a trust region."""
+        """A new descent within a trust region, with the Hessian of this optimum."""
         return Descent(self.hessian, self.scale, self.rows, self.price)
 
 
@@ -338,7 +338,7 @@ def trusted_steps(
 
 
 class RestorationResult(NamedTuple):
-    """A feasible point; if none is reached, None and the least infeasible point of the steps."""
+    """`feasible` is the feasible point reached, or None; `least` is the least infeasible point."""
 
     feasible: Point | None
     least: Point | None
@@ -460,7 +460,11 @@ def _free(evaluator: Evaluator, descent: Descent) -> Vector:
 
 
 def _convex(z: Vector, products: Vector, largest: float) -> Vector:
-    """A convex matrix (nf, nf) with given products (nf, d) with orthonormal vectors z (nf, d)."""
+    """A positive definite matrix (nf, nf) whose products with the vectors z are `products` (nf, d).
+
+    The columns of z (nf, d) are orthonormal; `largest` is the largest multiplier, which scales the
+    least curvature.
+    """
     size = len(z)
     if z.shape[1] == 0:
         return np.eye(size)

@@ -24,7 +24,8 @@ from .shared import (
 )
 
 MOST = 1000
-"""Largest numbers of feasible and of other designs drawn (our choice, as more lines merge)."""
+"""Largest number of feasible designs drawn, and of designs that miss a limit (our choice, as more
+lines merge)."""
 _LEFT, _RIGHT, _GAP, _TALL, _SIZE = 16.0, 14.0, 25.0, 82.0, 6.3
 
 

@@ -15,7 +15,8 @@ from ...sweeps.result import better
 from .shared import BETTER, INFEASIBLE, SweepFigure, SweepFigureData, heading
 
 MOST = 2000
-"""Largest number of feasible designs, and of other designs, drawn in a panel (our choice)."""
+"""Largest number of feasible designs drawn in a panel, and of designs that miss a limit (our
+choice)."""
 WIDEST = 8
 """Largest number of metrics (our choice; with so many, panels are 20 mm wide)."""
 LEAST = 0.1
@@ -129,9 +130,9 @@ def _directions(
 
 
 def _span(feasible: Array, every: Sequence[Array]) -> tuple[float, float]:
-    """Axis range: that of the feasible designs, extended by its own width to both sides.
+    """Axis range: that of the feasible designs, extended on each side by its own width.
 
-    The range is not extended beyond the designs.
+    It ends earlier where no design lies farther out.
     """
     known = np.concatenate(list(every))
     known = known[np.isfinite(known)]

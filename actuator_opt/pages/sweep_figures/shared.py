@@ -37,8 +37,9 @@ ORIGINS = ("requirement", "case")
 class DrawnRows:
     """Designs to draw.
 
-    `variants` are numbers of combinations of named values, `rows` are row numbers, and `every` is
-    the sampling step: 1 if all designs are drawn.
+    For each design, `rows` (designs, columns) has its inputs and metrics, and `variants` the index
+    of its combination of named values (such as materials). `every` is the sampling step: 1 if all
+    designs are drawn.
     """
 
     variants: Array
@@ -108,14 +109,14 @@ class SweepFigureData:
         return f"{head} {limit_text(self.study.quantity(limit.metric), limit.sense, known)}"
 
     def axis(self, path: str) -> Track:
-        """A varied input."""
+        """The `Track` of a varied input."""
         axis = next(axis for axis in self.study.plan.axes if axis.path == path)
         if axis.values is None:
             return Track(path, names=axis.texts)
         return Track(path, quantity_of(path, self.study.design))
 
     def metric(self, name: str) -> Track:
-        """A metric."""
+        """The `Track` of a metric."""
         return Track(name, self.study.quantity(name))
 
     def values(self, name: str, drawn: DrawnRows) -> Array:
@@ -265,7 +266,7 @@ USUAL = 5
 
 
 def chosen(study: Study, show: Sequence[str]) -> tuple[str, ...]:
-    """The metrics to show: the requested ones, else those of objective and requirements.
+    """The metrics to show: as requested, or else the metrics of objective and requirements.
 
     Raises
     ------

@@ -1,8 +1,8 @@
 """Oil volumes, each at a single pressure, and the components connected to them.
 
-Every volume adds its pressure rate, mass and elastic energy. The components are: the line of a
-chamber (one-way valve, line and far end); a hydraulic motor between two pipes, by the Wilson model;
-and a load cylinder with its own valve, which loads the rod on a test bench.
+Every volume adds its pressure rate, mass and elastic energy. The components are: the hydraulic line
+of a chamber, with its one-way valve and its far end; a hydraulic motor between two pipes, by the
+Wilson model; and a load cylinder with its own valve, which loads the rod on a test bench.
 """
 
 from __future__ import annotations
@@ -27,8 +27,9 @@ from . import valve
 from .circuit import Circuit
 
 DEEPEST = -12.0
-"""Deepest travel into an end stop, divided by half the length of the dead volume (our choice). A
-share of 6e-6 of this half then remains."""
+"""Limit of the travel into an end stop after half the dead volume is used up, divided by half the
+length of the dead volume (our choice). At this limit, a share of 6e-6 of that half is still filled
+with oil."""
 FLOOR = 1e-6
 """Lower limit of the absolute pressure in the formulas for oil and air [Pa], to guard against
 rounding."""
@@ -107,7 +108,7 @@ def _content(
 ) -> None:
     """Add mass and energy of a volume to the balance.
 
-    The inflowing oil carries its own elastic energy into the volume.
+    Oil that flows in carries its elastic energy into the volume.
     """
     system, audit = circuit.system, circuit.audit
     mass = system.integral(f"inflow of {name}", law.ratio * inflow, scale=1e-3 * scale)
@@ -120,8 +121,9 @@ def _content(
 def _left(travel: Expression, film: float) -> tuple[Expression, Expression]:
     """Length of the oil column without the dead volume, and its derivative by the travel.
 
-    The length equals the travel, also into the end stop. Once half the dead volume is used up, the
-    piston touches the end over a growing area, so the remaining volume shrinks more slowly.
+    The length equals the travel, which is negative inside the end stop. Once half the dead volume
+    is used up, the piston touches the end over a growing area, so the remaining volume shrinks more
+    slowly than the travel.
     """
     half = 0.5 * film
     depth = clip((travel + half) / half, DEEPEST, 0.0)
@@ -505,7 +507,10 @@ def _through_throttle(
 def _far(
     circuit: Circuit, port: ChamberPort, name: str, pressure: Symbol, inflow: Expression
 ) -> None:
-    """Add the volume at the far end of the line; with a throttle, this is half the line."""
+    """Add the oil volume at the far end of the line, or behind the throttle.
+
+    If a line runs on beyond the throttle, each of these two places gets half of its volume.
+    """
     data = circuit.plant.lines[port.name]
     share = 0.5 if port.outer is not None and port.line is not None else 1.0
     if share * data.far_volume < LEAST_NODE:

@@ -91,12 +91,12 @@ def rate(system: System, expression: Expression) -> Expression:
 
 
 def steady_value(parts: Sequence[SignalSegment]) -> float:
-    """Final value of a signal: the sum of those of its pieces that do not end."""
+    """Final value of a signal: the sum of its pieces that keep their final value."""
     return sum(height(part) for part in parts if SHAPES[part.shape].lasts)
 
 
 def at_start(parts: Sequence[SignalSegment], records: Records) -> float:
-    """Value of a signal at time zero; a missing record counts as zero."""
+    """Value of a signal at time zero; a piece whose record is missing counts as zero."""
     return sum(SHAPES[part.shape].initial(part, records) for part in parts)
 
 
@@ -153,8 +153,8 @@ def loop_of(control: Controller | None) -> Loop | None:
 
 
 FLOW = 1e-4
-"""Flow of 6 l/min [m^3/s] (our choice). Times the supply pressure, it gives the power to which the
-tolerances of energies refer."""
+"""Flow of 6 l/min [m^3/s] (our choice). Multiplied by the supply pressure, it gives a typical
+power, from which the error tolerances of energies are derived."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +209,8 @@ class Circuit:
     ) -> None:
         """Add an energy flow that leaves the circuit or, if `into` is true, enters it.
 
-        `state` is the name of its integral over time.
+        `power` is the power of this flow [W]; `state` is the name of the added state that
+        integrates it over time.
         """
         scale = self.plant.supply_pressure * FLOW
         work = self.system.integral(state or name, power, scale=scale)

@@ -82,7 +82,12 @@ def move(
     friction: Expression,
     load_cylinder_force: Expression = 0.0,
 ) -> None:
-    """Add the motion, m a = F_p - F_fr - b v + F_stop + F_cushion - F_L, and its energy flows."""
+    """Add the motion of the piston and its energy flows.
+
+    Mass times acceleration equals the pressure force, minus seal friction and oil shear, plus the
+    forces of end stops and cushions, minus the force of the load. Load cylinder, external machine
+    and joint add their forces if the scenario or the design has them.
+    """
     system, plant, load = circuit.system, circuit.plant, circuit.scenario.load
 
     def work_on(name: str, force: Expression) -> None:
@@ -134,7 +139,7 @@ def move(
 
 
 def _joint(circuit: Circuit, position: Symbol, speed: Symbol) -> tuple[Expression, Expression]:
-    """Mass at the rod, including the joint's, and force due to the joint's torque and inertia."""
+    """Moving mass including the joint's inertia, and the force due to its torque and motion [N]."""
     system, plant = circuit.system, circuit.plant
     joint = plant.joint(position)
     assert joint is not None

@@ -68,7 +68,7 @@ FIRST: Final = 1e-2
 
 
 GUESSES: Final = (1 / 3, 3.0)
-"""Factors on each initial value with which the search may start instead, if the record then fits
+"""Factors by which each initial value may be multiplied before the search, if the record then fits
 better (our choice)."""
 
 
@@ -157,7 +157,7 @@ class RecordFitProblem:
             name: channel for name, channel in measured.channels.items() if name not in constant
         }
         if not varying:
-            raise measured.fault("every channel is constant", "fit to a record with motion")
+            raise measured.fault("every channel is constant", "choose a record with motion")
         self.weights = {name: 1 / self.noise[name] for name in varying}
         _, signals = self._simulated(self.start)
         overlap = self._overlapping(replace(measured, channels=varying), signals)
@@ -228,7 +228,10 @@ class RecordFitProblem:
         )
 
     def slopes(self, x: Array, steps: Array) -> Array:
-        """Derivatives of the residuals by central differences, within the permitted range."""
+        """Derivatives of the residuals by the searched values, from central differences.
+
+        At an end of the permitted range of a value, the difference is one-sided.
+        """
         columns = []
         for k, step in enumerate(steps):
             up, down = x.copy(), x.copy()
@@ -237,9 +240,9 @@ class RecordFitProblem:
         return np.stack(columns, axis=1)
 
     def search_slopes(self, x: Array) -> Array:
-        """Derivatives of the residuals by one-sided differences.
+        """Derivatives of the residuals by the searched values, from one-sided differences.
 
-        They also determine the steps of the next differences.
+        The steps of the next differences are then chosen from these derivatives.
         """
         residuals, columns = self.residuals(x), []
         for k, step in enumerate(self.steps):
@@ -378,7 +381,7 @@ def _scaled(entry: FitParameter, value: float) -> float:
 
 
 def _step(spacing: float, duration: float) -> float:
-    """Time between simulation samples: if possible, a whole fraction of that of the record."""
+    """Sample interval of the simulation; if possible, that of the record divided by an integer."""
     longest = max(min(spacing / FINE, LONGEST), duration / (FINE * MOST))
     return spacing / ceil(spacing / longest) if longest < spacing else longest
 
@@ -409,12 +412,13 @@ def _thinned(time: Array, values: Array) -> tuple[Array, Array]:
 
 
 STEADIEST: Final = 0.97
-"""Limit on the correlation between neighbouring samples in the rule for the bandwidth; the usual
-value."""
+"""Limit on the correlation between neighbouring samples in the rule for the bandwidth (see
+`WHOLE`); the usual value."""
 
 
 WHOLE: Final = 4
-"""The bandwidth is at most the length of the record divided by this (our choice)."""
+"""Largest bandwidth: the length of the record divided by this (our choice). Here, bandwidth means
+the longest time lag over which residuals count as correlated."""
 
 
 ORDERS: Final = 10
@@ -466,7 +470,7 @@ def _larger(first: Array, second: Array) -> Array:
 
 
 def _by_time(problem: RecordFitProblem, rows: Array) -> Array:
-    """Rows of the same time, one for each channel, summed; in the order of time."""
+    """For every time, the sum of the rows of all channels; in the order of time."""
     times = np.concatenate([t for t, _ in problem.used.values()])
     instants, instant = np.unique(times, return_inverse=True)
     sums = np.zeros((instants.size, rows.shape[1]))
@@ -475,7 +479,7 @@ def _by_time(problem: RecordFitProblem, rows: Array) -> Array:
 
 
 def _bandwidth(moments: Array) -> float:
-    """Bandwidth in samples, by Andrews' rule from the correlation of neighbouring samples."""
+    """Bandwidth in samples (see `WHOLE`), by Andrews' rule from the correlation of neighbours."""
     before, after = moments[:-1], moments[1:]
     power = np.maximum(np.sum(before**2, axis=0), 1e-300)
     rho = np.clip(np.sum(before * after, axis=0) / power, -STEADIEST, STEADIEST)
@@ -487,7 +491,7 @@ def _bandwidth(moments: Array) -> float:
 
 
 def _summed(moments: Array, width: float) -> Array:
-    """Sum of products of samples, with weights that fall to zero at a time lag of one bandwidth."""
+    """Sum of products of samples; their weights fall to zero at a time lag of one bandwidth."""
     total: Array = moments.T @ moments
     for k in range(1, min(int(np.ceil(width)), moments.shape[0])):
         product = moments[:-k].T @ moments[k:]
@@ -642,7 +646,8 @@ def fit(
     scenario, plant : the measured system, as far as known
     records : columns of the files that the scenario's signals name
     measured : record, on the time axis of the scenario
-    names : parameters to fit, of `parameters.PARAMETERS` or "lag"
+    names : names of the parameters to fit, from `parameters.PARAMETERS`; "lag" fits the time lag of
+        the record
     tuned : controller gains, which the fit does not change; default: those of the scenario, stated
         or tuned
     verify, method : as for `simulation.simulate`, for the simulation with the fitted values
@@ -696,7 +701,7 @@ def fit(
 def _natural(
     fit_parameter: FitParameter, fitted_parameters: FittedParameters, problem: RecordFitProblem
 ) -> Parameter:
-    """Convert a searched value to the parameter, in its own unit.
+    """Convert a value of the search, which may be a logarithm, to the fitted parameter in SI.
 
     Confidence intervals are symmetrical in the parameter itself, not in its logarithm, because the
     effect of an air content or a leakage is proportional to its value. The interval does not extend
@@ -811,6 +816,6 @@ def _times(ratio: float) -> str:
 def _controller_notes(tuned: Tuned | None) -> Iterator[str]:
     if tuned is not None and tuned.origin != "stated":
         yield (
-            f"the controller's gain is not stated but comes from {tuned.origin}; in the block "
-            "control, state the gain of the test bench"
+            f"the controller's gain is not stated but comes from {tuned.origin}; state the gain "
+            "of the test bench in the block control"
         )

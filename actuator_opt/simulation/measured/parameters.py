@@ -18,15 +18,15 @@ Case: TypeAlias = tuple[Scenario, Plant]
 Put: TypeAlias = Callable[[Scenario, Plant, float], Case]
 
 SMALL = 0.01
-"""Share of a full value that counts as small (our choice), such as of the force of the supply
-pressure. A friction that neither design nor scenario states starts from it, and an offset must be
-known to this accuracy."""
+"""Share of a full value that counts as small (our choice). The full value of a force is the supply
+pressure times the piston area. A friction force that neither design nor scenario states starts at
+this share. A confidence interval of an offset counts as narrow up to this share."""
 BLEED = 1e-6 / 60 / 1e5
 """Leakage from which the fit starts if the design states none (our choice): 1 ml/min/bar
 [m^3/s/Pa]."""
 RISE = 1.5
-"""Ratio of static to Coulomb friction from which the fit starts if the two are equal otherwise (our
-choice)."""
+"""Ratio of static to Coulomb friction from which the fit starts if design and scenario state no
+difference between the two (our choice)."""
 LATEST = 0.2
 """Largest lag of a record, as a share of the simulated time (our choice: enough for a logger that
 is started by hand)."""
@@ -34,7 +34,10 @@ is started by hand)."""
 
 @dataclass(frozen=True, slots=True)
 class FitParameter:
-    """A parameter to fit: quantity, initial value, search range and how it is applied, SI."""
+    """A parameter to fit: its quantity, initial value and search range, SI.
+
+    `put` is the function that sets the parameter in a scenario and plant.
+    """
 
     name: str
     quantity: Quantity
@@ -69,7 +72,7 @@ def entries(names: Sequence[str], scenario: Scenario, plant: Plant) -> tuple[Fit
             faults.append(Diagnostic(f"{name} has no effect: {why}", "leave it out"))
         elif name == "stribeck_speed" and "static" not in names and _even(scenario, plant):
             message = f"{name} has no effect: static and Coulomb friction are equal"
-            faults.append(Diagnostic(message, "fit static too, or state a higher static friction"))
+            faults.append(Diagnostic(message, "also fit static, or state a higher static friction"))
     if not names:
         faults.append(Diagnostic("no parameter to fit", f"name one of {', '.join(known)}"))
     if faults:
@@ -103,7 +106,7 @@ def _idle(name: str, scenario: Scenario, plant: Plant) -> str | None:
 
 
 def _even(scenario: Scenario, plant: Plant) -> bool:
-    """Whether static friction does not exceed Coulomb friction."""
+    """Whether static friction is no larger than Coulomb friction."""
     friction = scenario.friction
     if friction.coulomb is not None:
         return (friction.static or friction.coulomb) <= friction.coulomb
@@ -193,15 +196,15 @@ def _leakage(scenario: Scenario, plant: Plant) -> FitParameter:
 
 
 def _level(plane: Plane, scenario: Scenario, plant: Plant) -> float:
-    """Friction at the initial pressures, for friction given as a plane over both pressures."""
+    """Friction at the initial pressures, for friction given as a function of both pressures."""
     initial = start_of(scenario, plant, {})
     return float(plane.at(initial.pressure_a, initial.pressure_b))
 
 
 def _scaled(plane: Plane, scenario: Scenario, plant: Plant, value: float) -> Plane:
-    """A friction plane, multiplied by the factor that gives a value at the initial pressures.
+    """A friction function, scaled so that it has a given value at the initial pressures.
 
-    Its shape stays the same.
+    The relative change with pressure stays the same.
     """
     level = _level(plane, scenario, plant)
     if level <= 0:

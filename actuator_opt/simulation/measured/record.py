@@ -125,7 +125,7 @@ def parse_measured(
 
 
 def named(names: Collection[str], all_names: Collection[str]) -> str:
-    """The names of some channels as text, or "all channels"."""
+    """Some channel names as text, or "all channels" if none is missing."""
     return ", ".join(names) if len(names) < max(len(all_names), 2) else "all channels"
 
 
@@ -177,7 +177,7 @@ class ChannelResidual:
     bias: float
     """Mean difference."""
     span: float
-    """Largest minus smallest measured value of these samples."""
+    """Largest minus smallest measured value of the compared samples."""
     noise: float
     """Standard deviation of the sensor noise, estimated by `noise`."""
 
@@ -362,16 +362,17 @@ def noise(values: Array) -> float:
 
     Differences of order n have a variance of (2n)!/n!^2 times that of a sample. Neither jumps nor a
     signal that is smooth over n + 1 samples affect their median magnitude. Of the estimates for the
-    `ORDERS`, the smallest is used. The result is at least that of the sensor's resolution,
-    step/sqrt(12), and at least `FINEST` times the span.
+    `ORDERS`, the smallest is used. The result is at least the rounding noise of a sensor whose
+    resolution is the smallest step of the record, step/sqrt(12), and at least `FINEST` times the
+    span.
 
     Parameters
     ----------
-    values : of one channel (samples)
+    values : samples of one channel, (n,)
 
     Notes
     -----
-    Noise that a filter has smoothed is mistaken for signal.
+    If a filter has smoothed the noise, this method takes it for signal.
     """
     span = float(np.ptp(values))
     steps = np.abs(np.diff(values))
@@ -458,5 +459,5 @@ def _implausible(
             text = simulation.told[name].quantity.text
             yield (
                 f"{name} ranges from {text(least)} to {text(most)} in the record, but "
-                f"{limit_name} is {text(high)}: check its unit and zero point"
+                f"{limit_name} is {text(high)}: check the unit and zero point of this channel"
             )

@@ -337,8 +337,8 @@ HALF = 1 / sqrt(2)
 EXACT = 2e-3
 """Relative tolerance of the searches, such as for the bandwidth."""
 MOST = 16.0
-"""The nonlinear value is searched for up to this factor above and below the linear value (our
-choice)."""
+"""A value of the nonlinear system is searched for up to this factor above and below the value of
+the linear models (our choice)."""
 LASTING = 1e-3
 """Relative decay per period below which an oscillation counts as sustained (our choice)."""
 FIRST, EARLY, LATE = (0.0, 4.0), (8.0, 12.0), (18.0, 22.0)
@@ -357,7 +357,7 @@ RINGING = 20.0
 """Number of periods after which a resonant transient counts as died out (our choice)."""
 SHAPED = 0.6
 """Ratio of excitation to resonance frequency up to which a sinusoidal force starts in three parts
-(our choice)."""
+to avoid transients (our choice; see `dynamic_stiffness`)."""
 BESIDE = (0.7, 1.0, 1.4)
 """Factors on a crossover frequency of the linear models. The nonlinear crossover is searched for
 between the resulting frequencies."""
@@ -366,7 +366,7 @@ STICKING = (0.8, 0.9, 1.0, 1.1, 1.22, 1.35, 1.5)
 """Factors on a resonance frequency of the linear models, for seals that slide and for seals that
 stick. Crossovers are searched for between the resulting frequencies. Sticking seals raise the
 resonance, because their bristles add stiffness."""
-HOW_PHASE = "position divided by error in the closed loop, where this ratio is 1"
+HOW_PHASE = "position divided by control error in the closed loop, where this ratio is 1"
 Loop = Callable[[float], complex]
 """Open loop of the linear models as a function of frequency [Hz], including the controller gain."""
 
@@ -397,7 +397,7 @@ def placed(stand: Stand) -> Stand:
 
 
 def held_place(stand: Stand) -> Stand:
-    """The stand, moved 2 % of the stroke from its ends, as a held piston may creep."""
+    """The stand, at least 2 % of the stroke away from both stroke ends, as the piston may creep."""
     return _inset(stand, 0.02 * stand.plant.stroke)
 
 
@@ -483,7 +483,7 @@ def _no_sine(response: Sine) -> str:
 
 
 def _root(function: Callable[[float], float], slope: float) -> float | None:
-    """Zero of a function of a logarithmic ratio, by secant steps of at most 0.5 from 0.
+    """Zero of a function, found by secant steps of at most 0.5 that start at 0.
 
     None if ten steps do not converge.
     """

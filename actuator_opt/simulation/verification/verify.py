@@ -3,9 +3,9 @@
 The requirements of a design are evaluated with linear models (the 'linear tier'). Here the metric
 of each dynamic requirement is measured in its own small simulated experiment, with the equations of
 the scenario, at the point where the linear value is worst. If measured and linear values differ,
-the experiment is repeated without sticking friction, and then with small amplitudes in addition.
-The two changes show how much friction and amplitude contribute to the difference; the rest is due
-to the operating point.
+the experiment is repeated without sticking friction, and then again with small amplitudes as well.
+The two repetitions show how much friction and amplitude contribute to the difference; the rest is
+due to the operating point.
 """
 
 from __future__ import annotations
@@ -81,12 +81,12 @@ class VerifiedRequirement:
     why: str = ""
     """Cause of the difference, or the reason why a value is missing."""
     shares: Mapping[str, float] = field(default_factory=dict)
-    """Relative changes of the value, each due to friction, amplitude or operating point."""
+    """Relative change of the value due to friction, to amplitude and to the operating point."""
 
 
 @dataclass(frozen=True, slots=True)
 class Verification(Displayed):
-    """All dynamic requirements of a design and all of a scenario, verified by simulation."""
+    """All dynamic requirements of a design and all requirements of a scenario, simulated."""
 
     name: str
     rows: tuple[VerifiedRequirement, ...]
@@ -180,7 +180,10 @@ def verify(
 def _notes(scenario: Scenario, any_requirement: bool) -> tuple[str, ...]:
     if not any_requirement:
         return ("the design has no dynamic requirement",)
-    notes = ["each requirement is simulated only at the point where the linear model is worst"]
+    notes = [
+        "each requirement is simulated only at the point where the linear model gives its worst "
+        "value"
+    ]
     control = scenario.control
     own_controller = control is not None and (
         loop_of(control) != "position"
@@ -402,7 +405,10 @@ class _Bench:
         return shares, reasons
 
     def _compared(self, metric: str, spot: Spot) -> str:
-        """Text that states the point of comparison, if it is not the worst linear point."""
+        """Text that states the point at which linear and simulated value are compared.
+
+        It is used if this is not the point at which the linear models have their worst value.
+        """
         stand = self._placed(metric, spot)
         words = f"compared at the position {1e3 * stand.position:.3g} mm"
         if metric in HELD:
