@@ -201,9 +201,7 @@ def _lugre(identification: Identification) -> list[Block]:
     fit = identification.lugre
     if isinstance(fit, str):
         return []
-    said = (
-        f"The measured friction scatters by {force(fit.misfit)} about the model. {held(fit.held)}"
-    )
+    said = f"Scatter of friction about the model {force(fit.misfit)}. {held(fit.held)}"
     return [_parameters("LuGre model", parameter_rows(fit.parameters), said.strip())]
 
 
@@ -434,8 +432,8 @@ def coefficient_words(coefficient: Coefficient | str) -> str:
         f"{number(coefficient.lower, 3)} to {number(coefficient.upper, 3)}), median of "
         f"{coefficient.windows} windows of sliding at {low} to {high} mm/s; contact "
         f"pressure {number(coefficient.contact_pressure / 1e6, 3)} MPa, contact force "
-        f"{force(coefficient.contact_force)}, by {coefficient.law}; the coefficient "
-        "includes the rise of friction towards standstill, and viscous friction."
+        f"{force(coefficient.contact_force)}, by {coefficient.law}; includes "
+        "the Stribeck rise and viscous friction."
     )
 
 
