@@ -31,7 +31,7 @@ import problems
 
 from actuator_opt import api as verbs
 from actuator_opt.base.errors import UsageError
-from actuator_opt.optimisation import actuator, nlopt_wrapper
+from actuator_opt.optimisation import actuator, nlopt_wrapper, solution
 from actuator_opt.optimisation.problem import BoxProblem, Space
 from actuator_opt.optimisation.run import SAMPLES
 from actuator_opt.optimisation.solver import solve
@@ -172,13 +172,13 @@ def rows(
     }
     best = known.optimum
     if best is None:
-        met = [t.objective for ts in trials.values() for t in ts if t.violation <= actuator.MET]
+        met = [t.objective for ts in trials.values() for t in ts if t.violation <= solution.MET]
         best = min(met, default=math.nan)
 
     def row(name: str) -> Row:
         done = trials[name]
         good = [
-            t.violation <= actuator.MET and t.objective - best <= NEAR * abs(best) for t in done
+            t.violation <= solution.MET and t.objective - best <= NEAR * abs(best) for t in done
         ]
         return Row(
             name,

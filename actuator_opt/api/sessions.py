@@ -173,9 +173,10 @@ class Session:
     """
 
     def __init__(self, actuator: Actuator, *, seed: int = 0) -> None:
-        from ..optimisation.actuator import Outcome, build, require_movable_objective
+        from ..optimisation.actuator import build, require_movable_objective
         from ..optimisation.rounding import Wanted, sizes_of
         from ..optimisation.run import result_of
+        from ..optimisation.solution import Outcome
         from ..optimisation.solver import solve
         from ..optimisation.warm_start import SearchEffort, WarmStart
         from .optimum import estimated

@@ -22,12 +22,12 @@ import numpy as np
 
 from ..base.dataclass import dataclass
 from ..base.numeric import Array
-from .actuator import MET
 from .evaluator import Evaluator, Point
 from .problem import BoxProblem, ParametricProblem, PointValues, Vector
 from .resolve.boxes import EXACT, ROUGH, BoxTask, Criteria, Nearest, resolve_boxes
 from .resolve.changed import ChangedProblems, applicable
 from .resolve.steps import ScaledHessian, hessian_at, valley_at
+from .solution import MET
 
 ON = 1e-7
 """Distance from a listed value, relative to the range of the list, up to which a variable counts as

@@ -26,12 +26,13 @@ from ..design.choice_list import combinations, left_out
 from ..design.materials import load_library
 from ..evaluation import PreparedDesign, compute
 from ..evaluation.limits import LimitRow, all_limits, rows_of
-from .actuator import MET, ActuatorProblem, Goal, build, goal_of, variant
+from .actuator import ActuatorProblem, Goal, build, goal_of, variant
 from .branch_and_bound import Memory, SizeSearch, at, search
 from .identical_problems import Evidence
 from .quick_look import DOUBTFUL, Look, LookStart, hessian_of, look_quickly
 from .result import Choices, Combination, How
 from .rounding import RUNNERS_UP, ListedSizes, Wanted, sizes_of
+from .solution import MET
 from .solver import solve
 
 NEAR = 0.05

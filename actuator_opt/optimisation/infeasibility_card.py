@@ -13,11 +13,12 @@ from ..base.quantities import Quantity
 from ..design import quantity_of
 from ..evaluation.limits import LimitRow
 from ..metrics import METRICS
-from .actuator import ActuatorProblem, Outcome, Solution
+from .actuator import ActuatorProblem
 from .cures import DIGITS, Cure, Cures, cures, outward
 from .infeasibility import Conflict as Explanation, explain
 from .repairs import WIDEST, Opening, RelaxedConstraint
 from .result import Infeasibility
+from .solution import Outcome, Solution
 
 MORE_DIGITS = 6
 """Number of digits for changes below one per cent."""

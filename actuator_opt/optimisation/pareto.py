@@ -22,7 +22,7 @@ from ..evaluation import Evaluation, PreparedDesign, compute, evaluate
 from ..evaluation.build import spec_hash
 from ..evaluation.kernel import governing
 from ..evaluation.limits import MetricArrays
-from .actuator import MET, ActuatorProblem, Fault, Goal, build, idle_metrics
+from .actuator import ActuatorProblem, Fault, Goal, build, idle_metrics
 from .front.front import Front, FrontSettings, NoAnchor, front
 from .front.objectives import Objectives
 from .front.plane import FrontGap
@@ -30,6 +30,7 @@ from .infeasibility_card import explained
 from .problem import PointValues, Vector
 from .result import Infeasibility
 from .rounding import design_at
+from .solution import MET
 
 
 @dataclass(frozen=True, slots=True)

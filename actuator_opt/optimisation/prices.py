@@ -29,11 +29,12 @@ from ..base.quantities import Quantity, short
 from ..base.units import unit
 from ..design import quantity_of
 from . import kkt
-from .actuator import ActuatorProblem, Responses, Solution, perturbed, responses, with_bounds
+from .actuator import ActuatorProblem, Responses, perturbed, responses, with_bounds
 from .evaluator import Evaluator, Point
 from .problem import ParametricProblem, Vector
 from .resolve import ladder
 from .resolve.steps import valley_at
+from .solution import Solution
 
 INSTANT = 1e-7
 """Change of an active margin, per relative change of the parameter, that counts as zero."""

@@ -17,12 +17,13 @@ from ..base.dataclass import dataclass
 from ..design.choice_list import Value
 from ..evaluation import PreparedDesign
 from . import kkt, nlopt_wrapper, repairs
-from .actuator import MET, ActuatorProblem, Solution
+from .actuator import ActuatorProblem
 from .evaluator import Evaluator, LimitReached, Point
 from .problem import Vector
 from .resolve.boxes import ROUGH, stepped
 from .resolve.steps import ScaledHessian, hessian_at
 from .result import How
+from .solution import MET, Solution
 from .solver import solve, sweep
 
 EVALUATIONS = 40

@@ -35,7 +35,7 @@ from ..design.sizes import groups
 from ..design.standard_sizes import WHOLE, along
 from ..evaluation import Evaluation, evaluate, prepare
 from . import repairs
-from .actuator import ActuatorProblem, Fault, Solution
+from .actuator import ActuatorProblem, Fault
 from .branch_and_bound import SAME, Assignment, Listed, SizeSearch, search
 from .cures import least_changes, with_variables
 from .evaluator import Evaluator
@@ -43,6 +43,7 @@ from .infeasibility_card import change_text, entry_of
 from .problem import BoxProblem, PointValues, Vector
 from .repairs import RelaxedConstraint
 from .result import Optimisation, RoundedVariable, Rounding, RunnerUp, SizeRemedy
+from .solution import Solution
 from .solver import solve
 
 COSTLY = 10.0

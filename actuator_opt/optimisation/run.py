@@ -10,16 +10,7 @@ from ..base.dataclass import dataclass
 from ..base.progress import tell
 from ..design import quantity_of
 from ..evaluation import Evaluation, PreparedDesign, evaluate
-from .actuator import (
-    ActuatorProblem,
-    Fault,
-    Goal,
-    Outcome,
-    Solution,
-    build,
-    idle_metrics,
-    require_movable_objective,
-)
+from .actuator import ActuatorProblem, Fault, Goal, build, idle_metrics, require_movable_objective
 from .choices import (
     MOST_SOLVED,
     ChoiceSearch,
@@ -33,6 +24,7 @@ from .infeasibility_card import explained
 from .prices import Sensitivity, sensitivities
 from .result import Certificate, Choices, Infeasibility, Kkt, Optimisation, Rounding, VariableResult
 from .rounding import Wanted, design_at, rounded, sizes_of
+from .solution import Outcome, Solution
 from .solver import solve
 
 CHANCE = 0.95

@@ -20,7 +20,6 @@ import numpy as np
 from ..base.dataclass import dataclass
 from ..base.progress import tell
 from . import kkt, nlopt_wrapper
-from .actuator import MET, LocalOptimum, Outcome, Solution
 from .evaluator import CHUNK, Evaluator, LimitReached, Point
 from .problem import BoxProblem, Vector
 from .resolve.parallel_descents import (
@@ -30,6 +29,7 @@ from .resolve.parallel_descents import (
     precompute,
 )
 from .resolve.steps import RESIDUAL
+from .solution import MET, LocalOptimum, Outcome, Solution
 
 KEEP = 256
 """Number of best points of the sweep that are kept as possible starts."""

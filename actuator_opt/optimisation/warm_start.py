@@ -16,12 +16,13 @@ import numpy as np
 
 from ..base.dataclass import dataclass
 from . import kkt, prices
-from .actuator import MET, ActuatorProblem, Outcome, Responses, Solution, responses
+from .actuator import ActuatorProblem, Responses, responses
 from .evaluator import Evaluator, LimitReached, Point
 from .problem import BoxProblem, ParametricProblem, Vector
 from .resolve import ladder
 from .resolve.changed import ChangedProblems, applicable
 from .resolve.steps import RESIDUAL, Valley, valley_at
+from .solution import MET, Outcome, Solution
 from .solver import solve
 
 Stop = Callable[[], bool]

@@ -8,8 +8,8 @@ from itertools import pairwise
 
 from ..base.quantities import Quantity
 from ..metrics import of_metric
-from ..optimisation.actuator import MET
 from ..optimisation.result import Optimisation
+from ..optimisation.solution import MET
 from ..rendering import text
 from ..rendering.axes import Axes, ticks
 from ..rendering.blocks import Block, Chart, Drawing, Notes

@@ -4,8 +4,8 @@ import numpy as np
 import problems
 import pytest
 
-from actuator_opt.optimisation.actuator import Outcome
 from actuator_opt.optimisation.kkt import Curvature
+from actuator_opt.optimisation.solution import Outcome
 from actuator_opt.optimisation.solver import solve
 
 

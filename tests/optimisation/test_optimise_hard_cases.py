@@ -12,8 +12,8 @@ from cli_runner import bench
 import actuator_opt as ao
 from actuator_opt import api as verbs
 from actuator_opt.base.errors import InputError
-from actuator_opt.optimisation.actuator import Outcome
 from actuator_opt.optimisation.problem import BoxProblem, PointValues
+from actuator_opt.optimisation.solution import Outcome
 from actuator_opt.optimisation.solver import solve
 
 

@@ -6,9 +6,9 @@ import numpy as np
 import problems
 import pytest
 
-from actuator_opt.optimisation.actuator import Outcome
 from actuator_opt.optimisation.infeasibility import explain
 from actuator_opt.optimisation.problem import BoxProblem, PointValues
+from actuator_opt.optimisation.solution import Outcome
 from actuator_opt.optimisation.solver import solve
 
 

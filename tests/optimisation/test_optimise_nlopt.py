@@ -5,9 +5,9 @@ import pytest
 
 from actuator_opt.base.errors import UsageError
 from actuator_opt.optimisation import nlopt_wrapper
-from actuator_opt.optimisation.actuator import Outcome
 from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.problem import BoxProblem, PointValues
+from actuator_opt.optimisation.solution import Outcome
 from actuator_opt.optimisation.solver import solve
 
 LOCAL = [

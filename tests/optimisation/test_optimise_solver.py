@@ -9,10 +9,10 @@ import pytest
 
 from actuator_opt.base.errors import InputError
 from actuator_opt.optimisation import solver
-from actuator_opt.optimisation.actuator import Outcome
 from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.kkt import Curvature
 from actuator_opt.optimisation.problem import BoxProblem, PointValues, Space
+from actuator_opt.optimisation.solution import Outcome
 from actuator_opt.optimisation.solver import Halton, solve
 
 

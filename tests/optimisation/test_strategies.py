@@ -9,8 +9,8 @@ import pytest
 
 from actuator_opt import api as verbs
 from actuator_opt.optimisation import nlopt_wrapper
-from actuator_opt.optimisation.actuator import Outcome
 from actuator_opt.optimisation.run import SAMPLES
+from actuator_opt.optimisation.solution import Outcome
 from actuator_opt.optimisation.solver import solve
 
 

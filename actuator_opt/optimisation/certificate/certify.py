@@ -25,8 +25,9 @@ from ...base.symbolic.expression import bounds_of, needed
 from ...evaluation.kernel import ModelRun, Statics, compute, statics
 from ...evaluation.limits import MetricArrays, MetricLimit
 from ...evaluation.values import Values
-from ..actuator import MET, ActuatorProblem
+from ..actuator import ActuatorProblem
 from ..problem import Vector
+from ..solution import MET
 from .bounding import Bound, Bounding, KnownExtents, add_plain_sums, ranges
 from .builder import Builder, Envelopes, decays, layered, refuse
 from .intervals import ROOM, Box, Empty, Layout, narrow, tighten

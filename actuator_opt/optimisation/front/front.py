@@ -22,7 +22,6 @@ import numpy as np
 from ...base.dataclass import dataclass
 from ...base.numeric import Array
 from ...base.progress import tell
-from ..actuator import MET, Solution
 from ..evaluator import Evaluator, Point
 from ..problem import PointValues, Vector
 from ..resolve.parallel_descents import (
@@ -31,6 +30,7 @@ from ..resolve.parallel_descents import (
     distinct_ends,
 )
 from ..resolve.steps import RESIDUAL
+from ..solution import MET, Solution
 from ..solver import KEEP, Halton, Sweep, distinct, solve, sweep
 from . import tracer
 from .objectives import Conditions, Objectives

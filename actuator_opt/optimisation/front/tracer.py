@@ -15,11 +15,11 @@ import numpy.typing as npt
 
 from ...base.dataclass import dataclass
 from .. import kkt
-from ..actuator import MET
 from ..evaluator import Evaluator, Point
 from ..problem import BoxProblem, Vector
 from ..resolve.changed import ChangedProblems, applicable
 from ..resolve.steps import RADIUS, RESIDUAL, Descent, free_hessians
+from ..solution import MET
 from ..solver import solve
 from .objectives import Conditions, Objectives
 

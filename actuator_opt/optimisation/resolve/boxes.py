@@ -15,9 +15,9 @@ import numpy as np
 
 from ...base.dataclass import dataclass
 from .. import kkt, nlopt_wrapper, repairs
-from ..actuator import MET
 from ..evaluator import Evaluator, Point, points_together
 from ..problem import Vector
+from ..solution import MET
 from .steps import (
     PATIENCE,
     RESIDUAL,

@@ -9,9 +9,9 @@ import numpy as np
 
 from ...base.dataclass import dataclass
 from ...base.numeric import STEP
-from ..actuator import MET
 from ..evaluator import Evaluator, Point
 from ..problem import ParametricProblem, Vector
+from ..solution import MET
 from .steps import (
     FEASIBLE,
     LONGEST,

@@ -18,10 +18,10 @@ import numpy as np
 
 from ...base.dataclass import dataclass
 from .. import kkt, repairs
-from ..actuator import MET, Solution
 from ..evaluator import Evaluator, Point
 from ..kkt import polish
 from ..problem import BoxProblem, ParametricProblem, Vector
+from ..solution import MET, Solution
 from ..solver import solve
 from . import steps
 from .changed import ChangedProblems, applicable

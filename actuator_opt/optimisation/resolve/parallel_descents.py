@@ -17,11 +17,11 @@ import numpy.typing as npt
 
 from ...base.dataclass import dataclass
 from .. import kkt, nlopt_wrapper, repairs
-from ..actuator import MET, StartRecord
 from ..evaluator import Evaluator, LimitReached, Point
 from ..kkt import polish
 from ..nlopt_wrapper import ARRIVAL
 from ..problem import ParametricProblem, Vector
+from ..solution import MET, StartRecord
 from .changed import ChangedProblems
 from .steps import RESIDUAL, Batch, Descent, Steps, free_hessians
 

@@ -25,9 +25,9 @@ import numpy as np
 
 from ...base.dataclass import dataclass
 from .. import kkt
-from ..actuator import MET
 from ..evaluator import HESSIAN_STEP, Evaluator, Point
 from ..problem import Vector
+from ..solution import MET
 
 Result = TypeVar("Result")
 
