@@ -9,7 +9,7 @@ difference (as in a look-up table), the finite difference is used.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import field, replace
 from typing import Any
 
@@ -228,7 +228,7 @@ class ActuatorProblem:
 
     @property
     def models_run_by(self) -> str:
-        """What has evaluated most points: the compiled program of the recorded models, or NumPy."""
+        """Engine of most evaluations: the compiled program of the recorded models, or NumPy."""
         recorded = self.recorded is not None and self.recorded.recording is not None
         return "compiled program" if recorded else "NumPy"
 
@@ -389,20 +389,15 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
     refusals, lenient = Refusals(metrics & plugin_names), replace(subject, lenient=True)
     required = None if plugin_names else metrics
     actuator = ActuatorProblem(lenient, goal, paths, rows, fixed, problem, required, refusals)
-    if not plugin_names:
-        others = sorted(
-            path
-            for path in numbers.read
-            if path not in paths and subject.numbers.get(path, 0.0) > 0
-        )
-        actuator = replace(actuator, recorded=_recorded(actuator, (*paths, *others)))
-    holder.append(actuator)
-    return actuator
+    holder.append(actuator if plugin_names else _with_recording(actuator, numbers.read))
+    return holder[0]
 
 
-def _recorded(actuator: ActuatorProblem, names: tuple[str, ...]) -> RecordedFunction:
-    """The objective and the margins as a recorded function of all inputs."""
-    count = len(actuator.paths)
+def _with_recording(actuator: ActuatorProblem, read: Collection[str]) -> ActuatorProblem:
+    """Record objective and margins as a function of the variables and all positive numbers read."""
+    count, known = len(actuator.paths), actuator.subject.numbers
+    others = sorted(p for p in read if p not in actuator.paths and known.get(p, 0.0) > 0)
+    names = (*actuator.paths, *others)
 
     def rows(inputs: Array) -> Array:
         numbers = dict(zip(names[count:], inputs[count:], strict=True))
@@ -411,8 +406,8 @@ def _recorded(actuator: ActuatorProblem, names: tuple[str, ...]) -> RecordedFunc
         objective = xp.broadcast_to(values.objective, (1, inputs.shape[1]))
         return xp.concatenate([objective, values.constraints])
 
-    present = np.array([actuator.subject.numbers[name] for name in names])
-    return RecordedFunction(rows, names, present)
+    present = np.array([known[name] for name in names])
+    return replace(actuator, recorded=RecordedFunction(rows, names, present))
 
 
 def idle_metrics(actuator: ActuatorProblem) -> tuple[str, ...]:

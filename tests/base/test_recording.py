@@ -11,7 +11,7 @@ from hypothesis import given, settings, strategies as st
 from actuator_opt.base.numeric import STEP, absolute, positive, real, sqrt, where
 from actuator_opt.base.polynomial import moved_root, root_parts, roots
 from actuator_opt.base.symbolic import program as programs
-from actuator_opt.base.symbolic.arrays import SymbolArray, Trace, elements
+from actuator_opt.base.symbolic.arrays import Recorder, SymbolArray, elements
 from actuator_opt.base.symbolic.program import Program, program
 from actuator_opt.base.symbolic.recorded import PATIENCE, RECORDINGS, RecordedFunction, same
 
@@ -20,8 +20,8 @@ VALUES = st.floats(-1e3, 1e3) | st.sampled_from([0.0, -0.0, 1.0, -1.0, np.inf, -
 
 
 def recorded(function, point):
-    """Trace and program of a function of (n,) at a point."""
-    trace = Trace()
+    """Recorder and program of a function of (n,) at a point."""
+    trace = Recorder()
     symbols = trace.variables([str(k) for k in range(len(point))], point)
     with np.errstate(all="ignore"):
         results = function(symbols[:, 0])

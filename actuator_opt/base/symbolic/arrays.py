@@ -564,7 +564,7 @@ _QUICK: dict[str, Callable[..., Any]] = {
 """Operations on Python numbers that equal those of NumPy, many times faster."""
 
 
-class Trace:
+class Recorder:
     """A graph that records a model exactly, at a point that decides its branches.
 
     Attributes

@@ -233,7 +233,7 @@ class Graph:
         key = (op, *args)
         for a in args:
             if type(a) is float and a == 0.0 and math.copysign(1.0, a) < 0:
-                key = (op, *map(str, args))  # texts of symbols and numbers tell -0 from 0
+                key = (op, *map(str, args))  # -0 and 0 are equal, but not their texts
                 break
         symbol = self.known.get(key)
         if symbol is None:

@@ -15,7 +15,7 @@ import numpy as np
 from ..dataclass import dataclass
 from ..numeric import STEP, Array
 from . import program as programs
-from .arrays import Trace, elements
+from .arrays import Recorder, elements
 from .program import Program
 
 PATIENCE = 4.0
@@ -164,7 +164,7 @@ class RecordedFunction:
 
     def _traced(self, point: Array) -> Recording:
         """The program of the function, with the branches taken at a point (inputs,)."""
-        trace = Trace()
+        trace = Recorder()
         with np.errstate(all="ignore"):
             symbols = trace.variables(self.names, point)
             results = elements(self.function(symbols))
