@@ -109,7 +109,7 @@ class Parts(NamedTuple):
 
     @property
     def complex(self) -> Array:
-        """Convert to a complex number; any complex step is dropped."""
+        """Both parts as one complex number; correct only if no part carries a complex step."""
         return self.real + 1j * self.imaginary
 
 

@@ -131,7 +131,9 @@ def measured(tree: dict[str, Any]) -> Iterator[Fault]:
             yield Fault(loc, message, fault.remedy, at_key=True)
             continue
         if target.quantity is None or target.entry is None:
-            yield Fault(loc, "is not a number of the actuator", "remove the entry", at_key=True)
+            yield Fault(
+                loc, "is not a numeric input of the actuator", "remove the entry", at_key=True
+            )
             continue
         if target.path != path:
             yield Fault(loc, "is not the canonical PATH", f"write {target.path}", at_key=True)

@@ -41,7 +41,7 @@ def _number(path: str, tree: dict[str, Any]) -> Target:
         raise ValueFault(fault.message.removeprefix(f"{path}: "), fault.remedy) from None
     material = target.loc[0] == "materials"
     if target.quantity is None or (target.entry is None and not material):
-        raise ValueFault("is not a number of the actuator", "remove the entry")
+        raise ValueFault("is not a numeric input of the actuator", "remove the entry")
     if target.quantity.dimension == "count":
         raise ValueFault("is a count, which has no scatter", "remove the entry")
     if target.path != path:

@@ -101,7 +101,7 @@ def _remarks(ring: Ring) -> Iterator[str]:
     elif any(housings(ring.element.type, place) for place in PLACES):
         yield from _housing(ring)
     else:
-        yield f"{ring.label}: no standard housing for a {ring.element.type}"
+        yield f"{ring.label}: no standard housing for type {ring.element.type}"
 
 
 def _o_ring(ring: Ring) -> Iterator[str]:

@@ -61,8 +61,8 @@ class Settling:
 
     `decay_length` is the length 1/beta of shell theory [m]. `radius_ratio` is mid-radius divided by
     thickness; thin-shell theory applies above about 5. `at_seal` is the growth at the step, as a
-    share of the growth far from it. `shares` are pairs of a distance from the step into the
-    pressurised length [m] and the growth there, also as a share.
+    share of the growth far from it. Each pair in `shares` has a distance from the step
+    into the pressurised length [m], and the growth at this distance, also as a share.
     """
 
     decay_length: float

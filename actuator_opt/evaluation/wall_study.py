@@ -451,7 +451,10 @@ def _ratios(utilisation: _Utilisation, field: _StressField) -> list[Ratio]:
 
 
 def _profiles(field: _StressField, utilisations: Sequence[_Utilisation]) -> tuple[WallProfile, ...]:
-    """Stresses on every load path, with the utilisation."""
+    """Stresses through the wall at supply pressure for every load path, with the utilisation.
+
+    A load path gives the wall's axial force per unit pressure.
+    """
     profiles = []
     for p, path in enumerate(field.paths):
         share = np.full(field.radius.shape, np.nan)

@@ -181,8 +181,8 @@ def _spread(xp: Any, kappa: Array, depth: Array) -> Array:
 class _Yielding(NamedTuple):
     """Pressures of first and of full yield, and three values of x at the overpressure.
 
-    `spread` is the actual x, `elastic` that of a liner which never yields, `spent` the latter
-    without thermal stress.
+    x measures how far the liner has yielded, see the module's docstring. `spread` is the actual x,
+    `elastic` that of a liner which never yields, `spent` the latter without thermal stress.
     """
 
     first: Array
@@ -195,7 +195,10 @@ class _Yielding(NamedTuple):
 def _yielding(
     xp: Any, liner: _Liner, contact: _Contact, yield_strength: Array, pressure: Array
 ) -> _Yielding:
-    """Find the yield pressures, and x of an elastic, a partly plastic or a plastic liner."""
+    """Find the yield pressures, and how far the liner has yielded at the overpressure.
+
+    At this pressure, the liner is elastic, partly plastic or plastic.
+    """
     kappa, square = contact.kappa, liner.outer / liner.inner
     half = xp.log(square) / 2
     start, through = (1 - 1 / square) / 2 + kappa / square, half + kappa

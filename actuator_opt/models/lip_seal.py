@@ -308,9 +308,9 @@ def contact_width(
 ) -> Array:
     """Contact width of a lip from its load and peak, b = f/m, at most l.
 
-    m is the mean of `contact_profile.lip_profile` between the sealed pressure and zero with the
-    peak p_max, so that load, peak, width and profile agree. The lip lies down from the rim towards
-    its root as the pressure grows.
+    m is the mean of the contact pressure in `contact_profile.lip_profile`, which runs from the
+    sealed pressure on one side to zero on the other, with the peak p_max. Load, peak, width and
+    profile therefore agree. The lip lies down from the rim towards its root as the pressure grows.
 
     Parameters
     ----------
@@ -325,7 +325,7 @@ def contact_width(
 
     Notes
     -----
-    Valid: as `line_load`; where b = l the profile that carries f peaks above p_max.
+    Valid: as `line_load`; where b = l, the profile must peak above p_max to carry f.
 
     References
     ----------

@@ -46,7 +46,7 @@ def _bells(value: Array) -> Array:
 
 
 def _summed(bells: Array, order: str) -> Array:
-    """Asperity integral of an order, from the values of `_bells` at its film ratio."""
+    """Asperity integral of an order at a film ratio, from the values of `_bells` at this ratio."""
     xp = namespace(bells)
     return xp.sum(xp.asarray(_WEIGHTS[order]) * bells, axis=-1)
 

@@ -289,7 +289,7 @@ def burst_of_tube(
 
     Notes
     -----
-    Valid: walls with fibres; the first fibre to fail, at the most stressed face, is burst.
+    Valid: walls with fibres; burst means that a fibre fails at the most stressed face.
 
     For a wall of metals only, the burst pressure of this function is that of yield; use
     `barrel.burst_pressure_thick` instead. The stress that a yielded metal keeps is its mean over

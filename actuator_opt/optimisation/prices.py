@@ -270,9 +270,9 @@ def _without_copies(
 
 
 def _vertices(rows: Vector, target: Vector, rank: int, free_count: int) -> Vector:
-    """Vertices (v, a) of {m : rows.T @ m = target, m >= 0}.
+    """Vertices of the set of all m with rows.T @ m = target; each row is one vertex.
 
-    The last `free_count` entries of m may have either sign.
+    Only the last `free_count` entries of m may be negative.
     """
     count = len(rows)
     vertices = []

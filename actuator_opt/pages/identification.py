@@ -554,7 +554,7 @@ def _lag(identification: Identification) -> str:
 
 
 def mean_label(identification: Identification) -> str:
-    """Label of the mean friction, which states whether it is averaged over sliding."""
+    """Label of the mean friction, which says whether only samples with a sliding rod count."""
     return "mean while sliding" if identification.slides else "mean, without sliding"
 
 

@@ -35,7 +35,7 @@ _MILLISECONDS = 0.1
 
 
 def ticks(low: float, high: float, count: int = 5) -> list[float]:
-    """Round tick values inside [low, high], about `count` of them.
+    """Tick values at round numbers inside [low, high], about `count` of them.
 
     >>> ticks(0.0, 110.0)
     [0.0, 25.0, 50.0, 75.0, 100.0]
@@ -191,7 +191,7 @@ def level_ticks(low: float, high: float) -> Ticks:
 
 
 def even_ticks(low: float, high: float, count: int) -> Ticks:
-    """Round ticks, about `count` of them, with as many decimals as their step needs.
+    """Ticks at round numbers, about `count` of them, with as many decimals as their step needs.
 
     >>> even_ticks(54.91, 55.09, 3)
     [(54.95, '54.95'), (55.0, '55.00'), (55.05, '55.05')]

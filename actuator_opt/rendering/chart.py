@@ -162,7 +162,7 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShadedMap:
-    """A positive quantity over x (columns) and y (rows), shaded between round levels.
+    """A positive quantity over x (columns) and y (rows), shaded between levels at round numbers.
 
     The map is hatched where values are missing.
     """
@@ -313,7 +313,7 @@ def _straight(axis: Axis, ends: tuple[float, float]) -> Scale:
 
 
 def _even(low: float, high: float, count: int) -> Ticks:
-    """Round ticks; very large and very small values are written with a power of ten."""
+    """Ticks at round numbers; very large and very small values are written with a power of ten."""
     size = max(abs(low), abs(high))
     if 1e-3 <= size < 1e6:
         return even_ticks(low, high, count)

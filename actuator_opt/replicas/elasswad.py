@@ -103,7 +103,7 @@ def bending_table(evaluation: Evaluation) -> list[Block]:
             _over_spans(lambda x: in_gpa(tube.modulus(x, solid=True, shear=True, local=True))),
         ),
         (
-            "compliance that would hide woven carbon",
+            "extra compliance for a woven carbon tube",
             text.DASH,
             text.DASH,
             _over_spans(lambda x: _hidden(tube, x)),

@@ -699,7 +699,10 @@ def _settling_time(t: np.ndarray, error: np.ndarray, band: float) -> float | Non
 
 
 def _decay(beyond: np.ndarray) -> float | None:
-    """Next overshoot divided by the largest, which is the first sample of `beyond`."""
+    """Next overshoot divided by the largest; None if one of them is missing.
+
+    `beyond` is the response minus its target, divided by the step, from the largest overshoot on.
+    """
     back = np.flatnonzero(beyond < 0)
     if beyond[0] <= 0 or not back.size:
         return None

@@ -143,7 +143,12 @@ def uncertainty(
 
 @dataclass(frozen=True, slots=True)
 class HitCounts:
-    """Numbers of draws that meet each of m limits, all requirements, all limits (m + 2, blocks)."""
+    """Numbers of draws that meet each limit, all requirements, and all limits, by block.
+
+    A block is one randomisation of the quasi-random points, or all independent draws. `hits` is
+    (m + 2, blocks): a row for each of m limits, a row for all requirements and a row for all
+    limits. `per_block` is the number of draws in each block.
+    """
 
     hits: Vector
     per_block: int

@@ -62,7 +62,7 @@ def test_bounds_are_settable_by_path():
     ("changes", "message", "remedy"),
     [
         ({"path": "seals.piston.friction_coeff"}, "unknown PATH", PATH),
-        ({"path": "seals.piston.compound"}, "is not a number of the actuator", "remove"),
+        ({"path": "seals.piston.compound"}, "is not a numeric input of the actuator", "remove"),
         ({"path": "seals.rod.stribeck_speed", "lower": "1 mm/s", "upper": "2 mm/s"},
          "is not set", "set it"),
         ({"lower": "0.2"}, "bounds reversed: upper 0.11 is below lower 0.2", "swap"),

@@ -122,7 +122,7 @@ def test_the_schema_knows_the_block():
     [
         ("cylinder.bor", {"tolerance": "H8"}, "unknown PATH", BORE),
         ("seals.rod.count", {"distribution": "normal", "cv": "1 %"}, "is a count", "remove"),
-        ("cylinder.mount", {"distribution": "fixed"}, "is not a number of the actuator", "remove"),
+        ("cylinder.mount", {"distribution": "fixed"}, "is not a numeric input", "remove"),
         ("cylinder.mount_stiffness", {"distribution": "normal", "cv": "1 %"}, "not set", "write"),
         ("stiffness.seal_deflection", {"distribution": "normal", "cv": "1 %"}, "no model of this",
          "remove"),

@@ -86,7 +86,10 @@ class Builder:
         if not isinstance(value, Symbol):
             number = float(value)
             if number == 0 or not math.isfinite(number):
-                raise Unknown(f"a factor or term in the model is always {number:g}")
+                raise Unknown(
+                    f"a factor or term in the model is always {number:g}, "
+                    "whose logarithm is not finite"
+                )
             return math.copysign(1.0, number), Form(math.log(abs(number)))
         if value.index not in self._forms:
             try:

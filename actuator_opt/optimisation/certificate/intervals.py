@@ -188,7 +188,10 @@ def decided(condition: Any) -> bool | None:
 
 
 def branch(node: Symbol) -> Any:
-    """The branch that a choice takes for every design that has a value; None if not known."""
+    """The branch of a choice that all designs take, except those with NaN; None if not known.
+
+    If one branch is NaN itself, the other branch is the result.
+    """
     condition, yes, no = node.args
     if _is_nan(yes):
         return no

@@ -139,8 +139,9 @@ class Conditions:
     """Checks the optimality conditions of a front design.
 
     A front design minimises at least one objective while the others may not exceed their values at
-    the design. For each objective, this problem has a residual of its optimality conditions. The
-    design's residual is the first that is below the tolerance, or else the smallest.
+    the design. Each objective therefore gives one problem to check, in which this objective is
+    minimised. The optimality conditions of each problem have a residual. The residual of the design
+    is the first of them that is at most the tolerance, or else the smallest.
     """
 
     objectives: Objectives

@@ -164,7 +164,10 @@ class FrontDesign:
 
 @dataclass(frozen=True)
 class FrontStart:
-    """Start for a design at given levels: coordinates that include t, and a Hessian."""
+    """Start of the search for a design at given levels: coordinates `z`, and a Hessian.
+
+    The last coordinate is that of t, the level of the objectives, which is minimised.
+    """
 
     level: Vector
     direction: Vector
