@@ -120,7 +120,7 @@ def seal(piston=O_RING, **asked):
 @pytest.mark.parametrize(
     ("piston", "asked", "words"),
     [
-        (TABLE, {"pressure": 20e6}, "profiles of the piston seal end at 120 bar"),
+        (TABLE, {"pressure": 20e6}, "profiles stated for the piston seal end at 120 bar"),
         (O_RING, {"speed": 0.0}, "need a moving seal"),
         (O_RING, {"speed": -0.1}, "need a moving seal"),
         (f"{O_RING}, count: 2", {}, "one ring or a pair"),
