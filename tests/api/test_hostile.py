@@ -362,7 +362,7 @@ def test_no_pdf_keeps_the_reader_busy(tmp_path, content):
         ({"command": "actuator-opt pareto a -n 1000000000"}, "give 3 to 2000"),
         ({"command": "actuator-opt optimise a --verify-dynamics /dev/zero"}, "not a regular file"),
         ({"command": "actuator-opt optimise a --verify-dynamics -"}, "not a regular file"),
-        ({"command": "actuator-opt evaluate " + "a" * 200_000}, "more than 100000 letters"),
+        ({"command": "actuator-opt evaluate " + "a" * 200_000}, "more than 100000 characters"),
         ({"actuator_opt": "9" * 5000}, "was made by actuator-opt 999"),
         ({"date": ["2026-01-01"]}, "date must be text"),
         ({"date": "yesterday"}, "date is invalid"),
