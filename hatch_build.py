@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import tempfile
+import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
@@ -20,6 +21,7 @@ class MachineHook(BuildHookInterface):
         """Compile, and name the file and the platform in the wheel."""
         if self.target_name != "wheel":
             return
+        self.folder = TemporaryDirectory()  # removed when the build ends
         try:
             built = self._compiled()
         except Exception as error:  # compilers fail in many ways; none may stop the installation
@@ -35,9 +37,7 @@ class MachineHook(BuildHookInterface):
         build_data["tag"] = f"cp311-abi3-{next(sys_tags()).platform}"
 
     def _compiled(self) -> Path:
-        """Path of the compiled module, in a folder of its own."""
-        import sys
-
+        """Path of the compiled module, in a temporary folder."""
         from setuptools import Distribution, Extension
         from setuptools.command.build_ext import build_ext
 
@@ -45,7 +45,7 @@ class MachineHook(BuildHookInterface):
         flags = [] if sys.platform == "win32" else FLAGS
         machine = Extension("_machine", [source], extra_compile_args=flags, py_limited_api=True)
         command = build_ext(Distribution({"ext_modules": [machine]}))
-        command.build_lib = command.build_temp = tempfile.mkdtemp()
+        command.build_lib = command.build_temp = self.folder.name
         command.ensure_finalized()
         command.run()
         return Path(command.get_outputs()[0])

@@ -394,7 +394,7 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
 
 
 def _with_recording(actuator: ActuatorProblem, read: Collection[str]) -> ActuatorProblem:
-    """Record objective and margins as a function of the variables and all positive numbers read."""
+    """The problem with a function that records itself, of the variables and positive numbers."""
     count, known = len(actuator.paths), actuator.subject.numbers
     others = sorted(p for p in read if p not in actuator.paths and known.get(p, 0.0) > 0)
     names = (*actuator.paths, *others)

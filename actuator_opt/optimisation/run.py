@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import replace
+from typing import Any
 
 from ..base.dataclass import dataclass
 from ..base.progress import tell
@@ -193,18 +194,15 @@ def optimise(
     else:
         actuator = build(subject, fault)
         require_movable_objective(actuator)
-        for _ in range(2):  # again with the models themselves, should their recording be wrong
-            solution = solve(
-                actuator.problem,
-                algorithm=algorithm,
-                starts=starts,
-                samples=SAMPLES,
-                seed=seed,
-                max_seconds=max_seconds,
-                keep_interrupted=keep_interrupted,
-            )
-            if actuator.confirmed(solution.x):
-                break
+        solution = _confirmed(
+            actuator,
+            algorithm=algorithm,
+            starts=starts,
+            samples=SAMPLES,
+            seed=seed,
+            max_seconds=max_seconds,
+            keep_interrupted=keep_interrupted,
+        )
     follow_up = _FollowUp(solution)
     try:
         if sizes is not None and solution.feasible and not solution.interrupted:
@@ -219,6 +217,14 @@ def optimise(
         outcome = Outcome.INTERRUPTED if solution.feasible else Outcome.INTERRUPTED_INFEASIBLE
         follow_up = _FollowUp(replace(solution, outcome=outcome))
     return _result(subject, actuator, follow_up, choices, seed, began)
+
+
+def _confirmed(actuator: ActuatorProblem, **settings: Any) -> Solution:
+    """Solve; if the recorded models are wrong at the optimum, solve again with the models."""
+    solution = solve(actuator.problem, **settings)
+    if actuator.confirmed(solution.x):
+        return solution
+    return solve(actuator.problem, **settings)
 
 
 def result_of(

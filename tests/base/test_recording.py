@@ -11,7 +11,7 @@ from hypothesis import given, settings, strategies as st
 from actuator_opt.base.numeric import STEP, absolute, positive, real, sqrt, where
 from actuator_opt.base.polynomial import moved_root, root_parts, roots
 from actuator_opt.base.symbolic import program as programs
-from actuator_opt.base.symbolic.arrays import Recorder, SymbolArray, elements
+from actuator_opt.base.symbolic.arrays import NUMPY_OF, Recorder, SymbolArray, elements
 from actuator_opt.base.symbolic.program import Program, program
 from actuator_opt.base.symbolic.recorded import PATIENCE, RECORDINGS, RecordedFunction, same
 
@@ -26,6 +26,11 @@ def recorded(function, point):
     with np.errstate(all="ignore"):
         results = function(symbols[:, 0])
     return trace, program(elements(symbols), elements(results))
+
+
+def test_the_machine_runs_every_operation_that_is_recorded():
+    """An operation added on one side only would keep all designs on NumPy."""
+    assert set(NUMPY_OF) - {"real"} == set(programs.OPERATIONS) - {"roots"}
 
 
 UNARY = (

@@ -1,7 +1,7 @@
 """Arrays of symbols: NumPy arrays whose elements record every operation of a model.
 
 A model that accepts NumPy arrays runs unchanged on these. Every element becomes a symbol of an
-exact graph (`exact_graph`), so the recorded operations repeat those of NumPy, NaN included.
+exact graph (`Graph.truth`), so the recorded operations repeat those of NumPy, NaN included.
 """
 
 from __future__ import annotations
@@ -270,7 +270,7 @@ _ELEMENTS: dict[Any, Callable[..., Any]] = {
     np.fmax: _extreme(largest=True, keep_nan=False),
     np.fmin: _extreme(largest=False, keep_nan=False),
 }
-OPERATIONS: dict[str, Any] = {
+NUMPY_OF: dict[str, Any] = {
     "mul": np.multiply, "pow": np.power, "lt": np.less, "le": np.less_equal, "eq": np.equal,
     "and": np.logical_and, "or": np.logical_or, "not": np.logical_not, "isnan": np.isnan,
     "where": np.where, "real": np.positive,
@@ -286,7 +286,7 @@ for _op, _ufunc in (
     ("hypot", np.hypot),
 ):  # fmt: skip
     _ELEMENTS[_ufunc] = _recorded(_op, _ufunc)
-    OPERATIONS[_op] = _ufunc
+    NUMPY_OF[_op] = _ufunc
 _DIVIDE: Callable[..., Any] = _ELEMENTS[np.divide]
 _ELEMENTS[np.reciprocal] = lambda a: _DIVIDE(1.0, a)
 _UFUNCS: dict[Any, Any] = {
@@ -329,7 +329,7 @@ _STRUCTURAL = frozenset({
     np.swapaxes, np.broadcast_to, np.broadcast_arrays, np.ravel, np.atleast_1d, np.atleast_2d,
     np.atleast_3d, np.repeat, np.tile, np.roll, np.flip, np.vstack, np.hstack, np.copy,
     np.diagonal, np.take, np.shape, np.ndim, np.size, np.split, np.array_split, np.append,
-    np.column_stack, np.block, np.resize, np.rollaxis, np.trace,
+    np.column_stack,
 })  # fmt: skip
 
 
@@ -532,11 +532,7 @@ NAMESPACE: Any = SimpleNamespace(
 )
 NAMESPACE.asarray = asarray
 NAMESPACE.array = asarray
-NAMESPACE.atan2 = np.arctan2
-NAMESPACE.where = _where
-NAMESPACE.real = _np_real
 NAMESPACE.root_parts = _root_parts
-NAMESPACE.isdtype = lambda dtype, kind: kind == "real floating"
 
 
 def elements(values: Any) -> list[Any]:
@@ -591,12 +587,12 @@ class Recorder:
         if not isinstance(symbol, Symbol):
             return symbol
         for node in needed([symbol], self._known):
-            if node.op not in OPERATIONS:
+            if node.op not in NUMPY_OF:
                 raise TypeError("a branch that depends on the roots of a polynomial")
             operands = [self._known[a] if isinstance(a, Symbol) else a for a in node.args]
             quick = _QUICK.get(node.op)
             self._known[node] = (
-                _of_numbers(OPERATIONS[node.op], *operands) if quick is None else quick(*operands)
+                _of_numbers(NUMPY_OF[node.op], *operands) if quick is None else quick(*operands)
             )
         return self._known[symbol]
 

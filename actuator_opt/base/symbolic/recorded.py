@@ -164,12 +164,12 @@ class RecordedFunction:
 
     def _traced(self, point: Array) -> Recording:
         """The program of the function, with the branches taken at a point (inputs,)."""
-        trace = Recorder()
+        recorder = Recorder()
         with np.errstate(all="ignore"):
-            symbols = trace.variables(self.names, point)
+            symbols = recorder.variables(self.names, point)
             results = elements(self.function(symbols))
-        written = programs.program(elements(symbols), [*results, *trace.guards])
-        return Recording(written, np.array(list(trace.guards.values()), dtype=bool))
+        written = programs.program(elements(symbols), [*results, *recorder.guards])
+        return Recording(written, np.array(list(recorder.guards.values()), dtype=bool))
 
     def _agrees(self, recording: Recording, point: Array) -> bool:
         """Whether the recording equals the function at a point and at one nearby."""
