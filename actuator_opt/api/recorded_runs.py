@@ -437,7 +437,7 @@ def differing(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
 
 
 def same(a: Any, b: Any) -> bool:
-    """Whether two values are equal; numbers may differ by a share of `CLOSE`."""
+    """Whether two values are equal; numbers may have a relative difference of at most `CLOSE`."""
     if isinstance(a, (int, float)) and isinstance(b, (int, float)):
         return abs(a - b) <= CLOSE * max(abs(a), abs(b))
     return bool(a == b)
@@ -610,7 +610,7 @@ def record_sweep(
 
 
 def _plan(swept: Swept) -> dict[str, Any]:
-    """The plan of a sweep as plain data, in SI; inputs with text values have no quantity."""
+    """The plan of a sweep as plain data, in SI; `quantity` is None for inputs with text values."""
     from ..design import quantity_of
 
     plan, design = swept.study.plan, swept.study.design

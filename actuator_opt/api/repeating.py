@@ -85,7 +85,7 @@ class Rerun(Displayed):
         return results.keep(self.subject, **paper | self._origin())
 
     def _origin(self) -> dict[str, Any]:
-        """Origin and additional tables of the original report."""
+        """Design, command and date of the original report, with its additional tables."""
         data = {"actuator": self.actuator, "command": self.command, "date": self.date}
         return data | ({"extra_tables": self.tables} if self.tables else {})
 

@@ -1,4 +1,4 @@
-"""A session: solves a design once, then quickly re-solves it, predicts and prices changes.
+"""A session solves a design once, then quickly re-solves, predicts or prices changes of it.
 
 A price is the change of the best objective per unit change of a number.
 """
@@ -235,7 +235,8 @@ class Session:
         Raises
         ------
         InputError
-            the PATH is unknown or names a word, or a value is not finite or does not fit the design
+            the PATH is unknown or has a word as its value, or a new value is not finite or does not
+            fit the design
         UsageError
             the PATH names a free dimension
         """
@@ -302,7 +303,7 @@ class Session:
         Raises
         ------
         InputError
-            the PATH is unknown or names a word
+            the PATH is unknown or has a word as its value
         UsageError
             the PATH names a free dimension, or a number without derivative, such as a bound of a
             variable

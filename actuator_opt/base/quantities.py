@@ -12,7 +12,8 @@ from . import units
 from .dataclass import dataclass
 
 Sense = Literal["min", "max"]
-"""Sense of a limit ("min": at least, "max": at most), or the worst value (smallest or largest)."""
+"""For a limit: at least ("min") or at most ("max"). For a worst value: the smallest or the
+largest."""
 
 INFINITY = float("inf")
 
@@ -273,7 +274,8 @@ SCENARIOS = _table("""
  damping_factor       | -      | ratio       | -      | 0     | 10     | damping of a stop, divided by the square root of stiffness times moving mass
  cycles_per_window    | n      | count       | -      | 1     | 1000   | cycles in a window
 """)
-"""Inputs of a scenario, in addition to its design; only coordinates of signals may be negative."""
+"""Inputs of a scenario, in addition to its design. Only values, angles and factors of its signals
+may be negative."""
 
 RESULTS = _table("""
  rise_time            | t_r    | time        | ms     | | | time from 10 to 90 % of the step

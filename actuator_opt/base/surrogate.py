@@ -67,7 +67,7 @@ class SurrogateAxis:
         return (2 * np.log(limited) - low - high) / (high - low)
 
     def basis(self, value: Array) -> Array:
-        """Chebyshev polynomials (..., terms) at an input, which is first limited to the axis."""
+        """Chebyshev polynomials (..., terms) at an input, which is clipped to the axis range."""
         x = self._coordinate(value)
         rows = [np.ones_like(x), x]
         while len(rows) < self.terms:
@@ -94,7 +94,8 @@ class Surrogate:
 
     Parameters
     ----------
-    axes : inputs with a range base : reference value of every input
+    axes : inputs with a range
+    base : reference value of every input
     coefficients : array (terms of axis 1, terms of axis 2, ..., outputs, 1 + linear inputs); the
         last axis has the value, then the slope for each input in `linear`
     linear : inputs whose effect is linearised
@@ -183,7 +184,9 @@ def _fitted(
     values: Sequence[np.ndarray],
     results: Sequence[Interpolation],
 ) -> np.ndarray:
-    """Fit coefficients (terms of every axis, outputs) to values, and with `hermite` to slopes."""
+    """Fit coefficients (terms of every axis, outputs) to values, for `hermite` axes also to
+    slopes.
+    """
     rows, targets = [_basis(axes, points)], [np.array(values)]
     for axis in axes:
         if axis.hermite:

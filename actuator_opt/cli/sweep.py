@@ -32,7 +32,7 @@ Way = Annotated[
     typer.Option("--method", help="grid (every combination), sobol or lhs (Latin hypercube)."),
 ]
 Count = Annotated[
-    int | None, typer.Option("-n", metavar="N", help="Number of points of sobol and lhs.")
+    int | None, typer.Option("-n", metavar="N", help="Number of points for sobol or lhs.")
 ]
 Store = Annotated[
     Path | None,
@@ -81,7 +81,7 @@ Show = Annotated[
 Yes = Annotated[bool, typer.Option("--yes", help="Allow more than a million full evaluations.")]
 Screening = Annotated[
     str,
-    typer.Option("--engine", help="Library for --reduce: numpy, or jax (extra gpu)."),
+    typer.Option("--engine", help="Array library for --reduce: numpy, or jax (extra gpu)."),
 ]
 Folder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the figures.")]
 

@@ -326,7 +326,7 @@ def reach(view: FileView) -> Iterator[Fault]:
 
 
 def films(view: FileView) -> Iterator[Fault]:
-    """Check that two seals in tandem have one friction law, and that a film has one ring or two."""
+    """Check that seals in tandem have the same friction law, and an oil film at most two rings."""
     for name in ("piston", "rod"):
         both: list[Loc] = [("seals", name)]
         if view.has("seals", name, "secondary"):

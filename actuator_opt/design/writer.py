@@ -68,7 +68,7 @@ def exact_text(value: float, quantity: Quantity | None, unit: str | None = None)
 
 
 def _candidates(value: float, unit: units.Unit) -> Iterator[str]:
-    """Yield texts in a unit for an SI value, shortest first, then for neighbouring floats."""
+    """Yield texts in a unit for an SI value, shortest first; last, texts of neighbouring floats."""
     low = high = unit.from_si(value)
     for digits in (6, 9, 12, 15, 16, 17):
         yield f"{low:.{digits}g}"

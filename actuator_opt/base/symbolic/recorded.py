@@ -1,8 +1,9 @@
-"""Functions of many inputs that record themselves once and are then run by the machine.
+"""Functions of many inputs that are recorded once and then run by a small virtual machine.
 
-The function is called with symbols in place of numbers; every operation becomes an instruction. A
-branch that depends on values is recorded as a guard: points that would take the other branch go
-through the function itself. The recording is checked against the function before it is used.
+The function is called with symbols in place of numbers; every operation becomes an instruction of
+the virtual machine ("machine" for short, see `program`). A branch that depends on values is
+recorded as a guard: points that would take the other branch go through the function itself. The
+recording is checked against the function before it is used.
 """
 
 from __future__ import annotations
@@ -19,21 +20,27 @@ from .arrays import Recorder, elements
 from .program import Program
 
 PATIENCE = 4.0
-"""Work of calls after which a recording pays, where a call is 1 and each of its points is 0.01 (our
-choice: recording costs as much as some 40 calls, and a search makes hundreds)."""
+"""A function is recorded once the work of its calls exceeds this number. A call counts as 1, plus
+0.01 for each of its points (our choice: recording costs as much as some 40 calls, and a search
+makes hundreds)."""
 RECORDINGS = 3
-"""Largest number of recordings at different branches."""
+"""Largest number of times that a function is recorded, each time along other branches."""
 FEW = 20
-"""Number of points outside the recorded branches before their share is judged."""
+"""Number of points with unrecorded branches, above which a function may be recorded again."""
 OFTEN = 0.25
-"""Share of points outside the recorded branches that calls for a new recording."""
+"""A function is recorded again if also more than this share of all points took such branches."""
 AGREEMENT = 1e-9
-"""Largest difference of a checked recording, relative to a value or to 1."""
+"""Largest permitted difference between a recording and its function, divided by the value (or by 1
+if the value is smaller)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """A program whose last outputs are guards, with the answers for which it holds."""
+    """A recorded function, valid at points that take the recorded branches.
+
+    The last outputs of its program are guards: the conditions of the branches. At a valid point,
+    they have the truth values `answers`.
+    """
 
     program: Program
     answers: Array
@@ -71,7 +78,9 @@ class RecordedFunction:
         self.function = function
         self.names = tuple(names)
         self.present = present
-        self.reason = "" if programs.AVAILABLE else "the machine was not built at installation"
+        self.reason = (
+            "" if programs.AVAILABLE else "the virtual machine was not built at installation"
+        )
         self.recording: Recording | None = None
         self.recordings = 0
         self.work = 0.0
@@ -110,7 +119,7 @@ class RecordedFunction:
         return rows
 
     def _slopes(self, points: Array) -> Array:
-        """Results with their complex steps; columns with equal real parts share their values."""
+        """Results with their complex steps; points with equal real parts are evaluated together."""
         assert self.recording is not None
         real, steps = points.real, points.imag / STEP
         new = np.append(True, (real[:, 1:] != real[:, :-1]).any(axis=0))

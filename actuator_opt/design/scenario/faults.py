@@ -54,7 +54,7 @@ def part_lists(
 
 
 def _parts(view: FileView) -> Iterator[tuple[Loc, str, type[Section]]]:
-    """Location, shape and section type of every part of a signal whose shape is known."""
+    """Location, shape and section type of every signal part that has a known shape."""
     for place, section in part_lists().items():
         for index in range(len(view.items(*place))):
             shape = view.text(*place, index, "shape")
