@@ -184,9 +184,7 @@ def _fitted(
     values: Sequence[np.ndarray],
     results: Sequence[Interpolation],
 ) -> np.ndarray:
-    """Fit coefficients (terms of every axis, outputs) to values, for `hermite` axes also to
-    slopes.
-    """
+    """Fit coefficients (terms of every axis, outputs) to values; with `hermite` also to slopes."""
     rows, targets = [_basis(axes, points)], [np.array(values)]
     for axis in axes:
         if axis.hermite:

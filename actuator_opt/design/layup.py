@@ -347,9 +347,7 @@ def _entries(item: Mapping[str, Any], layers: Sequence[PlyGroup]) -> Iterator[di
 
 
 def _places(document: Document, loc: Loc, layer_loc: Loc, layer: PlyGroup) -> dict[Loc, NodeSpan]:
-    """Where a layer's values are written; angle and thickness follow from its angle in the
-    notation.
-    """
+    """Where a layer's values are written; angle and thickness at its angle in the notation."""
     angle_span = _character(document, (*loc, "plies"), layer.offset)
     places = {layer_loc: angle_span} | {
         (*layer_loc, key): angle_span for key in ("angle", "thickness", "balanced")
