@@ -431,7 +431,7 @@ def prune_runs(*, keep: int, folder: str | Path | None = None) -> list[str]:
 
 
 def differing(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """Names of values that differ by more than `CLOSE`, or that only one of the two contains."""
+    """Names of values that differ by more than `CLOSE`, or that only one mapping contains."""
     names = dict.fromkeys([*then, *now])
     return [name for name in names if not same(then.get(name), now.get(name))]
 

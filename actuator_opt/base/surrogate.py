@@ -111,7 +111,8 @@ class Surrogate:
     def __call__(self, inputs: Mapping[str, Array], slope: str | None = None) -> Array:
         """Outputs (m, ...) at inputs that broadcast; missing inputs have their base value.
 
-        With `slope`, return derivatives with respect to the logarithm of that axis instead.
+        With `slope` (the name of an axis), return derivatives with respect to the logarithm of its
+        input instead.
         """
         point = {name: array_of(inputs.get(name, value)) for name, value in self.base.items()}
         names = [axis.name for axis in self.axes] + list(self.linear)

@@ -257,7 +257,7 @@ def control(view: FileView) -> Iterator[Fault]:
 
 
 def held_pressures(view: FileView) -> Iterator[Fault]:
-    """Check that held pressures are stated for both chambers or none, up to the proof pressure."""
+    """Check held pressures: stated for both chambers or none, each at most proof pressure."""
     for index in range(len(view.items("load_cases"))):
         loc = ("load_cases", index)
         a, b = view.has(*loc, "pressure_a"), view.has(*loc, "pressure_b")

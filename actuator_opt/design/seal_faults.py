@@ -234,7 +234,7 @@ def squeeze(view: FileView) -> Iterator[Fault]:
 
 
 def shapes(view: FileView) -> Iterator[Fault]:
-    """Check that the dimensions of a ring's profile fit into its section."""
+    """Check that the dimensions of a ring's profile fit into its free cross-section."""
     for loc in elements(view):
         kind = _kind(view, loc)
         if kind is not None:

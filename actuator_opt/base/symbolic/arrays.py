@@ -82,7 +82,7 @@ def _boxed(value: Any) -> Any:
 
 
 def wrapped(value: Any) -> Any:
-    """An object array as symbols; as plain numbers if it contains no symbol."""
+    """Convert an object array to an array of symbols, or of plain numbers if it has no symbols."""
     if isinstance(value, (list, tuple)):
         parts = [wrapped(part) for part in value]
         return parts if isinstance(value, list) else tuple(parts)

@@ -673,7 +673,7 @@ def vectorised(
     known: Mapping[Symbol, str] | None = None,
     library: Any = np,
 ) -> Callable[..., Any]:
-    """As `function`, for arrays; both branches of every choice are computed.
+    """Like `function`, but for arrays, so that both branches of every choice are computed.
 
     `known` gives code for expressions that are already computed; `library` is NumPy or a
     library with the same function names.

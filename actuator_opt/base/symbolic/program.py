@@ -27,8 +27,8 @@ AVAILABLE: Final = _MACHINE is not None
 WIDTHS: Final = (4, 8, 16)
 """Numbers of directions for which the virtual machine can compute derivatives in one run."""
 SHARED: Final = ("real", "part")
-"""Operations that compute nothing: a value without its derivatives, and one root of several. They
-share the slot of their operand."""
+"""Operations that compute nothing new: the value of the operand without its derivatives, and one of
+the computed roots of a polynomial. Their value is in the slot of their operand."""
 MOST_SLOTS: Final = 2**16
 """Largest number of slots that an instruction can name."""
 _FROZEN: Final = 16
@@ -72,7 +72,7 @@ class Program:
 
         Parameters
         ----------
-        points : (points, inputs)
+        points : inputs of every point, (points, inputs)
         seeds : change of every input in every direction, (points, inputs, directions)
         """
         code, varies = self._for(seeds.any(axis=(0, 2)))
@@ -91,7 +91,7 @@ class Program:
         return values, parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
 
     def _for(self, moving: Array) -> tuple[Array, Array]:
-        """Instructions that compute derivatives for `moving` inputs only; which outputs vary.
+        """Return instructions that only differentiate by `moving` inputs; which outputs vary.
 
         An input moves if its change is not 0 in some direction.
         """

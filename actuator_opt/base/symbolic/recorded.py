@@ -56,7 +56,7 @@ class Recording:
 
 
 class RecordedFunction:
-    """A function of points (inputs, k), real or complex, with results (rows, k).
+    """A function of k points (inputs, k), real or complex, that returns results (rows, k).
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ class RecordedFunction:
         self.outside = 0
 
     def __call__(self, points: Array) -> Array:
-        """Results (rows, k) at points (inputs, k), by the machine once that pays."""
+        """Results (rows, k) at k points (inputs, k); the machine runs them once that saves time."""
         if self.reason:
             return self.function(points)
         if self.recording is None:
@@ -138,7 +138,7 @@ class RecordedFunction:
         return rows
 
     def _complete(self, points: Array, rows: Array, holds: Array) -> None:
-        """Compute the columns outside the recorded branches; record again if they are many."""
+        """Call the function at points outside the recorded branches; record again if many."""
         self.points += len(holds)
         if holds.all():
             return

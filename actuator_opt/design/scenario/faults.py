@@ -175,7 +175,7 @@ def stated_references(view: FileView) -> list[str]:
 
 
 def drives(view: FileView) -> Iterator[Fault]:
-    """Check that only one of `signal` and `control` drives the valve, and that it is connected."""
+    """Check that `signal` or `control`, not both, drives the valve, and that it is connected."""
     driven = [name for name in ("signal", "control") if stated(view, name)]
     if len(driven) == 2:
         message = "both signal and control are stated, and both would drive the valve"
