@@ -287,7 +287,7 @@ class Session:
         if line.high is not None and line.high[0] < 1 - ROUNDING:
             why = f"after {100 * abs(line.high[0]):.3g} % of the change, {line.high[1]}"
         if not math.isfinite(line.above):
-            why = "no design meets the limits in this direction"
+            why = "even the smallest change in this direction leaves no feasible design"
         return Prediction(objective + change, self._named(x + line.moves), not why, why)
 
     def price(self, path: str) -> Price:
@@ -519,7 +519,7 @@ def _require_continuous(actuator: Actuator, sizes: object) -> None:
     if design.choices:
         raise UsageError(
             Diagnostic(
-                "a session keeps choices fixed, but the design has choices",
+                "a session cannot vary choices, but the design states choices to try",
                 "optimise it, and open a session on the best design",
                 path="choices",
             )

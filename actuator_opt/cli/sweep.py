@@ -24,7 +24,7 @@ Vary = Annotated[
     typer.Option(
         "--vary",
         metavar="PATH=A..B:N",
-        help="A range with its number of values, or a list (PATH=a,b,c). Repeatable.",
+        help="Input to vary: a range with N values, or a list (PATH=a,b,c). Repeatable.",
     ),
 ]
 Way = Annotated[
@@ -37,7 +37,9 @@ Count = Annotated[
 Store = Annotated[
     Path | None,
     typer.Option(
-        "--store", metavar="F.db", help="Store every row in this database; a later run resumes."
+        "--store",
+        metavar="F.db",
+        help="Store every row in this database; a later run resumes from it.",
     ),
 ]
 Csv = Annotated[

@@ -229,7 +229,7 @@ def valve(view: FileView) -> Iterator[Fault]:
         text = quantities.INPUTS["leakage_flow"].text
         yield Fault(
             ("valve", "leakage_flow"),
-            f"{text(leakage)}: the leakage is as large as the flow of the open valve",
+            f"{text(leakage)}: not less than the flow of the open valve at the same pressure drop",
             f"write less than {text(most)}",
         )
 

@@ -164,7 +164,10 @@ class Load(Section):
     mass: Annotated[float, Of("load_mass", "moving mass, reflected to the rod")] = 0.0
     inertia: Annotated[
         float,
-        Of("load_inertia", "moment of inertia about the joint of the linkage, added to mass"),
+        Of(
+            "load_inertia",
+            "moment of inertia about the linkage's joint, reflected to the rod and added to mass",
+        ),
     ] = 0.0
 
 

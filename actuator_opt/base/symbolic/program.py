@@ -196,7 +196,7 @@ class _Writer:
             return np.where(array < 0, self.count - 1 - array, array).astype(np.int32)
 
         if self.count + len(self.values) > MOST_SLOTS:
-            raise ValueError("its program is too long")
+            raise ValueError("its recorded program is too long")
         code = np.array(self.code, dtype=np.int32).reshape(-1, 5)
         code[:, 2:] = settled(code[:, 2:])
         return Program(

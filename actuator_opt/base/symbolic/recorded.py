@@ -153,7 +153,7 @@ class RecordedFunction:
         self.recording = None
         self.points = self.outside = 0
         if self.recordings >= RECORDINGS:
-            self.reason = "its branches differ between designs"
+            self.reason = "it takes different branches for different designs"
             return
         self.recordings += 1
         collecting = gc.isenabled()
