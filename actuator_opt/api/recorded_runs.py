@@ -148,7 +148,7 @@ def run_fault(run: object) -> str:
 
 
 def head_fault(head: object) -> str:
-    """The fault of the head of a record, in words; "" if there is none.
+    """The fault of a record's head (the part that lists show), in words; "" if there is none.
 
     >>> head_fault({"kind": 3})
     'kind must be text'

@@ -1,8 +1,8 @@
-"""The Design: contents of a design file in SI, as typed sections.
+"""The Design: contents of a design file in SI, with a class for each block.
 
 Every number names its quantity (`Of`), which is declared once in `quantities.INPUTS` for parsing,
 range checks, JSON Schema and reports. A value may be an optimisation variable with bounds, or have
-confidence bounds from a test, or scatter. Sections contain no physics.
+confidence bounds from a test, or scatter. These classes contain no physics.
 """
 
 from __future__ import annotations

@@ -105,7 +105,7 @@ def to_yaml(
 
 
 _TABLES = (("variables",), ("requirements",), ("measured",), ("uncertainty",))
-"""Tables whose entries are sections with free names."""
+"""Tables whose entries are blocks with free names."""
 
 
 class _CannotEdit(Exception):
@@ -201,7 +201,7 @@ def _below(section: type[Section] | None, key: str) -> type[Section] | None:
 def _stated(
     node: dict[str, Any], section: type[Section] | None, design: Design, loc: Loc = ()
 ) -> dict[str, Any]:
-    """Convert a section to a tree, without the values that equal their defaults."""
+    """Convert a block to a tree, without the values that equal their defaults."""
     stated: dict[str, Any] = {}
     table = loc in _TABLES
     for key, value in node.items():

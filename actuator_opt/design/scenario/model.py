@@ -1,4 +1,4 @@
-"""The Scenario: signals and events that act on a design over time, as typed sections in SI.
+"""The Scenario: signals and events that act on a design over time, with a class for each block.
 
 A signal is the sum of the parts in its list.
 """
