@@ -444,7 +444,7 @@ SHAPES = kinds(
     ),
     SignalShape(
         "sine",
-        "sine with amplitude value and this frequency, from start to end",
+        "sine of amplitude value and of this frequency, from start to end",
         ("value", "frequency"),
         ("start", "end", "phase"),
         instead={},
