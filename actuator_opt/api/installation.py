@@ -93,6 +93,7 @@ def doctor(
         findings.append(Finding("folder", "runs", "ok", "no runs are recorded"))
     else:
         findings.append(_folder("runs", Path(runs), "set ACTUATOR_OPT_RUNS to another folder"))
+    findings.append(_programs())
     if terminal:
         findings.append(Finding("terminal", "output", "ok", terminal))
     return Installation((*findings, _machine(), _compiled()))
@@ -230,6 +231,19 @@ def _folder(name: str, folder: Path, remedy: str) -> Finding:
         return Finding("folder", name, "fault", f"cannot be written: {reason}", remedy)
     remark = "" if folder.is_dir() else " (made when needed)"
     return Finding("folder", name, "ok", f"{folder.absolute()}{remark}")
+
+
+def _programs() -> Finding:
+    from ..base.symbolic.program_store import FOLDER, folder
+
+    place, remedy = folder(), f"set {FOLDER} to another folder"
+    if place is None:
+        return Finding("folder", "recorded models", "ok", "none are stored")
+    finding = _folder("recorded models", place, remedy)
+    if finding.status == "ok":
+        return finding
+    words = f"not stored, so each run records anew: {finding.value}"
+    return Finding("folder", "recorded models", "missing", words, remedy)
 
 
 def _machine() -> Finding:

@@ -23,6 +23,7 @@ from ..base.symbolic.recorded import RecordedFunction
 from ..design import with_values
 from ..design.material import Material
 from ..design.materials import Library
+from ..design.structure import leaves, number_of
 from ..evaluation import PreparedDesign, compute, prepare
 from ..evaluation.build import names_of_materials
 from ..evaluation.kernel import extreme, worst_of
@@ -407,7 +408,33 @@ def _with_recording(actuator: ActuatorProblem, read: Collection[str]) -> Actuato
         return xp.concatenate([objective, values.constraints])
 
     present = np.array([known[name] for name in names])
-    return replace(actuator, recorded=RecordedFunction(rows, names, present))
+    structure = _structure(actuator, frozenset(names))
+    return replace(actuator, recorded=RecordedFunction(rows, names, present, structure))
+
+
+def _structure(actuator: ActuatorProblem, inputs: Collection[str]) -> list[Any]:
+    """Data that determine the operations of the models; the numbers at `inputs` do not."""
+    subject, goal = actuator.subject, actuator.goal
+    words = [
+        (loc, value if number_of(value) is None else type(value).__name__)
+        for loc, _, value in leaves(subject.design)
+        if loc[0] not in ("name", "notes", "reproduces")
+    ]
+    materials = [
+        (name, material.kind, material.family, key, entry.argument, entry.points)
+        for name, material in subject.materials.items()
+        for key, entry in material.properties.items()
+    ]
+    rows = [
+        (row.limit_of.name, row.limit_of.metric, row.limit_of.sense, row.place, row.case_index)
+        for row in actuator.rows
+    ]
+    return [
+        words, materials, rows, actuator.paths, sorted(actuator.metrics or ()),
+        {path: value for path, value in subject.numbers.items() if path not in inputs},
+        sorted((*key, value) for key, value in subject.factors.items()),
+        dict(subject.reserves), goal.weights, goal.scales, goal.sign,
+    ]  # fmt: skip
 
 
 def idle_metrics(actuator: ActuatorProblem) -> tuple[str, ...]:

@@ -10,21 +10,15 @@ from __future__ import annotations
 
 import gc
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
-from ..dataclass import dataclass
 from ..numeric import STEP, Array
-from . import program as programs
+from . import program as programs, program_store
 from .arrays import Recorder, elements
-from .program import Program
+from .program_store import MOST_RECORDINGS, Recording
 
-PATIENCE = 4.0
-"""A function is recorded once the work of its calls exceeds this number. A call counts as 1, plus
-0.01 for each of its points (our choice: recording costs as much as some 40 calls, and a search
-makes hundreds)."""
-RECORDINGS = 3
-"""Largest number of times that a function is recorded, each time along other branches."""
 FEW = 20
 """Number of points with unrecorded branches, above which a function may be recorded again."""
 OFTEN = 0.25
@@ -32,27 +26,6 @@ OFTEN = 0.25
 AGREEMENT = 1e-9
 """Largest permitted difference between a recording and its function, divided by the value (or by 1
 if the value is smaller)."""
-
-
-@dataclass(frozen=True, slots=True)
-class Recording:
-    """A recorded function, valid at points that take the recorded branches.
-
-    The last outputs of its program are guards: the conditions of the branches. At a valid point,
-    they have the truth values `answers`.
-    """
-
-    program: Program
-    answers: Array
-
-    @property
-    def rows(self) -> int:
-        """Number of results, without the guards."""
-        return len(self.program.outputs) - len(self.answers)
-
-    def holds(self, results: Array) -> Array:
-        """Whether each point (points, outputs) takes the recorded branches."""
-        return ((results[:, self.rows :] != 0) == self.answers).all(axis=1)
 
 
 class RecordedFunction:
@@ -63,6 +36,8 @@ class RecordedFunction:
     function : accepts NumPy arrays and arrays of symbols
     names : label of every input
     present : present value of every input (inputs,)
+    structure : JSON data that determine the operations of the function, so that its recordings can
+        be stored for later runs; None: they are not stored
 
     Attributes
     ----------
@@ -74,27 +49,23 @@ class RecordedFunction:
         function: Callable[[Array], Array],
         names: Sequence[str],
         present: Array,
+        structure: Any = None,
     ) -> None:
         self.function = function
         self.names = tuple(names)
         self.present = present
-        self.reason = (
-            "" if programs.AVAILABLE else "the virtual machine was not built at installation"
-        )
+        self.structure = structure
+        self.reason = "" if programs.AVAILABLE else "the machine was not built at installation"
         self.recording: Recording | None = None
         self.recordings = 0
-        self.work = 0.0
         self.points = 0
         self.outside = 0
 
     def __call__(self, points: Array) -> Array:
-        """Results (rows, k) at k points (inputs, k); the machine runs them once that saves time."""
+        """Results (rows, k) at points (inputs, k), by the machine if it can be recorded."""
         if self.reason:
             return self.function(points)
         if self.recording is None:
-            self.work += 1 + points.shape[1] / 100
-            if self.work <= PATIENCE:
-                return self.function(points)
             self._record(self.present)
             if self.recording is None:
                 return self.function(points)
@@ -152,10 +123,18 @@ class RecordedFunction:
         """Record the function at a point (inputs,), and check it there and nearby."""
         self.recording = None
         self.points = self.outside = 0
-        if self.recordings >= RECORDINGS:
-            self.reason = "it takes different branches for different designs"
+        if self.recordings >= MOST_RECORDINGS:
+            self.reason = "its branches differ between designs"
             return
         self.recordings += 1
+        points = np.stack([point, point * (1 + 1e-3)], axis=1)
+        with np.errstate(all="ignore"):
+            expected = self.function(points)
+        key = "" if self.structure is None else program_store.key_of([self.names, self.structure])
+        for stored in program_store.read(key) if key else ():
+            if _agrees(stored, points, expected):
+                self.recording = stored
+                return
         collecting = gc.isenabled()
         gc.disable()  # a recording makes many small objects, none of which can be freed
         try:
@@ -166,10 +145,12 @@ class RecordedFunction:
         finally:
             if collecting:
                 gc.enable()
-        if self._agrees(recording, point):
-            self.recording = recording
-        else:
+        if not _agrees(recording, points, expected):
             self.reason = "the recording differs from the models"
+            return
+        self.recording = recording
+        if key:
+            program_store.write(key, recording)
 
     def _traced(self, point: Array) -> Recording:
         """The program of the function, with the branches taken at a point (inputs,)."""
@@ -180,14 +161,21 @@ class RecordedFunction:
         written = programs.program(elements(symbols), [*results, *recorder.guards])
         return Recording(written, np.array(list(recorder.guards.values()), dtype=bool))
 
-    def _agrees(self, recording: Recording, point: Array) -> bool:
-        """Whether the recording equals the function at a point and at one nearby."""
-        points = np.stack([point, point * (1 + 1e-3)], axis=1)
+
+def _agrees(recording: Recording, points: Array, expected: Array) -> bool:
+    """Whether a recording agrees with the results `expected` (rows, k) at points (inputs, k).
+
+    It must hold at the first of the points; the others count if it holds there.
+    """
+    if recording.program.inputs != len(points) or recording.rows != len(expected):
+        return False
+    try:
         with np.errstate(all="ignore"):
-            expected = self.function(points)
             results = recording.program.values(points.T)
-        rows = results[:, : recording.rows].T[:, (holds := recording.holds(results))]
-        return bool(holds[0]) and same(rows, expected[:, holds])
+    except ValueError:  # damaged
+        return False
+    rows = results[:, : recording.rows].T[:, (holds := recording.holds(results))]
+    return bool(holds[0]) and same(rows, expected[:, holds])
 
 
 def same(first: Array, second: Array) -> bool:
