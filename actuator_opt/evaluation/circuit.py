@@ -31,8 +31,9 @@ class ChamberLines:
     resistance: Array = 0.0
     inertance: Array = 0.0
     far: Array = 0.0
-    """Compliance at the node of the dynamic model away from the chamber. It contains half of every
-    line (pi element), or, with a throttle, all lines beyond the throttle."""
+    """The dynamic model divides each chamber's lines between two nodes. This is the compliance at
+    the node away from the chamber: half of every line (pi element) or, with a throttle, all lines
+    beyond the throttle."""
 
 
 def wall_compliance(v: Values, line: Line, at: str) -> Array:

@@ -235,7 +235,7 @@ def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:
         reach = element.contact[-1].pressure / 1e5
         return _use(
             contact_profile.table_profile,
-            f"{ring.label}, stated profiles up to {reach:.0f} bar",
+            f"{ring.label}, stated contact profiles up to {reach:.0f} bar",
             doubted=doubted,
         )
     if element.seal_type.model is None:

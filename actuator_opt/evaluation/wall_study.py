@@ -364,7 +364,9 @@ def _stress_field(
 def _residual_stresses(
     layers: Sequence[Layer], autofrettage: Autofrettage, radius: Array
 ) -> list[Array]:
-    """Residual stresses of autofrettage at all points, in tube axes z, t, r and ply axes.
+    """Residual stresses of autofrettage at all points.
+
+    They are given in tube axes (axial z, hoop t, radial r) and in ply axes.
 
     The wrap, all layers around the liner, stays elastic under the pressure and axial force from the
     liner. In the liner,
