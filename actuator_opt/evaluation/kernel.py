@@ -205,7 +205,7 @@ STROKES: tuple[film.Stroke, ...] = ("drive", "return")
 
 @dataclass(frozen=True, slots=True)
 class PreparedDesign:
-    """A design with its materials, and all numerical values of both by PATH."""
+    """A design, its materials, and all their numerical values by PATH, such as `cylinder.bore`."""
 
     design: Design
     materials: dict[str, Material]

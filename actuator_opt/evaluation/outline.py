@@ -348,7 +348,7 @@ def shapes(
     Parameters
     ----------
     subject : the design
-    varied : arrays (designs,) by PATH, SI
+    varied : arrays (designs,) by PATH, such as `cylinder.bore`, SI
     count : number of designs
     hidden : names of parts that are not drawn
     """

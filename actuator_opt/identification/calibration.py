@@ -309,9 +309,9 @@ def _from_fits(
 ) -> tuple[list[SealParameter], dict[str, str], Array]:
     """Parameters from Stribeck and LuGre fit, reasons for missing parameters, F_C at every point.
 
-    The factor is the mean measured Coulomb friction divided by that of the design. Its confidence
-    interval also covers this ratio at every single point, so a contact law with a wrong pressure
-    dependence widens the interval.
+    The design's friction coefficients are multiplied by a factor: the mean measured Coulomb
+    friction F_C divided by that of the design. Its confidence interval also covers this ratio at
+    every single point, so a contact law with a wrong pressure dependence widens the interval.
     """
     bench = identification.bench
     fits = {name: _best(identification, name) for name in _FIT_NAMES}
@@ -348,7 +348,7 @@ def _from_fits(
 def _from_level(
     bench: Bench, points: Sequence[FrictionPoint]
 ) -> tuple[list[SealParameter], Array, list[str]]:
-    """The factor alone, from a record whose friction was measured at a single speed only.
+    """The factor for the friction coefficients, from a record of friction at a single speed.
 
     At other speeds the Stribeck curve of the design is kept. If that curve is above Coulomb
     friction at the measured speed, the upper confidence limit of the factor is computed as if the

@@ -17,9 +17,9 @@ JUMP, BURST, FLANK = 0.7, 0.45, 0.3
 """A group of outlying samples is a spike if it rises by the share `JUMP` of its height within one
 sample; otherwise it is a true peak of the signal. The smaller share `BURST` is sufficient unless
 the signal already moves towards the group on both sides, by more than `FLANK` times the step at the
-group's edge. All three are our choices. In one sample, three adjacent stray samples rise by half
-their height or more, the top of a triangle as wide as the median's window by a third, and that of a
-half sine by 0.6."""
+group's edge. All three are our choices. Within one sample, three adjacent stray samples rise by
+half their height or more. For a true peak as wide as the window of the running median, the rise is
+a third of the height if it is a triangle, and 0.6 if it is a half sine."""
 WINDOW = 5e-3
 """Half the width of the neighbourhood of a sample [s] (our choice: a sixth of a 30 Hz period)."""
 SAMPLED = 100_000

@@ -374,7 +374,7 @@ class Record:
         return None if self.first_line is None else self.first_line + sample
 
     def fault(self, message: str, remedy: str, sample: int | None = None) -> InputError:
-        """Create an error that names this record and, if `sample` is given, the line of it."""
+        """Create an error that names this record and, if `sample` is given, its line."""
         line = None if sample is None else self.line(sample)
         return InputError(Diagnostic(message, remedy, file=self.name, line=line))
 
