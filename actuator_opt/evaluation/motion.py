@@ -299,8 +299,8 @@ def warnings(
             yield (
                 "ultimate_gain",
                 "the valve's tank edges and supply edges leak differently, but the holding "
-                "pressures are computed for equal edges; a scenario takes the difference into "
-                "account",
+                "pressures are computed for equal edges; only a simulation takes the difference "
+                "into account",
             )
     yield from _ports(v, design, motion, state)
     yield from _lines(design, motion, out)

@@ -60,7 +60,7 @@ def payload(explored: Explored, *, design: str, plugins: Sequence[str]) -> dict[
         "columns": columns,
         "exact": _exact(explored),
         "command": command,
-        "where": f"Run it in the folder of {design}, the base design beside this page.",
+        "where": f"Run this command in the folder of {design}, the base design beside this page.",
         "limits": limits,
         "held": further_checks,
         "shapes": _shapes(explored),

@@ -173,12 +173,15 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
 
 
 _ERRORS = {
-    "x": ("x seems to have the wrong sign", "x increases as the rod extends: reverse its sign"),
+    "x": (
+        "x seems to have the wrong sign",
+        "reverse the sign of x: it must increase as the rod extends",
+    ),
     "F_L": (
         "F_L seems to have the wrong sign",
-        "F_L is positive if it opposes extension: reverse its sign",
+        "reverse the sign of F_L: it must be positive if it opposes extension",
     ),
-    "p": ("p1 and p2 seem swapped", "swap them, e.g. with --column p1=... --column p2=..."),
+    "p": ("p1 and p2 seem swapped", "swap p1 and p2, e.g. with --column p1=... --column p2=..."),
 }
 """Possible sign errors of x and F_L, and swapped pressures: message and remedy of each."""
 

@@ -48,8 +48,9 @@ def of_curve(
     if abs(share) > MISFIT:
         yield (
             f"at {points[worst].pressure / 1e5:.3g} bar, the measured friction deviates from the "
-            f"contact law by {100 * share:+.0f} % of F_C; the fitted factor is the mean over the "
-            "record's pressures, and its confidence interval covers the factors at all of them"
+            f"contact law by {100 * share:+.0f} % of F_C; the fitted factor of the coefficients is "
+            "the mean over the record's pressures, and its confidence interval covers the factors "
+            "at all of them"
         )
 
 

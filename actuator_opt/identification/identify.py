@@ -270,8 +270,8 @@ def _warmth(record: Record, bench: Bench) -> list[str]:
         return []
     kelvin = 273.15
     return [
-        f"T is {mean - kelvin:.0f} degC, but contact forces and stiffness are computed for "
-        f"{bench.temperature - kelvin:.0f} degC, as in the design's first load case"
+        f"the record has {mean - kelvin:.0f} degC (T), but contact forces and stiffness are "
+        f"computed for {bench.temperature - kelvin:.0f} degC, as in the design's first load case"
     ]
 
 

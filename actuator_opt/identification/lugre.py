@@ -589,7 +589,10 @@ def _from_windows(reversals: Windows, fixed: Mapping[str, float]) -> LuGreFit:
             "and F_S; record plateaus or sweeps at other speeds"
         )
     else:
-        doubt = "the rod hardly slides, so the record shows bristles, but no sliding friction"
+        doubt = (
+            "the rod hardly slides, so the record shows the deflection of the bristles, but no "
+            "sliding friction"
+        )
         fit = replace(fit, parameters=unbounded(fit.parameters, ("coulomb",)))
     return replace(fit, doubts=(*fit.doubts, doubt))
 

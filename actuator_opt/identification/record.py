@@ -764,7 +764,7 @@ def parse_column(
         (k for k, cell in enumerate(cells) if cell[0].strip().lower() in _TIMES), None
     )
     if time_place is None:
-        raise fault("no column t", 'add one with its unit, "t [s]"')
+        raise fault("no column t", 'add the time with its unit, "t [s]"')
     time_cell, title = cells[time_place], cells[place][0]
     unit = unit or units.of(title, dimension)
     if not unit:

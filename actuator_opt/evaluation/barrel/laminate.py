@@ -159,7 +159,7 @@ def compute(
     )
     unknown = [layer.name for layer in layers if layer.expansions is None]
     if unknown:
-        wall.why_no_mismatch = f"{unknown[0]} has no thermal expansion"
+        wall.why_no_mismatch = f"the thermal expansion of {unknown[0]} is unknown"
         states = tuple(Climate(state.name, 0.0, cold=state.cold) for state in states)
     else:
         wall.expansion = (solution.axial[WARMTH], solution.warm_hoop)
