@@ -39,7 +39,7 @@ CHECKS = 4
 design itself."""
 MISSED = 0.005
 """Error of linear extrapolation to the ends of an input's range, as a share of the normal force on
-the asperities. Above this error, the input becomes a candidate for its own axis."""
+the asperities. Above this error, the input becomes a candidate for an axis of the table."""
 Key = tuple[Place, int, Stroke]
 """Location (piston or rod), load case and stroke of a table."""
 
@@ -172,7 +172,7 @@ def _axes(
     others: Sequence[Mapping[str, Array]],
     at_design: Interpolation,
 ) -> tuple[SurrogateAxis, ...]:
-    """Choose the axes: speed, and the inputs whose linear extrapolation has the largest errors."""
+    """Choose a table's axes: speed, and the inputs whose linear extrapolation has most error."""
     spans = {
         name: (min(values), max(values))
         for name, value in base.items()

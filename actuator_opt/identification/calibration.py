@@ -199,10 +199,11 @@ def calibration(identification: Identification) -> Calibration:
     The coefficients of all rings and wipers are multiplied by the same factor, because a record of
     a whole cylinder cannot separate the piston's friction from the rod's. With this factor, the
     mean Coulomb friction of the design at the pressures of the steady points equals the measured
-    one. Every ring gets the same F_S/F_C and v_s; the viscous friction sigma_2 is shared out in
-    proportion to circumference. Each parameter is taken from the Stribeck fit or the LuGre fit,
-    whichever gives it the narrower confidence interval. If neither determines it, the design's
-    value stays. A record of a single speed gives only the factor.
+    one. Every ring gets the same ratio F_S/F_C of static to Coulomb friction and the same Stribeck
+    speed v_s; the viscous friction sigma_2 is shared out in proportion to circumference. Each
+    parameter is taken from the Stribeck fit or the LuGre fit, whichever gives it the narrower
+    confidence interval. If neither determines it, the design's value stays. A record of a single
+    speed gives only the factor.
 
     Parameters
     ----------
@@ -403,7 +404,10 @@ def _scaled(parameter: Parameter, factor: float) -> Parameter:
 
 
 def _ratio(over: Parameter, under: Parameter) -> Parameter:
-    """F_S/F_C with its interval for independent errors; computed by logarithms to stay positive."""
+    """Ratio F_S/F_C of static to Coulomb friction, with its interval for independent errors.
+
+    It is computed by logarithms, so that the interval stays positive.
+    """
     ratio = over.value / under.value
     up = hypot(log(over.upper / over.value), log(under.value / under.lower))
     down = hypot(log(over.value / over.lower), log(under.upper / under.value))
@@ -426,7 +430,7 @@ def _same_for_rings(name: str, parameter: Parameter, bench: Bench, source: str) 
 
 
 def _viscous(parameter: Parameter, bench: Bench, source: str) -> SealParameter:
-    """sigma_2, distributed over the seals by circumference."""
+    """Viscous friction sigma_2, distributed over the seals in proportion to circumference."""
     total = sum(float(ring["diameter"]) for ring in bench.rings)
     rings = {f"{ring.groove.path}viscous_friction": ring for ring in bench.rings}
     return SealParameter(

@@ -30,7 +30,7 @@ cannot explain a misfit of `BEYOND` times their size."""
 SIGNED = ("offset", "pressure_slope")
 """Parameters that may be 0; they can be known although their interval contains 0."""
 INSEPARABLE = ("coulomb", "viscous", "stribeck_speed", "exponent")
-"""Parameters that are unknown if a record cannot separate F_C from sigma_2."""
+"""Parameters that are unknown if a record cannot separate Coulomb from viscous friction."""
 
 
 def unbounded(parameters: Mapping[str, Parameter], names: Iterable[str]) -> dict[str, Parameter]:

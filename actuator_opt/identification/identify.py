@@ -376,7 +376,7 @@ def _conditioned(
 def _sizes(
     slidings: Sequence[Sliding], motion: ConditionedRecord, settling: float
 ) -> tuple[Mean, float, bool]:
-    """Mean friction |F_r| in sliding, largest |F_r|, and whether the rod slides.
+    """Mean absolute friction in sliding, largest absolute friction, and whether the rod slides.
 
     The confidence interval of the mean follows from the means of several batches of samples. After
     a reversal or rest, the rod is in pre-sliding until it has moved `BENDS` breakaway travels.

@@ -182,7 +182,7 @@ class LugreProblem:
             self.begin |= _rise(max(self.largest, 1.01 * self.begin["coulomb"]))
 
     def values(self, rows: Array) -> dict[str, Array]:
-        """Convert searched values, (rows, searched), to parameters, each (rows,)."""
+        """Convert searched values, one set per row, to parameters, each of shape (rows,)."""
         searched = {}
         for name, column in zip(self.names, rows.T, strict=True):
             searched[name] = np.exp(column) if name in LOGARITHMIC else column
@@ -192,11 +192,11 @@ class LugreProblem:
         return held | searched
 
     def values_at(self, x: Array) -> dict[str, float]:
-        """Convert one set of searched values, (searched,), to parameters."""
+        """Convert one set of searched values to parameters."""
         return {name: float(column[0]) for name, column in self.values(x[None]).items()}
 
     def residuals(self, rows: Array) -> Array:
-        """Weighted residuals, (rows, residuals), for searched values, (rows, searched)."""
+        """Weighted residuals, (rows, residuals), for searched values, one set per row."""
         values = self.values(rows)
         misfits = (self.windows.misfit(values) / self.spread).reshape(len(rows), -1)
         if self.steady is None:
@@ -205,7 +205,7 @@ class LugreProblem:
         return np.concatenate([self.steady.residual(steady), misfits], axis=1)
 
     def residuals_at(self, x: Array) -> Array:
-        """Weighted residuals, (residuals,), for one set of searched values, (searched,)."""
+        """Weighted residuals, (residuals,), for one set of searched values."""
         return self.residuals(x[None])[0]
 
     def slopes(self, x: Array) -> Array:
@@ -516,11 +516,11 @@ def fit_lugre(
     """Fit a LuGre model to a record; return the reason if it is not possible.
 
     Least squares over points of steady sliding and windows around reversals, each weighted by its
-    scatter [AaltoThesis] eq. 27-31. Without a Stribeck curve, as in pre-sliding, F_C and the
-    bristles are fitted to the windows alone. While the contact sticks, the bristle force is sigma_0
-    z + sigma_1 dz/dt, with deflection z, stiffness sigma_0 and damping sigma_1. It is nearly equal
-    to the value of sigma_0 z at a time sigma_1/sigma_0 later, as if the pressures were early.
-    Therefore either the lag or sigma_1 is fitted, not both.
+    scatter [AaltoThesis] eq. 27-31. Without a Stribeck curve, as in pre-sliding, Coulomb friction
+    F_C and the bristles are fitted to the windows alone. While the contact sticks, the bristle
+    force is sigma_0 z + sigma_1 dz/dt, with deflection z, stiffness sigma_0 and damping sigma_1. It
+    is nearly equal to the value of sigma_0 z at a time sigma_1/sigma_0 later, as if the pressures
+    were early. Therefore either the lag or sigma_1 is fitted, not both.
 
     Parameters
     ----------
@@ -653,7 +653,8 @@ def _unseparated(
 ) -> LuGreFit:
     """Widen the intervals of F_S and sigma_0 of a model whose F_C and sigma_2 are inseparable.
 
-    The intervals then also cover the values of a fit with sigma_2 = 0.
+    The intervals of static friction F_S and bristle stiffness sigma_0 then also cover the values of
+    a fit without viscous friction (sigma_2 = 0).
     """
     held = {"viscous": 0.0, "exponent": EXPONENT, **fixed}
     other = LugreProblem(reversals, points, stribeck, held).solve()

@@ -27,7 +27,7 @@ EXPONENT = 2.0
 SHARED = 0.85
 """Smallest scatter about the curve that is assumed for the points of a sweep, as a share of their
 standard errors (our choice, from records of known friction). The filter correlates neighbouring
-points, so they scatter less than their errors."""
+points, so they scatter less than their standard errors suggest."""
 OTHER = 0.5
 """If the exponent is fixed, the confidence intervals allow for this second exponent as well. Bo and
 Pavelescu use 0.5 to 1, Tustin uses 1, others use 2 [ArmstrongHelouvry1994]."""
