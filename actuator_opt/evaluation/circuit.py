@@ -142,7 +142,10 @@ def valve_edges(v: Values, design: Design, state: LoadState) -> Edges:
 
 
 def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) -> LinearValve | None:
-    """Linearise the valve while it holds the load and makes up for leakage; None without valve."""
+    """Linearise the valve about the state in which it holds the load; None without valve.
+
+    The valve then supplies the oil that leaks across the piston.
+    """
     if design.valve is None:
         return None
     edges = valve_edges(v, design, state)

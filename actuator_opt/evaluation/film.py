@@ -107,7 +107,7 @@ def floats(ring: Ring, case: int, sample: int = 0) -> Ring:
 class FilmRow:
     """One ring, or two in series from the sealed side outwards, for one load case of one design.
 
-    `outward` states whether the counterface moves towards the outer side.
+    `outward` states whether the surface on which the rings slide moves towards the outer side.
     """
 
     rings: tuple[Ring, ...]

@@ -233,7 +233,7 @@ class LimitRow:
 def by_case(
     computed: MetricArrays, metric: str, array: Array, cases: tuple[str, ...], place: str = ""
 ) -> Iterator[tuple[str, Array]]:
-    """Yield (name, values (designs,)) of each load case to which a metric applies."""
+    """Yield the name of each load case to which a metric applies, with its values (designs,)."""
     array = np.asarray(array)
     if array.ndim < 2:
         yield ALL_CASES, np.atleast_1d(array)

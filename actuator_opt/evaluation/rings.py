@@ -302,7 +302,7 @@ def squeezes(ring: Ring, *, growth: Array, aside: Array, ratio: Array) -> tuple[
 def volume_ratio(
     v: Values, design: Design, stock: MaterialValues, ring: Ring, temperature: Array
 ) -> Array:
-    """Ratio of ring volume to groove volume at a temperature, divided by that at assembly.
+    """Ratio of ring volume to groove volume at a temperature, relative to the ratio at assembly.
 
     It is 1 if the thermal expansion is unknown.
     """

@@ -131,7 +131,7 @@ def compute_film(
 
 
 def _row_load(ring: Ring, contact: SealContact) -> Array:
-    """Sum of the line loads of `count` rings in series.
+    """Sum of the line loads (force per circumference) of `count` rings in series.
 
     The first ring seals the pressure; the others are only squeezed.
     """

@@ -125,7 +125,7 @@ def mass_per_length(layers: Sequence[Layer], densities: Sequence[float], inner: 
 
 
 def main_layer(layers: Sequence[Layer], inner_radius: float) -> int:
-    """Index of the layer that carries the largest hoop force; a liner counts only without plies."""
+    """Index of the layer with the largest hoop force; if there are plies, metals do not count."""
     tube = layered_tube(layers=[layer.as_tube() for layer in layers], inner_radius=inner_radius)
     carried = tube.wall[3] * (tube.outer - tube.inner)
     plies = [i for i, layer in enumerate(layers) if not layer.isotropic] or range(len(layers))

@@ -176,7 +176,7 @@ class ContactPair:
     def update(
         self, touching: Booleans, force: Floats, places: Floats, pull: float
     ) -> tuple[Booleans, Floats]:
-        """Update which nodes touch, and their forces.
+        """Update which upper nodes touch the lower body, and their contact forces.
 
         An open node touches if it penetrates the lower surface. A touching node separates if its
         tension reaches `pull`.
