@@ -63,7 +63,7 @@ class Overlap:
         return factors
 
     def least_peak_ratio(self, materials: MaterialProperties, stiffness: Array) -> Array:
-        """Lower bound of the ratio of peak to mean bond shear, given one wall's stiffness."""
+        """Lower bound of peak shear / mean shear in the bond, from the stiffness of one wall."""
         return lap_joint.least_bond_peak_ratio(
             membrane_stiffness=stiffness, **self._adhesive(materials)
         )

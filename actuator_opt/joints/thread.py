@@ -198,7 +198,7 @@ def _layer_faults(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
             (*layer, "thickness"),
             f"{_text(sizes.layer)} of {name}: the thread leaves {rest} of it, "
             f"but {_text(LEAST_METAL)} is needed",
-            f"write a thickness of at least {_text(least)}, a finer pitch, {OTHERWISE}",
+            f"write a thickness of at least {_text(least)} or a finer pitch, {OTHERWISE}",
         )
 
 

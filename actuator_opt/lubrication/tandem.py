@@ -17,8 +17,8 @@ MATCH = 1e-8
 two, and the flow that the rod drags along."""
 _MOST_TRIALS = 60
 _EMPTY = 0.9
-"""Share of the space between the seals that has no oil, where the solution of starved films
-starts."""
+"""The solution of starved films starts from this share of the space between the seals without
+oil."""
 _NO_LIMIT = (
     "with {:.4g} Pa between the seals, the inner seal still passes more oil than the outer seal: "
     "the pressure between them exceeds this value"
@@ -183,8 +183,8 @@ def _search(row: _Row, guess: float, low: float, high: float) -> Tandem:
 def _next(trials: list[tuple[float, float]], bottom: float, top: float) -> float:
     """The next pressure to try, by a secant through the last two trials or by halving the range.
 
-    `bottom` and `top` enclose the solution. If all trials lie on the same side of the solution, the
-    end of the range on its other side is tried early. Every fifth step halves the range.
+    `bottom` and `top` enclose the solution. If all trials lie on one side of the solution, the
+    opposite end of the range is tried early. Every fifth step halves the range.
     """
     middle = (bottom + top) / 2
     if len(trials) < 2:

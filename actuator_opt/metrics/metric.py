@@ -20,7 +20,7 @@ Wall = Literal["layered", "thin_laminate"]
 """Wall models of a laminated barrel."""
 
 CRITERION = "criterion"
-"""Placeholder for the name of a model, which is the failure criterion that the design selects."""
+"""Stands for the model's name where the model is the failure criterion that the design selects."""
 
 
 @dataclass(frozen=True, slots=True)

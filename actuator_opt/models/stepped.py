@@ -95,7 +95,7 @@ def _form(ends: tuple[str, str], flex: Pair, length: Pair) -> _Form:
 
 
 def _pair(weights: Pair, waves: Pair) -> Array:
-    """Weighted sum of two waves, g_1 T(s x) + g_2 T(d x)."""
+    """Weighted sum of two waves (sines or cosines)."""
     return weights[0] * waves[0] + weights[1] * waves[1]
 
 
@@ -106,7 +106,11 @@ def _times(first: Pair, second: Pair) -> Pair:
 
 @dataclass(frozen=True, slots=True)
 class _Waves:
-    """A buckling condition with the weights of G, G', G'' (`outer`) and of H, H', H'' (`inner`)."""
+    """A buckling condition and its derivatives.
+
+    `outer` are the weights of G, G' and G'', `inner` those of H, H' and H''; `_Form` defines G and
+    H.
+    """
 
     form: _Form
     outer: tuple[Pair, Pair, Pair]
