@@ -95,7 +95,7 @@ class Overlap:
 
 
 def mismatch(materials: MaterialProperties, metal: str, tube: Array) -> Array:
-    """Axial expansion of the metal minus that of the tube; None if unknown."""
+    """Axial thermal expansion of the metal minus that of the tube [1/K]; None if unknown."""
     metal_expansion = materials.get(metal, "thermal_expansion")
     return None if metal_expansion is None or tube is None else metal_expansion - tube
 

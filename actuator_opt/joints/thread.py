@@ -532,8 +532,8 @@ JOINT = Joint(
             "turns of the thread",
             5.0,
             60.0,
-            "our choice: two turns at start and run-out carry nothing, and the first turns carry "
-            "most of the load",
+            "our choice: of few turns, the two at start and run-out carry nothing; of many, the "
+            "first ones carry most of the load",
             lambda end: end.sizes["length"] / end.sizes["thread.pitch"],
         ),
     ),

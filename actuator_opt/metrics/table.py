@@ -349,7 +349,7 @@ ROWS = table((
               "margin to the nearest service temperature limit of any material",
               worst="min", model=None, feeds=(),
               check=CheckLine("11.1", "temperature range", 0.0,
-                          "service limits of all materials used")),
+                          "service temperature limits of all materials used")),
     MetricRow("oil_viscosity", "nu", "kinematic_viscosity", "mm^2/s",
               "oil viscosity at the temperature of the load case", worst="max",
               model="fluid.viscosity_astm_d341", feeds=(), check=None),

@@ -356,9 +356,9 @@ def _loaded(
 
 
 def _margin(ratio: Array, loaded: tuple[Array, Array], bore: Array, way: Array) -> Array:
-    """Distance of sigma_z to the nearer of sigma_r and sigma_t, divided by Y.
+    """Distance of sigma_z to the nearer end of the range sigma_r to sigma_t, divided by Y.
 
-    The result is the smaller of the values at both edges of the yielded zone.
+    The result is the smaller of its values at the inner and the outer edge of the yielded zone.
     """
     radial, stretch = loaded
     margins = []
