@@ -86,7 +86,7 @@ class Film:
 
     @property
     def contact_pressure(self) -> Vector:
-        """Pressure of the asperities [Pa]."""
+        """Contact pressure that the asperities carry [Pa]."""
         _, bed = scaled(self.contact)
         return pressure_scale(self.contact) * contact_pressure(bed, self.state.film)
 

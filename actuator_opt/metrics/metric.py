@@ -114,7 +114,7 @@ class MetricRow:
 
     @property
     def quantity(self) -> Quantity:
-        """Quantity of the metric, which formats it for tables and texts."""
+        """The metric's `Quantity`, which formats its values for tables and texts."""
         return Quantity(
             self.name,
             self.symbol,

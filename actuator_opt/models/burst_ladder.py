@@ -155,11 +155,12 @@ class Mechanics(Protocol):
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
         """Stresses 1, 2, 12, 3 at every face and layer, per unit pressure and at zero pressure.
 
-        The second comes from yielded metals and other initial stress; None without either.
+        The stresses at zero pressure come from yielded metals and other initial stress; the second
+        result is None if there is neither.
         """
 
     def frozen(self, held: Any, yielded: Array, stress: Array) -> Any:
-        """State `held` of the yielded metals after the metals marked in `yielded` have joined them.
+        """Add the metals marked in `yielded` to `held`, the state of those that yielded before.
 
         `stress` is the stress of all metals at this moment, (4, faces, metals, ...).
         """

@@ -183,7 +183,7 @@ def antiresonance_frequency(
 
     Parameters
     ----------
-    conductance : G of the controlled flow [m^3/s/Pa]
+    conductance : G, as in `reducing_valve_end` [m^3/s/Pa]
     natural_frequency : w0/(2 pi) [Hz]
     damping_ratio : zeta [-]
     compliance : C of chamber, line and walls before the valve [m^3/Pa], > 0

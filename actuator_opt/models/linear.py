@@ -103,7 +103,8 @@ def linear_actuator(
     with a = (A_A, -A_B). The polynomials e_i and d_i describe the line of chamber i, and m_i is
     e_i (C_i s + g) plus a term for the flow into the line. Piston: F = a^T p - (B s + k_s) x_p.
     Load: m s^2 x = F + F_L, and x_p = x + f F. Elimination of p by Cramer's rule gives
-    N x = M F_L + T o with N = m s^2 M + P, M = det + f P, P = (B s + k_s) det + s a^T adj(.) e a.
+    N x = M F_L + T o with N = m s^2 M + P, M = det + f P, P = (B s + k_s) det + s a^T adj(.) e a,
+    with the determinant det and the adjugate adj(.) of the chambers' 2 x 2 matrix.
 
     Parameters
     ----------

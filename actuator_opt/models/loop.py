@@ -225,14 +225,14 @@ def _value(polynomial: Polynomial, point: Array) -> Array:
 
 
 def _lifted(polynomial: Polynomial) -> Polynomial:
-    """Real parts of the coefficients with a new last axis, to evaluate each at many points."""
+    """Real parts of the coefficients with a new last axis, for evaluation at many points."""
     return tuple(array_of(real(coefficient))[..., None] for coefficient in polynomial)
 
 
 def _chosen(crossings: np.ndarray, score: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The crossing with the lowest score, and whether a valid crossing exists; if not, it is 1.
+    """The crossing with the lowest score, and whether there is a valid crossing at all.
 
-    The score is finite for valid crossings only.
+    Only valid crossings have a finite score. If there is none, the number 1 replaces the crossing.
     """
     if not score.shape[-1]:
         return np.ones(score.shape[:-1]), np.zeros(score.shape[:-1], dtype=bool)

@@ -142,7 +142,7 @@ class EnergisedRing:
     half_pressure: float
 
     def _mounted(self, squeeze: Array) -> tuple[Array, Array]:
-        """b_0/W and p_0/E, which hold without oil pressure, for a positive squeeze."""
+        """Contact width b_0/W and peak pressure p_0/E without oil pressure, at positive squeeze."""
         force = squeeze * (self.dry_force[0] + self.dry_force[1] * squeeze)
         narrow = 1 - self.narrowing * squeeze * squeeze
         return sqrt((6 / math.pi) * force) * narrow, 4 * sqrt(force / (6 * math.pi)) / narrow
