@@ -50,8 +50,8 @@ OTHERWISE = "bond the caps (type: bond), or clamp them (type: tie_rods)"
 
 LANDS = ("geometry_barrel_thread", "geometry_skirt_thread")
 CREST = "geometry_thread_crest"
-"""Names of the metrics for the metal left under the thread roots of barrel and skirt, and for the
-overlap of the thread flanks."""
+"""Names of the three metrics of a thread: metal left under the barrel's thread root and under the
+skirt's, and overlap of the thread flanks."""
 
 HARD = 830e6
 """Lowest tensile strength of a metal that counts as hard [Pa]. Our choice, to separate the grades

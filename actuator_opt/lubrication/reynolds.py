@@ -197,7 +197,7 @@ def _range_fault(contact: Contact) -> str:
         if not 0 <= getattr(contact, name) < 1:
             return f"{name.replace('_', ' ')} {getattr(contact, name):g}: use 0 to below 1"
     if not 0 <= contact.surface.rod_share <= 1:
-        return f"the rod's roughness share {contact.surface.rod_share:g}: use 0 to 1"
+        return f"rod share {contact.surface.rod_share:g} (of squared roughness): use 0 to 1"
     if not -1 < contact.elastic.poissons_ratio <= 0.5:
         return f"Poisson's ratio {contact.elastic.poissons_ratio:g}: use -1 to 0.5"
     for side, pressure in (

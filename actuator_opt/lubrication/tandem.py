@@ -17,8 +17,7 @@ MATCH = 1e-8
 two, and the flow that the rod drags along."""
 _MOST_TRIALS = 60
 _EMPTY = 0.9
-"""The solution of starved films starts from this share of the space between the seals without
-oil."""
+"""The search for starved films starts with this share of the space between the seals empty."""
 _NO_LIMIT = (
     "with {:.4g} Pa between the seals, the inner seal still passes more oil than the outer seal: "
     "the pressure between them exceeds this value"
