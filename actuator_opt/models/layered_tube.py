@@ -280,7 +280,8 @@ def _state(
 def tube_stresses(*, tube: LayeredTube, state: TubeState) -> tuple[Array, Array, Array, Array]:
     """Stresses of every layer in tube axes, at both faces of the layer.
 
-    sigma_i = C_ij eps_j - K_i dT; for a balanced pair the mean of both plies.
+    sigma_i = C_ij eps_j - K_i dT, with the thermal stress K_i per kelvin; for a balanced pair, the
+    result is the mean of both plies.
 
     Parameters
     ----------

@@ -125,8 +125,9 @@ def lip_free_span(
 ) -> Array:
     """Length s of the lip that does not lie on the surface, from p s^4/(72 D) + theta s/3 = g.
 
-    theta = (g + delta)/l is the slope of the free lip, g the clearance at its root; s = l while
-    only the rim touches, so the lip lies down above p = 24 D (2 g - delta)/l^4.
+    theta = (g + delta)/l is the slope of the free lip, g the clearance at its root, and D the
+    bending stiffness in `lip_stiffness`. s = l while only the rim touches, so the lip lies down
+    above p = 24 D (2 g - delta)/l^4.
 
     Parameters
     ----------
@@ -188,8 +189,8 @@ def line_load(
 
     While only the rim touches, f = k delta + 3 p l/8 (propped cantilever). Once the lip lies down
     with a free span s, f = (k - 3 D/l^3) delta + p s/3 + 2 D theta/s^2 + p (l - s); the transition
-    is continuous. A span shorter than the lip's thickness is no beam, so the bending term keeps its
-    value at s = t.
+    is continuous. `lip_stiffness` defines k and D, `lip_free_span` s and theta. A span shorter than
+    the lip's thickness is no beam, so for s < t the bending term keeps its value at s = t.
 
     Parameters
     ----------
@@ -260,6 +261,8 @@ def peak_pressure(
     edge_radius: Array,
 ) -> Array:
     """Highest contact pressure of a lip, p_max = sqrt(F E/[pi rho (1 - nu^2)]) + p, F = k delta.
+
+    k is the stiffness of `lip_stiffness`.
 
     Parameters
     ----------

@@ -176,7 +176,8 @@ def open_loop(
 ) -> PositionOpenLoop:
     """Open position loop at unit gain: a second-order spool in front of the actuator.
 
-    L = omega_v^2/(s^2 + 2 zeta omega_v s + omega_v^2) T(s)/N(s).
+    L = omega_v^2/(s^2 + 2 zeta omega_v s + omega_v^2) T(s)/N(s), with natural frequency omega_v and
+    damping ratio zeta of the spool, and T and N of the `linear.LinearActuator`.
 
     Parameters
     ----------
