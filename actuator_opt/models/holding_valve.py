@@ -85,11 +85,11 @@ class ValveSlopes(NamedTuple):
     """
 
     gain_a: Array
-    """Flow into chamber A per signal [m^3/s/V]."""
+    """Flow into chamber A per unit of spool signal [m^3/s/V]."""
     gain_b: Array
-    """Flow out of chamber B per signal [m^3/s/V]."""
+    """Flow out of chamber B per unit of spool signal [m^3/s/V]."""
     conductance_a: Array
-    """Flow out of chamber A through both of its edges, per pressure in A [m^3/s/Pa]."""
+    """Flow out of chamber A through both of its edges, per unit of pressure in A [m^3/s/Pa]."""
     conductance_b: Array
 
 

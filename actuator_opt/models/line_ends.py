@@ -97,7 +97,8 @@ def reducing_valve_end(
 ) -> LineEnd:
     """Pressure reducing valve, Y = g + G omega^2/(s^2 + 2 zeta omega s + omega^2).
 
-    At low frequency, the valve holds its pressure with the conductance G + g. It lags at every
+    omega and zeta are the natural frequency [rad/s] and the damping ratio of the spool. At low
+    frequency, the valve holds its pressure with the conductance G + g. It lags at every
     frequency, like an inertance. Well above its natural frequency only g remains, the conductance
     of its opening.
 

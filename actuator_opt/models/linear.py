@@ -162,6 +162,8 @@ def linear_actuator(
 def dynamic_stiffness(*, model: LinearActuator, frequency: Array) -> Parts:
     """Dynamic stiffness F/x = N(i omega)/M(i omega) as real and imaginary part.
 
+    N and M are `characteristic` and `mobile` of the model.
+
     Parameters
     ----------
     model : from `linear_actuator`
