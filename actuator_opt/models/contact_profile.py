@@ -141,7 +141,7 @@ def o_ring_excess(
 
 
 def _inner_slope(before: Array, after: Array, left: float, right: float) -> Array:
-    """Harmonic mean of two slopes weighted by their intervals, 0 where they differ in sign."""
+    """Harmonic mean of two slopes, weighted by interval lengths; 0 if they differ in sign."""
     same = real(before) * real(after) > 0
     one, two = 2 * right + left, right + 2 * left
     below = where(same, one * after + two * before, 1.0)
