@@ -74,7 +74,7 @@ class _Row:
     films: tuple[Film | None, Film | None] = (None, None)
 
     def solve(self, pressure: float, cavitation: float = 0.0) -> tuple[Film, Film]:
-        """Solve both films; the seal that draws oil from the space between both may starve.
+        """Solve both films; the seal that draws oil from the space between the seals may starve.
 
         `cavitation` is the share of that space without oil. In an outstroke the outer seal draws
         oil from it, in an instroke the inner seal.

@@ -475,5 +475,5 @@ OWN = frozenset(fed_by("own", ROWS))
 
 
 def of_metric(name: str) -> Quantity:
-    """Quantity (label, dimension, unit) of a metric; if it is not declared, a plain ratio."""
+    """Quantity (label, dimension, unit) of a metric; for an undeclared name, a plain ratio."""
     return METRICS.get(name) or Quantity(name, "", "ratio", "", name.replace("_", " "))

@@ -348,7 +348,7 @@ def _all_stresses(
 def _loaded(
     liner: _Liner, contact: _Contact, found: _Yielding, yield_strength: Array, pressure: Array
 ) -> tuple[Array, Array]:
-    """Radial stress at the bore, and E e_z (see the module), at the overpressure, both over Y."""
+    """Radial stress at the bore and E e_z (see the module), at the overpressure, divided by Y."""
     by_press, by_pressure, by_heat = contact.strain
     press = contact.kappa * yield_strength * found.spread - contact.mu * pressure - contact.tau
     stretch = by_press * press + by_pressure * pressure + by_heat - liner.free

@@ -149,7 +149,7 @@ def _inner_slope(before: Array, after: Array, left: float, right: float) -> Arra
 
 
 def _end_slope(near: Array, far: Array, length: float, following: float) -> Array:
-    """Slope at an end: that of a parabola through three points, limited against overshoot."""
+    """Slope at an end knot, from a parabola through three knots; limited to avoid overshoot."""
     slope = ((2 * length + following) * near - length * far) / (length + following)
     steep = real(slope) * real(near) > 3 * real(near) * real(near)
     bounded = where((real(near) * real(far) <= 0) & steep, 3 * near, slope)

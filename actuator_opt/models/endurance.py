@@ -71,8 +71,8 @@ def fatigue_factor(
 ) -> Array:
     """Factor by which a pulsating stress may grow before the part misses its required life.
 
-    1/(s_a/S_f + s_m/R_m), where S_f is the fully reversed amplitude endured for the required
-    cycles.
+    1/(s_a/S_f + s_m/R_m), with the amplitude s_a and the mean s_m of the stress. S_f is the fully
+    reversed amplitude endured for the required cycles.
 
     Parameters
     ----------

@@ -171,7 +171,7 @@ def extrusion_gap(*, clearance: Array, growth: Array) -> Array:
 
 @geometry
 def limited_width(*, contact_width: Array, groove_width: Array) -> Array:
-    """Contact width no wider than the groove.
+    """Contact width, limited to the width of the groove.
 
     Parameters
     ----------
