@@ -416,7 +416,7 @@ def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
 
 
 _SIZING = {
-    "found": "the search found its best design with listed sizes",
+    "found": "the search gave this combination's best design with listed sizes",
     "sizes of the best": "computed with the listed sizes of the best design",
     "none better": "the search found no better design with listed sizes",
     "none": "the search found no feasible design with listed sizes",

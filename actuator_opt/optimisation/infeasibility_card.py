@@ -189,7 +189,7 @@ def _bound_entry(actuator: ActuatorProblem, bound: Opening) -> dict[str, Any]:
 def _texts(
     quantity: Quantity, limit: float, needed: float | None, *, upwards: bool
 ) -> dict[str, str]:
-    """Both limits in the display unit; `needed` is rounded so that the printed value is enough."""
+    """Stated and needed limit as text; `needed` is rounded so that the printed value is enough."""
     texts = {"limit_text": quantity.text(limit, MORE_DIGITS), "needed_text": ""}
     if needed is not None:
         fine = abs(needed - limit) < 0.01 * abs(limit)

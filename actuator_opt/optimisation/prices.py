@@ -111,7 +111,7 @@ def optimum_at(evaluator: Evaluator, point: Point, quality: kkt.KktResidual) -> 
 
 
 def margin_slopes(optimum: Optimum, derivatives: Responses) -> Vector:
-    """Derivative (M, q) of every margin by every parameter, with the variables held constant."""
+    """Derivatives (M, q) of margins with respect to parameters, with constant variables."""
     m = len(optimum.margins) - len(derivatives.bounds)
     return np.concatenate([derivatives.rows[1 : 1 + m], derivatives.bounds])
 
@@ -123,7 +123,7 @@ def lagrangian_slopes(optimum: Optimum, derivatives: Responses) -> Vector:
 
 
 def movement(optimum: Optimum, derivatives: Responses) -> tuple[Vector, Vector]:
-    """Derivatives of the optimal point (nf, q) and of its multipliers (M, q) by the parameters.
+    """Change of the optimal point (nf, q) and multipliers (M, q) per unit of the parameters.
 
     The optimum is assumed not to move along directions in which neither objective nor limits
     curve.
@@ -586,8 +586,8 @@ def _ends(
     Parameters
     ----------
     solved : the unchanged problem
-    derivatives : derivatives by the parameters, bounds of variables included
-    moves : derivatives of the optimum by the parameters (nf, q)
+    derivatives : derivatives with respect to the parameters, which include the bounds of variables
+    moves : derivatives of the optimum with respect to the parameters (nf, q)
     change : relative change
     """
     parametric, point = solved.parametric, solved.valleys[0].point

@@ -335,7 +335,8 @@ def sizes_of(
     design : the design with its variables
     requested : sizes in addition to those of the file
     materials : materials of the design, by name
-    fault : builds the Diagnostic of a faulty variable; default: one with the PATH but no line
+    fault : builds the Diagnostic of a faulty variable; by default, the Diagnostic states the PATH
+        but not the line in the file
 
     Raises
     ------
@@ -372,7 +373,7 @@ def sizes_of(
 
 
 def _require_plies(design: Design, requested: Wanted, materials: Mapping[str, Material]) -> None:
-    """Check that all fibre layers state a ply thickness, and that fixed layers fit it."""
+    """Check that all fibre layers state a ply thickness, and that fixed layers have whole plies."""
     plies_by_path = dict(layers(design))
     hint = (
         ""

@@ -200,7 +200,7 @@ class WarmStart:
         return self._optimum
 
     def _along(self, changes: Mapping[str, float], size: float) -> Responses:
-        """Derivatives by one parameter that moves several numbers by fixed multiples of itself."""
+        """Derivatives with respect to one parameter that moves several numbers in proportion."""
         self.differentiate(changes)
         parts = [(self._responses[path], change) for path, change in changes.items()]
         first = parts[0][0]
@@ -264,7 +264,7 @@ class WarmStart:
     def _stepped(
         self, evaluator: Evaluator, valleys: Sequence[Valley]
     ) -> tuple[Point | None, Vector | None]:
-        """Optimum by steps from the known optima, and a feasible point (nf,); None if not found."""
+        """Optimum reached from the known optima, and a feasible point (nf,); None if not found."""
         problem = evaluator.problem
         parametric = ParametricProblem(problem, (), np.zeros(0), lambda x, _: problem.evaluate(x))
         if not valleys or not applicable(parametric, evaluator):

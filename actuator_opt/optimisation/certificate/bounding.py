@@ -8,8 +8,8 @@ so it is valid for any tolerance of the solver [Neumaier2004].
 The relaxation uses the logarithms of all quantities. In logarithms, the bounds on a sum are loose
 if its terms vary widely. Such a sum is therefore also stated with the quantities themselves, as a
 linear and so exact row. A product is then not linear: four planes bound it [McCormick1976]. Its two
-factors are the quantity with the widest range and the rest of the product. Thus mass and stiffness
-of a layer, for example, both follow the layer's thickness.
+factors are the quantity with the widest range and the rest of the product. Thus the mass and the
+stiffness of a layer, for example, are both tied to the layer's thickness.
 """
 
 from __future__ import annotations
@@ -159,7 +159,8 @@ class Bound(NamedTuple):
     product_errors: Vector
     """For every product, the error of its bounds, weighted with the multipliers of its rows."""
     slopes: Vector
-    """Reduced cost of every column: slope of the objective as the column leaves its best limit."""
+    """Reduced cost of every column: slope of the objective as the column moves off the end of its
+    range at which it is best."""
 
 
 class Bounding:
@@ -209,7 +210,7 @@ class Bounding:
         self.missed = float(np.clip(FINE * gap, *TANGENT_DISTANCES))
 
     def _definitions(self) -> tuple[Any, Vector, Vector]:
-        """Rows that define outputs and directions by atoms, and the constraint rows >= 0."""
+        """Rows that define outputs and directions by atoms, and the constraint rows (each >= 0)."""
         layout = self.layout
         new = np.flatnonzero(layout.plain < 0)
         defined = np.concatenate([new, np.arange(len(layout.plain), len(layout.levels))])

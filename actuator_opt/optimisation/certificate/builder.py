@@ -302,7 +302,7 @@ class Builder:
     def _difference(
         self, plus: Sequence[Form], minus: Sequence[Form], low: float, high: float
     ) -> Form:
-        """Logarithm of a positive difference plus - minus."""
+        """Logarithm of the sum of `plus` less the sum of `minus`, between `low` and `high`."""
         minuend = self.relaxation.total(plus, 0.0, math.inf)
         subtrahend = self.relaxation.total(minus, 0.0, math.inf)
 
@@ -406,12 +406,13 @@ LEAST_DECAY = 1e-3
 
 
 PARTS = 4
-"""Number of parts per layer of known stiffness in the bound on a wall's growth, which is valid with
-any number."""
+"""Number of parts into which each layer of known stiffness is cut in the bound on a wall's growth.
+The bound is valid with any number."""
 
 
 CONTRACTION = 0.2
-"""Transverse contraction per axial strain in the bound on a wall's stiffness, valid with any value.
+"""Transverse contraction per axial strain, assumed in the bound on a wall's axial stiffness. The
+bound is valid with any value.
 """
 
 
@@ -425,7 +426,10 @@ class EnvelopeProblem(Protocol):
 
 
 class Envelopes:
-    """Bounds on models without a closed formula, in one load case; exact for `reference`."""
+    """Bounds on models without a closed formula, in one load case.
+
+    For the evaluated design `reference`, the bounds are exact.
+    """
 
     def __init__(
         self,
@@ -736,8 +740,8 @@ def _bearable(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> 
 def _hoop(layer: plies.Layer) -> Array:
     """Largest hoop strength of a ply at its service temperatures; at least its fibre strength.
 
-    Axial strain and temperature alone cause far less hoop stress, by the equilibrium of the wall
-    (`tube_bounds.greatest_pressure`).
+    So it is far above the hoop stress that axial strain and temperature cause alone, which
+    `tube_bounds.greatest_pressure` requires.
     """
     strengths = layer.strengths
     fibre_tension = _largest([strength.tension_1 for strength in strengths])

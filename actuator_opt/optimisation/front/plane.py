@@ -189,7 +189,7 @@ def _nearest_places(search: FrontSearch, steps: int) -> list[Place]:
 
 
 def _flood(search: FrontSearch, first_places: Iterable[Place], steps: int, max_levels: int) -> int:
-    """Try lattice points, then the neighbours of every success; return the number of successes."""
+    """Try lattice points, and next to each that has a design, its neighbours; count the designs."""
     visited: set[Place] = set()
     queue, successes = list(first_places), 0
     while queue and len(visited) < max_levels:

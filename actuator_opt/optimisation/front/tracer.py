@@ -249,7 +249,7 @@ class Tracer:
         return self._at_own(starts)
 
     def _at_own(self, starts: Sequence[FrontStart]) -> list[FrontDesign]:
-        """The designs at the starts, with their gradients."""
+        """The start points themselves as designs, with their gradients."""
         z = np.stack([start.z for start in starts], axis=1)
         if not self.exact:
             x = self.evaluator.space.to_x(z)
@@ -289,7 +289,7 @@ class Tracer:
     def exchange(
         self, designs: list[FrontDesign], other_x: Vector, other_units: Vector
     ) -> list[FrontDesign]:
-        """Replace each design for which another is better at its levels, after a descent from it.
+        """Where another design is better at a design's levels, replace it by a descent from there.
 
         Parameters
         ----------
