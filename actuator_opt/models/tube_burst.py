@@ -58,7 +58,7 @@ def _isotropic(modulus: Array, ratio: Array) -> dict[str, Array]:
 
 
 def _recovery(xp: Any, tube: LayeredTube) -> Array:
-    """Factors from hoop strain, radial stress and axial strain to a ply's stresses 1, 2, 12."""
+    """Factors by which hoop strain, radial stress and axial strain give ply stresses 1, 2, 12."""
     c11, c12, c13, c22, c23, _, c66 = tube.ply
     _, _, zr, _, tr, rr, *_ = tube.wall
     along, slip = (1 + xp.cos(2 * tube.angle)) / 2, xp.sin(2 * tube.angle) * c66
@@ -205,7 +205,7 @@ class _Tube:
 def _both_states(
     xp: Any, layers: Sequence[WallLayer], inner_radius: Array, residual: float, dims: int
 ) -> LayeredTube:
-    """The tube with every layer intact and failed, on an axis before the axes of the designs."""
+    """The tube in two states, all layers intact and all failed, on an axis before the designs."""
 
     def spread(value: Array) -> Array:
         """The value reshaped to the axes of the designs, after the axis of the states."""

@@ -463,7 +463,7 @@ RELATIVE_STEP = 1e-5
 
 @dataclass(frozen=True)
 class Responses:
-    """Derivatives at one point with respect to q parameters, bounds included.
+    """Derivatives at one point with respect to q parameters, which include bounds of variables.
 
     nf is the number of free variables.
 

@@ -1,11 +1,12 @@
 """Branch and bound for variables that only take listed values, singly or in groups.
 
-The search first re-optimises all roundings of the continuous optimum together. It then splits the
-most promising box (part of the search space) again and again; among boxes that are nearly as
-promising, it takes the newest, which is the smallest. The bound of a box is the objective of its
-continuous optimum, which starts from the optimum of the enclosing box. This optimum is local, so
-the best point of the search is not proven to be the best of all. If a small box has no continuous
-free variables, all its points are evaluated in one model call.
+The search first rounds the listed variables of the continuous optimum in every way (each up or
+down) and re-optimises all these designs together. It then splits the most promising box (part of
+the search space) again and again; among boxes that are nearly as promising, it takes the newest,
+which is the smallest. The bound of a box is the objective of its continuous optimum, which starts
+from the optimum of the enclosing box. This optimum is local, so the best point of the search is not
+proven to be the best of all. If a small box has no continuous free variables, all its points are
+evaluated in one model call.
 """
 
 from __future__ import annotations

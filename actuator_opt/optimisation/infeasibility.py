@@ -107,7 +107,7 @@ def _joint(
     mask: npt.NDArray[np.bool_],
     point: Point,
 ) -> tuple[RelaxedConstraint, ...]:
-    """The relaxations at a point of the elastic problem, largest first."""
+    """The relaxations (slacks) at a point of the relaxed problem, largest first."""
     amounts = point.x[len(problem.names) :]
     joint = [
         RelaxedConstraint(problem.constraint_names[group[0]], int(group[0]), float(amount))

@@ -43,7 +43,8 @@ class Active:
 
     Parameters
     ----------
-    gradients : gradients of the margins (a, nf), for a active limits and nf free variables
+    gradients : gradients of the margins (a, nf); a is the number of active limits, nf that of free
+        variables
     margins : margins (a,), at least 0 where met
     constraint, lower, upper : indices of the active constraints, and of the variables at their
         lower and upper bounds; `gradients` and `margins` are in this order
@@ -377,7 +378,8 @@ def polish(
 def _acceptable(evaluator: Evaluator, initial: NewtonState, newton_state: NewtonState) -> bool:
     """Whether a point is at least as feasible as the start, and its objective not higher.
 
-    The objective may rise by twice the cost of removing the violation at the start.
+    If the start violates limits, the objective may rise by twice the cost of removing this
+    violation. After a large violation (above 1e-3), any rise is accepted.
     """
     if newton_state.point.violation > max(FEASIBLE, initial.point.violation):
         return False

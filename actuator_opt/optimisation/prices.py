@@ -310,7 +310,8 @@ def _by_linear_programming(
 CHANGE = 0.1
 """Relative change of a parameter for which the price's prediction is checked by re-solving."""
 STRAIGHT = 0.25
-"""Largest error up to which a prediction counts as straight, as a share of the re-solved change."""
+"""Largest error, as a share of the re-solved change, with which a straight-line prediction counts
+as good."""
 Kind: TypeAlias = Literal["requirement", "parameter", "material"]
 """A limit that can be negotiated, a fixed number of the design, or a material property."""
 

@@ -163,7 +163,7 @@ def _signed_friction(point: FrictionPoint) -> tuple[float, float]:
 
 
 def _velocity_panel(identification: Identification, fit: StribeckFit) -> Panel:
-    """Measured points, the Stribeck curve with its band, and F_C and F_S of the LuGre model."""
+    """Measured points, Stribeck curve with its 95 % band, and F_C and F_S of the LuGre model."""
     points = identification.points
     return Panel(
         f"Friction over velocity, {unit_text(FORCE.unit)}",
@@ -177,7 +177,7 @@ def _velocity_panel(identification: Identification, fit: StribeckFit) -> Panel:
 
 
 def _stribeck_curves(points: Sequence[FrictionPoint], fit: StribeckFit) -> list[Curve]:
-    """Stribeck curves with their bounds, at the mean pressure.
+    """Stribeck curves with their 95 % bounds, at the mean pressure.
 
     If the fitted friction depends on pressure, there are two curves: at the least and at the
     greatest pressure.

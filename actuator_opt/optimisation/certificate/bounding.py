@@ -591,7 +591,7 @@ class _PlainAtoms:
         return self.known[powers]
 
     def term(self, form: Form, scale: float) -> Form:
-        """A monomial divided by e^scale, as a multiple of the atom that `atom` adds for it."""
+        """A monomial divided by e^scale, as a multiple of the monomial's own atom (see `atom`)."""
         if not form.powers:
             return Form(math.exp(form.constant - scale))
         number = self.atom(form.powers)

@@ -248,7 +248,7 @@ class Builder:
         return parts[0] if size < (1 - 1e-9) * sum(sizes) else None
 
     def _terms(self, node: Symbol) -> Signomial:
-        """Monomials whose sum is a value; operands of unknown sign are expanded."""
+        """A sum or difference as monomials; operands of unknown sign are expanded."""
         first, second = (self.signomial(arg) for arg in node.args)
         return first.plus(second, -1.0 if node.op == "sub" else 1.0)
 

@@ -30,7 +30,7 @@ from .steps import (
 )
 
 STEPS = 14
-"""Maximum number of steps that use the Hessian of the other optimum."""
+"""Maximum number of steps that use the Hessian of the known, similar optimum."""
 
 MOST_STEPS = 100
 """Maximum number of evaluations by SLSQP after a restoration."""
@@ -66,7 +66,7 @@ WORSE = 0.02
 class Nearest(NamedTuple):
     """The optimum near the start; if there is none, the least infeasible point.
 
-    `followed` is True if steps with the other optimum's Hessian converged.
+    `followed` is True if steps with the Hessian of the known, similar optimum converged.
     """
 
     optimum: Point | None
