@@ -26,7 +26,7 @@ def least_growth(
 ) -> Array:
     """Lower bound on a layered tube's radial bore growth per unit pressure.
 
-        With the bore pressure p and the outer radius r_k of layer k, the bore grows by
+    With the bore pressure p and the outer radius r_k of layer k, the bore grows by
     u >= p r_i/sum K_k a_k (1 - x_k^(-2 b_k))/(2 b_k), K_k = C_tt - 2 b_k C_tr + b_k^2 C_rr,
     x_k = r_k/r_(k-1), a_k = prod x_j^(-2 b_j) over all layers inside k. This is the energy of the
     trial displacement that falls as r^(-b_k), with no axial strain. Each layer may be cut into
@@ -165,7 +165,7 @@ def greatest_pressure(
 ) -> Array:
     """Upper bound on the pressure that a layered tube bears before its first damage.
 
-        From the outer face (p_n = 0) inwards, the pressure p_(k-1) on the inner face of a layer is
+    From the outer face (p_n = 0) inwards, the pressure p_(k-1) on the inner face of a layer is
     p_k r_k/r_(k-1) + S_k t_k/r_(k-1) for a ply of thickness t_k, and
     p_k + (2/sqrt(3)) sigma_y ln(r_k/r_(k-1)) for a metal layer.
 

@@ -234,7 +234,7 @@ class ActuatorProblem:
         return "compiled program" if recorded else "NumPy"
 
     def confirmed(self, x: Vector) -> bool:
-        """Whether the recorded models agree with the models at the point x (n,)."""
+        """Whether the recorded models agree with the models themselves at the point x (n,)."""
         if self.recorded is None:
             return True
         with np.errstate(all="ignore"):
@@ -257,7 +257,7 @@ class ActuatorProblem:
         parameters: Mapping[str, Array],
         outputs: list[MetricArrays] | None = None,
     ) -> PointValues:
-        """As `evaluate`, through the models themselves."""
+        """Like `evaluate`, but by the models themselves instead of the recorded function."""
         varied = dict(parameters) | dict(zip(self.paths, points, strict=True))
         numbers = self.subject.values(varied)
         count = points.shape[1]

@@ -125,9 +125,9 @@ def _smaller_relaxation(
     sole: Sequence[RelaxedConstraint],
     point: Point,
 ) -> Point | None:
-    """A smaller relaxation of one limit alone, if it is less than the joint total; else None.
+    """A relaxation of one limit alone that is less than the joint total; None if not found.
 
-    Such a relaxation exists if the descent to the joint relaxation stalled.
+    Such a relaxation exists only if the descent to the joint relaxation stalled.
     """
     single = [(r.amount, group) for r, group in zip(sole, candidates, strict=True) if r.amount]
     amount, group = min(single, key=lambda entry: entry[0], default=(np.inf, groups[0]))

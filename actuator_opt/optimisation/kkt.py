@@ -234,7 +234,7 @@ def slope_scale(evaluator: Evaluator, point: Point, objective_scale: float = 0.0
 def _priced(
     evaluator: Evaluator, point: Point, objective_scale: float
 ) -> tuple[Active, Vector, Vector, float]:
-    """Active limits at a point, their multipliers, those of the equalities, and the residual."""
+    """Active limits at a point, multipliers of these and of the equalities, and the residual."""
     jacobian = evaluator.jacobian(point)
     active = active_set(evaluator, point)
     equalities = jacobian[1 + evaluator.constraint_count :]

@@ -214,7 +214,7 @@ class _FixedSizes:
     def remedy(
         self, eased: BoxProblem, x: Vector, entry: Mapping[str, Any]
     ) -> Iterator[SizeRemedy]:
-        """Yield the remedy if, after its change, the best design with these sizes is better."""
+        """Yield the remedy if its change makes the best design with these sizes beat `objective`."""
         point = repairs.near(eased, x)
         if point is None:
             return

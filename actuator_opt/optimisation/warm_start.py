@@ -133,8 +133,8 @@ class WarmStart:
         """Find the optimum for each value of one number, in parallel.
 
         For values that the parallel steps do not solve, single searches follow, beginning with the
-        values nearest to the present one. Above and below it, they stop at the first value for
-        which no design exists.
+        values nearest to the present value. Above and below the present value, they stop at the
+        first value for which no design exists.
 
         Parameters
         ----------

@@ -353,7 +353,7 @@ def _overlap(groups: Sequence[Sequence[FrictionPoint]]) -> bool:
 
 
 def _map(points: Sequence[FrictionPoint], fit: StribeckFit | str) -> Panel:
-    """Points over speed and pressure, shaded by damping, drawn on the fitted Stribeck surface."""
+    """Damping over speed and pressure: measured points, drawn on a map of the Stribeck fit."""
     speeds = [speed(point) for point in points]
     pressures = [PRESSURE.to_display(point.pressure) for point in points]
     surface = ShadedMap((), (), np.empty((0, 0)))

@@ -312,7 +312,7 @@ def results(simulation: Simulation) -> list[ShownResult]:
 
 
 def reasons(simulation: Simulation) -> dict[str, list[str]]:
-    """Why results have no value: reason, then the results; expected reasons are left out."""
+    """By reason: the results that have no value because of it; expected reasons are left out."""
     missing: dict[str, list[str]] = {}
     limited = {requirement.metric for requirement in simulation.requirements}
     bench = simulation.scenario.held_ports is not None
@@ -576,7 +576,7 @@ def _bench(simulation: Simulation) -> list[Tile]:
 
 
 def _blocks(simulation: Simulation, more: Sequence[str]) -> Iterator[Block]:
-    """Results beside the controller; on the terminal also step and energies; then accuracy."""
+    """Results and controller side by side; on the terminal also step and energies; accuracy."""
     sentences = trust(simulation, more)
     notes = Notes("Basis of these results", [tied(words) for words in sentences])
     tables = [block for block in (_results(simulation), _controller(simulation)) if block]

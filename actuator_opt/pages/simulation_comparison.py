@@ -226,7 +226,8 @@ def _taken(run: Simulation) -> dict[str, float]:
 def _energies(runs: Runs) -> Ink:
     """Stacked bars of the dissipated energies, a row for every run.
 
-    Drawn, not a `Chart`: a row shows labelled parts of a stack and has no axis.
+    The figure is drawn directly, because a `Chart` has no rows with labelled parts and without an
+    axis.
     """
     width, top = WIDTHS[1], 11.0
     ink = Ink(width, top + ROW * len(runs) + 1.0)

@@ -147,7 +147,7 @@ LINES_PER_CURVE = 3
 
 
 class Bound(NamedTuple):
-    """Logarithm of the least objective in a box, and where the box's relaxation is loose."""
+    """Lower bound on the objective's logarithm in a box, and where the relaxation is loose."""
 
     value: float
     atoms: Vector
@@ -534,7 +534,7 @@ def samples(lead: Symbol) -> Vector:
 
 
 def ranges(nodes: Sequence[Symbol]) -> dict[Symbol, tuple[float, float]]:
-    """Finite ranges, from samples, of values that a single positive value determines."""
+    """Sampled ranges, if finite, of the values that depend on one positive value alone."""
     leads = Leads()
     groups: dict[Symbol, list[Symbol]] = {}
     for node in nodes:
@@ -558,7 +558,7 @@ ratio of its two terms varies by at least this."""
 
 
 class _PlainAtoms:
-    """Adds atoms for the values of monomials, which the relaxation otherwise has as logarithms."""
+    """Adds atoms for values of monomials, of which the relaxation otherwise has only logarithms."""
 
     def __init__(self, relaxation: Relaxation) -> None:
         self.relaxation = relaxation

@@ -235,7 +235,8 @@ FAR_OFF = 0.2
 split gains most."""
 FLOOR = 0.003
 """Added to a curve's `Bound.price` in the estimated gain of a split. Among loose curves in a chain
-(each the argument of the next), some have a price of 0, but a split must also pay for them."""
+(each the argument of the next), some have a price of 0; without this addition, no gain would be
+expected from a split of their ranges."""
 SQUEEZES = 2
 """Maximum number of rounds that cut the ranges of the first box."""
 DIRECTIONS = 16

@@ -479,7 +479,7 @@ class Layout:
 
     @cached_property
     def parts(self) -> tuple[slice, slice, slice]:
-        """Where the list of forms has curve outputs, directions (log ratios), constraint rows."""
+        """Slices of the list of forms: curve outputs, directions (log ratios), constraint rows."""
         outputs_end, directions_end = self.curves, self.curves + self.directions
         return (
             slice(0, outputs_end),

@@ -536,7 +536,7 @@ class FrontSearch:
         self.replaced += [self.tracer.values(design.unit[:, None])[:, 0] for design in designs]
 
     def rescale(self, low: Vector, width: Vector) -> None:
-        """Normalise to another range; `low` and `width` (objectives,) are currently normalised."""
+        """Normalise to another range, stated by `low` and `width` (objectives,) in present units."""
         tracer = self.tracer
         tracer.rescale(tracer.ideal + low * tracer.width, width * tracer.width)
         self.designs = tracer.at_own_levels(self.designs)
@@ -544,7 +544,7 @@ class FrontSearch:
 
     @property
     def plane(self) -> Vector:
-        """The designs' objectives (objectives, k), projected on the plane of equal sums."""
+        """Normalised objectives (objectives, k), projected on the plane where their sum is 0."""
         units = self.units
         return np.asarray(units - units.mean(axis=0))
 
