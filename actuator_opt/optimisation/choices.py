@@ -88,7 +88,7 @@ class ChoiceSearch:
         return frozenset().union(*lists) - frozenset.intersection(*lists) if lists else frozenset()
 
     def ranked(self) -> list[Look]:
-        """The combinations, sorted by requirements met, checks met, objective and order in the file."""
+        """The combinations sorted by requirements met, checks met, objective and file order."""
         mendable = self.mendable()
 
         def rank(look: Look) -> tuple[bool, float, int, float, int]:

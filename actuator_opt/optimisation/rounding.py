@@ -214,7 +214,7 @@ class _FixedSizes:
     def remedy(
         self, eased: BoxProblem, x: Vector, entry: Mapping[str, Any]
     ) -> Iterator[SizeRemedy]:
-        """Yield the remedy if its change makes the best design with these sizes beat `objective`."""
+        """Yield the remedy if it makes the best design with these sizes better than `objective`."""
         point = repairs.near(eased, x)
         if point is None:
             return

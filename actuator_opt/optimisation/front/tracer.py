@@ -536,7 +536,7 @@ class FrontSearch:
         self.replaced += [self.tracer.values(design.unit[:, None])[:, 0] for design in designs]
 
     def rescale(self, low: Vector, width: Vector) -> None:
-        """Normalise to another range, stated by `low` and `width` (objectives,) in present units."""
+        """Normalise to another range: `low` and `width` (objectives,), in the present units."""
         tracer = self.tracer
         tracer.rescale(tracer.ideal + low * tracer.width, width * tracer.width)
         self.designs = tracer.at_own_levels(self.designs)
