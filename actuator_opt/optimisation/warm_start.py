@@ -106,7 +106,7 @@ class WarmStart:
         except LimitReached:
             return self._interrupted(evaluator)
         if optimum is not None:
-            return _solution(evaluator, optimum, "full steps, or restoration and descent")
+            return _solution(evaluator, optimum, "SQP steps, or a descent from a feasible point")
         guess = problem.inside(self.point.x)
         starts = [guess if feasible is None else evaluator.space.to_x(feasible[:, None])[:, 0]]
         seed = self.effort.seed

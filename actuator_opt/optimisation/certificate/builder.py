@@ -88,7 +88,7 @@ class Builder:
             if number == 0 or not math.isfinite(number):
                 raise Unknown(
                     f"a factor or term in the model is always {number:g}, "
-                    "whose logarithm is not finite"
+                    "which has no finite logarithm, as the proof requires"
                 )
             return math.copysign(1.0, number), Form(math.log(abs(number)))
         if value.index not in self._forms:
