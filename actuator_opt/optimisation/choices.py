@@ -426,7 +426,7 @@ _SIZING = {
 
 
 _WITHOUT = ("none", "none better", "no size fits")
-"""Results of the size search without a design that could be compared."""
+"""Results of the size search that give no design to compare."""
 
 
 _WAYS: dict[How, str] = {"multistart": "many starts: ", "quick": "quick look: ", "evaluated": ""}

@@ -32,7 +32,8 @@ from ..rendering.text import trimmed, unit_text, value_text
 from .report import doubts
 
 SHOWN, FEWER = 21, 17
-"""Number of designs in the table for two objectives, and for more, whose headings need more lines.
+"""Number of designs in the table for two objectives, and for more than two, whose headings need
+more lines.
 """
 MOVING = 5
 """Largest number of variables in the table."""

@@ -56,7 +56,7 @@ SHORT = {
     "stop_speed": "speed at the stops",
     "supply_energy": "work of the supply",
 }
-"""Names of results that are clearer in these words."""
+"""Clearer words for the names of some results."""
 ZERO_BELOW = {
     "steady_state_ratio": 1e-6,
     "overshoot": 1e-6,

@@ -78,7 +78,7 @@ SIGNALS = (
 )  # fmt: skip
 """Signals drawn when the runs have neither a step nor a stiffness in common."""
 Pen: TypeAlias = tuple[int, int]
-"""Colour and dash of the curves of a run, by number."""
+"""Numbers of the colour and of the dash pattern of a run's curves."""
 
 
 def comparison_figure(
