@@ -379,7 +379,7 @@ def _acceptable(evaluator: Evaluator, initial: NewtonState, newton_state: Newton
     """Whether a point is at least as feasible as the start, and its objective not higher.
 
     If the start violates limits, the objective may rise by twice the cost of removing this
-    violation. After a large violation (above 1e-3), any rise is accepted.
+    violation. If the violation at the start is large (above 1e-3), any rise is accepted.
     """
     if newton_state.point.violation > max(FEASIBLE, initial.point.violation):
         return False

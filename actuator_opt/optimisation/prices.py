@@ -111,7 +111,7 @@ def optimum_at(evaluator: Evaluator, point: Point, quality: kkt.KktResidual) -> 
 
 
 def margin_slopes(optimum: Optimum, derivatives: Responses) -> Vector:
-    """Derivatives (M, q) of margins with respect to parameters, with constant variables."""
+    """Derivatives (M, q) of the margins with respect to the parameters, at fixed variables."""
     m = len(optimum.margins) - len(derivatives.bounds)
     return np.concatenate([derivatives.rows[1 : 1 + m], derivatives.bounds])
 

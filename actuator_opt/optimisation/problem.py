@@ -148,7 +148,7 @@ class ParametricProblem:
     Parameters
     ----------
     problem : the problem at the present parameter values; its own `evaluate` may be faster than the
-        one below
+        `evaluate` below
     parameter_names : label of each parameter (q,)
     parameters : present values (q,)
     evaluate : maps points (n, k) and parameters (q, k) or (q, 1), real or complex, to `PointValues`

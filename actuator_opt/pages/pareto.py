@@ -264,7 +264,7 @@ def _wide(front: ParetoFront) -> Iterator[str]:
 
 
 def front_chart(front: ParetoFront) -> Chart:
-    """Chart with panels side by side, each of a further objective over the first objective."""
+    """Chart with panels side by side: one for each further objective, over the first objective."""
     first, *others = front.objectives
     panels = [_panel(front, (first, 0), (other, k)) for k, other in enumerate(others, 1)]
     return Chart("Pareto front", panels, height=HEIGHT)

@@ -138,7 +138,7 @@ def series(simulation: Simulation) -> list[Series]:
 
 
 def _grid(simulation: Simulation) -> tuple[Array, Array]:
-    """Evenly spaced times [s], and indices of their samples (of two simultaneous, the later)."""
+    """Evenly spaced times [s], and indices of their samples (if two have one time, the later)."""
     time, duration = simulation.time, simulation.scenario.duration
     step = simulation.scenario.sample_time or duration / SAMPLES
     count = max(round(duration / step), 1)

@@ -289,7 +289,7 @@ class Tracer:
     def exchange(
         self, designs: list[FrontDesign], other_x: Vector, other_units: Vector
     ) -> list[FrontDesign]:
-        """Where another design is better at a design's levels, replace it by a descent from there.
+        """Replace each design that another beats at its levels, by a descent from the better one.
 
         Parameters
         ----------
