@@ -71,9 +71,9 @@ class KktResidual:
     residual : norm of the Lagrangian's gradient, relative to that of the objective's gradient
     active : labels of active constraints, equalities and bounds ("NAME lower", "NAME upper")
     count, rank : number of active gradients, and how many of them are independent
-    multipliers : (m,) for the constraints: change of the optimal objective per unit of additional
-        margin required
-    equality_multipliers : (e,) for the equalities
+    multipliers : multipliers (m,) of the constraints: change of the optimal objective per unit of
+        additional margin required
+    equality_multipliers : multipliers (e,) of the equalities
     lower_multipliers, upper_multipliers : (n,) for the bounds, per unit of solver coordinate
     curvature : result of the second-order condition; None if not requested
     """

@@ -505,7 +505,8 @@ class ParameterPrice:
         None where the objective or the parameter is 0
     predicted_up, predicted_down : objective predicted from the price, with the parameter changed by
         +10 % and -10 %; None where infinite
-    resolved_up, resolved_down : the same, re-optimised; None if infeasible or not requested
+    resolved_up, resolved_down : objective of the optimum for the same changes; None if infeasible
+        or not requested
     holds_until : the nearest value of the parameter at which the active limits change; None if it
         is more than ±100 % away
     change : the change of the active limits in words, "LABEL becomes active" or "LABEL stops being

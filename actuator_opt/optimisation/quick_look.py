@@ -102,7 +102,7 @@ def look_quickly(
     Parameters
     ----------
     look : the combination, in which the best point is stored
-    starts : the most reliable first
+    starts : starting points, the most reliable first
     seed : seed of the sweep
     seconds : time limit
     """

@@ -443,7 +443,7 @@ def rounded(
     Parameters
     ----------
     actuator, solution : the problem and a feasible point
-    sizes : `sizes_of` the design
+    sizes : the listed sizes of the design, from `sizes_of`
     size_search : result of the search for sizes, if already made
     until : time of `time.perf_counter` at which the search stops
     seed : seed of the sweeps

@@ -108,7 +108,7 @@ def page(
     simulation : the run
     notes : further sentences for the reader
     measured : time [s] and measured values (SI) by name of the signal that is drawn over them
-    static : positions [m] and static stiffness [N/m], drawn beside the dynamic one
+    static : positions [m] and static stiffness [N/m], drawn beside the dynamic stiffness
     extra : blocks below all others
     """
     return Page(

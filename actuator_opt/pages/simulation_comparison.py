@@ -354,7 +354,7 @@ def page(
     ----------
     comparison : the runs, by `simulation_comparison.comparison`
     measured : time [s] and measured values (SI) by name of the signal, drawn below the runs' curves
-    static : positions [m] and static stiffness [N/m], drawn beside the dynamic ones
+    static : positions [m] and static stiffness [N/m], drawn beside the dynamic stiffnesses
     extra : blocks below all others
     """
     notes = Notes("Basis of these results", [tied(words) for words in _trust(comparison)])

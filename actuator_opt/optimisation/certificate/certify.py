@@ -259,7 +259,7 @@ class BoxSearch:
 
     Parameters
     ----------
-    layout, bounding : the relaxation
+    layout, bounding : the relaxation, as arrays and as a linear programme
     best : logarithm of an objective; only designs that are at least as good are of interest
     variables : atoms (elementary quantities) whose ranges are always cut in the first box
     deadline : time of `time.perf_counter` at which the search stops

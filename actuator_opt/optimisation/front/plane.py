@@ -544,7 +544,7 @@ def _pairs(indices: Indices) -> Iterator[tuple[int, int]]:
 
 
 def _section(search: FrontSearch, left: int, right: int) -> Indices:
-    """Indices, in order, of the designs with levels between those of two designs."""
+    """Indices, in order, of the designs whose levels lie between the levels of two designs."""
     levels = np.array([design.level[0] for design in search.designs])
     low, high = sorted((levels[left], levels[right]))
     order = np.argsort(levels, kind="stable")

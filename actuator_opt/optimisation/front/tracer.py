@@ -144,7 +144,7 @@ class FrontDesign:
     Parameters
     ----------
     level, direction : parameters `a` and `r` of `Objectives.scaled` (objectives,)
-    point : variables and t
+    point : the variables, and t, the level of the objectives, which is minimised
     unit : normalised objectives (objectives,)
     hessian : estimate of the Lagrangian's Hessian, divided by `Tracer.scale`
     """

@@ -50,7 +50,7 @@ class Criteria(NamedTuple):
 
 EXACT = Criteria(SETTLED, 1e-11, RESIDUAL)
 """For final results. The limit on the violation is strict because a violation changes the objective
-to first order; the other two change it only to second order."""
+to first order; step length and residual change it only to second order."""
 
 ROUGH = Criteria(1e-4, 1e-7, 1e-3)
 """For comparisons of designs, which need seven correct digits."""
