@@ -158,7 +158,7 @@ def of_another_cylinder(design: Design, source: str, theirs: tuple[float, float,
     names = (
         "{}/{}-{}".format(*(text.trimmed(1e3 * size) for size in sizes)) for sizes in (theirs, ours)
     )
-    return "The {} has a {} cylinder, this design a {}: they need not agree. ".format(
+    return "The {} has a {} cylinder (bore/rod-stroke), this design a {}, so results may differ. ".format(
         source, *names
     )
 
