@@ -550,8 +550,8 @@ def _drop(design: Design, test: DynamicTest) -> str:
         role = ", which does not explain the throttle's effect either, is only assumed"
     return (
         f"But at 20 mm/s the pressure drop of the open needle is {times} the 0.4 bar that opened "
-        f"the check valve: flow, area and pressure {'of the thesis' if theirs else 'of this design'} "
-        f"are not consistent. We do not know which of them is wrong; the {size} area in the "
+        "the check valve: flow, area and pressure "
+        f"{'of the thesis' if theirs else 'of this design'} are not consistent. We do not know which of them is wrong; the {size} area in the "
         f"table{role}."
     )
 

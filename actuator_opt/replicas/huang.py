@@ -236,7 +236,8 @@ def _between_rows(study: HuangStudy) -> list[tuple[str, ...]]:
         (
             *claim("huang", "pressure_between"),
             f"{text.trimmed(float(np.nanmin(share)), 2)} to "
-            f"{text.trimmed(float(np.nanmax(share)), 2)} times the sealed pressure up to 10 mm/s; {words}",
+            f"{text.trimmed(float(np.nanmax(share)), 2)} times the sealed pressure up to "
+            f"10 mm/s; {words}",
             holds(bool(above.size or np.nanmax(share) > 1)),
         )
     ]
@@ -553,8 +554,8 @@ def plunger_note(design: Design, study: HuangStudy) -> str:
         )
     elif ours < 1 - EVEN:
         words = (
-            f"From 0.6 to 6 MPa both dampings fall: to {theirs:.2f} (table 2) and {ours:.2f} (ours) "
-            "of their value. "
+            f"From 0.6 to 6 MPa both dampings fall: to {theirs:.2f} (table 2) and {ours:.2f} "
+            "(ours) of their value. "
         )
     else:
         words = (
@@ -701,8 +702,8 @@ def parts_note(study: HuangStudy, dry: float) -> str:
     return (
         f"Back-up ring and chamber {verdict}: together their damping is at most {percent(most)} of "
         f"that of the seals, that of the chamber alone {percent(chamber, 1)}. This applies to a "
-        f"ring on a smooth oil film; its least film thickness, {text.trimmed(1e6 * ring, 2)} µm, is "
-        f"thinner than the seals' roughness, and its dry friction would be {newtons(dry)}, "
+        f"ring on a smooth oil film; its least film thickness, {text.trimmed(1e6 * ring, 2)} µm, "
+        f"is thinner than the seals' roughness, and its dry friction would be {newtons(dry)}, "
         f"{percent(dry / seals)} of the least friction of the seals. The paper prints "
         f"{PAPER.chamber_shear} N·s/m for the chamber without inputs. The formula eta pi d L/h_v "
         f"gives this value for L = {text.trimmed(1e3 * member.length)} mm, "
@@ -769,8 +770,8 @@ def _tandem(study: HuangStudy) -> str:
     ]
     words = (
         "With the same flow past both seals, no relief shown reverses the trend (B rises "
-        f"to at least {times(least)} its value), because the Yx seal behind the step ring carries the "
-        "pressure. "
+        f"to at least {times(least)} its value), because the Yx seal behind the step ring "
+        "carries the pressure. "
         if least > 1
         else "With the same flow past both seals some reliefs reverse the trend too. "
     )
@@ -793,8 +794,8 @@ def _proven(study: HuangStudy) -> str:
         "relief and no pressure between the seals, and the paper states neither. In "
         f"table 2, B is {mega(measured.damping[0])} MN·s/m at 0.6 MPa, "
         f"{times(measured.damping[0] / drained.damping[0])} our value without pressure between "
-        f"the seals, and falls to {text.number(measured.rise, 2)} of this. We chose relief, land, squeeze, lip, oil and "
-        "roughness; the paper gives only the dry friction coefficients "
+        f"the seals, and falls to {text.number(measured.rise, 2)} of this. We chose relief, "
+        "land, squeeze, lip, oil and roughness; the paper gives only the dry friction coefficients "
         f"{listed([text.trimmed(x) for x in PAPER.dry_friction])}."
     )
 
