@@ -551,8 +551,8 @@ def _drop(design: Design, test: DynamicTest) -> str:
     return (
         f"But at 20 mm/s the pressure drop of the open needle is {times} the 0.4 bar that opened "
         "the check valve: flow, area and pressure "
-        f"{'of the thesis' if theirs else 'of this design'} are not consistent. We do not know which of them is wrong; the {size} area in the "
-        f"table{role}."
+        f"{'of the thesis' if theirs else 'of this design'} are not consistent. We do not know "
+        f"which of them is wrong; the {size} area in the table{role}."
     )
 
 

@@ -379,7 +379,7 @@ def back_up_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
     ]
     if films:
         panel(
-            ink, (0, 0), "Figure 19: film of the back-up ring, µm", "place on ring, mm", films,
+            ink, (0, 0), "Figure 19: film of the back-up ring, µm", "along the ring, mm", films,
             span=(0.0, 1e3 * WIDTH), range_=(0.0, 3 * max(np.median(ring.ys) for ring in films)),
         )  # fmt: skip
     speeds = np.array([ring.speed for ring in study.rings])
