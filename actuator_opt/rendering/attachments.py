@@ -19,7 +19,7 @@ MOST_BYTES = 50_000_000
 MOST_FILES = 16
 """Maximum number of attachments (our choice: a report has two, an editor may add some)."""
 NEAR = 4096
-"""Maximum distance in bytes from the type entry of a PDF dictionary to its start and to its end
+"""Maximum distance in bytes from the type entry in a PDF dictionary to either end of the dictionary
 (our choice; our own reports need 200)."""
 _MARK, _OBJECT = b"/EmbeddedFile", b" obj"
 _STREAM = re.compile(rb">>\s{0,16}stream\r?\n")

@@ -52,7 +52,7 @@ class SizeFault(NamedTuple):
 
 
 class SealPart(NamedTuple):
-    """A piece of seal compound in a groove: free section area [m^2], depth of its centre [m]."""
+    """Piece of seal compound in a groove: section area before mounting [m^2], centre depth [m]."""
 
     area: Array
     depth: Array

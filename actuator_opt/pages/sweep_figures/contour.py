@@ -179,7 +179,7 @@ def _notes(drawn: SweepFigureData, field: Field) -> str:
 
 
 def _paper(axes: Axes, points: Array, scale: Sequence[Any]) -> list[Point]:
-    """Positions on paper of points in SI."""
+    """Convert points from SI values to positions on paper."""
     shown = [convert(points[:, k]).tolist() for k, convert in enumerate(scale)]
     return [(axes.x(x), axes.y(y)) for x, y in zip(*shown, strict=True)]
 
