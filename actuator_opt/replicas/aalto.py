@@ -127,7 +127,9 @@ def _air(test: StaticTest) -> tuple[str, ...]:
             _bubbles(test),
             "The same oil explains both directions.",
         )
-    suspect = "The thesis suspects that air leaves the oil at 17 to 19 bar. We do not know."
+    suspect = (
+        "The thesis suspects that air leaves the oil at 17 to 19 bar. We do not know if it does."
+    )
     return _air_up(test), _air_down(test), _bubbles(test), suspect
 
 
@@ -157,7 +159,7 @@ def _air_down(test: StaticTest) -> str:
     if math.isinf(down):
         words = f"Load down: not even {percent(CONTENTS[1])} is enough"
     else:
-        words = f"Load down: this takes {air_text(down)}"
+        words = f"Load down: the largest displacement takes {air_text(down)}"
     if math.isfinite(up * down) and up * down > 0:
         alike = abs(down / up - 1) < SAME
         words += f", {'about' if alike else text.trimmed(down / up, 2) + ' times'} as much, "
@@ -199,7 +201,7 @@ def _bubbles(test: StaticTest) -> str:
     for assumption in test.assumptions[4:6]:
         up, down = _judged(assumption.up, PAPER.most_up), _judged(assumption.down, PAPER.most_down)
         fits.append((up == "as much as measured", down == "as much as measured"))
-        words.append(up if up == down else f"{up} up, {down} down")
+        words.append(up if up == down else f"{up} (load up) and {down} (load down)")
     if (True, True) in fits:
         fit = "fit both directions"
     elif any(up for up, _ in fits) and any(down for _, down in fits):
@@ -518,9 +520,9 @@ def peak_note(design: Design, test: DynamicTest) -> str:
     if math.isnan(needle.temperature):
         source = f"which {_oil(design)} does not have at any temperature"
     elif low <= needle.temperature <= high:
-        source = f"{_oil(design)} at {warm}: within the 25 to 30 °C of the tests"
+        source = f"that of {_oil(design)} at {warm}: within the 25 to 30 °C of the tests"
     else:
-        source = f"{_oil(design)} at {warm}: outside the 25 to 30 °C of the tests"
+        source = f"that of {_oil(design)} at {warm}: outside the 25 to 30 °C of the tests"
     loss = percent(1 - needle.flow_coefficient / PAPER.flow_coefficient, 1)
     there = f"At this Re, C_q is already {loss} below"
     if abs(needle.reynolds / PAPER.reynolds - 1) > 0.05:

@@ -131,7 +131,7 @@ def _bending_note(tube: Tube, times: float) -> str:
     upper = f"to {in_gpa(most)}" if math.isfinite(most) else "without an upper limit"
     return (
         "The paper states neither span, section, k₀ nor rollers, and neglects the change "
-        "of section. Assumed: the spans (its two strokes), a tube "
+        "of section at the ends. Assumed: the spans (its two strokes), a tube "
         f"{in_mm(tube.outer_diameter)}/{in_mm(tube.inner_diameter)} of woven carbon with G "
         f"= {in_gpa(tube.shear_modulus)}, rollers of {in_mm(ROLLER_RADIUS)} radius at "
         f"{in_n(FORCE)} (Hertz; a thin tube flattens as well). The modulus may then be "
@@ -144,7 +144,7 @@ def _bending_note(tube: Tube, times: float) -> str:
     )
 
 
-COLUMNS = ("quantity", "published", "by its formulas", "ours")
+COLUMNS = ("quantity", "published", "paper's formulas", "ours")
 
 
 def _text(value: float, unit: str, dimension: str) -> str:

@@ -393,7 +393,7 @@ def parts_table(_: Design, study: HuangStudy) -> list[Block]:
     names = (
         "N·s/m at",
         labels,
-        "back-up ring (0.02 to 0.2 MPa)",
+        "back-up ring (at 0.02 to 0.2 MPa)",
         "chamber",
         "total, eq. 26",
         "ring and chamber / seals",
@@ -525,9 +525,9 @@ def cylinder_note(design: Design, study: HuangStudy) -> str:
     i, j = int(np.argmin(np.abs(mapped.pressures - PAPER.shown_pressure))), -1
     piston, rod = float(mapped.piston.friction[i, j]), float(mapped.rod.friction[0, j])
     return (
-        f"{other_cylinder(design)}Seals and oil are those of this design, as the paper "
-        "names only the types of its seals. Nothing is fitted to its curves. At 7.15 MPa "
-        f"and 10 mm/s the friction of the piston seal is {newtons(piston)}, that of the "
+        f"B: damping (friction / speed). {other_cylinder(design)}Seals and oil are those of this "
+        "design, as the paper names only the types of its seals. Nothing is fitted to its "
+        f"curves. At 7.15 MPa and 10 mm/s the friction of the piston seal is {newtons(piston)}, that of the "
         f"rod seal at return pressure {newtons(rod)}; wiper and guides are neglected. "
         f"{_dry(mapped.piston.viscous)} The paper's R² of 1 (sums of squares "
         f"{listed([text.number(x, 2) for x in PAPER.interpolation])}) results from "
@@ -567,7 +567,7 @@ def plunger_note(design: Design, study: HuangStudy) -> str:
         f"{words}{_dry(mapped.viscous)} {_between(study)}The measured fall is doubtful: "
         "friction is the difference of two large forces (eq. 1), and an error of "
         f"{percent(min(share))} to {percent(max(share))} in the change of the pressure "
-        "force, in sensor or area, is as large as the whole fall at the tested speeds. "
+        "force, from sensor or area, is as large as the whole fall at the tested speeds. "
         "The paper states no accuracy. We do not know whether the measured or the "
         f"computed trend is right.{_reasons(mapped.why)}"
     )
@@ -727,7 +727,8 @@ def kinds_note(study: HuangStudy) -> str:
     if compact.rise > 1 + EVEN:
         share = text.trimmed(compact.balance, 2)
         words += (
-            f"The piston seal has k = {share}, and its B rises to {times(compact.rise)} its value. "
+            f"The piston seal has k = {share}, and from 0.6 to 6 MPa its B rises to "
+            f"{times(compact.rise)} its value. "
         )
     whole = [kind for kind in study.kinds if kind.name == BOTH]
     for kind in whole:
@@ -752,7 +753,7 @@ def relief_note(study: HuangStudy) -> str:
         return "No relief reverses the trend of its step ring. " + _tandem(study)
     return (
         "For the step ring alone, the trend of B turns from rising to falling at a relief "
-        f"of {1e3 * turn.relief:.2f} mm, {percent(turn.share)} of its width, where k = "
+        f"of {1e3 * turn.relief:.2f} mm, {percent(turn.share)} of the ring's width, where k = "
         f"{turn.balance:.2f}; the design has "
         f"{text.trimmed(1e3 * study.sealings.plunger.rings[0]['relief'])} mm. " + _tandem(study)
     )
@@ -779,7 +780,7 @@ def _tandem(study: HuangStudy) -> str:
         relief, rise = falls[-1]
         words += (
             "Without pressure between the seals, as if the space there were drained, B "
-            f"falls to {text.number(rise, 2)} at a relief of {1e3 * relief:.2f} mm. "
+            f"falls to {text.number(rise, 2)} of its value at a relief of {1e3 * relief:.2f} mm. "
         )
     return words
 

@@ -377,7 +377,7 @@ def _rings(table_1: Trends) -> str:
         return ""
     return (
         f"The table applies to O-rings, so an O-ring of {ELASTOMER} with the same section "
-        f"and squeeze replaces the {listed(table_1.replaced)} of the design. "
+        f"and squeeze replaces each of these seals of the design: {listed(table_1.replaced)}. "
     )
 
 
