@@ -192,7 +192,7 @@ def _friction(simulation: Simulation) -> Panel:
     across = scaled(speed, simulation.signals["speed"])
     values = scaled(force, simulation.signals["friction"])
     return Panel(
-        titled("Friction over speed", force),
+        titled("Friction versus speed", force),
         Axis(titled("speed", speed), zero=True),
         Axis(zero=True),
         curves=[Curve("", across, values, weight="thin")],
@@ -209,7 +209,7 @@ def _flows(simulation: Simulation) -> Panel:
     if np.count_nonzero(near) < 0.5 * near.size:
         near[:] = True
     return Panel(
-        titled("Flows over signal", quantity),
+        titled("Flows versus signal", quantity),
         Axis(titled("signal", volts)),
         Axis(zero=True),
         curves=[

@@ -111,7 +111,7 @@ def tables(verification: Verification) -> tuple[Table, ...]:
         "friction, then with a fiftieth of the amplitude. The rest is due to the operating point."
     )
     widths = (1, 1.2, 1.5, 3.5)
-    return both, text_table("Experiments behind them", heads, experiments, note, widths=widths)
+    return both, text_table("Experiments for these values", heads, experiments, note, widths=widths)
 
 
 def verdict(verification: Verification) -> str:

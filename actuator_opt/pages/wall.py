@@ -99,7 +99,7 @@ def strength_panels(study: WallStudy) -> list[Panel]:
         for name, values, style in named
         if np.isfinite(values).any()
     ]
-    return [*panels, _panel("Stress over strength", study, curves, (1.0, -1.0))]
+    return [*panels, _panel("Stress / strength", study, curves, (1.0, -1.0))]
 
 
 def _panel(

@@ -202,4 +202,6 @@ def read_attachment(path: Path) -> Attachment:
 def _no_input(content: bytes) -> str:
     """Message on why a PDF has no input attached: written without it, or the file is truncated."""
     complete = b"%%EOF" in content[-2048:]
-    return "has no input to repeat" if complete else "is truncated and has no input"
+    return (
+        "has no input (design file) to run again" if complete else "is truncated and has no input"
+    )

@@ -527,8 +527,8 @@ def cylinder_note(design: Design, study: HuangStudy) -> str:
     return (
         f"B: damping (friction / speed). {other_cylinder(design)}Seals and oil are those of this "
         "design, as the paper names only the types of its seals. Nothing is fitted to its "
-        f"curves. At 7.15 MPa and 10 mm/s the friction of the piston seal is {newtons(piston)}, that "
-        f"of the rod seal at return pressure {newtons(rod)}; wiper and guides are neglected. "
+        f"curves. At 7.15 MPa and 10 mm/s the friction of the piston seal is {newtons(piston)}, "
+        f"that of the rod seal at return pressure {newtons(rod)}; wiper and guides are neglected. "
         f"{_dry(mapped.piston.viscous)} The paper's R² of 1 (sums of squares "
         f"{listed([text.number(x, 2) for x in PAPER.interpolation])}) results from "
         "surfaces through every point, so it does not show the "
