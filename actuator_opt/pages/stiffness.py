@@ -108,7 +108,7 @@ def gain_sentence(curve: StrokeCurve) -> str:
     oil = sum(value for part, value in compliances.items() if part.startswith("oil"))
     both = ""
     if name.startswith("oil") and oil > share:
-        both = f" (all oil {per_cent(oil)})"
+        both = f" (all oil together: {per_cent(oil)})"
     gain = 1 / (1 - share / 2) - 1
     place = text.trimmed(1e3 * float(curve.position[index]), 3)
     return (

@@ -119,7 +119,8 @@ class SealContact:
         x/b; x is the distance from the sealed side, b the width
     excess : excess of the contact pressure over the oil pressure [Pa]; if it is not positive, the
         sealed pressure opens the contact, and the profile is that of a contact that just touches
-    profile_width : width of the profile [m]: the contact width, or less if the load is too small
+    profile_width : width of the profile [m]: the contact width; for an O-ring less, if a profile of
+        this width with this peak would carry more than the line load
     """
 
     line_load: Array
