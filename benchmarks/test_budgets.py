@@ -127,7 +127,7 @@ def test_recorded_models_against_numpy(benchmark, name, budget):
             problem.evaluate(points)
         pairs = [
             (timeit.timeit(lambda: problem.evaluate(points), number=20),
-             timeit.timeit(lambda: problem._by_models(points, {}), number=20))
+             timeit.timeit(lambda: problem.by_models(points, {}), number=20))
             for _ in range(15)
         ]  # fmt: skip
     ratio = statistics.median(numpy / recorded for recorded, numpy in pairs)

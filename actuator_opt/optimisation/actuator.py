@@ -10,7 +10,7 @@ finite difference is used.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
 from typing import Any
 
@@ -24,7 +24,6 @@ from ..base.symbolic.recorded import RecordedFunction
 from ..design import with_values
 from ..design.material import Material
 from ..design.materials import Library
-from ..design.structure import leaves, number_of
 from ..evaluation import PreparedDesign, compute, prepare
 from ..evaluation.build import names_of_materials
 from ..evaluation.kernel import extreme, worst_of
@@ -32,6 +31,7 @@ from ..evaluation.limits import UNLIMITED, LimitRow, MetricArrays, all_limits, m
 from ..evaluation.values import Values as Numbers
 from .evaluator import Evaluator, Point
 from .problem import BoxProblem, ParametricProblem, PointValues, Vector
+from .recorded_models import recorded_models
 
 Fault = Callable[[str, str, str], Diagnostic]
 """Function that builds the Diagnostic for a faulty variable, with the variable's line in the file.
@@ -226,7 +226,7 @@ class ActuatorProblem:
         if recorded is not None and known.keys() <= set(recorded.names):
             rows = recorded(self._inputs(points, known))
             return PointValues(rows[0], rows[1:])
-        return self._by_models(points, known, outputs)
+        return self.by_models(points, known, outputs)
 
     @property
     def models_run_by(self) -> str:
@@ -252,7 +252,7 @@ class ActuatorProblem:
             inputs[self.recorded.names.index(path)] = value
         return inputs
 
-    def _by_models(
+    def by_models(
         self,
         points: Array,
         parameters: Mapping[str, Array],
@@ -392,51 +392,10 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
     refusals, lenient = Refusals(metrics & plugin_names), replace(subject, lenient=True)
     required = None if plugin_names else metrics
     actuator = ActuatorProblem(lenient, goal, paths, rows, fixed, problem, required, refusals)
-    holder.append(actuator if plugin_names else _with_recording(actuator, numbers.read))
+    if not plugin_names:
+        actuator = replace(actuator, recorded=recorded_models(actuator, numbers.read))
+    holder.append(actuator)
     return holder[0]
-
-
-def _with_recording(actuator: ActuatorProblem, read: Collection[str]) -> ActuatorProblem:
-    """The problem with `recorded`: the models as a function of variables and positive numbers."""
-    count, known = len(actuator.paths), actuator.subject.numbers
-    others = sorted(p for p in read if p not in actuator.paths and known.get(p, 0.0) > 0)
-    names = (*actuator.paths, *others)
-
-    def rows(inputs: Array) -> Array:
-        numbers = dict(zip(names[count:], inputs[count:], strict=True))
-        values = actuator._by_models(inputs[:count], numbers)
-        xp = namespace(values.constraints)
-        objective = xp.broadcast_to(values.objective, (1, inputs.shape[1]))
-        return xp.concatenate([objective, values.constraints])
-
-    present = np.array([known[name] for name in names])
-    structure = _structure(actuator, frozenset(names))
-    return replace(actuator, recorded=RecordedFunction(rows, names, present, structure))
-
-
-def _structure(actuator: ActuatorProblem, inputs: Collection[str]) -> list[Any]:
-    """Data that determine the operations of the models; the numbers at `inputs` do not."""
-    subject, goal = actuator.subject, actuator.goal
-    words = [
-        (loc, value if number_of(value) is None else type(value).__name__)
-        for loc, _, value in leaves(subject.design)
-        if loc[0] not in ("name", "notes", "reproduces")
-    ]
-    materials = [
-        (name, material.kind, material.family, key, entry.argument, entry.points)
-        for name, material in subject.materials.items()
-        for key, entry in material.properties.items()
-    ]
-    rows = [
-        (row.limit_of.name, row.limit_of.metric, row.limit_of.sense, row.place, row.case_index)
-        for row in actuator.rows
-    ]
-    return [
-        words, materials, rows, actuator.paths, sorted(actuator.metrics or ()),
-        {path: value for path, value in subject.numbers.items() if path not in inputs},
-        sorted((*key, value) for key, value in subject.factors.items()),
-        dict(subject.reserves), goal.weights, goal.scales, goal.sign,
-    ]  # fmt: skip
 
 
 def idle_metrics(actuator: ActuatorProblem) -> tuple[str, ...]:

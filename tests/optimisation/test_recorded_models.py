@@ -73,13 +73,13 @@ def test_a_recorded_design_equals_its_models(name):
     points = np.concatenate([wide, near], axis=1)
     with np.errstate(all="ignore"):
         mine = rows(actuator.evaluate(points), 200)
-        theirs = rows(actuator._by_models(points, {}), 200)
+        theirs = rows(actuator.by_models(points, {}), 200)
         few = points[:, ::20]
         my_steps, their_steps = (
             rows(values, few.size).imag / STEP
             for values in (
                 actuator.evaluate(complex_steps(few)),
-                actuator._by_models(complex_steps(few), {}),
+                actuator.by_models(complex_steps(few), {}),
             )
         )
     np.testing.assert_allclose(mine, theirs, rtol=1e-11, atol=1e-11, equal_nan=True)

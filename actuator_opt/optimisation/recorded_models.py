@@ -1,0 +1,133 @@
+"""The models of a design as a recorded function of all numbers that they read.
+
+Designs with equal structure share a recording: the same keys, laws and limits, with other numbers,
+or with other materials that state the same properties. Inputs are therefore ordered by names in
+which a material is a number, in the order of its first use in the design.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+from itertools import chain
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..base.numeric import Array, namespace
+from ..base.symbolic.recorded import RecordedFunction
+from ..design.structure import leaves, number_of
+from ..evaluation import PreparedDesign
+
+if TYPE_CHECKING:
+    from .actuator import ActuatorProblem
+
+
+def recorded_models(actuator: ActuatorProblem, read: Collection[str]) -> RecordedFunction:
+    """Objective and margins (rows) as a recorded function.
+
+    Its inputs are the variables, the other numbers at the PATHs `read` unless zero, the knock-down
+    factors of strengths, and the tables of material properties.
+    """
+    subject, paths = actuator.subject, actuator.paths
+    neutral = _Neutral(subject)
+    numbers = sorted(
+        (path for path in read if path not in paths and subject.numbers.get(path)), key=neutral
+    )
+    factors = sorted(
+        (key for key, value in subject.factors.items() if value),
+        key=lambda key: (neutral(key[0]), *key[1:]),
+    )
+    tables = {
+        (name, key): [entry.value, *chain.from_iterable(entry.points)]
+        for name, material in subject.materials.items()
+        for key, entry in material.properties.items()
+        if entry.points and f"materials.{name}.{key}" in read
+    }
+    first, second = len(paths), len(paths) + len(numbers)
+    third = second + len(factors)
+
+    def rows(inputs: Array) -> Array:
+        varied, problem = dict(zip(numbers, inputs[first:second], strict=True)), actuator
+        further = inputs[second:]
+        if namespace(inputs) is not np or (further != present[second:, None]).any():
+            changed = dict(zip(factors, inputs[second:third], strict=True))
+            changed_subject = replace(subject, factors=dict(subject.factors) | changed)
+            changed_subject = _with_tables(changed_subject, tables, list(inputs[third:]))
+            problem = replace(actuator, subject=changed_subject)
+        values = problem.by_models(inputs[:first], varied)
+        xp = namespace(values.constraints)
+        objective = xp.broadcast_to(values.objective, (1, inputs.shape[1]))
+        return xp.concatenate([objective, values.constraints])
+
+    names = [*paths, *numbers, *map(str, factors)]
+    known = [subject.numbers[path] for path in (*paths, *numbers)]
+    known += [subject.factors[key] for key in factors]
+    for place, values in tables.items():
+        names += [f"{place} {k}" for k in range(len(values))]
+        known += values
+    present = np.array(known)
+    return RecordedFunction(rows, names, present, _structure(actuator, read, neutral))
+
+
+def _with_tables(
+    subject: PreparedDesign, tables: dict[tuple[str, str], list[float]], inputs: list[Array]
+) -> PreparedDesign:
+    """The design with the numbers of its material tables replaced by inputs, in order."""
+    materials, at = dict(subject.materials), 0
+    for (name, key), values in tables.items():
+        value, *points = inputs[at : at + len(values)]
+        at += len(values)
+        material = materials[name]
+        entry = replace(
+            material.properties[key],
+            value=value,
+            points=tuple(zip(points[::2], points[1::2], strict=True)),
+        )
+        materials[name] = replace(material, properties={**material.properties, key: entry})
+    return replace(subject, materials=materials)
+
+
+class _Neutral:
+    """Texts in which the name or label of a material is replaced by its number in the design."""
+
+    def __init__(self, subject: PreparedDesign) -> None:
+        self.replaced: dict[str, str] = {}
+        for number, (name, material) in enumerate(subject.materials.items()):
+            for text in (name, material.label):
+                if text:
+                    self.replaced.setdefault(text, f"material {number}")
+        self.texts = sorted(self.replaced, key=len, reverse=True)
+
+    def __call__(self, text: str) -> str:
+        for known in self.texts:
+            if known in text:
+                text = text.replace(known, self.replaced[known])
+        return text
+
+
+def _structure(actuator: ActuatorProblem, read: Collection[str], neutral: _Neutral) -> list[Any]:
+    """Data that determine the operations of the models, which read the numbers at PATHs `read`."""
+    subject, goal = actuator.subject, actuator.goal
+    words = [
+        (loc, neutral(str(value)) if number_of(value) is None else type(value).__name__)
+        for loc, _, value in leaves(subject.design)
+        if loc[0] not in ("name", "notes", "reproduces")
+    ]
+    materials = [
+        (number, material.kind, material.family, key, entry.argument, len(entry.points))
+        for number, material in enumerate(subject.materials.values())
+        for key, entry in sorted(material.properties.items())
+        if f"materials.{material.name}.{key}" in read
+    ]
+    rows = [
+        (row.limit_of.name, row.limit_of.metric, row.limit_of.sense, neutral(row.place),
+         row.case_index)
+        for row in actuator.rows
+    ]  # fmt: skip
+    zero = sorted(neutral(path) for path in read if subject.numbers.get(path) == 0)
+    none = [(neutral(key[0]), *key[1:]) for key, value in subject.factors.items() if not value]
+    return [
+        words, materials, rows, list(map(neutral, actuator.paths)), sorted(actuator.metrics or ()),
+        zero, sorted(none), dict(subject.reserves), goal.weights, goal.scales, goal.sign,
+    ]  # fmt: skip
