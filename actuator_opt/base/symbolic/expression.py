@@ -614,6 +614,16 @@ def _scaled(factor: Any) -> Callable[..., Any]:
     return lambda da: factor * da
 
 
+def is_steep_at_zero(node: Symbol) -> bool:
+    """Whether a node is a root whose derivative at zero counts as zero instead of infinite.
+
+    Nodes of exact graphs are not: their derivatives are those of NumPy.
+    """
+    if node.graph.truth is not None:
+        return False
+    return node.op == "sqrt" or (node.op == "pow" and 0 < node.args[1] < 1)
+
+
 def _steep(value: Any) -> Any:
     """Replace 0 by infinity, so that the derivative of a root is zero there instead of infinite."""
     return choose(less(0.0, value), value, math.inf)
