@@ -47,6 +47,11 @@ CHUNK = 200
 (our choice: few, because the samples after a change are discarded)."""
 
 
+LONGER = 4
+"""Factor on this number after every check without a change (our choice: a method that restarts
+takes short steps at first, and LSODA may miss that the equations are stiff)."""
+
+
 MOST = 100_000
 """Maximum number of integration steps between two samples."""
 
@@ -505,9 +510,9 @@ def _segment(
 ) -> tuple[Array, tuple[bool, ...]]:
     """Integrate between two jumps of the inputs; store only the samples marked in `is_stored`."""
     first, last = len(run.compiled.instants), len(times) - 1
-    begin, start, store_first = 0, float(times[0]), True
+    begin, start, store_first, length = 0, float(times[0]), True, CHUNK
     while begin < last:
-        end = min(begin + CHUNK, last)
+        end = min(begin + length, last)
         section = np.concatenate(([start], times[begin + 1 : end + 1]))
         stored = np.concatenate(([store_first], is_stored[begin + 1 : end + 1]))
         section, sampled_states, change = _section_to_change(run, section, y, m)
@@ -523,6 +528,7 @@ def _segment(
                 bool(is_stored[end]),
                 end,
             )
+            length *= LONGER
             continue
         k, time, state, switch = change
         before = np.flatnonzero(stored[: k + 1] & (section[: k + 1] < time))
@@ -533,7 +539,7 @@ def _segment(
         if len(run.events) > MOST_CHANGES:
             remedy = "increase the damping of the component that switches"
             raise Stuck(time, state, f"{name} switches back and forth endlessly", remedy)
-        y, start, store_first = state, time, True
+        y, start, store_first, length = state, time, True, CHUNK
         begin += k + (time >= times[begin + k + 1])
     return y, m
 

@@ -56,10 +56,10 @@ class Equations:
     ) -> None:
         self.time, self.states, self.flags = time, tuple(states), tuple(flags)
         self.outputs = tuple(outputs)
-        nodes = {node.index: node for node in needed(self.outputs)}
-        tables = [node for node in nodes.values() if node.op == "table"]
-        self._tables = [node.graph.tables[node.args[0]] for node in tables]
-        self._columns = [k for k, state in enumerate(self.states, 1) if state.index in nodes]
+        looked_up, tables = time.graph.tables, []
+        if looked_up:
+            tables = [node for node in needed(self.outputs) if node.op == "table"]
+        self._tables = [looked_up[node.args[0]] for node in tables]
         self._program: Program | None = None
         if programs.AVAILABLE:
             inputs = [time, *self.states, *self.flags, *tables]
@@ -97,17 +97,20 @@ class Equations:
         point = np.zeros(size + len(m) + len(tables))
         point[size : size + len(m)] = m
 
-        def looked_up(function: Callable[[float, Array], Array]) -> Callable[[float, Array], Array]:
+        used = {node.index for node in needed(self.outputs)}
+        columns = [k for k, state in enumerate(self.states, 1) if state.index in used]
+
+        def with_tables(of: Callable[[float, Array], Array]) -> Callable[[float, Array], Array]:
             def at(t: float, y: Array) -> Array:
                 for k, table in enumerate(tables, size + len(m)):
                     point[k] = table(t)
-                return function(t, y)
+                return of(t, y)
 
-            return at if tables else function
+            return at if tables else of
 
         return PointFunctions(
-            looked_up(program.repeated(point, size - 1)),
-            looked_up(program.repeated(point, size - 1, self._columns)),
+            with_tables(program.repeated(point, size - 1)),
+            with_tables(program.repeated(point, size - 1, columns)),
             lambda: point[:size],
         )
 

@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
 from functools import partial
+from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any, Final, TypeAlias
 
@@ -220,7 +221,7 @@ class Graph:
 
     def node(self, op: str, args: tuple[Any, ...]) -> Symbol:
         """Node of an operation; equal operands give the same node."""
-        key = (op, *(("#", a.index) if isinstance(a, Symbol) else a for a in args))
+        key = (op, *args)
         symbol = self.known.get(key)
         if symbol is None:
             symbol = Symbol(self, op, args, len(self.nodes), bounds(op, args))
@@ -567,7 +568,7 @@ def needed(outputs: Sequence[Any], known: Iterable[Symbol] = ()) -> list[Symbol]
             seen.add(node.index)
             symbols.append(node)
             stack.extend(node.operands)
-    return sorted(symbols, key=lambda node: node.index)
+    return sorted(symbols, key=attrgetter("index"))
 
 
 xp = Namespace
