@@ -221,7 +221,7 @@ class Graph:
 
     def node(self, op: str, args: tuple[Any, ...]) -> Symbol:
         """Node of an operation; equal operands give the same node."""
-        key = (op, *args)
+        key = (op, *(("#", a.index) if isinstance(a, Symbol) else a for a in args))
         symbol = self.known.get(key)
         if symbol is None:
             symbol = Symbol(self, op, args, len(self.nodes), bounds(op, args))
