@@ -27,4 +27,6 @@ settings.load_profile("house")
 # No test writes into a person's own folders, nor does a process that a test starts.
 _RUNS = tempfile.TemporaryDirectory(prefix="actuator-opt-runs-")
 os.environ["ACTUATOR_OPT_RUNS"] = _RUNS.name
+_PROGRAMS = tempfile.TemporaryDirectory(prefix="actuator-opt-programs-")
+os.environ["ACTUATOR_OPT_PROGRAMS"] = _PROGRAMS.name
 os.environ.pop("ACTUATOR_OPT_NO_RECORD", None)

@@ -93,6 +93,7 @@ def doctor(
         findings.append(Finding("folder", "runs", "ok", "no runs are recorded"))
     else:
         findings.append(_folder("runs", Path(runs), "set ACTUATOR_OPT_RUNS to another folder"))
+    findings.append(_programs())
     if terminal:
         findings.append(Finding("terminal", "output", "ok", terminal))
     return Installation((*findings, _machine(), _compiled()))
@@ -232,6 +233,19 @@ def _folder(name: str, folder: Path, remedy: str) -> Finding:
     return Finding("folder", name, "ok", f"{folder.absolute()}{remark}")
 
 
+def _programs() -> Finding:
+    from ..base.symbolic.program_store import FOLDER, folder
+
+    place, remedy = folder(), f"set {FOLDER} to another folder"
+    if place is None:
+        return Finding("folder", "recorded models", "ok", "none are stored")
+    finding = _folder("recorded models", place, remedy)
+    if finding.status == "ok":
+        return finding
+    words = f"not stored, so each run records anew: {finding.value}"
+    return Finding("folder", "recorded models", "missing", words, remedy)
+
+
 def _machine() -> Finding:
     try:
         usable = len(os.sched_getaffinity(0))
@@ -245,8 +259,8 @@ def _compiled() -> Finding:
     from ..base.symbolic.program import AVAILABLE
 
     if AVAILABLE:
-        return Finding("machine", "recorded models", "ok", "the compiled program runs them")
-    words = "NumPy runs the models: there was no C compiler at installation"
+        return Finding("machine", "recorded models", "ok", "run by the compiled program")
+    words = "run by NumPy: there was no C compiler at installation"
     remedy = f"install {_NAME} again with a C compiler"
     return Finding("machine", "recorded models", "missing", words, remedy)
 

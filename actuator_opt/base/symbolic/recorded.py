@@ -1,61 +1,43 @@
-"""Functions of many inputs that record themselves once and are then run by the machine.
+"""Functions of many inputs that are recorded once and then run by a small virtual machine.
 
-The function is called with symbols in place of numbers; every operation becomes an instruction. A
-branch that depends on values is recorded as a guard: points that would take the other branch go
-through the function itself. The recording is checked against the function before it is used.
+The function is called with symbols in place of numbers; every operation becomes an instruction of
+the virtual machine ("machine" for short, see `program`). A branch that depends on values is
+recorded as a guard: points that would take the other branch go through the function itself. The
+recording is checked against the function before it is used.
 """
 
 from __future__ import annotations
 
 import gc
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
-from ..dataclass import dataclass
 from ..numeric import STEP, Array
-from . import program as programs
+from . import program as programs, program_store
 from .arrays import Recorder, elements
-from .program import Program
+from .program_store import MOST_RECORDINGS, Recording
 
-PATIENCE = 4.0
-"""Work of calls after which a recording pays, where a call is 1 and each of its points is 0.01 (our
-choice: recording costs as much as some 40 calls, and a search makes hundreds)."""
-RECORDINGS = 3
-"""Largest number of recordings at different branches."""
 FEW = 20
-"""Number of points outside the recorded branches before their share is judged."""
+"""Number of points with unrecorded branches, above which a function may be recorded again."""
 OFTEN = 0.25
-"""Share of points outside the recorded branches that calls for a new recording."""
+"""A function is recorded again if also more than this share of all points took such branches."""
 AGREEMENT = 1e-9
-"""Largest difference of a checked recording, relative to a value or to 1."""
-
-
-@dataclass(frozen=True, slots=True)
-class Recording:
-    """A program whose last outputs are guards, with the answers for which it holds."""
-
-    program: Program
-    answers: Array
-
-    @property
-    def rows(self) -> int:
-        """Number of results, without the guards."""
-        return len(self.program.outputs) - len(self.answers)
-
-    def holds(self, results: Array) -> Array:
-        """Whether each point (points, outputs) takes the recorded branches."""
-        return ((results[:, self.rows :] != 0) == self.answers).all(axis=1)
+"""Largest permitted difference between a recording and its function, divided by the value (or by 1
+if the value is smaller)."""
 
 
 class RecordedFunction:
-    """A function of points (inputs, k), real or complex, with results (rows, k).
+    """A function of k points (inputs, k), real or complex, that returns results (rows, k).
 
     Parameters
     ----------
     function : accepts NumPy arrays and arrays of symbols
     names : label of every input
     present : present value of every input (inputs,)
+    structure : JSON data that determine the operations of the function, so that its recordings can
+        be stored for later runs; None: they are not stored
 
     Attributes
     ----------
@@ -67,25 +49,23 @@ class RecordedFunction:
         function: Callable[[Array], Array],
         names: Sequence[str],
         present: Array,
+        structure: Any = None,
     ) -> None:
         self.function = function
         self.names = tuple(names)
         self.present = present
+        self.structure = structure
         self.reason = "" if programs.AVAILABLE else "the machine was not built at installation"
         self.recording: Recording | None = None
         self.recordings = 0
-        self.work = 0.0
         self.points = 0
         self.outside = 0
 
     def __call__(self, points: Array) -> Array:
-        """Results (rows, k) at points (inputs, k), by the machine once that pays."""
+        """Results (rows, k) at points (inputs, k), by the machine if it can be recorded."""
         if self.reason:
             return self.function(points)
         if self.recording is None:
-            self.work += 1 + points.shape[1] / 100
-            if self.work <= PATIENCE:
-                return self.function(points)
             self._record(self.present)
             if self.recording is None:
                 return self.function(points)
@@ -110,7 +90,7 @@ class RecordedFunction:
         return rows
 
     def _slopes(self, points: Array) -> Array:
-        """Results with their complex steps; columns with equal real parts share their values."""
+        """Results with their complex steps; points with equal real parts are evaluated together."""
         assert self.recording is not None
         real, steps = points.real, points.imag / STEP
         new = np.append(True, (real[:, 1:] != real[:, :-1]).any(axis=0))
@@ -129,7 +109,7 @@ class RecordedFunction:
         return rows
 
     def _complete(self, points: Array, rows: Array, holds: Array) -> None:
-        """Compute the columns outside the recorded branches; record again if they are many."""
+        """Call the function at points outside the recorded branches; record again if many."""
         self.points += len(holds)
         if holds.all():
             return
@@ -143,10 +123,18 @@ class RecordedFunction:
         """Record the function at a point (inputs,), and check it there and nearby."""
         self.recording = None
         self.points = self.outside = 0
-        if self.recordings >= RECORDINGS:
+        if self.recordings >= MOST_RECORDINGS:
             self.reason = "its branches differ between designs"
             return
         self.recordings += 1
+        points = np.stack([point, point * (1 + 1e-3)], axis=1)
+        with np.errstate(all="ignore"):
+            expected = self.function(points)
+        key = "" if self.structure is None else program_store.key_of([self.names, self.structure])
+        for stored in program_store.read(key) if key else ():
+            if _agrees(stored, points, expected):
+                self.recording = stored
+                return
         collecting = gc.isenabled()
         gc.disable()  # a recording makes many small objects, none of which can be freed
         try:
@@ -157,10 +145,12 @@ class RecordedFunction:
         finally:
             if collecting:
                 gc.enable()
-        if self._agrees(recording, point):
-            self.recording = recording
-        else:
+        if not _agrees(recording, points, expected):
             self.reason = "the recording differs from the models"
+            return
+        self.recording = recording
+        if key:
+            program_store.write(key, recording)
 
     def _traced(self, point: Array) -> Recording:
         """The program of the function, with the branches taken at a point (inputs,)."""
@@ -171,14 +161,21 @@ class RecordedFunction:
         written = programs.program(elements(symbols), [*results, *recorder.guards])
         return Recording(written, np.array(list(recorder.guards.values()), dtype=bool))
 
-    def _agrees(self, recording: Recording, point: Array) -> bool:
-        """Whether the recording equals the function at a point and at one nearby."""
-        points = np.stack([point, point * (1 + 1e-3)], axis=1)
+
+def _agrees(recording: Recording, points: Array, expected: Array) -> bool:
+    """Whether a recording agrees with the results `expected` (rows, k) at points (inputs, k).
+
+    It must hold at the first of the points; the others count if it holds there.
+    """
+    if recording.program.inputs != len(points) or recording.rows != len(expected):
+        return False
+    try:
         with np.errstate(all="ignore"):
-            expected = self.function(points)
             results = recording.program.values(points.T)
-        rows = results[:, : recording.rows].T[:, (holds := recording.holds(results))]
-        return bool(holds[0]) and same(rows, expected[:, holds])
+    except ValueError:  # damaged
+        return False
+    rows = results[:, : recording.rows].T[:, (holds := recording.holds(results))]
+    return bool(holds[0]) and same(rows, expected[:, holds])
 
 
 def same(first: Array, second: Array) -> bool:
