@@ -6,12 +6,15 @@ The servo knee follows two steps in 5 s against LuGre friction, told at 2000 sam
 from __future__ import annotations
 
 import math
+import statistics
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import actuator_opt as ao
+from actuator_opt.base.symbolic import program
 from actuator_opt.design.scenario.model import Scenario
 from actuator_opt.models.loop import ControllerGains
 from actuator_opt.simulation.assemble import assemble
@@ -70,6 +73,26 @@ def test_integrating(benchmark, compiled, method, rounds):
     )
     benchmark.extra_info["evaluations"] = found.evaluations
     assert np.ptp(found.states[0]) == pytest.approx(0.03, rel=0.01)
+
+
+def test_the_machine_against_generated_python(benchmark, knee, monkeypatch):
+    """Equations and motion: without the machine they take at least 2 times as long; in pairs."""
+
+    def solved(*, by_machine):
+        monkeypatch.setattr(program, "AVAILABLE", by_machine)
+        begin = time.process_time()
+        found = integrate(assemble(SCENE, knee, {}, GAINS).system.compiled(), **RUN)
+        return time.process_time() - begin, found
+
+    pairs = [(solved(by_machine=True), solved(by_machine=False)) for _ in range(15)]
+    ratio = statistics.median(python[0] / own[0] for own, python in pairs)
+    best = 1e3 * min(own[0] for own, _ in pairs)
+    benchmark.extra_info |= {"ratio": ratio, "milliseconds": best}
+    benchmark.pedantic(lambda: solved(by_machine=True), rounds=5)
+    print(f"\n5 s LuGre servo: {best:.1f} ms; generated Python takes {ratio:.1f} times as long")
+    (_, own), (_, python) = pairs[0]
+    assert own.states[0, -1] == pytest.approx(python.states[0, -1], abs=1e-7)
+    assert ratio >= 2.0
 
 
 def test_running_cvodes_once_built(benchmark, compiled, monkeypatch):

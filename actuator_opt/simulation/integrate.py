@@ -20,6 +20,7 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import field
+from functools import cache
 from types import FrameType
 from typing import Any, Final, Literal
 
@@ -30,6 +31,7 @@ from ..base.errors import Diagnostic, InputError, Unsolvable
 from ..base.numeric import Array
 from ..base.progress import tell
 from ..base.symbolic import Symbol
+from ..base.symbolic.equations import PointFunctions
 from ..base.symbolic.expression import needed
 from .system import Compiled
 
@@ -43,6 +45,11 @@ RELATIVE: Final = {"lsoda": 1e-6, "radau": 1e-8, "cvodes": 1e-7}
 CHUNK = 200
 """Number of samples after which the integration checks whether a switch of the model has changed
 (our choice: few, because the samples after a change are discarded)."""
+
+
+LONGER = 4
+"""Factor on this number after every check without a change (our choice: a method that restarts
+takes short steps at first, and LSODA may miss that the equations are stiff)."""
 
 
 MOST = 100_000
@@ -81,6 +88,12 @@ def _reason(error: Exception) -> str:
     return f"the equations cannot be evaluated ({error})"
 
 
+def _stuck(rates: PointFunctions, message: str) -> Stuck:
+    """Error of an integration that fails at the point where the rates were computed last."""
+    time, *state = rates.latest().tolist()
+    return Stuck(time, np.array(state), message, REMEDY)
+
+
 def _longest(compiled: Compiled, times: Array) -> float:
     """Longest step that does not skip samples of the input records; 0 for no limit."""
     bends = compiled.bends
@@ -95,28 +108,24 @@ def lsoda(compiled: Compiled, relative: float, evaluations: list[int]) -> Advanc
     """Integration by LSODA; Radau takes over sections whose stiffness LSODA misses."""
     from scipy.integrate import ODEintWarning, odeint
 
-    latest: list[Any] = [0.0, compiled.initial]
     stiff = radau(compiled, relative, evaluations)
-
-    def rates(t: float, y: Array, m: tuple[bool, ...]) -> list[float]:
-        latest[:] = t, y
-        return compiled.rates(t, y, m)
+    at_point = cache(compiled.rates.at_point)
 
     def advance(times: Array, y: Array, m: tuple[bool, ...], max_steps: int) -> Array:
-        latest[:] = float(times[0]), y
+        rates = at_point(m)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ODEintWarning)
             try:
                 states, report = odeint(
-                    rates, y, times, args=(m,), Dfun=compiled.slopes, tfirst=True,
+                    rates.values, y, times, Dfun=rates.slopes, tfirst=True,
                     rtol=relative, atol=compiled.tolerances, mxstep=max_steps, full_output=True,
                     hmax=_longest(compiled, times), tcrit=times[-1:],
                 )  # fmt: skip
             except (ArithmeticError, ValueError) as error:
-                raise Stuck(latest[0], latest[1], _reason(error), REMEDY) from None
+                raise _stuck(rates, _reason(error)) from None
         if report["message"] != "Integration successful.":
             if max_steps < MOST:
-                raise Stuck(latest[0], latest[1], "no time step is small enough", REMEDY)
+                raise _stuck(rates, "no time step is small enough")
             # near rest LSODA may miss that the equations are stiff
             return stiff(times, y, m, max_steps)
         evaluations[0] += int(report["nfe"][-1])
@@ -129,26 +138,23 @@ def radau(compiled: Compiled, relative: float, evaluations: list[int]) -> Advanc
     """Integration by Radau, an implicit method of order five."""
     from scipy.integrate import solve_ivp
 
-    latest: list[Any] = [0.0, compiled.initial]
+    at_point = cache(compiled.rates.at_point)
 
     def advance(times: Array, y: Array, m: tuple[bool, ...], max_steps: int) -> Array:
-        def rates(t: float, y: Array) -> list[float]:
-            latest[:] = t, y
-            return compiled.rates(t, y, m)
-
+        rates = at_point(m)
         try:
             with np.errstate(all="ignore"):
                 solution = solve_ivp(
-                    rates, (times[0], times[-1]), y, method="Radau", t_eval=times,
-                    rtol=relative, atol=0.01 * compiled.tolerances,
-                    jac=lambda t, y: compiled.slopes(t, y, m),
+                    lambda t, y: np.array(rates.values(t, y)), (times[0], times[-1]), y,
+                    method="Radau", t_eval=times, rtol=relative, atol=0.01 * compiled.tolerances,
+                    jac=lambda t, y: rates.slopes(t, y).copy(),
                     max_step=_longest(compiled, times) or np.inf,
                 )  # fmt: skip
         except (ArithmeticError, ValueError) as error:
-            raise Stuck(latest[0], latest[1], _reason(error), REMEDY) from None
+            raise _stuck(rates, _reason(error)) from None
         evaluations[0] += int(solution.nfev)
         if not solution.success:
-            raise Stuck(latest[0], latest[1], "no time step is small enough", REMEDY)
+            raise _stuck(rates, "no time step is small enough")
         return _checked(times, solution.y.T)
 
     return advance
@@ -487,8 +493,9 @@ def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> 
     instants = tuple(t + APART >= instant for instant in compiled.instants)
     if before:
         return instants + before[len(instants) :]
-    guards = _at_switches(compiled, compiled.guards, np.array([t]), y[None], ())
-    return instants + tuple(guards[:, 0] > 0)
+    off = (False,) * len(compiled.system.switches)
+    at_start = compiled.switches.at_samples(np.array([t]), y[:, None], instants + off)
+    return instants + tuple((at_start[: len(off), 0] > 0).tolist())
 
 
 def _margins(run: _Run, t: Array, states: Array, m: tuple[bool, ...]) -> tuple[Array, Array]:
@@ -497,25 +504,8 @@ def _margins(run: _Run, t: Array, states: Array, m: tuple[bool, ...]) -> tuple[A
     Both have the sign for which the guard is positive until the switch changes next.
     """
     signs = np.where(m[len(run.compiled.instants) :], 1.0, -1.0)[:, None]
-    margin = _at_switches(run.compiled, run.compiled.guards, t, states, m) * signs
-    return margin, _at_switches(run.compiled, run.compiled.guard_rates, t, states, m) * signs
-
-
-def _at_switches(
-    compiled: Compiled,
-    of_switches: Callable[[Array, Array, tuple[Array, ...]], list[Array]],
-    t: Array,
-    states: Array,
-    m: tuple[bool, ...],
-) -> Array:
-    """Guard expression of every switch, or its rate, at all samples; array (switches, samples)."""
-    count = len(compiled.system.switches)
-    if not count:
-        return np.empty((0, len(t)))
-    flags = m or (False,) * (len(compiled.instants) + count)
-    return np.array(
-        [np.broadcast_to(values, t.shape) for values in of_switches(t, states.T, flags)]
-    )
+    margin, slope = np.split(run.compiled.switches.at_samples(t, states.T, m), 2)
+    return margin * signs, slope * signs
 
 
 def _segment(
@@ -523,9 +513,9 @@ def _segment(
 ) -> tuple[Array, tuple[bool, ...]]:
     """Integrate between two jumps of the inputs; store only the samples marked in `is_stored`."""
     first, last = len(run.compiled.instants), len(times) - 1
-    begin, start, store_first = 0, float(times[0]), True
+    begin, start, store_first, length = 0, float(times[0]), True, CHUNK
     while begin < last:
-        end = min(begin + CHUNK, last)
+        end = min(begin + length, last)
         section = np.concatenate(([start], times[begin + 1 : end + 1]))
         stored = np.concatenate(([store_first], is_stored[begin + 1 : end + 1]))
         section, sampled_states, change = _section_to_change(run, section, y, m)
@@ -541,6 +531,7 @@ def _segment(
                 bool(is_stored[end]),
                 end,
             )
+            length *= LONGER
             continue
         k, time, state, switch = change
         before = np.flatnonzero(stored[: k + 1] & (section[: k + 1] < time))
@@ -551,7 +542,7 @@ def _segment(
         if len(run.events) > MOST_CHANGES:
             remedy = "increase the damping of the component that switches"
             raise Stuck(time, state, f"{name} switches back and forth endlessly", remedy)
-        y, start, store_first = state, time, True
+        y, start, store_first, length = state, time, True, CHUNK
         begin += k + (time >= times[begin + k + 1])
     return y, m
 

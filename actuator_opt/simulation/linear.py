@@ -13,7 +13,8 @@ from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..base.numeric import Array
 from ..base.quantities import INPUTS
-from ..base.symbolic import function, jacobian
+from ..base.symbolic import Equations
+from ..base.symbolic.equations import PointFunctions
 from ..design.scenario.kinds import Records
 from ..design.scenario.model import Controller, Scenario, SignalSegment
 from ..models.loop import ControllerGains, margin_rules, ziegler_nichols
@@ -124,9 +125,8 @@ class Linear:
     names: tuple[str, ...]
     initial: Array
     scale: Array
-    slopes: Callable[..., list[float]]
-    rates: Callable[..., list[float]]
-    flags: tuple[bool, ...]
+    functions: PointFunctions
+    """Rates of the states and the measured value, as functions of the states and the signal."""
 
     @classmethod
     def of(cls, circuit: Circuit) -> Linear:
@@ -138,17 +138,15 @@ class Linear:
         states = [state for state in system.states if not state.integral]
         symbols = [state.symbol for state in states]
         u = system.graph.variable("u")
-        rates = [state.rate for state in states]
-        rows = jacobian([*rates, circuit.measured], [*symbols, u])
-        unpack = system.unpack(symbols, "y")
+        flags = [system.graph.flag(name) for name in system.flags]
+        outputs = [*(state.rate for state in states), circuit.measured]
+        equations = Equations(system.time, [*symbols, u], flags, outputs)
         return cls(
             circuit=circuit,
             names=tuple(state.name for state in states),
             initial=np.array([state.initial for state in states]),
             scale=np.array([state.tolerance for state in states]),
-            slopes=function("slopes", "t, y, u, m", unpack, [x for row in rows for x in row]),
-            rates=function("rates", "t, y, u, m", unpack, rates),
-            flags=(False,) * len(system.flags),
+            functions=equations.at_point((False,) * len(flags)),
         )
 
     def loop(self, state: Array, signal: float) -> OpenLoop:
@@ -160,9 +158,7 @@ class Linear:
 
     def _table(self, state: Array, signal: float) -> Array:
         """Derivatives of the rates and of the measured value with respect to states and signal."""
-        size = len(state) + 1
-        flat = self.slopes(0.0, state.tolist(), signal, self.flags)
-        return np.array(flat).reshape(size, size)
+        return self.functions.slopes(0.0, np.append(state, signal)).copy()
 
     def about(self, **states: float) -> LoopsAtPoint:
         """Open loops for both spool directions; the valve holds the load at the given states.
@@ -221,7 +217,7 @@ class Linear:
 
         def residual(x: Array) -> Array:
             y, u = point(x)
-            return np.array(self.rates(0.0, y.tolist(), u, self.flags))[balanced] / unit
+            return np.array(self.functions.values(0.0, np.append(y, u)))[balanced] / unit
 
         def slopes(x: Array) -> Array:
             return self._table(*point(x))[np.ix_(balanced, columns)] * size / unit[:, None]

@@ -11,7 +11,6 @@ from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, Unsolvable
 from ..base.numeric import Array
 from ..base.quantities import RESULTS, Quantity
-from ..base.symbolic import vectorised
 from ..base.tables import Displayed
 from ..design.scenario.kinds import SHAPES, Records
 from ..design.scenario.model import Scenario, SignalSegment
@@ -22,7 +21,7 @@ from .components.circuit import Circuit, Loop, acts_after, frequencies, loop_of
 from .harmonic import dynamic_stiffness_of_record, windows
 from .integrate import LAST, Event, Stuck, Trajectory
 from .linear import StepMetrics, Tuned, step_metrics
-from .system import Compiled, System
+from .system import Compiled
 
 
 @dataclass(frozen=True, slots=True)
@@ -531,12 +530,13 @@ def balance(circuit: Circuit, run: Trajectory) -> Balance:
     def integral(symbol: object) -> Array:
         return run.states[at[symbol.index]]  # type: ignore[attr-defined]
 
-    contents = _values(system, [value for _, value, _ in audit.mass], run)
+    audited = [value for _, value, _ in audit.mass] + [value for _, value in audit.stored]
+    values = system.equations(audited).at_samples(run.time, run.states, run.flags)
+    contents, stored = values[: len(audit.mass)], values[len(audit.mass) :]
     mass = 0.0
     for (_, _, inflow), content in zip(audit.mass, contents, strict=True):
         imbalance = content - content[0] - integral(inflow)
         mass = max(mass, float(np.max(np.abs(imbalance)) / np.max(np.abs(content))))
-    stored = _values(system, [value for _, value in audit.stored], run)
     changes: dict[str, Array] = {}
     for (name, _), value in zip(audit.stored, stored, strict=True):
         changes[name] = changes.get(name, 0.0) + value - value[0]
@@ -552,15 +552,6 @@ def balance(circuit: Circuit, run: Trajectory) -> Balance:
         flows=tuple(EnergyFlow(name, float(value[-1])) for name, value in energies.items()),
         stored=tuple(EnergyFlow(name, float(value[-1])) for name, value in changes.items()),
     )
-
-
-def _values(system: System, expressions: list[object], run: Trajectory) -> list[Array]:
-    """Values of some expressions at every sample; expressions are functions of the states."""
-    unpack = system.unpack([state.symbol for state in system.states], "y")
-    values = vectorised("stored", "t, y, m", unpack, expressions)(
-        run.time, run.states, tuple(run.flags)
-    )
-    return [np.broadcast_to(np.asarray(value, float), run.time.shape) for value in values]
 
 
 EXPLAINING = ("position", "speed", "shaft_speed", "pressure_a", "pressure_b", "pressure_supply")

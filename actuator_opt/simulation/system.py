@@ -10,7 +10,7 @@ expression, the guard of the switch, is positive.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import field
 from typing import Any
 
@@ -19,7 +19,7 @@ import numpy as np
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, clip, where
 from ..base.quantities import Quantity
-from ..base.symbolic import Expression, Graph, Namespace, Symbol, function, jacobian, vectorised
+from ..base.symbolic import Equations, Expression, Graph, Namespace, Symbol, jacobian
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 
 LOOSE = 1e-4
@@ -167,11 +167,10 @@ class System:
             switch.flag for switch in self.switches
         ]
 
-    def unpack(self, symbols: Sequence[Symbol], states: str) -> dict[str, str]:
-        """Generate code that reads states from the argument `states`, and flags from ``m``."""
-        names = ", ".join(str(symbol.args[0]) for symbol in symbols)
-        flags = ", ".join(self.flags)
-        return ({f"{names},": states} if names else {}) | ({f"{flags},": "m"} if flags else {})
+    def equations(self, outputs: Sequence[Expression]) -> Equations:
+        """Outputs as functions of time, states and flags."""
+        flags = [self.graph.flag(name) for name in self.flags]
+        return Equations(self.time, [state.symbol for state in self.states], flags, outputs)
 
     def compiled(self) -> Compiled:
         """The equations as functions of time, states and flags."""
@@ -180,21 +179,17 @@ class System:
 
 @dataclass(frozen=True, slots=True)
 class Compiled:
-    """Functions ``f(t, y, m)`` of a system: t is the time, y the states, m the flags.
+    """Equations of a system, as functions of time, states and flags.
 
     The flags are in the order of the `instants`, followed by the switches.
     """
 
     system: System
-    rates: Callable[[float, Array, tuple[bool, ...]], list[float]]
-    slopes: Callable[[float, Array, tuple[bool, ...]], Array]
-    """Jacobian of the rates, row by row."""
-    guards: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
-    """Guards of all switches at many samples; y has a row per state and a column per sample."""
-    guard_rates: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
-    """Time derivatives of the guards."""
-    signal_values: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
-    """Values of all signals at many samples."""
+    rates: Equations
+    """Time derivatives of the states."""
+    switches: Equations
+    """Guards of all switches, followed by their time derivatives."""
+    signal_values: Equations
     initial: Array
     tolerances: Array
     instants: tuple[float, ...]
@@ -203,31 +198,13 @@ class Compiled:
 
     @classmethod
     def of(cls, system: System) -> Compiled:
-        """Build the functions: differentiate the expressions, generate code and compile it."""
-        symbols = [state.symbol for state in system.states]
-        rates = [state.rate for state in system.states]
-        scalar, many = (system.unpack(symbols, states) for states in ("y.tolist()", "y"))
-        entries = [x for row in jacobian(rates, symbols) for x in row]
-        filled = np.array([k for k, x in enumerate(entries) if isinstance(x, Symbol) or x], int)
-        flat = function("jacobian", "t, y, m", scalar, [entries[k] for k in filled])
-        size = len(symbols)
-
-        def slopes(t: float, y: Array, m: tuple[bool, ...]) -> Array:
-            values = np.zeros(size * size)
-            values[filled] = flat(t, y, m)
-            return values.reshape(size, size)
-
+        """Write the programs of the equations."""
+        guards = [switch.guard for switch in system.switches]
         return cls(
             system=system,
-            rates=function("rates", "t, y, m", scalar, rates),
-            slopes=slopes,
-            guards=vectorised(
-                "guards", "t, y, m", many, [switch.guard for switch in system.switches]
-            ),
-            guard_rates=vectorised("guard_rates", "t, y, m", many, _guard_rates(system)),
-            signal_values=vectorised(
-                "signals", "t, y, m", many, [signal.value for signal in system.signals]
-            ),
+            rates=system.equations([state.rate for state in system.states]),
+            switches=system.equations([*guards, *_guard_rates(system)]),
+            signal_values=system.equations([signal.value for signal in system.signals]),
             initial=np.array([state.initial for state in system.states]),
             tolerances=np.array([state.tolerance for state in system.states]),
             instants=tuple(instant.time for instant in system.instants),
@@ -236,12 +213,9 @@ class Compiled:
 
     def signals(self, t: Array, y: Array, m: Sequence[Array]) -> dict[str, Array]:
         """Values of every signal at samples; y has one row per state, m one per flag."""
-        with np.errstate(all="ignore"):
-            values = self.signal_values(t, y, tuple(m))
-        return {
-            signal.name: np.broadcast_to(np.asarray(value, dtype=float), np.shape(t)).copy()
-            for signal, value in zip(self.system.signals, values, strict=True)
-        }
+        values = self.signal_values.at_samples(t, y, m)
+        names = (signal.name for signal in self.system.signals)
+        return dict(zip(names, values, strict=True))
 
 
 def _below(state: Symbol) -> Expression:

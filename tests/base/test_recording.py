@@ -330,6 +330,8 @@ def test_a_damaged_program_is_refused_or_harmless(data):
     for attempt in (
         lambda: broken.values(np.ones((40, 4))),
         lambda: broken.slopes(np.ones((2, 4)), np.ones((2, 4, 3))),
+        lambda: broken.repeated(np.ones(4), 3)(1.0, np.ones(3)),
+        lambda: broken.repeated(np.ones(4), 3, [1, 3])(1.0, np.ones(3)),
     ):
-        with suppress(ValueError, IndexError):  # refused, or an output beyond all slots
+        with suppress(ValueError, IndexError, FloatingPointError):  # refused, or no finite value
             attempt()

@@ -5,6 +5,9 @@ formula as an expression. The expression is then turned into plain Python (`code
 exactly (`derivative`), or passed to another engine.
 """
 
+from .equations import Equations
 from .expression import Expression, Graph, Namespace, Symbol, function, jacobian, vectorised
 
-__all__ = ["Expression", "Graph", "Namespace", "Symbol", "function", "jacobian", "vectorised"]
+__all__ = [
+    "Equations", "Expression", "Graph", "Namespace", "Symbol", "function", "jacobian", "vectorised",
+]  # fmt: skip

@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
 from functools import partial
+from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any, Final, TypeAlias
 
@@ -570,7 +571,7 @@ def needed(outputs: Sequence[Any], known: Iterable[Symbol] = ()) -> list[Symbol]
             seen.add(node.index)
             symbols.append(node)
             stack.extend(node.operands)
-    return sorted(symbols, key=lambda node: node.index)
+    return sorted(symbols, key=attrgetter("index"))
 
 
 xp = Namespace
@@ -615,6 +616,16 @@ def _slopes(node: Symbol, known: dict[int, Slopes]) -> Slopes:
 
 def _scaled(factor: Any) -> Callable[..., Any]:
     return lambda da: factor * da
+
+
+def is_steep_at_zero(node: Symbol) -> bool:
+    """Whether a node is a root whose derivative at zero counts as zero instead of infinite.
+
+    Nodes of exact graphs are not: their derivatives are those of NumPy.
+    """
+    if node.graph.truth is not None:
+        return False
+    return node.op == "sqrt" or (node.op == "pow" and 0 < node.args[1] < 1)
 
 
 def _steep(value: Any) -> Any:

@@ -546,9 +546,139 @@ static PyObject *follow_slots(PyObject *self, PyObject *args) {
     Py_RETURN_NONE;
 }
 
+/* ---- a program that is called again and again, as an integrator does ---- */
+
+typedef struct {
+    PyObject_HEAD
+    PyObject *returned;       /* array of the results, which every call overwrites */
+    Py_buffer view[8];
+    Program p;
+    double *V, *D, *point, *results;
+    const int32_t *varies, *columns;
+    Py_ssize_t states, width; /* inputs 1 to `states` are given in a call; columns of derivatives */
+    int slopes;               /* whether the results are derivatives */
+} Prepared;
+
+/* Columns of derivatives, up to 16 at a time: one direction for each input that has derivatives. */
+static void prepared_slopes(Prepared *own) {
+    const Program *p = &own->p;
+    for (Py_ssize_t first = 0; first < own->width; first += 16) {
+        const Py_ssize_t left = own->width - first, used = left < 16 ? left : 16;
+        const int T = used <= 4 ? 4 : used <= 8 ? 8 : 16;
+        memset(own->D, 0, sizeof(double) * p->inputs * T);
+        for (Py_ssize_t t = 0; t < used; t++) own->D[own->columns[first + t] * T + t] = 1.0;
+        (T == 4 ? run_dual_4 : T == 8 ? run_dual_8 : run_dual_16)(
+            p->code, p->count, p->extra, own->V, own->D);
+        for (Py_ssize_t k = 0; k < p->results; k++) {
+            if (!own->varies[k]) continue;
+            const double *row = own->D + (size_t)p->outputs[k] * T;
+            for (Py_ssize_t t = 0; t < used; t++)
+                own->results[k * own->states + own->columns[first + t] - 1] = row[t];
+        }
+    }
+}
+
+static PyObject *prepared_call(PyObject *self, PyObject *args, PyObject *names) {
+    Prepared *own = (Prepared *)self;
+    const Program *p = &own->p;
+    PyObject *states;
+    Py_buffer y;
+    (void)names;
+    if (!PyArg_ParseTuple(args, "dO", own->point, &states)) return NULL;
+    if (PyObject_GetBuffer(states, &y, PyBUF_RECORDS_RO) < 0) return NULL;
+    const int valid = y.ndim == 1 && y.shape[0] == own->states
+                   && y.format != NULL && strcmp(y.format, "d") == 0;
+    for (Py_ssize_t k = 0; valid && k < own->states; k++)
+        memcpy(own->point + 1 + k, (const char *)y.buf + k * y.strides[0], sizeof(double));
+    PyBuffer_Release(&y);
+    if (!valid) return PyErr_SetString(PyExc_ValueError, "not the states of the program"), NULL;
+    memcpy(own->V, own->point, sizeof(double) * p->inputs);
+    if (own->slopes) prepared_slopes(own);
+    else {
+        run_single(p->code, p->count, p->extra, own->V);
+        for (Py_ssize_t k = 0; k < p->results; k++) own->results[k] = own->V[p->outputs[k]];
+    }
+    double rest = 0.0; /* becomes NaN if any result is not finite */
+    for (Py_ssize_t k = own->view[7].len / (Py_ssize_t)sizeof(double) - 1; k >= 0; k--)
+        rest += 0.0 * own->results[k];
+    if (rest != 0.0)
+        return PyErr_SetString(PyExc_FloatingPointError, "a value is not finite"), NULL;
+    return Py_NewRef(own->returned);
+}
+
+static void prepared_end(PyObject *self) {
+    Prepared *own = (Prepared *)self;
+    PyTypeObject *type = Py_TYPE(self);
+    for (int k = 0; k < 8; k++) PyBuffer_Release(&own->view[k]);
+    Py_XDECREF(own->returned);
+    free(own->V), free(own->D);
+    ((freefunc)PyType_GetSlot(type, Py_tp_free))(self);
+    Py_DECREF(type);
+}
+
+static PyType_Slot PREPARED_SLOTS[] = {
+    {Py_tp_call, prepared_call}, {Py_tp_dealloc, prepared_end}, {0, NULL}};
+static PyType_Spec PREPARED_SPEC = {
+    "_machine.Prepared", sizeof(Prepared), 0,
+    Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION, PREPARED_SLOTS};
+static PyObject *prepared_type = NULL;
+
+PyDoc_STRVAR(prepare_doc,
+    "prepare(code, extra, outputs, varies, constants, slots, inputs, states, columns, point,\n"
+    "        results, slopes)\n\n"
+    "Function of time and states (states,), the first inputs. `point` (inputs,) holds the others\n"
+    "and, after a call, the time and states of that call. The function returns `results`, which\n"
+    "every call overwrites: the outputs (outputs,), or with slopes their derivatives by the states\n"
+    "of some columns, which are numbers of inputs: (outputs, states), elsewhere as it was.");
+
+static PyObject *prepare(PyObject *self, PyObject *args) {
+    static const Py_ssize_t item[8] = {2, 4, 4, 4, 8, 4, 8, 8};
+    Py_ssize_t size[8];
+    PyObject *returned;
+    Prepared *own = (Prepared *)PyType_GenericAlloc((PyTypeObject *)prepared_type, 0);
+    (void)self;
+    if (own == NULL) return NULL;
+    Program *p = &own->p;
+    Py_buffer *view = own->view;
+    if (!PyArg_ParseTuple(args, "y*y*y*y*y*nnny*w*Oi", &view[0], &view[1], &view[2], &view[3],
+                          &view[4], &p->slots, &p->inputs, &own->states, &view[5], &view[6],
+                          &returned, &own->slopes)
+        || PyObject_GetBuffer(returned, &view[7], PyBUF_CONTIG) < 0)
+        return Py_DECREF(own), NULL;
+    own->returned = Py_NewRef(returned);
+    int valid = 1;
+    for (int k = 0; k < 8; k++) valid &= sized(&view[k], item[k], &size[k]);
+    p->code = view[0].buf, p->extra = view[1].buf, p->outputs = view[2].buf;
+    own->varies = view[3].buf, p->constants = view[4].buf, own->columns = view[5].buf;
+    own->point = view[6].buf, own->results = view[7].buf;
+    p->count = size[0] / WORDS, p->extras = size[1], p->results = size[2];
+    p->constant_count = size[4], own->width = size[5];
+    valid = valid && size[0] % WORDS == 0 && size[3] == size[2] && p->slots >= 0
+         && p->slots <= 65536 && own->states >= 0 && own->states < p->inputs
+         && size[6] == p->inputs && size[7] == p->results * (own->slopes ? own->states : 1)
+         && !refused(p);
+    for (Py_ssize_t k = 0; valid && k < own->width; k++)
+        valid = own->columns[k] > 0 && own->columns[k] <= own->states;
+    for (Py_ssize_t k = 0; valid && k < p->results; k++)
+        valid = !own->varies[k] || p->outputs[k] < p->slots;
+    if (!valid) {
+        Py_DECREF(own);
+        return PyErr_SetString(PyExc_ValueError, "not a valid program"), NULL;
+    }
+    own->V = calloc(p->slots + p->constant_count, sizeof(double));
+    own->D = calloc(own->width ? p->slots * 16 : 1, sizeof(double));
+    if (own->V == NULL || own->D == NULL) {
+        Py_DECREF(own);
+        return PyErr_NoMemory();
+    }
+    constants_to(p, own->V, 1);
+    return (PyObject *)own;
+}
+
 static PyMethodDef METHODS[] = {
     {"run", run, METH_VARARGS, run_doc},
     {"follow", follow_slots, METH_VARARGS, follow_doc},
+    {"prepare", prepare, METH_VARARGS, prepare_doc},
     {NULL, NULL, 0, NULL},
 };
 
@@ -563,5 +693,6 @@ PyMODINIT_FUNC PyInit__machine(void) {
         PyTuple_SetItem(names, k, PyUnicode_FromString(NAMES[k]));
     if (PyModule_AddObjectRef(module, "OPERATIONS", names) < 0) return NULL;
     Py_DECREF(names);
-    return module;
+    prepared_type = PyType_FromSpec(&PREPARED_SPEC);
+    return prepared_type == NULL ? NULL : module;
 }

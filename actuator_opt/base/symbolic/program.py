@@ -6,7 +6,7 @@ a C compiler; without it, callers use the models themselves, through NumPy.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import field
 from importlib import import_module
 from typing import Any, Final
@@ -15,7 +15,7 @@ import numpy as np
 
 from ..dataclass import dataclass
 from ..numeric import Array
-from .expression import Symbol, needed
+from .expression import Symbol, is_steep_at_zero, needed
 
 try:
     _MACHINE: Any = import_module("._machine", __package__)
@@ -90,6 +90,32 @@ class Program:
             parts.append(results[:, :, 1 : 1 + used])
         return values, parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
 
+    def repeated(
+        self, point: Array, states: int, columns: Sequence[int] | None = None
+    ) -> Callable[[float, Array], Array]:
+        """A function of the first inputs, a time and states, that is cheap to call many times.
+
+        Every call overwrites the result of the call before. The function raises
+        `FloatingPointError` if a result is not finite.
+
+        Parameters
+        ----------
+        point : all inputs (inputs,); the function writes its arguments there and reads the others
+        states : number of states
+        columns : without them, the result is the outputs (outputs,); with the numbers of some
+            inputs, all states, it is the derivatives (outputs, states), 0 for the other states
+        """
+        places = np.array([] if columns is None else columns, dtype=np.int32)
+        moving = np.isin(np.arange(self.inputs), places)
+        code, varies = self._for(moving)
+        count = len(self.outputs)
+        results = np.zeros(count if columns is None else (count, states))
+        prepared: Callable[[float, Array], Array] = _MACHINE.prepare(
+            code, self.extra, self.outputs, varies, self.constants, self.slots, self.inputs,
+            states, places, point, results, columns is not None,
+        )  # fmt: skip
+        return prepared
+
     def _for(self, moving: Array) -> tuple[Array, Array]:
         """Return instructions that only differentiate by `moving` inputs; which outputs vary.
 
@@ -132,8 +158,9 @@ class _Writer:
 
     def __init__(self, inputs: Sequence[Symbol], outputs: Sequence[Any]) -> None:
         self.inputs, self.outputs = inputs, outputs
-        self.nodes = [n for n in needed(outputs) if n.op != "variable" and n.op not in SHARED]
         self.slot: dict[int, int] = {node.index: k for k, node in enumerate(inputs)}
+        given = set(self.slot)
+        self.nodes = [n for n in needed(outputs) if n.index not in given and n.op not in SHARED]
         self.constants: dict[bytes, int] = {}
         self.values: list[float] = []
         self.extra: list[int] = []
@@ -170,6 +197,8 @@ class _Writer:
             self.slot[node.index] = slot
             words += [words[0]] * (3 - len(words))
             self.code.append((codes[node.op] | flags << 8, slot, *words))
+            if is_steep_at_zero(node):
+                self.code.append((codes["where"], slot, slot, slot, self._place(0.0)))
         return self._finished()
 
     def _place(self, value: Any) -> int:
