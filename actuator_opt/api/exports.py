@@ -11,7 +11,7 @@ from ..base import files, runs as run_store
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..design import Design
 from ..evaluation import Evaluation
-from .actuator import Actuator, Plugins, as_actuator, plugins_of
+from .actuator import Actuator, Plugins, as_actuator, located, plugins_of
 from .optimum import evaluate
 from .recorded_runs import Run, damage_reported, read_run
 from .reports import date_from_environment, file_name, require_date
@@ -35,19 +35,20 @@ def export(
     date: str | None = None,
     plugins: Plugins = (),
 ) -> list[ExportFile]:
-    """Write a design as STEP, DXF or XLSX files.
+    """Write a design as STEP, DXF, XLSX or C files.
 
     STEP contains the turned parts as solids, in mm, positioned as in the section drawing of the
     retracted actuator; their volumes agree with the mass breakdown. It lacks parts whose shape the
     models do not define: threads, studs and plugs of the rod, eyes, seals and guides, ports, and
     the holes for tie rods in the plates. DXF contains the section with true dimensions and one
     layer per part. XLSX contains the requirements with margins as live formulas, the section as a
-    picture, the variables and the masses.
+    picture, the variables and the masses. C contains metrics, limits and their gradients as a
+    function of the variables and other numbers, in a source file and a header.
 
     Parameters
     ----------
     subject : a design in any form, an evaluation, or an optimisation (its best design)
-    formats : any of "step", "dxf" (both need the extra ``cad``), "xlsx" (extra ``excel``)
+    formats : any of "step", "dxf" (both need the extra ``cad``), "xlsx" (extra ``excel``), "c"
     folder, stem : folder and name of the files; default: the design's name in ``reports/``
     actuator : the design as read, if `subject` is its evaluation; exports are named after its file
     date : ISO date in the files; default: that of SOURCE_DATE_EPOCH, or else none
@@ -60,7 +61,8 @@ def export(
     Raises
     ------
     UsageError : an unknown format, or a date that is not an ISO date
-    InputError : a part cannot be drawn, or the folder cannot be written
+    InputError : a part cannot be drawn, the design cannot be written as C, or the folder cannot be
+        written
     ActuatorError : the extra that the format needs is not installed
     """
     from ..exports import require_formats, write_exports
@@ -73,14 +75,18 @@ def export(
         evaluation = evaluate(actuator)
     else:
         evaluation = subject if isinstance(subject, Evaluation) else subject.best_evaluation
-    source = None if actuator is None else actuator.source
-    return write_exports(
-        evaluation,
-        formats=formats,
-        folder=Path(folder),
-        stem=stem or Path(file_name(evaluation.design, source)).stem,
-        date=date or date_from_environment(),
-    )
+    design = evaluation.design
+    own = plugins_of(plugins) if actuator is None else actuator.plugins
+    exported = Actuator(design, None if actuator is None else actuator.source, own)
+    with located(exported):
+        return write_exports(
+            evaluation,
+            exported.subject(),
+            formats=formats,
+            folder=Path(folder),
+            stem=stem or Path(file_name(design, exported.source)).stem,
+            date=date or date_from_environment(),
+        )
 
 
 ROWS = 5000

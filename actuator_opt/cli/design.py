@@ -246,7 +246,7 @@ def export(
     design: DesignFile,
     formats: Annotated[
         list[str] | None,
-        typer.Option("--format", metavar="step|dxf|xlsx", help="File format. Repeatable."),
+        typer.Option("--format", metavar="step|dxf|xlsx|c", help="File format. Repeatable."),
     ] = None,
     sets: Set = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Output folder.")] = REPORTS,
@@ -263,7 +263,7 @@ def export(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Export the design for CAD (STEP, DXF) or Excel (XLSX)."""
+    """Export the design for CAD (STEP, DXF), Excel (XLSX) or a program of your own (C)."""
     from .. import api as verbs
     from ..exports import require_formats
 

@@ -1,4 +1,4 @@
-"""Files for other programs: turned parts as STEP, the section as DXF, results as XLSX."""
+"""Files for other programs: parts as STEP, the section as DXF, results as XLSX, formulas as C."""
 
 from .files import FORMATS, ExportFile, require_formats, write_exports
 

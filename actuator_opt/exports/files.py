@@ -9,10 +9,11 @@ from pathlib import Path
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, UsageError, library, shown
 from ..base.files import write_all
+from ..evaluation.kernel import PreparedDesign
 from ..evaluation.result import Evaluation
 
-FORMATS = ("step", "dxf", "xlsx")
-"""Names of the formats, which are also the file suffixes."""
+FORMATS = ("step", "dxf", "xlsx", "c")
+"""Names of the formats, which are also the file suffixes; C has a header file too."""
 
 _NEEDS = {"dxf": "ezdxf", "xlsx": "openpyxl"}
 
@@ -48,24 +49,32 @@ def require_formats(formats: Sequence[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(formats))
 
 
-def _content(evaluation: Evaluation, name: str, date: str | None) -> bytes:
+def _files(
+    evaluation: Evaluation, subject: PreparedDesign, name: str, stem: str, date: str | None
+) -> dict[str, bytes]:
+    """The files of a format, by file name."""
     program = f"actuator-opt {evaluation.version}"
     if name == "step":
         from .step import bodies, step
 
         text = step(bodies(evaluation), name=evaluation.name, program=program, date=date)
-        return text.encode("ascii")
+        return {f"{stem}.step": text.encode("ascii")}
     if name == "dxf":
         from .dxf import dxf
 
-        return dxf(evaluation, program=program, date=date)
+        return {f"{stem}.dxf": dxf(evaluation, program=program, date=date)}
+    if name == "c":
+        from .c_design import design_files
+
+        return design_files(subject, stem=stem, program=program, date=date)
     from .xlsx import xlsx
 
-    return xlsx(evaluation, program=program, date=date)
+    return {f"{stem}.xlsx": xlsx(evaluation, program=program, date=date)}
 
 
 def write_exports(
     evaluation: Evaluation,
+    subject: PreparedDesign,
     *,
     formats: Sequence[str],
     folder: Path,
@@ -76,7 +85,7 @@ def write_exports(
 
     Parameters
     ----------
-    evaluation : evaluation of the design to export
+    evaluation, subject : the design to export, evaluated and prepared
     formats : some of `FORMATS`
     folder, stem : folder (created if missing) and file name without suffix
     date : ISO date in the files, or None
@@ -87,10 +96,12 @@ def write_exports(
 
     Raises
     ------
-    InputError : if a part cannot be drawn, or the folder is not writable; no file is written
+    InputError : if a part cannot be drawn, the design cannot be written as C, or the folder is not
+        writable; no file is written
     """
-    names = require_formats(formats)
-    contents = {f"{stem}.{name}": _content(evaluation, name, date) for name in names}
+    contents: dict[str, bytes] = {}
+    for name in require_formats(formats):
+        contents |= _files(evaluation, subject, name, stem, date)
     write_all(folder, contents, what="the export")
     return [
         ExportFile(folder / name, hashlib.sha256(content).hexdigest())

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import field
 from importlib import import_module
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -24,6 +25,8 @@ except ImportError:
 OPERATIONS: Final[tuple[str, ...]] = getattr(_MACHINE, "OPERATIONS", ())
 AVAILABLE: Final = _MACHINE is not None
 """Whether the machine was built at installation."""
+MACHINE: Final = Path(__file__).with_name("machine.h")
+"""Text of the machine, without its Python module."""
 WIDTHS: Final = (4, 8, 16)
 """Numbers of directions that the machine differentiates along at once."""
 SHARED: Final = ("real", "part")
@@ -73,7 +76,7 @@ class Program:
         points : (points, inputs)
         seeds : change of every input in every direction, (points, inputs, directions)
         """
-        code, varies = self._for(seeds.any(axis=(0, 2)))
+        code, varies = self.along(seeds.any(axis=(0, 2)))
         count, inputs, directions = seeds.shape
         parts, values = [], np.empty(0)
         for first in range(0, max(directions, 1), WIDTHS[-1]):
@@ -88,8 +91,13 @@ class Program:
             parts.append(results[:, :, 1 : 1 + used])
         return values, parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
 
-    def _for(self, moving: Array) -> tuple[Array, Array]:
-        """The code that carries derivatives of the moving inputs only, and which outputs vary."""
+    def along(self, moving: Array) -> tuple[Array, Array]:
+        """The code that carries derivatives of the moving inputs only, and which outputs vary.
+
+        Parameters
+        ----------
+        moving : whether each input changes, (inputs,)
+        """
         key = moving.tobytes()
         if key not in self._followed:
             code, active = self.code.copy(), np.zeros(self.slots, dtype=np.uint8)
