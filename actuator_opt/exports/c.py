@@ -1,9 +1,9 @@
 """Write recorded programs as C: a source file with its header, for any C99 or C++ compiler.
 
 A program becomes tables of numbers. They are run by the machine of the Python extension, whose text
-(`machine.h`) is copied into the file. Statements instead of tables would run faster but, for the
-knee, take minutes to compile. The files allocate no memory, have no variables outside functions,
-and need only the mathematics library.
+(`machine.h`) is copied into the file. Statements instead of tables would give values five times as
+fast, but for the values of the knee alone a compiler takes 15 s instead of 0.3 s. The files
+allocate no memory, have no variables outside functions, and need only the mathematics library.
 """
 
 from __future__ import annotations
