@@ -11,11 +11,13 @@ from ..base import files, runs as run_store
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..design import Design
 from ..evaluation import Evaluation
+from ..version import VERSION
 from .actuator import Actuator, Plugins, as_actuator, located, plugins_of
 from .optimum import evaluate
 from .recorded_runs import Run, damage_reported, read_run
 from .reports import date_from_environment, file_name, require_date
 from .restoring import changed_plugins, named_plugins, restore
+from .simulations import Trial, as_trial, placed, with_design
 from .sweeping import store_of, without_variables
 
 if TYPE_CHECKING:
@@ -34,6 +36,7 @@ def export(
     actuator: Actuator | None = None,
     date: str | None = None,
     plugins: Plugins = (),
+    scenario: Trial | str | Path | None = None,
 ) -> list[ExportFile]:
     """Write a design as STEP, DXF, XLSX or C files.
 
@@ -53,6 +56,8 @@ def export(
     actuator : the design as read, if `subject` is its evaluation; exports are named after its file
     date : ISO date in the files; default: that of SOURCE_DATE_EPOCH, or else none
     plugins : the user's metrics and constraints, for a design that is not an `Actuator` yet
+    scenario : write the equations of this scenario instead, with the design in it; in C only, and
+        named after the scenario's file
 
     Returns
     -------
@@ -60,7 +65,7 @@ def export(
 
     Raises
     ------
-    UsageError : an unknown format, or a date that is not an ISO date
+    UsageError : an unknown format, a format without scenarios, or a date that is not an ISO date
     InputError : a part cannot be drawn, the design cannot be written as C, or the folder cannot be
         written
     ActuatorError : the extra that the format needs is not installed
@@ -69,7 +74,8 @@ def export(
 
     if date is not None:
         require_date(date)
-    formats = require_formats((formats,) if isinstance(formats, str) else formats)
+    formats = (formats,) if isinstance(formats, str) else formats
+    formats = require_formats(formats, scenario=scenario is not None)
     if isinstance(subject, Actuator | Design | str | Path):
         actuator = as_actuator(subject, plugins)
         evaluation = evaluate(actuator)
@@ -78,6 +84,9 @@ def export(
     design = evaluation.design
     own = plugins_of(plugins) if actuator is None else actuator.plugins
     exported = Actuator(design, None if actuator is None else actuator.source, own)
+    date = date or date_from_environment()
+    if scenario is not None:
+        return _export_scenario(as_trial(scenario), exported, Path(folder), stem, date)
     with located(exported):
         return write_exports(
             evaluation,
@@ -85,8 +94,25 @@ def export(
             formats=formats,
             folder=Path(folder),
             stem=stem or Path(file_name(design, exported.source)).stem,
-            date=date or date_from_environment(),
+            date=date,
         )
+
+
+def _export_scenario(
+    trial: Trial, actuator: Actuator, folder: Path, stem: str | None, date: str | None
+) -> list[ExportFile]:
+    """Write the equations of a scenario with a design."""
+    from ..exports import written
+    from ..exports.c_scenario import scenario_files
+
+    file = trial.loaded.source.file
+    with placed(trial):
+        contents = scenario_files(
+            trial.scenario, with_design(trial, actuator).subject(), trial.records,
+            stem=stem or ("scenario" if file.startswith("<") else Path(file).stem),
+            program=f"actuator-opt {VERSION}", date=date,
+        )  # fmt: skip
+    return written(folder, contents)
 
 
 ROWS = 5000

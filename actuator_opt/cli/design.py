@@ -248,6 +248,14 @@ def export(
         list[str] | None,
         typer.Option("--format", metavar="step|dxf|xlsx|c", help="File format. Repeatable."),
     ] = None,
+    scenario: Annotated[
+        str | None,
+        typer.Option(
+            "--scenario",
+            metavar="SCENARIO",
+            help="Write the equations of this scenario with the design instead (C only).",
+        ),
+    ] = None,
     sets: Set = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Output folder.")] = REPORTS,
     date: Annotated[
@@ -267,13 +275,15 @@ def export(
     from .. import api as verbs
     from ..exports import require_formats
 
-    known = require_formats(formats or [])
+    known = require_formats(formats or [], scenario=scenario is not None)
     job = Job(
         design, sets=sets, plugins=plugin, report=True, out=out, date=date,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
     evaluation = job.run(verbs.evaluate)
-    exports = verbs.export(evaluation, formats=known, folder=out, actuator=job.actuator, date=date)
+    exports = verbs.export(
+        evaluation, formats=known, folder=out, actuator=job.actuator, date=date, scenario=scenario
+    )
     files = [file.to_dict() for file in exports]
     job.answer(lambda: {"files": files}, files=files)
     return verbs.exit_code(evaluation)

@@ -54,15 +54,24 @@ class DeclaredNumber:
 
 
 def word(text: str) -> str:
-    """A name in C, made from the ASCII letters and digits of a text.
+    """The ASCII letters and digits of a text, with underscores between them.
 
-    >>> word("load_cases[stance].force"), word("40 mm"), word("µ"), word("math")
-    ('load_cases_stance_force', 'design_40_mm', 'design', 'design_math')
+    >>> word("load_cases[stance].force")
+    'load_cases_stance_force'
     """
-    name = re.sub(r"[^A-Za-z0-9]+", "_", text).strip("_")
-    if not name[:1].isalpha() or name.lower() in HEADERS:
-        name = f"design_{name}".rstrip("_")
-    return name[:LONGEST_NAME].rstrip("_")
+    return re.sub(r"[^A-Za-z0-9]+", "_", text).strip("_")[:LONGEST_NAME].rstrip("_")
+
+
+def file_word(stem: str) -> str:
+    """Name of C files, with which all names in them start.
+
+    >>> file_word("knee"), file_word("40 mm"), file_word("µ"), file_word("math")
+    ('knee', 'design_40_mm', 'design', 'design_math')
+    """
+    name = word(stem)
+    if name[:1].isalpha() and name.lower() not in HEADERS:
+        return name
+    return f"design_{name}".rstrip("_")
 
 
 def constants(prefix: str, texts: Iterable[str]) -> list[str]:

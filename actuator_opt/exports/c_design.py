@@ -20,13 +20,13 @@ from .c import (
     DeclaredNumber,
     constants,
     enumeration,
+    file_word,
     filled,
     listing,
     machine,
     program_tables,
     remark,
     table,
-    word,
 )
 
 NO_LOAD = 1e9
@@ -61,7 +61,7 @@ def design_files(
         the design has no variables or has custom metrics, or a model cannot be recorded
     """
     found = _recorded(subject)
-    name, written = word(stem), found.recording.program
+    name, written = file_word(stem), found.recording.program
     capitals, count = name.upper(), found.variables
     code, varies = written.along(np.arange(written.inputs) < count)
     outputs = [*found.metrics, *found.limits]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ..base.dataclass import dataclass
@@ -30,12 +30,17 @@ class ExportFile:
         return {"path": str(self.path), "sha256": self.sha256}
 
 
-def require_formats(formats: Sequence[str]) -> tuple[str, ...]:
+def require_formats(formats: Sequence[str], *, scenario: bool = False) -> tuple[str, ...]:
     """Drop duplicate formats; refuse unknown formats, and formats whose library is missing.
+
+    Parameters
+    ----------
+    formats : names of formats
+    scenario : whether the equations of a scenario are written; they have one format only
 
     Raises
     ------
-    UsageError : if a format is unknown, or none is given
+    UsageError : if a format is unknown or does not fit, or none is given
     ActuatorError : if the library of a format is not installed
     """
     if not formats:
@@ -44,6 +49,9 @@ def require_formats(formats: Sequence[str]) -> tuple[str, ...]:
         if name not in FORMATS:
             remedy = f"use {', '.join(FORMATS)}, each with its own --format"
             raise UsageError(Diagnostic(f'unknown format "{shown(name)}"', remedy))
+        if scenario and name != "c":
+            message = f"the equations of a scenario have no {name.upper()} file"
+            raise UsageError(Diagnostic(message, "use --format c only"))
         if name in _NEEDS:
             library(_NEEDS[name])
     return tuple(dict.fromkeys(formats))
@@ -102,6 +110,11 @@ def write_exports(
     contents: dict[str, bytes] = {}
     for name in require_formats(formats):
         contents |= _files(evaluation, subject, name, stem, date)
+    return written(folder, contents)
+
+
+def written(folder: Path, contents: Mapping[str, bytes]) -> list[ExportFile]:
+    """Write files by name into a folder; raises `InputError`, and then writes none."""
     write_all(folder, contents, what="the export")
     return [
         ExportFile(folder / name, hashlib.sha256(content).hexdigest())

@@ -14,12 +14,16 @@ from cli_runner import bench, run
 import actuator_opt as ao
 from actuator_opt.base.numeric import STEP
 from actuator_opt.base.symbolic import program as programs
+from actuator_opt.base.symbolic.expression import function, jacobian, needed
 from actuator_opt.design.materials import load_library
 from actuator_opt.evaluation import compute
 from actuator_opt.evaluation.kernel import governing
-from actuator_opt.exports.c import constants, quoted, remark, table, word
+from actuator_opt.exports.c import constants, file_word, quoted, remark, table
 from actuator_opt.exports.c_design import design_files
 from actuator_opt.optimisation.actuator import build, variant
+from actuator_opt.simulation.assemble import assemble
+from actuator_opt.simulation.linear import tune
+from actuator_opt.studies.plant import plant
 
 ROOT = Path(__file__).parents[2]
 GCC = shutil.which("gcc") or shutil.which("cc") or shutil.which("clang")
@@ -259,9 +263,94 @@ def test_without_the_machine_one_line_says_so(tmp_path, monkeypatch):
 def test_names_in_c_are_words():
     """Each name once, short, in ASCII."""
     assert constants("a", ["x", "x", "x_2", "x"]) == ["A_X", "A_X_2", "A_X_2_2", "A_X_3"]
-    assert word("9") == "design_9"
-    assert len(word(500 * "ab")) == 48
+    assert file_word("9") == "design_9"
+    assert len(file_word(500 * "ab")) == 48
     assert quoted("a\nb") == '"a b"'
     assert remark("????") == "? ? ? ?"
     assert table("int", "T", []) == "static const int T[] = {\n0\n};\n"
     assert "NAN,-INFINITY" in table("double", "T", [float("nan"), -np.inf])
+
+
+SCENARIOS = [
+    ("servo_knee", "knee_step"),
+    ("course_cylinder", "course_motor_position"),
+    ("course_cylinder", "course_valve_ramp"),
+]
+
+
+@recorded
+@compiled
+@pytest.mark.parametrize(("design", "scenario"), SCENARIOS)
+def test_the_equations_of_a_scenario(design, scenario, tmp_path):
+    """Rates, Jacobian, signals and guards equal generated Python, at random states and flags."""
+    paths = ROOT / f"designs/{design}.yaml", ROOT / f"designs/scenarios/{scenario}.yaml"
+    result = run("export", paths[0], "--scenario", paths[1], "--format", "c", "--out", tmp_path)
+    assert result.err.splitlines() == [f"wrote {tmp_path / scenario}.{x}" for x in "hc"]
+    compare(tmp_path, scenario, ao.read_scenario(paths[1]))
+
+
+def compare(folder, name, trial):
+    """Compare the compiled file of a scenario with its expressions, as generated Python."""
+    made = library(folder, name)
+    actuator = plant(trial.actuator.subject())
+    tuned = tune(trial.scenario, actuator, trial.records)
+    gains = None if tuned is None else tuned.gains
+    system = assemble(trial.scenario, actuator, trial.records, gains).system
+    symbols, rates = [x.symbol for x in system.states], [x.rate for x in system.states]
+    unpack = {", ".join(str(x.args[0]) for x in symbols) + ",": "y.tolist()"}
+    unpack |= {", ".join(system.flags) + ",": "m"} if system.flags else {}
+    entries = [x for row in jacobian(rates, symbols) for x in row]
+    results = [x.value for x in system.signals] + [x.guard for x in system.switches]
+    tables = [node for node in needed([*rates, *entries, *results]) if node.op == "table"]
+    rng = np.random.default_rng(7)
+    for _ in range(20):
+        t = 2 * trial.scenario.duration * rng.random()
+        y = np.array([x.initial + 1e4 * x.tolerance * rng.standard_normal() for x in system.states])
+        m = tuple((rng.random(len(system.flags)) > 0.5).tolist())
+        looked = [system.graph.tables[node.args[0]](t) for node in tables]
+        inputs, work = np.array([t, *y, *m, *looked]), np.full(10_000, np.nan)
+        for what, wanted in (("rates", rates), ("jacobian", entries), ("outputs", results)):
+            expected = np.array(function("f", "t, y, m", unpack, wanted)(t, y, m), dtype=float)
+            found = np.full(len(wanted), np.nan)
+            getattr(made, f"{name}_{what}")(*map(pointer, (inputs, found, work)))
+            scale = np.max(np.abs(expected)) if what == "jacobian" else np.abs(expected)
+            assert np.isfinite(expected).all()
+            assert np.all(np.abs(found - expected) <= 1e-12 * (scale + 1e-30)), what
+
+
+@recorded
+@compiled
+def test_records_of_a_scenario_are_inputs(tmp_path):
+    """Values of a recorded column, and its slope where the equations use it."""
+    times = np.linspace(0.0, 1.0, 21)
+    lines = ["time [s],reference [mm]", *(f"{t},{10 * np.sin(6 * t)}" for t in times)]
+    (tmp_path / "course.csv").write_text("\n".join(lines), "utf-8")
+    text = (ROOT / "designs/scenarios/knee_step.yaml").read_text("utf-8")
+    design = ROOT / "designs/servo_knee.yaml"
+    head = text[: text.index("control:")].replace("../servo_knee.yaml", str(design))
+    file = tmp_path / "followed.yaml"
+    parts = "[{shape: record, file: course.csv, column: reference}]"
+    file.write_text(f"{head}control: {{position: {parts}}}\n", "utf-8")
+    result = run("export", design, "--scenario", file, "--format", "c", "--out", tmp_path)
+    assert result.code == 0, result.err
+    assert "FOLLOWED_IN_REFERENCE_OF_COURSE_CSV" in (tmp_path / "followed.h").read_text("ascii")
+    compare(tmp_path, "followed", ao.read_scenario(file))
+
+
+@recorded
+@pytest.mark.parametrize(
+    ("scenario", "kind", "code", "message"),
+    [
+        ("knee_step", "step", 2, "the equations of a scenario have no STEP file"),
+        ("none", "c", 3, "no such file"),
+    ],
+)
+def test_scenarios_that_have_no_file(scenario, kind, code, message, tmp_path):
+    """One line, no file."""
+    design, file = ROOT / "designs/servo_knee.yaml", ROOT / f"designs/scenarios/{scenario}.yaml"
+    out = tmp_path / "out"
+    result = run("export", design, "--scenario", file, "--format", kind, "--out", out)
+    assert result.code == code
+    assert message in result.err
+    assert result.err.count("\n") == 1
+    assert not out.exists()

@@ -25,6 +25,8 @@ except ImportError:
 OPERATIONS: Final[tuple[str, ...]] = getattr(_MACHINE, "OPERATIONS", ())
 AVAILABLE: Final = _MACHINE is not None
 """Whether the machine was built at installation."""
+NOT_BUILT: Final = "the machine was not built at installation"
+"""Reason why programs cannot be written or run."""
 MACHINE: Final = Path(__file__).with_name("machine.h")
 """Text of the machine, without its Python module."""
 WIDTHS: Final = (4, 8, 16)
@@ -135,8 +137,9 @@ class _Writer:
 
     def __init__(self, inputs: Sequence[Symbol], outputs: Sequence[Any]) -> None:
         self.inputs, self.outputs = inputs, outputs
-        self.nodes = [n for n in needed(outputs) if n.op != "variable" and n.op not in SHARED]
         self.slot: dict[int, int] = {node.index: k for k, node in enumerate(inputs)}
+        given = set(self.slot)
+        self.nodes = [n for n in needed(outputs) if n.index not in given and n.op not in SHARED]
         self.constants: dict[bytes, int] = {}
         self.values: list[float] = []
         self.extra: list[int] = []
