@@ -76,24 +76,23 @@ def export(
         require_date(date)
     formats = (formats,) if isinstance(formats, str) else formats
     formats = require_formats(formats, scenario=scenario is not None)
+    date = date or date_from_environment()
     if isinstance(subject, Actuator | Design | str | Path):
-        actuator = as_actuator(subject, plugins)
-        evaluation = evaluate(actuator)
+        exported = as_actuator(subject, plugins)
+        evaluation = None
     else:
         evaluation = subject if isinstance(subject, Evaluation) else subject.best_evaluation
-    design = evaluation.design
-    own = plugins_of(plugins) if actuator is None else actuator.plugins
-    exported = Actuator(design, None if actuator is None else actuator.source, own)
-    date = date or date_from_environment()
+        own = plugins_of(plugins) if actuator is None else actuator.plugins
+        exported = Actuator(evaluation.design, None if actuator is None else actuator.source, own)
     if scenario is not None:
         return _export_scenario(as_trial(scenario), exported, Path(folder), stem, date)
     with located(exported):
         return write_exports(
-            evaluation,
+            evaluation or evaluate(exported),
             exported.subject(),
             formats=formats,
             folder=Path(folder),
-            stem=stem or Path(file_name(design, exported.source)).stem,
+            stem=stem or Path(file_name(exported.design, exported.source)).stem,
             date=date,
         )
 

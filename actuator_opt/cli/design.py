@@ -280,13 +280,16 @@ def export(
         design, sets=sets, plugins=plugin, report=True, out=out, date=date,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
-    evaluation = job.run(verbs.evaluate)
-    exports = verbs.export(
-        evaluation, formats=known, folder=out, actuator=job.actuator, date=date, scenario=scenario
-    )
+    options: dict[str, Any] = {"formats": known, "folder": out, "date": date}
+    if scenario is None:
+        evaluation = job.run(verbs.evaluate)
+        exports = verbs.export(evaluation, actuator=job.actuator, **options)
+    else:
+        evaluation = None
+        exports = job.run(verbs.export, scenario=scenario, **options)
     files = [file.to_dict() for file in exports]
     job.answer(lambda: {"files": files}, files=files)
-    return verbs.exit_code(evaluation)
+    return ExitCode.MET if evaluation is None else verbs.exit_code(evaluation)
 
 
 def schema(
