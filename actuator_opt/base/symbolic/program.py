@@ -6,6 +6,7 @@ callers use the models themselves, through NumPy.
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Sequence
 from dataclasses import field
 from importlib import import_module
@@ -29,6 +30,8 @@ NOT_BUILT: Final = "the machine was not built at installation"
 """Reason why programs cannot be written or run."""
 MACHINE: Final = Path(__file__).with_name("machine.h")
 """Text of the machine, without its Python module."""
+SCRIPT: Final = Path(__file__).with_name("machine.js")
+"""The same machine in JavaScript, for pages; it takes `Program.for_page`."""
 WIDTHS: Final = (4, 8, 16)
 """Numbers of directions that the machine differentiates along at once."""
 SHARED: Final = ("real", "part")
@@ -92,6 +95,23 @@ class Program:
             values = results[:, :, 0]
             parts.append(results[:, :, 1 : 1 + used])
         return values, parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
+
+    def for_page(self) -> dict[str, object]:
+        """The program as JSON, for the machine of pages (`SCRIPT`); arrays are in base64."""
+
+        def packed(array: Array, kind: str) -> str:
+            return b64encode(np.ascontiguousarray(array, dtype=kind).tobytes()).decode("ascii")
+
+        return {
+            "operations": list(OPERATIONS),
+            "code": packed(self.code, "<u2"),
+            "extra": packed(self.extra, "<i4"),
+            "outputs": packed(self.outputs, "<i4"),
+            "frozen": packed(self.frozen, "u1"),
+            "constants": packed(self.constants, "<f8"),
+            "slots": self.slots,
+            "inputs": self.inputs,
+        }
 
     def along(self, moving: Array) -> tuple[Array, Array]:
         """The code that carries derivatives of the moving inputs only, and which outputs vary.
