@@ -166,7 +166,11 @@ def test_roots(tmp_path):
     ],
 )
 def test_the_knee(in_browser, tmp_path):
-    """Values and all gradients of a whole design, at points of its box."""
+    """Values and all gradients of a whole design, at points of its box.
+
+    Functions such as exp differ in the last digit between languages. Where slopes of a thousand
+    cancel, this shows in a slope near zero: one in a thousand may differ by more than 1e-13.
+    """
     actuator = build(ao.read(ROOT / "designs/knee.yaml").subject())
     recorded_function = actuator.recorded
     recorded_function(recorded_function.present[:, None])
@@ -175,6 +179,10 @@ def test_the_knee(in_browser, tmp_path):
     points = np.repeat(recorded_function.present[None], 12, axis=0)
     points[1:, :count] = low + (high - low) * np.random.default_rng(8).random((11, count))
     seeds = np.eye(made.inputs)[:, :count]
-    for found, expected in compared([(made, points, seeds)], tmp_path, in_browser):
-        close(found, expected, 1e-13, least=1.0)
+    (values, slopes) = compared([(made, points, seeds)], tmp_path, in_browser)
+    close(*values, 1e-13, least=1.0)
+    close(*slopes, 1e-11, least=1.0)
+    found, expected = (np.where(np.isfinite(x), x, 0.0) for x in slopes)
+    differ = np.abs(found - expected) > 1e-13 * np.maximum(np.abs(expected), 1.0)
+    assert differ.mean() < 2e-3
     assert len(json.dumps(made.for_page())) < 700_000

@@ -97,7 +97,10 @@ class Program:
         return values, parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
 
     def for_page(self) -> dict[str, object]:
-        """The program as JSON, for the machine of pages (`SCRIPT`); arrays are in base64."""
+        """The program as JSON, for the machine of pages (`SCRIPT`); arrays are in base64.
+
+        A program with 40 000 instructions, as that of the knee, has 540 kB.
+        """
 
         def packed(array: Array, kind: str) -> str:
             return b64encode(np.ascontiguousarray(array, dtype=kind).tobytes()).decode("ascii")
