@@ -12,9 +12,8 @@ const Machine = (() => {
   const NAMES = ("add sub mul div neg sqrt exp expm1 log log1p pow sin cos tan tanh sinh cosh " +
     "arctan arcsin arccos atan2 abs sign floor cbrt copysign hypot lt le eq and or not isnan " +
     "where roots").split(" ");
-  const [ADD, SUB, MUL, DIV, POW, ATAN2, COPYSIGN, HYPOT, WHERE, ROOTS] =
-    ["add", "sub", "mul", "div", "pow", "atan2", "copysign", "hypot", "where", "roots"].map(
-      (name) => NAMES.indexOf(name));
+  const [ADD, SUB, MUL, COPYSIGN, WHERE, ROOTS] =
+    ["add", "sub", "mul", "copysign", "where", "roots"].map((name) => NAMES.indexOf(name));
   const STEPS = new Set(["lt", "le", "eq", "and", "or", "not", "isnan", "sign", "floor", "roots"]
     .map((name) => NAMES.indexOf(name)));
   const WORDS = 5, FIRST = 1, SECOND = 2, THIRD = 4, RESULT = 8, FROZEN = 16;
@@ -242,15 +241,12 @@ const Machine = (() => {
     }
   }
 
-  /* Derivatives of a result r by its first and second operand, to `D2`. */
+  /* Derivatives of a result r by its operands, to `D2`; sums and products are left out. */
   const D2 = new Float64Array(2);
 
   function slopesOf(operation, a, b, r, varies) {
     let f = 0, g = 0;
     switch (operation) {
-      case 0: f = 1, g = 1; break;
-      case 1: f = 1, g = -1; break;
-      case 2: f = b, g = a; break;
       case 3: f = 1 / b, g = -r / b; break;
       case 4: f = -1; break;
       case 5: f = 0.5 / r; break;
@@ -276,8 +272,6 @@ const Machine = (() => {
     }
     D2[0] = f, D2[1] = g;
   }
-
-  const TWO = new Set([ADD, SUB, MUL, DIV, POW, ATAN2, HYPOT]);
 
   // ---- a whole program ----
 
@@ -315,9 +309,16 @@ const Machine = (() => {
       for (let t = 0; t < T; t++) D[R + t] = from < 0 ? 0 : D[from + t];
       return;
     }
-    slopesOf(operation, a, b, V[code[at + 1]], flags & SECOND);
-    const f = D2[0], g = D2[1], A = code[at + 2] * T, B = code[at + 3] * T;
-    if (!TWO.has(operation) || !(flags & SECOND)) for (let t = 0; t < T; t++) D[R + t] = f * D[A + t];
+    let f = 1, g = 1;
+    if (operation === MUL) f = b, g = a;
+    else if (operation === SUB) g = -1;
+    else if (operation !== ADD) {
+      slopesOf(operation, a, b, V[code[at + 1]], flags & SECOND);
+      f = D2[0], g = D2[1];
+    }
+    const A = code[at + 2] * T, B = code[at + 3] * T;
+    if (!(flags & SECOND) || operation === COPYSIGN)
+      for (let t = 0; t < T; t++) D[R + t] = f * D[A + t];
     else if (!(flags & FIRST)) for (let t = 0; t < T; t++) D[R + t] = g * D[B + t];
     else for (let t = 0; t < T; t++) D[R + t] = f * D[A + t] + g * D[B + t];
   }
@@ -340,7 +341,8 @@ const Machine = (() => {
         continue;
       }
       const a = V[code[at + 2]], b = V[code[at + 3]];
-      V[code[at + 1]] = valueOf(operation, a, b, V[code[at + 4]]);
+      V[code[at + 1]] = operation === MUL ? a * b : operation === ADD ? a + b
+        : operation === SUB ? a - b : valueOf(operation, a, b, V[code[at + 4]]);
       if (flags[k] & RESULT) derive(code, at, flags[k], V, D, T, a, b);
     }
     const values = Float64Array.from(outputs, (slot) => V[slot]);
