@@ -259,8 +259,8 @@ def _compiled() -> Finding:
     from ..base.symbolic.program import AVAILABLE
 
     if AVAILABLE:
-        return Finding("machine", "recorded models", "ok", "the compiled program runs them")
-    words = "NumPy runs the models: there was no C compiler at installation"
+        return Finding("machine", "recorded models", "ok", "run by the compiled program")
+    words = "run by NumPy: there was no C compiler at installation"
     remedy = f"install {_NAME} again with a C compiler"
     return Finding("machine", "recorded models", "missing", words, remedy)
 

@@ -148,7 +148,7 @@ def run_fault(run: object) -> str:
 
 
 def head_fault(head: object) -> str:
-    """The fault of the head of a record, in words; "" if there is none.
+    """The fault of a record's head (the part that lists show), in words; "" if there is none.
 
     >>> head_fault({"kind": 3})
     'kind must be text'
@@ -431,13 +431,13 @@ def prune_runs(*, keep: int, folder: str | Path | None = None) -> list[str]:
 
 
 def differing(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """Names of values that differ by more than `CLOSE`, or that only one of the two contains."""
+    """Names of values that differ by more than `CLOSE`, or that only one mapping contains."""
     names = dict.fromkeys([*then, *now])
     return [name for name in names if not same(then.get(name), now.get(name))]
 
 
 def same(a: Any, b: Any) -> bool:
-    """Whether two values are equal; numbers may differ by a share of `CLOSE`."""
+    """Whether two values are equal; numbers may have a relative difference of at most `CLOSE`."""
     if isinstance(a, (int, float)) and isinstance(b, (int, float)):
         return abs(a - b) <= CLOSE * max(abs(a), abs(b))
     return bool(a == b)
@@ -610,7 +610,7 @@ def record_sweep(
 
 
 def _plan(swept: Swept) -> dict[str, Any]:
-    """The plan of a sweep as plain data, in SI; inputs with text values have no quantity."""
+    """The plan of a sweep as plain data, in SI; `quantity` is None for inputs with text values."""
     from ..design import quantity_of
 
     plan, design = swept.study.plan, swept.study.design

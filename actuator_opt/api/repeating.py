@@ -85,7 +85,7 @@ class Rerun(Displayed):
         return results.keep(self.subject, **paper | self._origin())
 
     def _origin(self) -> dict[str, Any]:
-        """Origin and additional tables of the original report."""
+        """Design, command and date of the original report, with its additional tables."""
         data = {"actuator": self.actuator, "command": self.command, "date": self.date}
         return data | ({"extra_tables": self.tables} if self.tables else {})
 
@@ -185,7 +185,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def parser() -> argparse.ArgumentParser:
-    """A parser for the options that affect a result, of every command that can be repeated."""
+    """A parser with all options that affect the result of a command that can be repeated."""
     options = _Parser(prog="actuator-opt", add_help=False, allow_abbrev=False)
     options.add_argument("design")
     options.add_argument("--set", action="append", default=[])
@@ -229,7 +229,7 @@ def parsed(command: str) -> tuple[str, argparse.Namespace]:
 
 
 def _within(bounds: IntegerRange) -> Callable[[str], int]:
-    """A function that parses a whole number between two bounds, as in the terminal."""
+    """A function that parses a whole number; it refuses numbers outside the bounds."""
 
     def whole(text: str) -> int:
         if not re.fullmatch(r"[+-]?\d{1,19}", text):

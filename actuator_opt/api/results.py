@@ -3,8 +3,8 @@
 By the type of a result, the terminal and the library look up the functions for its text, JSON,
 report, CSV, record and exit code. A function is named "module:function" below `actuator_opt` and
 imported when it is used, or it is a method of the result. None means that the type does not have
-this output. If a type states report, CSV or record neither as a function nor as None, the import
-fails.
+this output. Every type must state report, CSV and record, as a function or as None; otherwise the
+import fails.
 """
 
 from __future__ import annotations
@@ -222,7 +222,7 @@ def kind_of(result: object) -> ResultKind:
 
 
 def piece(name: str, result: object) -> Callable[..., Any]:
-    """Find a function by its name in `ResultKind`; the result is bound as its first argument."""
+    """Import the function with a name as in `ResultKind`; the result becomes its first argument."""
     module, _, function = name.rpartition(":")
     if not module:
         return getattr(result, name)  # type: ignore[no-any-return]

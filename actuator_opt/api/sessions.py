@@ -1,4 +1,4 @@
-"""A session: solves a design once, then quickly re-solves it, predicts and prices changes.
+"""A session solves a design once, then quickly re-solves, predicts or prices changes of it.
 
 A price is the change of the best objective per unit change of a number.
 """
@@ -235,7 +235,8 @@ class Session:
         Raises
         ------
         InputError
-            the PATH is unknown or names a word, or a value is not finite or does not fit the design
+            the PATH is unknown or has a word as its value, or a new value is not finite or does not
+            fit the design
         UsageError
             the PATH names a free dimension
         """
@@ -286,7 +287,7 @@ class Session:
         if line.high is not None and line.high[0] < 1 - ROUNDING:
             why = f"after {100 * abs(line.high[0]):.3g} % of the change, {line.high[1]}"
         if not math.isfinite(line.above):
-            why = "no design meets the limits in this direction"
+            why = "even the smallest change in this direction leaves no feasible design"
         return Prediction(objective + change, self._named(x + line.moves), not why, why)
 
     def price(self, path: str) -> Price:
@@ -302,7 +303,7 @@ class Session:
         Raises
         ------
         InputError
-            the PATH is unknown or names a word
+            the PATH is unknown or has a word as its value
         UsageError
             the PATH names a free dimension, or a number without derivative, such as a bound of a
             variable
@@ -518,7 +519,7 @@ def _require_continuous(actuator: Actuator, sizes: object) -> None:
     if design.choices:
         raise UsageError(
             Diagnostic(
-                "a session keeps choices fixed, but the design has choices",
+                "a session cannot vary choices, but the design states choices to try",
                 "optimise it, and open a session on the best design",
                 path="choices",
             )

@@ -122,7 +122,7 @@ def seal(
     Raises
     ------
     InputError
-        the speed is not positive, or the pressure lies beyond the stated contact profiles
+        the speed is not positive, or the pressure exceeds those of the stated contact profiles
     ActuatorError
         this seal has no finite-element model, or the model finds no equilibrium
     """

@@ -359,8 +359,8 @@ def report_sweep(sweep_record: KeptSweep, **paper: Unpack[ReportArguments]) -> l
 
     Raises
     ------
-    InputError : the database is missing, lacks rows or has other rows, or the folder cannot be
-        written
+    InputError : the database is missing, was made with other models or lacks rows of the sweep; or
+        the folder cannot be written
     """
     from ..base.files import require_folder
     from ..pages.sweep_figures.shared import watched

@@ -73,7 +73,7 @@ class NumberColumn(NamedTuple):
 
 
 class StoredNumbers(NamedTuple):
-    """Stored numbers of several keys (keys, columns); a failed design has NaN and a reason."""
+    """Numbers stored for several keys, one row per key; a failed design has NaN and a reason."""
 
     numbers: Array
     failures: dict[int, str]
@@ -228,7 +228,7 @@ def _study_number(
                 (*description, study_checksum(*study), number),
             )
     elif stored[-1] != description[-1]:
-        raise refused(path, "has other columns for this study", "name another file")
+        raise refused(path, "contains this study with different columns", "name another file")
     return int(number)
 
 

@@ -62,7 +62,7 @@ def _made(
     eq: bool = True,
     repr: bool = True,
 ) -> Any:
-    """A class with the methods of a data class; with `slots` a new class of the same name."""
+    """Add the methods of a data class to a class; with `slots`, to a new class of that name."""
     fields: dict[str, Field[Any]] = {}
     for base in cls.__mro__[-1:0:-1]:
         fields.update(getattr(base, "__dataclass_fields__", {}))

@@ -30,8 +30,8 @@ RANK = 1e-7
 """Smallest usable ratio of singular values: below it, a step is lost in double-precision rounding
 of the residuals."""
 SEEN = 1e-4
-"""A parameter is undetermined if the data leave more than this share of its direction undetermined
-(the squared component of a unit vector)."""
+"""A parameter is undetermined if more than this share of its direction (as squared components of a
+unit vector) lies in combinations of parameters that the data do not determine."""
 
 Verdict = Literal["identifiable", "weakly identifiable", "not identifiable"]
 

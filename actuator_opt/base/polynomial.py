@@ -262,7 +262,7 @@ def root_parts(polynomial: Polynomial) -> Parts:
 
 
 def moved_root(polynomial: Polynomial, root: Parts) -> Parts:
-    """A simple root with the complex step that follows from those of the coefficients.
+    """A simple (not multiple) root; its complex step follows from those of the coefficients.
 
     The root moves by -dP(root)/P'(root), with the complex step dP of the polynomial's value.
     """

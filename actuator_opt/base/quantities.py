@@ -12,7 +12,8 @@ from . import units
 from .dataclass import dataclass
 
 Sense = Literal["min", "max"]
-"""Sense of a limit ("min": at least, "max": at most), or the worst value (smallest or largest)."""
+"""For a limit: at least ("min") or at most ("max"). For a worst value: the smallest or the
+largest."""
 
 INFINITY = float("inf")
 
@@ -175,8 +176,8 @@ MATERIAL_PROPERTIES = _table("""
  thermal_expansion_2  | alpha_2| per_temperature | ppm/K | -20 | 500  | thermal expansion across the fibre
  minimum_thickness    | t_min  | length      | mm     | 0     | 50    | minimum thickness that can be made
  minimum_angle        | theta_min | angle    | deg    | 0     | 90    | smallest winding angle that can be made
- temperature_knockdown| k_T    | ratio       | -      | 0.05  | 1     | share of strength left at the knock-down temperature
- moisture_knockdown   | k_w    | ratio       | -      | 0.05  | 1     | share of strength left after moisture saturation
+ temperature_knockdown| k_T    | ratio       | -      | 0.05  | 1     | strength at the knock-down temperature, as a share of that at 23 degC
+ moisture_knockdown   | k_w    | ratio       | -      | 0.05  | 1     | strength after moisture saturation, as a share of the dry strength
  basis_knockdown      | k_b    | ratio       | -      | 0.05  | 1     | allowable strength, as a share of the stated value
  temperature_min      | T_min  | temperature | degC   | -200  | 300   | lowest service temperature
  temperature_max      | T_max  | temperature | degC   | -100  | 1000  | highest service temperature
@@ -198,8 +199,8 @@ MATERIAL_PROPERTIES = _table("""
  fatigue_cycles       | N_w    | ratio       | -      | 1      | 1e12 | number of cycles to which the fatigue strength applies
  fatigue_stress_ratio | R      | ratio       | -      | -1     | 0.99 | stress ratio of the fatigue strength: lowest stress divided by highest
  shear_strength       | tau_m  | pressure    | MPa    | 0.5    | 3000 | ultimate shear strength
- matrix_temperature_knockdown | k_Tm | ratio | -      | 0.05   | 1    | share of matrix strength left at the knock-down temperature
- matrix_moisture_knockdown | k_wm | ratio    | -      | 0.05   | 1    | share of matrix strength left after moisture saturation
+ matrix_temperature_knockdown | k_Tm | ratio | -      | 0.05   | 1    | matrix strength at the knock-down temperature, as a share of that at 23 degC
+ matrix_moisture_knockdown | k_wm | ratio    | -      | 0.05   | 1    | matrix strength after moisture saturation, as a share of the dry strength
  process_knockdown    | k_p    | ratio       | -      | 0.05   | 1    | fibre tensile strength of the made part, as a share of that of a flat coupon
  knockdown_temperature| T_k    | temperature | degC   | 30     | 1000 | temperature at which the temperature knock-downs apply
  fibre_volume_fraction| V_f    | ratio       | -      | 0.1    | 0.8  | fibre volume fraction
@@ -273,14 +274,15 @@ SCENARIOS = _table("""
  damping_factor       | -      | ratio       | -      | 0     | 10     | damping of a stop, divided by the square root of stiffness times moving mass
  cycles_per_window    | n      | count       | -      | 1     | 1000   | cycles in a window
 """)
-"""Inputs of a scenario, in addition to its design; only coordinates of signals may be negative."""
+"""Inputs of a scenario, in addition to its design. Only values, angles and factors of its signals
+may be negative."""
 
 RESULTS = _table("""
  rise_time            | t_r    | time        | ms     | | | time from 10 to 90 % of the step
  settling_time        | t_s    | time        | ms     | | | time until the response stays within 2 % of the step
  overshoot            | M_p    | ratio       | %      | | | overshoot, as a share of the step
  steady_state_ratio   | e_ss   | ratio       | %      | | | steady-state error, as a share of the step
- following_error      | e      | length      | mm     | | | largest position error after the first period
+ following_error      | e      | length      | mm     | | | largest position error, after the first period of a sine reference
  hold_drift           | v_d    | speed       | mm/s   | | | creep speed in the last tenth of the simulated time
  peak_pressure        | p_max  | pressure    | bar    | | | highest chamber pressure
  lowest_pressure      | p_min  | pressure    | bar    | | | lowest chamber pressure, gauge

@@ -174,7 +174,8 @@ def _parsed(line: bytes, path: Path, *, sealed: bool = False) -> tuple[dict[str,
 
     Raises
     ------
-    InputError : if it is no object, its checksum is wrong, or `sealed` and it has no checksum
+    InputError : if it is no object, its checksum is wrong, or it lacks a checksum although `sealed`
+        is set
     """
     line = line.rstrip()
     try:

@@ -67,7 +67,7 @@ class SurrogateAxis:
         return (2 * np.log(limited) - low - high) / (high - low)
 
     def basis(self, value: Array) -> Array:
-        """Chebyshev polynomials (..., terms) at an input, which is first limited to the axis."""
+        """Chebyshev polynomials (..., terms) at an input, which is clipped to the axis range."""
         x = self._coordinate(value)
         rows = [np.ones_like(x), x]
         while len(rows) < self.terms:
@@ -94,7 +94,8 @@ class Surrogate:
 
     Parameters
     ----------
-    axes : inputs with a range base : reference value of every input
+    axes : inputs with a range
+    base : reference value of every input
     coefficients : array (terms of axis 1, terms of axis 2, ..., outputs, 1 + linear inputs); the
         last axis has the value, then the slope for each input in `linear`
     linear : inputs whose effect is linearised
@@ -110,7 +111,8 @@ class Surrogate:
     def __call__(self, inputs: Mapping[str, Array], slope: str | None = None) -> Array:
         """Outputs (m, ...) at inputs that broadcast; missing inputs have their base value.
 
-        With `slope`, return derivatives with respect to the logarithm of that axis instead.
+        With `slope` (the name of an axis), return derivatives with respect to the logarithm of its
+        input instead.
         """
         point = {name: array_of(inputs.get(name, value)) for name, value in self.base.items()}
         names = [axis.name for axis in self.axes] + list(self.linear)
@@ -183,7 +185,7 @@ def _fitted(
     values: Sequence[np.ndarray],
     results: Sequence[Interpolation],
 ) -> np.ndarray:
-    """Fit coefficients (terms of every axis, outputs) to values, and with `hermite` to slopes."""
+    """Fit coefficients (terms of every axis, outputs) to values; with `hermite` also to slopes."""
     rows, targets = [_basis(axes, points)], [np.array(values)]
     for axis in axes:
         if axis.hermite:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 NARROWEST, WIDEST, USUAL, TERMINAL = 40, 1000, 100, 80
 """Line widths in characters: the smallest and largest allowed; the width without a terminal; the
-width of a terminal that does not state it."""
+width of a terminal that does not report its width."""
 PATIENCE, PAUSE = 1.0, 0.2
 """Seconds before the first progress report, and between reports."""
 

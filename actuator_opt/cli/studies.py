@@ -137,7 +137,7 @@ FiniteElements = Annotated[
     bool,
     typer.Option(
         "--finite-elements",
-        help="Compute the contact of an O-ring or step ring by finite elements (extra fem; "
+        help="Compute the contact of an O-ring or step ring by finite elements (extra fem; takes "
         "seconds).",
     ),
 ]

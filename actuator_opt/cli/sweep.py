@@ -24,7 +24,7 @@ Vary = Annotated[
     typer.Option(
         "--vary",
         metavar="PATH=A..B:N",
-        help="A range with its number of values, or a list (PATH=a,b,c). Repeatable.",
+        help="Input to vary: a range with N values, or a list (PATH=a,b,c). Repeatable.",
     ),
 ]
 Way = Annotated[
@@ -32,12 +32,14 @@ Way = Annotated[
     typer.Option("--method", help="grid (every combination), sobol or lhs (Latin hypercube)."),
 ]
 Count = Annotated[
-    int | None, typer.Option("-n", metavar="N", help="Number of points of sobol and lhs.")
+    int | None, typer.Option("-n", metavar="N", help="Number of points for sobol or lhs.")
 ]
 Store = Annotated[
     Path | None,
     typer.Option(
-        "--store", metavar="F.db", help="Store every row in this database; a later run resumes."
+        "--store",
+        metavar="F.db",
+        help="Store every row in this database; a later run resumes from it.",
     ),
 ]
 Csv = Annotated[
@@ -81,7 +83,7 @@ Show = Annotated[
 Yes = Annotated[bool, typer.Option("--yes", help="Allow more than a million full evaluations.")]
 Screening = Annotated[
     str,
-    typer.Option("--engine", help="Library for --reduce: numpy, or jax (extra gpu)."),
+    typer.Option("--engine", help="Array library for --reduce: numpy, or jax (extra gpu)."),
 ]
 Folder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the figures.")]
 

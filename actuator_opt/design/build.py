@@ -1,4 +1,4 @@
-"""Build a `Design`, or another root section, from a tree of values; or list all its faults."""
+"""Build a `Design`, or the object of another file, from a tree of values; or list all faults."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Built:
 
 @dataclass(frozen=True, slots=True)
 class Checked(Generic[Root]):
-    """Result of `check`: tree with its valid values in SI, section built from it, and faults."""
+    """Result of `check`: tree with its valid values in SI, object built from it, and faults."""
 
     tree: dict[str, Any]
     section: Root | None
@@ -86,12 +86,12 @@ def check(
     metrics: Mapping[str, Quantity],
     cross: Callable[[Any], Iterable[Fault]] | None = None,
 ) -> Checked[Root]:
-    """The section of type `root` that a tree describes, or all of its faults.
+    """The object of type `root` that a tree describes, or all of its faults.
 
     Parameters
     ----------
     tree : dicts, lists, texts with units and SI numbers, in the shape of the file
-    root : section type of the whole file
+    root : class of the whole file, such as `Design`
     metrics : allowed names of metrics in requirements
     cross : function that checks the values of a tree in SI against each other
     """
@@ -152,7 +152,7 @@ def _unless_known(faults: Iterable[Fault], reported: Sequence[Fault]) -> list[Fa
 
 
 def _section_at(root: type[Section], loc: Loc) -> tuple[type[Section] | None, KeyEntry | None]:
-    """Section type and key entry at a location of the file; None inside tables with free keys."""
+    """Class of the block and entry of the key at a location; None inside tables with free keys."""
     section: type[Section] | None = root
     entry: KeyEntry | None = None
     for key in loc:
@@ -238,7 +238,7 @@ def how_to_add(name: str, entry: KeyEntry | None) -> str:
 
 
 def to_tree(section: Section) -> dict[str, Any]:
-    """Convert a design or section to dicts, lists, texts and SI numbers; omit unset values."""
+    """Convert a design or a block to dicts, lists, texts and SI numbers; omit unset values."""
 
     def plain(value: Any) -> Any:
         if isinstance(value, Section):

@@ -53,7 +53,7 @@ EndStop: TypeAlias = Annotated[
     Literal["internal", "external"],
     Choice(
         "what limits the travel; internal: the piston hits cap or head and loads the barrel; "
-        "external: a stop outside the actuator, reached before the piston touches"
+        "external: a stop outside the actuator, reached before the piston touches cap or head"
     ),
 ]
 WallModel: TypeAlias = Annotated[
@@ -88,11 +88,11 @@ FrictionModel: TypeAlias = Annotated[
 ]
 SealLaw: TypeAlias = Annotated[
     str,
-    choice_of("contact width and force of the squeezed ring", CONTACT_LAWS),
+    choice_of("law for contact width and force of the squeezed ring", CONTACT_LAWS),
 ]
 HardnessModel: TypeAlias = Annotated[
     str,
-    choice_of("Young's modulus of the rubber from its Shore A hardness", MODULUS_LAWS),
+    choice_of("formula for Young's modulus of the rubber from its Shore A hardness", MODULUS_LAWS),
 ]
 Direction: TypeAlias = Annotated[
     Literal["push", "pull"],

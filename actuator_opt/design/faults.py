@@ -188,7 +188,7 @@ ENDS = get_args(get_args(choices.End)[0])
 
 
 def ports(view: FileView) -> Iterator[Fault]:
-    """Check that the component at the end of the lines is described, and no unused component is."""
+    """Check that the component at the end of the lines has a block, and that no other has one."""
     end = view.text("ports", "end")
     if end not in ENDS:  # reported as a separate fault
         return
@@ -229,7 +229,7 @@ def valve(view: FileView) -> Iterator[Fault]:
         text = quantities.INPUTS["leakage_flow"].text
         yield Fault(
             ("valve", "leakage_flow"),
-            f"{text(leakage)}: the leakage is as large as the flow of the open valve",
+            f"{text(leakage)}: not less than the flow of the open valve at the same pressure drop",
             f"write less than {text(most)}",
         )
 
@@ -240,7 +240,7 @@ def stiffness(view: FileView) -> Iterator[Fault]:
     if published and view.text("stiffness", "seals") == "sticking":
         yield Fault(
             ("stiffness", "seals"),
-            "sticking seals have no effect in the published topologies, which omit seals",
+            "sticking seals have no effect in the published formulas, which omit seals",
             'write "topology: per_chamber", or "seals: sliding"',
         )
 
@@ -257,7 +257,7 @@ def control(view: FileView) -> Iterator[Fault]:
 
 
 def held_pressures(view: FileView) -> Iterator[Fault]:
-    """Check that held pressures are stated for both chambers or none, and do not exceed proof."""
+    """Check held pressures: stated for both chambers or none, each at most proof pressure."""
     for index in range(len(view.items("load_cases"))):
         loc = ("load_cases", index)
         a, b = view.has(*loc, "pressure_a"), view.has(*loc, "pressure_b")
@@ -348,7 +348,7 @@ def barrel_length(view: FileView) -> Iterator[Fault]:
 
 
 def supply(view: FileView) -> Iterator[Fault]:
-    """Check that supply exceeds return pressure, and proof is not below supply pressure."""
+    """Check that supply pressure exceeds return pressure, but not proof pressure."""
     pressure, back = view.number("supply", "pressure"), view.number("supply", "return_pressure")
     ratio = view.number("supply", "proof_ratio")
     text = quantities.INPUTS["pressure"].text

@@ -285,7 +285,7 @@ def _entry_faults(item: Mapping[str, Any]) -> Iterator[_EntryFault]:
     """List all faults of a compact entry except those of its material."""
     for key in ("angle", "thickness", "balanced"):
         if key in item:
-            message = f"{key} and plies in one entry: plies already defines it"
+            message = f"both {key} and plies in one entry, but plies already defines {key}"
             yield _EntryFault(key, message, "keep one of them", at_key=True)
     thickness = quantities.INPUTS["ply_thickness"]
     if "ply_thickness" not in item:
@@ -347,7 +347,7 @@ def _entries(item: Mapping[str, Any], layers: Sequence[PlyGroup]) -> Iterator[di
 
 
 def _places(document: Document, loc: Loc, layer_loc: Loc, layer: PlyGroup) -> dict[Loc, NodeSpan]:
-    """Where a layer's values are written: angle and thickness at its angle in the notation."""
+    """Where a layer's values are written; angle and thickness at its angle in the notation."""
     angle_span = _character(document, (*loc, "plies"), layer.offset)
     places = {layer_loc: angle_span} | {
         (*layer_loc, key): angle_span for key in ("angle", "thickness", "balanced")

@@ -3,11 +3,12 @@
 All values are SI. A property may be a table over temperature or pressure; its `value` is then
 the value at the reference point, and scaling it scales the table.
 
-Fits of damping B versus speed minimise sum w (B - B_fit)^2 over the measured points. The weights w
-are equal unless given; w = 1/B^2 fits relative errors. Linear parameters are eliminated, so only
-exponents are searched [GolubPereyra1973], from every start of a grid. Confidence bounds follow from
-the linearised model and Student's t [SeberWild1989]. They assume independent points: if the points
-are read from a smooth curve, the bounds show how badly the law fits, not scatter.
+Fits of the secant damping B (friction divided by speed) versus speed minimise sum w (B - B_fit)^2
+over the measured points. The weights w are equal unless given; w = 1/B^2 fits relative errors.
+Linear parameters are eliminated, so only exponents are searched [GolubPereyra1973], from every
+start of a grid. Confidence bounds follow from the linearised model and Student's t [SeberWild1989].
+They assume independent points: if the points are read from a smooth curve, the bounds show how
+badly the law fits, not scatter.
 """
 
 from __future__ import annotations
@@ -121,8 +122,9 @@ class Property:
 
         Parameters
         ----------
-        argument : temperature (K) or pressure (Pa, gauge), depending on the table value : value at
-            the reference point to use instead of the stated value; the table is scaled with it
+        argument : temperature (K) or pressure (Pa, gauge), depending on the table
+        value : value at the reference point, to use instead of the stated value; the table is
+            scaled with it
         """
         reference = self.value if value is None else value
         if not self.points:
@@ -562,7 +564,7 @@ def assess(
             "errors are unknown"
         )
     elif estimate.rank < len(values):
-        reasons.append(f"the points determine {estimate.rank} of {len(values)} parameters")
+        reasons.append(f"the points determine only {estimate.rank} of {len(values)} parameters")
     else:
         weak = [key for key, parameter in estimate.parameters.items() if not parameter.identifiable]
         if weak:

@@ -1,8 +1,8 @@
-"""The Design: contents of a design file in SI, as typed sections.
+"""The Design: contents of a design file in SI, with a class for each block.
 
 Every number names its quantity (`Of`), which is declared once in `quantities.INPUTS` for parsing,
 range checks, JSON Schema and reports. A value may be an optimisation variable with bounds, or have
-confidence bounds from a test, or scatter. Sections contain no physics.
+confidence bounds from a test, or scatter. These classes contain no physics.
 """
 
 from __future__ import annotations
@@ -164,7 +164,10 @@ class Load(Section):
     mass: Annotated[float, Of("load_mass", "moving mass, reflected to the rod")] = 0.0
     inertia: Annotated[
         float,
-        Of("load_inertia", "moment of inertia about the joint of the linkage, added to mass"),
+        Of(
+            "load_inertia",
+            "moment of inertia about the linkage's joint, reflected to the rod and added to mass",
+        ),
     ] = 0.0
 
 

@@ -89,7 +89,7 @@ def resolve(
 ) -> Target:
     """Find the value that `path` names in `tree`.
 
-    `tree` is a section of type `root`, or the same section as dicts and lists.
+    `tree` is an object of type `root`, or its contents as dicts and lists.
 
     Raises
     ------
@@ -120,7 +120,7 @@ def _resolve_section(
     section: type[Section],
     loc: Loc,
 ) -> Target:
-    """Find the value that `tokens` name below a section; `node` is None if the tree lacks it."""
+    """Find the value that `tokens` name in a block; `node` is None if the tree lacks the block."""
     keys, tree = entries(section), whole[0]
     if not tokens:
         raise _not_a_value(path, list(keys))

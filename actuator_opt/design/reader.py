@@ -58,7 +58,7 @@ class FileSource:
     overrides: Mapping[Loc, Override] = field(default_factory=dict)
     """Values that the command line or another file sets, by location."""
     root: type[Section] = Design
-    """Type of the section that the whole file describes."""
+    """Class of the object that the whole file describes."""
     metrics: Mapping[str, Quantity] | None = None
     """Metrics that requirements may name; default: `metrics.METRICS`."""
 
@@ -186,7 +186,7 @@ def load(
     Parameters
     ----------
     document : parsed YAML
-    root : type of the object, a section
+    root : class of the object, derived from `Section`
     build_section : function that builds the object from a tree, or lists the faults of the tree
     overrides : values that replace those of the document, as for `read_design`
     metrics : metrics that may be named; default: `metrics.METRICS`

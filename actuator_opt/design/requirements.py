@@ -311,7 +311,7 @@ def materials(tree: dict[str, Any]) -> Iterator[Fault]:
 def recheck(
     tree: dict[str, Any], metrics: Mapping[str, Quantity], root: type[Section] = Design
 ) -> Iterator[Fault]:
-    """Run all checks of this module that apply to a section of type `root`."""
+    """Run all checks of this module that apply to an object of class `root`."""
     checks = {
         "variables": variables(tree),
         "measured": measured(tree),

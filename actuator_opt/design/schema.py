@@ -1,6 +1,6 @@
 """JSON Schema (draft-07) of input files, for completion, hover and checks in an editor.
 
-Generated from the declarations that the reader uses: sections of `model`, quantities, units and
+Generated from the declarations that the reader uses: classes of `model`, quantities, units and
 metrics. yaml-language-server and VS Code show `description` on hover, `patternErrorMessage` for a
 wrong unit, `examples` and `defaultSnippets` on completion.
 """
@@ -240,11 +240,11 @@ def json_schema(
     materials: MaterialLookup | None = None,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> Schema:
-    """JSON Schema of a design file, or of a file with another root section.
+    """JSON Schema of a design file, or of another type of file.
 
     Parameters
     ----------
-    root : section type of the file
+    root : class of the whole file, such as `Design`
     materials : library whose material names are offered; None: any name is accepted
     metrics : allowed metrics; default: `metrics.METRICS`
     """
@@ -274,7 +274,7 @@ def json_schema(
 
 
 def _of_parts(section: type[Section] = Design, prefix: str = "") -> dict[str, KeyEntry]:
-    """All values below a section by PATH; ``[*]`` replaces the index in a list."""
+    """All values in a block by PATH; ``[*]`` replaces the index in a list."""
     parts: dict[str, KeyEntry] = {}
     for name, entry in entries(section).items():
         path = f"{prefix}.{name}" if prefix else name

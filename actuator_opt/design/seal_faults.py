@@ -198,8 +198,8 @@ def clearances(view: FileView) -> Iterator[Fault]:
             ring = ".".join(str(key) for key in loc[:-1])
             yield Fault(
                 (part, "clearance"),
-                f"{length_text(gap)}: not smaller than the groove of {ring}, whose depth from the "
-                f"mating surface is {length_text(depth)}",
+                f"{length_text(gap)}: not smaller than the depth of the groove of {ring}, measured "
+                f"from the mating surface ({length_text(depth)})",
                 f"write less than {length_text(depth)}, e.g. 0.03 mm",
             )
 
@@ -234,7 +234,7 @@ def squeeze(view: FileView) -> Iterator[Fault]:
 
 
 def shapes(view: FileView) -> Iterator[Fault]:
-    """Check that the dimensions of a ring's profile fit into its section."""
+    """Check that the dimensions of a ring's profile fit into its free cross-section."""
     for loc in elements(view):
         kind = _kind(view, loc)
         if kind is not None:
@@ -286,7 +286,7 @@ def profiles(view: FileView) -> Iterator[Fault]:
                     (*at, "stresses"),
                     "the contact pressure nowhere exceeds the sealed pressure "
                     f"({INPUTS['pressure'].text(pressure)}), so this contact does not seal",
-                    "state total contact pressures, to which the sealed pressure contributes",
+                    "state total contact pressures, including the effect of the sealed pressure",
                 )
             if len(positions) != len(stresses):
                 yield Fault(
@@ -326,7 +326,7 @@ def reach(view: FileView) -> Iterator[Fault]:
 
 
 def films(view: FileView) -> Iterator[Fault]:
-    """Check that two seals in tandem have one friction law, and that a film has one ring or two."""
+    """Check that seals in tandem have the same friction law, and an oil film at most two rings."""
     for name in ("piston", "rod"):
         both: list[Loc] = [("seals", name)]
         if view.has("seals", name, "secondary"):

@@ -220,7 +220,8 @@ def ring_sections() -> tuple[float, ...]:
 def section_tolerance(section: float) -> StandardSize:
     """Tolerance (plus or minus, m) of a ring's free section.
 
-    It is that of ISO 3601-1 for a nominal section, else that of the size band of the section.
+    For a nominal section, it is stated by ISO 3601-1; any other section has the tolerance of its
+    size band.
 
     Raises
     ------

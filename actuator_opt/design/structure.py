@@ -1,6 +1,6 @@
-"""Structure of input files: keys of each section, look-up of values by location, and faults there.
+"""Structure of input files: keys of each block, look-up of values by location, and faults there.
 
-Reader, PATHs, writer and JSON Schema find the keys of each section and the kind of each value here,
+Reader, PATHs, writer and JSON Schema find the keys of each block and the kind of each value here,
 so none of them has its own list of keys.
 """
 
@@ -26,12 +26,11 @@ Shape: TypeAlias = Literal["value", "choice", "section", "list", "table"]
 
 @dataclass(frozen=True, slots=True)
 class KeyEntry:
-    """A key of a section.
+    """A key of a block.
 
     `kind` is set for a value, a list of values or a choice; `choices` only for a choice. `section`
-    is the type of a section, of the entries of a list, or of the entries of a table with free
-    names. A table without `section` contains texts, numbers or tables (waivers, objective,
-    materials).
+    is the class of a block, of the entries of a list, or of the entries of a table with free names.
+    A table without `section` contains texts, numbers or tables (waivers, objective, materials).
     """
 
     name: str
@@ -54,7 +53,7 @@ class KeyEntry:
 
 @cache
 def entries(section: type[Section]) -> Mapping[str, KeyEntry]:
-    """All keys of a section, in file order."""
+    """All keys of a block, in file order."""
     return {name: _entry(name, info) for name, info in section.model_fields.items()}
 
 
@@ -97,7 +96,7 @@ def _options(annotation: Any) -> tuple[Any, ...]:
 
 
 def child(node: Any, key: str | int) -> Any:
-    """Child of a node under a key; None if missing. Nodes are sections, dicts, lists or None."""
+    """Child of a node under a key; None if missing. Nodes are blocks, dicts, lists or None."""
     if isinstance(node, Mapping):
         return node.get(key)
     if isinstance(node, (list, tuple)):
@@ -114,7 +113,7 @@ def child_at(tree: Any, loc: Loc) -> Any:
 
 @cache
 def lists_of(section_type: type[Section], section: type[Section] = Design) -> tuple[Loc, ...]:
-    """Locations of all lists of `section_type` below `section`.
+    """Locations of all lists whose entries are of class `section_type`, inside `section`.
 
     >>> from .model import Ply
     >>> lists_of(Ply)
@@ -164,7 +163,7 @@ def number_of(value: object) -> float | None:
 
 
 def value_at(tree: Any, loc: Loc, section: type[Section] = Design) -> Any:
-    """Value at a location of a section or its tree; if not stated, the default of its key."""
+    """Value at a location of a block or its tree; if not stated, the default of its key."""
     node, default = tree, None
     for key in loc:
         node = child(node, key)

@@ -101,7 +101,7 @@ of 6e-7 of the distribution lies beyond."""
 
 
 def quantity_of_entry(key: str, quantity: Quantity) -> Quantity | None:
-    """Quantity of a key of an entry whose PATH has `quantity`; None if the key has a text."""
+    """Quantity of a key (such as `lower`) of a distribution of `quantity`; None for a text."""
     if key in ("lower", "upper"):
         return quantity
     if key == "cv":

@@ -74,7 +74,7 @@ def barrel_model(view: FileView) -> Iterator[Fault]:
 
 
 def autofrettage(view: FileView) -> Iterator[Fault]:
-    """Check that the autofrettage pressure exceeds supply, and that layers surround a liner."""
+    """Check that autofrettage exceeds the supply pressure, and that layers surround the liner."""
     loc = ("barrel", "autofrettage_pressure")
     pressure, supply = view.number(*loc), view.number("supply", "pressure")
     if pressure is None:

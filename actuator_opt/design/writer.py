@@ -68,7 +68,7 @@ def exact_text(value: float, quantity: Quantity | None, unit: str | None = None)
 
 
 def _candidates(value: float, unit: units.Unit) -> Iterator[str]:
-    """Yield texts in a unit for an SI value, shortest first, then for neighbouring floats."""
+    """Yield texts in a unit for an SI value, shortest first; last, texts of neighbouring floats."""
     low = high = unit.from_si(value)
     for digits in (6, 9, 12, 15, 16, 17):
         yield f"{low:.{digits}g}"
@@ -105,7 +105,7 @@ def to_yaml(
 
 
 _TABLES = (("variables",), ("requirements",), ("measured",), ("uncertainty",))
-"""Tables whose entries are sections with free names."""
+"""Tables whose entries are blocks with free names."""
 
 
 class _CannotEdit(Exception):
@@ -201,7 +201,7 @@ def _below(section: type[Section] | None, key: str) -> type[Section] | None:
 def _stated(
     node: dict[str, Any], section: type[Section] | None, design: Design, loc: Loc = ()
 ) -> dict[str, Any]:
-    """Convert a section to a tree, without the values that equal their defaults."""
+    """Convert a block to a tree, without the values that equal their defaults."""
     stated: dict[str, Any] = {}
     table = loc in _TABLES
     for key, value in node.items():

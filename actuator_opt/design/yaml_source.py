@@ -38,7 +38,7 @@ _BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
 _CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\x80-\x84\x86-\x9f\ud800-\udfff\ufffe\uffff]")
 _START = {
     "design": "start with: actuator-opt init",
-    "scenario": "start with name: and design:",
+    "scenario": 'start with the keys "name:" and "design:"',
     "units": "write a line for each column, e.g. p1: bar",
 }
 
@@ -288,7 +288,9 @@ class _Builder:
         if event.anchor is not None:
             self._fault(event, f'anchor "&{event.anchor}"', "remove it")
         if event.tag is not None:
-            self._fault(event, f'tag "{shown(event.tag)}"', "remove it; values are read as text")
+            self._fault(
+                event, f'tag "{shown(event.tag)}"', "remove the tag; values are read as text"
+            )
 
     def _fault(self, event: Any, message: str, remedy: str) -> None:
         if len(self.document.faults) < 100:

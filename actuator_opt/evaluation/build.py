@@ -444,7 +444,8 @@ class Many:
 
     `metrics` are the governing values, NaN if missing. `margin` is the smallest margin of all
     limits, including those of the check list. `missed` is the index in `limits` of the limit with
-    this margin. `read` are the PATHs of the numbers that models and limits have used.
+    this margin. `read` are the PATHs (such as `cylinder.bore`) of the inputs that models and limits
+    have used.
     """
 
     metrics: dict[str, Array]
@@ -472,7 +473,7 @@ def evaluate_many(
     Parameters
     ----------
     subject : the design
-    varied : arrays (designs,) by PATH, SI
+    varied : arrays (designs,) by PATH, such as `cylinder.bore`, SI
     count : number of designs
     wanted : metrics to compute; default: all
     """

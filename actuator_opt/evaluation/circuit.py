@@ -31,8 +31,9 @@ class ChamberLines:
     resistance: Array = 0.0
     inertance: Array = 0.0
     far: Array = 0.0
-    """Compliance at the node of the dynamic model away from the chamber. It contains half of every
-    line (pi element), or, with a throttle, all lines beyond the throttle."""
+    """The dynamic model divides each chamber's lines between two nodes. This is the compliance at
+    the node away from the chamber: half of every line (pi element) or, with a throttle, all lines
+    beyond the throttle."""
 
 
 def wall_compliance(v: Values, line: Line, at: str) -> Array:
@@ -141,7 +142,10 @@ def valve_edges(v: Values, design: Design, state: LoadState) -> Edges:
 
 
 def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) -> LinearValve | None:
-    """Linearise the valve while it holds the load and makes up for leakage; None without valve."""
+    """Linearise the valve about the state in which it holds the load; None without valve.
+
+    The valve then supplies the oil that leaks across the piston.
+    """
     if design.valve is None:
         return None
     edges = valve_edges(v, design, state)

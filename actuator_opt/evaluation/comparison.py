@@ -266,7 +266,7 @@ def _senses(metric: str, evaluations: Sequence[Evaluation]) -> tuple[Sense | Non
 def _question(
     name: Name, metric: str, evaluations: Sequence[Evaluation], parts: dict[str, tuple[float, ...]]
 ) -> Question:
-    """Compare the best design with the first, or with the second best if the first is best."""
+    """Compare the best design with the first design or, if that is best, with the second best."""
     values = tuple(e.metrics[metric].value for e in evaluations)
     sign = -1.0 if name == "stiffer" else 1.0
     known = [(sign * v, k) for k, v in enumerate(values) if v is not None and math.isfinite(v)]
@@ -305,7 +305,7 @@ def _tree(design: Design) -> dict[str, Any]:
 
 
 class _Named(dict[str, Any]):
-    """A list of named entries; their PATHs have the names in brackets."""
+    """A list of named entries, whose PATHs have the names in brackets, as in `load_cases[out]`."""
 
 
 def _differences(nodes: Sequence[Any], path: str) -> Iterator[tuple[str, tuple[Any, ...]]]:

@@ -210,7 +210,7 @@ def _layers(stock: MaterialValues, wall: Wall, out: MetricArrays) -> None:
 
 
 def _service(v: Values, stock: MaterialValues, design: Design, out: MetricArrays) -> None:
-    """Compute the margins between the temperature range and the limits of every material."""
+    """Compute by how much the temperature range stays within the limits of every material."""
     if design.environment is None:
         out.skip("temperature_margin", "no temperature range stated: add environment")
         return

@@ -43,7 +43,7 @@ def port_admittance(
     index: int,
     frequencies: Array,
 ) -> Array:
-    """Complex admittance at a chamber port by frequency: flow into its lines per unit pressure."""
+    """Complex admittance of a chamber's lines at the port: flow per unit pressure, by frequency."""
     modulus = of_case(state.bulk_modulus_a if chamber == "a" else state.bulk_modulus_b, index)
     viscosity = state.dynamic_viscosity_a if chamber == "a" else state.dynamic_viscosity_b
     density = of_case(state.density, index)
@@ -195,7 +195,8 @@ class LoopStudy:
     crossover: float | None
     bandwidth: float | None
     governs: tuple[str, ...]
-    """Those of gain_margin, phase_margin and bandwidth whose least value occurs in this loop."""
+    """Which of the metrics gain_margin, phase_margin and bandwidth have their least value in this
+    loop."""
     open_magnitude: Array
     open_phase: Array
     """Phase of the open loop [rad], from near -pi/2 at low frequency, without jumps by 2 pi."""
@@ -437,7 +438,7 @@ class _Loop:
 
     @classmethod
     def of(cls, run: ModelRun, index: int, place: str, governs: tuple[str, ...]) -> _Loop:
-        """Build the loop for a location (direction, position) as the metrics name it."""
+        """Build the loop for a location in results, such as "extending, 50 % of the stroke"."""
         direction, _, where = place.partition(", ")
         position = np.asarray(run.places[where])
         position_open_loop = run.motion.position_loop(
@@ -459,7 +460,7 @@ class _Loop:
 def _loop(
     subject: PreparedDesign, v: Values, run: ModelRun, at: _Loop, frequencies: Array
 ) -> LoopStudy:
-    """Frequency response of a position loop; its margins and bandwidth are those of the metrics."""
+    """Frequency response of a position loop; margins and bandwidth are taken from the metrics."""
 
     def value_of(metric: str) -> float:
         return of_case(run.computed.metrics[metric][at.place], at.index)

@@ -65,7 +65,7 @@ _NOT_OF_FILM = frozenset(
         "viscous_friction",
     }
 )
-"""Numbers of a ring that do not affect its film, or that both rings of a pair share."""
+"""Properties of a ring that do not affect its film, or that both rings of a pair share."""
 
 SHARED = ("speed", "viscosity", "viscosity_coefficient")
 """Inputs that both rings of a pair share, in addition to the pressures."""
@@ -81,7 +81,7 @@ def films_asked(design: Design) -> bool:
 
 
 def on_stroke(rings: Sequence[Ring], stroke: Stroke) -> tuple[Ring, ...]:
-    """The rings with the pressure that they seal on the drive stroke or on the return stroke."""
+    """Copies of the rings with the pressure that they seal on the given stroke, drive or return."""
     if stroke == "drive":
         return tuple(rings)
     return tuple(ring.at(pressure=ring["return_pressure"]) for ring in rings)
@@ -93,7 +93,7 @@ def of_place(rings: Sequence[Ring], place: Place) -> tuple[Ring, ...]:
 
 
 def floats(ring: Ring, case: int, sample: int = 0) -> Ring:
-    """A ring with plain numbers, those of one load case and one design."""
+    """Copy of a ring whose arrays are replaced by the numbers of one load case and one design."""
 
     def number(value: Array) -> float:
         array = np.atleast_2d(np.asarray(value, dtype=float))
@@ -105,9 +105,9 @@ def floats(ring: Ring, case: int, sample: int = 0) -> Ring:
 
 @dataclass(frozen=True, slots=True)
 class FilmRow:
-    """One or two rings in series, with plain numbers, ordered from the sealed side outwards.
+    """One ring, or two in series from the sealed side outwards, for one load case of one design.
 
-    `outward` states whether the counterface moves towards the outer side.
+    `outward` states whether the surface on which the rings slide moves towards the outer side.
     """
 
     rings: tuple[Ring, ...]

@@ -1,4 +1,4 @@
-"""Film tables of a design: one for each load case and stroke of piston and rod seals with a film.
+"""Tables of the oil films under a design's seals, for every load case and stroke.
 
 Each table is a surrogate model that interpolates between solved films. Its axes are the inputs with
 the largest effect on the film within the bounds of the design variables. The effect of all other
@@ -35,10 +35,11 @@ SPEEDS, SPEED_ROOM = 3, 1.25
 beyond the smallest and largest speed. The middle node is the speed of the load case. Every
 surrogate has this axis, so that the derivative by speed varies with all other inputs."""
 CHECKS = 4
-"""Number of samples at which a surrogate is compared with solved films, besides the design."""
+"""Number of samples at which a surrogate is compared with solved films. It is also compared at the
+design itself."""
 MISSED = 0.005
 """Error of linear extrapolation to the ends of an input's range, as a share of the normal force on
-the asperities. Above this error, the input becomes a candidate for its own axis."""
+the asperities. Above this error, the input becomes a candidate for an axis of the table."""
 Key = tuple[Place, int, Stroke]
 """Location (piston or rod), load case and stroke of a table."""
 
@@ -171,7 +172,7 @@ def _axes(
     others: Sequence[Mapping[str, Array]],
     at_design: Interpolation,
 ) -> tuple[SurrogateAxis, ...]:
-    """Choose the axes: speed, and the inputs whose linear extrapolation has the largest errors."""
+    """Choose a table's axes: speed, and the inputs whose linear extrapolation has most error."""
     spans = {
         name: (min(values), max(values))
         for name, value in base.items()
@@ -327,10 +328,11 @@ def _spread(design: Design) -> dict[str, np.ndarray]:
 def _with_corners(
     design: Design, spread: dict[str, np.ndarray], rings: Sequence[Ring]
 ) -> dict[str, np.ndarray]:
-    """Add corners of the variables' bounds to the samples.
+    """Add corners of the design space to the samples.
 
-    For each input of a ring, a corner is chosen at which the input should be extreme, by the signs
-    of its correlation with every variable.
+    At a corner, every variable is at one of its bounds. Two corners are added for each input of a
+    ring, at which the input should have its smallest and largest value. They follow from the signs
+    of the input's correlations with the variables.
     """
     paths = list(spread)
     varied = np.array([spread[path] - np.mean(spread[path]) for path in paths])

@@ -1,9 +1,9 @@
 """Derived dimensions of the actuator and its grooves, shared by physics, mass and drawing.
 
-Axial layout, from the outer face of the cap plate: plate, barrel (piston retracted against the
-plate, stroke, head plug), head plate, exposed rod, eye. Every seal element, wiper and guide has its
-groove in piston or head. Both end plates are held by the same type of joint (see `joints`), so a
-single `End` describes both ends.
+Axial layout, from the outer face of the cap plate: cap plate, barrel, head plate, exposed rod, eye.
+The barrel contains the piston (retracted against the cap plate), the stroke and the head plug.
+Every seal element, wiper and guide has its groove in piston or head. Both end plates are held by
+the same type of joint (see `joints`), so a single `End` describes both ends.
 """
 
 from __future__ import annotations
@@ -106,7 +106,8 @@ class GroovePart(NamedTuple):
 class Groove:
     """A groove in piston or head, or several equal ones: its rings and dimensions.
 
-    `gland_depth` is that at nominal squeeze, and `count` the number of equal grooves.
+    `gland_depth` is the radial depth that gives the nominal squeeze; `count` is the number of equal
+    grooves.
     """
 
     place: str

@@ -54,7 +54,7 @@ from .values import Values
 def compute_damping(
     geometry: Geometry, state: LoadState, friction: Friction, out: MetricArrays
 ) -> Array:
-    """Compute the damping of oil in pipes and annular gaps; return the total with the seals."""
+    """Compute the damping of oil in pipes and gaps; return the sum of oil and seal damping."""
     g = geometry
     viscosity = 0.5 * (state.dynamic_viscosity_a + state.dynamic_viscosity_b)
     pipe = damping.pipe_flow(dynamic_viscosity=viscosity, length=g.stroke)
@@ -86,8 +86,8 @@ def compute_leakage(
     """Compute the leakage across the moving piston; return its conductance.
 
     It is the sum of the stated conductance and that of the seal's oil film or, without seals, of
-    the gap around the piston, widened by bore growth. The flow of a film is that at the speed of
-    the load case; a film that draws oil back to the driven side counts as tight.
+    the gap around the piston, widened by bore growth. The flow in the film is computed at the speed
+    of the load case. A film that draws oil back to the driven side counts as free of leakage.
     """
     path = "piston.leakage_conductance"
     conductance = v[path]
@@ -205,7 +205,7 @@ STROKES: tuple[film.Stroke, ...] = ("drive", "return")
 
 @dataclass(frozen=True, slots=True)
 class PreparedDesign:
-    """A design with its materials, and all numerical values of both by PATH."""
+    """A design, its materials, and all their numerical values by PATH, such as `cylinder.bore`."""
 
     design: Design
     materials: dict[str, Material]
@@ -222,7 +222,8 @@ class PreparedDesign:
     """Whether a user metric that raises an exception is NaN with a reason, instead of stopping the
     run."""
     constants: dict[str, dict[str, Array]] = field(default_factory=dict, compare=False)
-    """Elastic constants of materials as plies, by name; a cache."""
+    """Cache of each material's elastic constants, written as those of a ply, by name of the
+    material."""
     films: dict[Key, FilmTable] = field(default_factory=dict, compare=False)
     """Tables of the seals' oil films; a cache."""
 

@@ -26,7 +26,7 @@ from .values import Values
 
 @dataclass(frozen=True, slots=True)
 class MetricLimit:
-    """A limit of a metric: a number of the design (at `path`) or a constant.
+    """A limit of a metric: a numeric input of the design, stated at `path`, or a constant.
 
     For a load case that states a joint torque and a lever arm, `path` is the PATH of the torque and
     `lever` the PATH of the arm; the limit is their ratio.
@@ -233,7 +233,7 @@ class LimitRow:
 def by_case(
     computed: MetricArrays, metric: str, array: Array, cases: tuple[str, ...], place: str = ""
 ) -> Iterator[tuple[str, Array]]:
-    """Yield (name, values (designs,)) of each load case to which a metric applies."""
+    """Yield the name of each load case to which a metric applies, with its values (designs,)."""
     array = array_of(array)
     if array.ndim < 2:
         yield ALL_CASES, np.atleast_1d(array)

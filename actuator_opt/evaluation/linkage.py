@@ -230,7 +230,10 @@ def _dead_points(joint: DrivenJoint) -> dict[str, Array]:
 
 
 def warnings(design: Design, joint: DrivenJoint | None) -> Iterable[tuple[str, str]]:
-    """Yield (metric, sentence) if the joint's inertia is reflected at a single stroke position."""
+    """Warn if load cases use the joint's inertia as it acts at a single stroke position.
+
+    The warnings are pairs (metric, sentence).
+    """
     if joint is None or not design.load.inertia > 0:
         return
     ends = {end: float(np.min(real(arm))) for end, arm in joint.ends.items()}

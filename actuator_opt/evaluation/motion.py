@@ -1,8 +1,8 @@
 """Linear dynamics of the actuator: modes, dynamic stiffness and the position loop.
 
 All three use one model (`models.linear`). Results are computed at several stroke positions; those
-of the position loop also for both spool directions. Each combination is a separate entry with its
-own limit in the optimiser, which therefore needs no smooth maximum.
+of the position loop also for both spool directions. Each combination of position and direction is a
+separate limit for the optimiser, which therefore needs no smooth approximation of a maximum.
 """
 
 from __future__ import annotations
@@ -115,7 +115,8 @@ class Motion:
     def closed_frequency(self, position: Array) -> Array:
         """Natural frequency with closed ports [Hz].
 
-        Each chamber is a separate spring, whichever topology the design states.
+        Each chamber is a separate spring, even if the design states another formula for the
+        stiffness (`stiffness.topology`).
         """
         return dynamics.natural_frequency(
             stiffness=self.springs.per_chamber_stiffness(position), mass=self.mass
@@ -298,8 +299,8 @@ def warnings(
             yield (
                 "ultimate_gain",
                 "the valve's tank edges and supply edges leak differently, but the holding "
-                "pressures are computed for equal edges; a scenario takes the difference into "
-                "account",
+                "pressures are computed for equal edges; only a simulation takes the difference "
+                "into account",
             )
     yield from _ports(v, design, motion, state)
     yield from _lines(design, motion, out)

@@ -205,7 +205,7 @@ def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
 def _rings(
     start: float, length: float, grooves: Sequence[Groove], counterface: float, side: int
 ) -> Iterator[_Part]:
-    """Rings in every groove. A round ring is as wide as its section; others fill the groove."""
+    """Rings in every groove, as rectangles: as wide as the ring, but no wider than the groove."""
     shapes: dict[tuple[str, str], list[Polygon]] = {}
     for groove, left, right in _grooves(start, length, grooves):
         middle, half = (left + right) / 2, min(float(groove.ring_width), right - left) / 2
@@ -293,7 +293,7 @@ SAME = 1e-7
 
 
 STEP = 1e-4
-"""Small change of a dimension, which shows its effect on the coordinates [m]."""
+"""Change of a dimension from which its effect on the coordinates is computed [m]."""
 
 
 LENGTHS = ("bore", "rod", "stroke", "closed_length")
@@ -348,7 +348,7 @@ def shapes(
     Parameters
     ----------
     subject : the design
-    varied : arrays (designs,) by PATH, SI
+    varied : arrays (designs,) by PATH, such as `cylinder.bore`, SI
     count : number of designs
     hidden : names of parts that are not drawn
     """

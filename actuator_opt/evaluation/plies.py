@@ -83,7 +83,7 @@ class Layer:
         return None if first is None or second is None else (first, second)
 
     def as_tube(self) -> TubeLayer:
-        """The layer as input of the exact tube."""
+        """The layer as input of the exact model of a layered tube."""
         first, second = self.expansions or (0.0, 0.0)
         return TubeLayer(
             stiffness=self.solid,
@@ -248,7 +248,10 @@ def worst(values: Array, axes: tuple[int, ...]) -> Array:
 
 
 def grouped(modes: Mapping[str, Array]) -> dict[str, Array]:
-    """Merge utilisations of modes that exclude each other: both fibre modes become "fibre"."""
+    """Merge failure modes that exclude each other, such as fibre tension and fibre compression.
+
+    They get the first word of their names, such as "fibre", and the larger utilisation.
+    """
     groups: dict[str, Array] = {}
     for mode, utilisation in modes.items():
         group = mode.partition(" ")[0]

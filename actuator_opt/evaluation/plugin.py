@@ -1,8 +1,9 @@
 """User metrics and constraints, from a script or a ``--plugin`` file.
 
-A metric is a function of a `View`: it reads numbers of the design by PATH and built-in metrics by
-name, and returns an array. If all operators and NumPy functions in it accept complex numbers, the
-optimiser calculates its exact gradient; otherwise it uses finite differences.
+A metric is a function of a `View`: it reads numeric inputs of the design by PATH (such as
+``cylinder.bore``) and built-in metrics by name, and returns an array. If all operators and NumPy
+functions in it accept complex numbers, the optimiser calculates its exact gradient; otherwise it
+uses finite differences.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ _LONGEST = 300
 
 
 class View:
-    """Inputs of a user metric in SI: numbers of the design by PATH, built-in metrics by name."""
+    """Values that a user metric can read, in SI: inputs of the design, and built-in metrics."""
 
     def __init__(
         self,

@@ -34,12 +34,13 @@ Place = Literal["piston", "rod"]
 
 @dataclass(frozen=True, slots=True)
 class Ring:
-    """A sealing element with its numbers by name; arrays broadcast to (cases, designs).
+    """A sealing element with its numerical properties; arrays broadcast to (cases, designs).
 
     `numbers` contains the values of the design file and in addition `diameter`, `youngs_modulus` of
     the squeezed part, `pressure` (the sealed pressure difference), `outer_pressure` (gauge) and
     `squeeze_left` (nominal squeeze minus the loss by bore growth). For an oil film it also contains
-    `speed`, `viscosity`, `return_pressure` (p_B on the return stroke) and roughness of the ring.
+    `speed`, `viscosity`, `return_pressure` (in chamber B on the return stroke) and the ring's
+    roughness.
     """
 
     name: Place
@@ -110,8 +111,8 @@ def rings(
 ) -> tuple[Ring, ...]:
     """All sealing rings; on piston and rod, the first ring seals the pressure.
 
-    The piston seal seals the pressure difference between the chambers, the rod seal the pressure
-    p_B. `growth` is the radial growth of the bore far from the seal.
+    The piston seal seals the pressure difference between the chambers, the rod seal the pressure of
+    chamber B. `growth` is the radial growth of the bore far from the seal.
     """
     across: dict[str, tuple[Array, Array]] = {
         "piston": (
@@ -301,7 +302,7 @@ def squeezes(ring: Ring, *, growth: Array, aside: Array, ratio: Array) -> tuple[
 def volume_ratio(
     v: Values, design: Design, stock: MaterialValues, ring: Ring, temperature: Array
 ) -> Array:
-    """Ratio of ring volume to groove volume at a temperature, divided by that at assembly.
+    """Ratio of ring volume to groove volume at a temperature, relative to the ratio at assembly.
 
     It is 1 if the thermal expansion is unknown.
     """

@@ -83,7 +83,7 @@ class RodSection:
 
     @property
     def place(self) -> str:
-        """Location under which results name the model of the section; empty for a plain bar."""
+        """Name of the section's model, used as a location in results; empty for a plain bar."""
         return "layered tube" if self.layers else ""
 
 
@@ -242,7 +242,7 @@ def fittings(v: Values, stock: MaterialValues, design: Design, rod: RodSection) 
 
 
 def fitting_hole(v: Values, design: Design, rod: RodSection) -> Array:
-    """Inner diameter of a fitting; zero for a solid plug, or if the wall fills the rod's bore."""
+    """Inner diameter of a fitting; zero for a solid plug, or if its wall fills the rod's bore."""
     if design.rod.fitting is None or design.rod.fitting.wall is None:
         return 0.0 * rod.inner_diameter
     return maximum(rod.inner_diameter - 2 * v["rod.fitting.wall"], 0.0)

@@ -131,7 +131,7 @@ def compute_film(
 
 
 def _row_load(ring: Ring, contact: SealContact) -> Array:
-    """Sum of the line loads of `count` rings in series.
+    """Sum of the line loads (force per circumference) of `count` rings in series.
 
     The first ring seals the pressure; the others are only squeezed.
     """
@@ -143,7 +143,10 @@ def _row_load(ring: Ring, contact: SealContact) -> Array:
 
 
 def _at_interseal_pressure(ring: Ring, films: Films) -> Ring:
-    """A ring with the pressure that it seals: two rings with a film share the difference."""
+    """Copy of a ring with the pressure difference that it seals.
+
+    Two rings in series that both have an oil film share the total pressure difference.
+    """
     film = films.get(ring.label)
     if film is None:
         return ring
@@ -224,7 +227,7 @@ POINTS = 81
 
 
 def room(ring: Ring) -> float:
-    """Axial length of the groove without its back-up rings [m]."""
+    """Axial length that the back-up rings leave free in the groove [m]."""
     backs = ring.element.back_ups * (ring.element.back_up_thickness or 0.0)
     return float(ring["groove_width"]) - backs
 
@@ -251,7 +254,7 @@ def contacts(ring: Ring, supply: float) -> tuple[MountedContact, ...]:
     Raises
     ------
     ActuatorError
-        missing extra, type without finite elements, or no convergence
+        scikit-fem is not installed, the seal type has no finite elements, or there is no solution
     """
     elements = ring.element.seal_type.elements
     if elements is None:
@@ -261,7 +264,7 @@ def contacts(ring: Ring, supply: float) -> tuple[MountedContact, ...]:
         raise ActuatorError(
             Diagnostic(
                 f"{ring.label}: finite elements are not available for a {ring.element.type}",
-                f"use them for {types}, or state measured or computed contact profiles",
+                f"use finite elements for {types}, or state measured or computed contact profiles",
             )
         )
     solution = elements.solve(ring.sizes, room(ring), [share * supply for share in SHARES])

@@ -169,7 +169,10 @@ class Springs:
         return 1 / sum(self.compliances(position).values())
 
     def per_chamber_stiffness(self, position: Array) -> Array:
-        """Axial stiffness at a position; each chamber is a separate spring in every topology."""
+        """Axial stiffness at a position, with each chamber as a separate spring.
+
+        This holds even if the design states another formula (`stiffness.topology`).
+        """
         return 1 / (sum(self._by_energy(position).values()) + self.series_compliance())
 
 
@@ -258,7 +261,10 @@ def weakest(s: Springs) -> Array:
 
 
 def weakest_per_chamber(s: Springs) -> Array:
-    """Position of least stiffness, with each chamber as a separate spring, for every topology."""
+    """Position of least stiffness, with each chamber as a separate spring.
+
+    This holds even if the design states another formula (`stiffness.topology`).
+    """
     give = s.total()
     return stiffness.weakest_position(
         area_a=s.geometry.area_a,

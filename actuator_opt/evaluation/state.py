@@ -2,8 +2,9 @@
 
 Oil properties are bulk modulus, viscosity, density and vapour pressure. The module also warns of
 boiling, and of pressures and temperatures outside the range of the oil's laws and data. Pressures
-are gauge. If the design states no law, that of the oil's library entry applies. All properties are
-those of the pure liquid, except `bulk_modulus`, which includes entrained air.
+are gauge. If the design states no law for viscosity or bulk modulus, that of the oil's library
+entry applies. All properties are those of the pure liquid, except `bulk_modulus`, which includes
+entrained air.
 """
 
 from __future__ import annotations
@@ -105,7 +106,8 @@ def kinematic_viscosity(
 ) -> Array:
     """Kinematic viscosity at zero gauge pressure.
 
-    The oil's table over temperature is scaled, in case its `kinematic_viscosity` is varied.
+    If the oil's `kinematic_viscosity` is varied, its table of viscosity versus temperature is
+    scaled in proportion.
     """
     oil = stock.material(section.material)
     points = oil.viscosity_points
@@ -292,7 +294,10 @@ def _holding(
 def holding(
     v: Values, design: Design, stock: MaterialValues, geometry: Geometry, s: LoadState, end: str
 ) -> LoadState:
-    """Copy the state, with the force and chamber pressures of the load held at a linkage's stop."""
+    """Copy the state, with the load held at the stop `end` of a linkage.
+
+    Force, chamber pressures and bulk moduli are changed.
+    """
     force = s.demands[end].force
     holding_a, holding_b = _holding(v, design, geometry, s.push, force)
     return replace(

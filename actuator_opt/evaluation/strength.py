@@ -253,7 +253,11 @@ def _pins(v: Values, stock: MaterialValues, design: Design, push: Array, out: Me
 
 
 def _guided(grooves: Sequence[Groove], length: Array) -> Array:
-    """Length that carries side load: that of the guide rings, else the part without its grooves."""
+    """Length of piston or head that carries side load.
+
+    It is the total width of the guide rings or, without guide rings, the part's length minus its
+    grooves.
+    """
     for groove in grooves:
         if groove.role == "guide":
             return groove.count * groove.width

@@ -235,7 +235,7 @@ def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:
         reach = element.contact[-1].pressure / 1e5
         return _use(
             contact_profile.table_profile,
-            f"{ring.label}, stated profiles up to {reach:.0f} bar",
+            f"{ring.label}, stated contact profiles up to {reach:.0f} bar",
             doubted=doubted,
         )
     if element.seal_type.model is None:
@@ -378,7 +378,7 @@ def _rod_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str,
         why = "no cure temperature stated"
         if rod.expansion is None:
             name = next(layer.name for layer in rod.layers if layer.expansions is None)
-            why = f"{name} has no thermal expansion"
+            why = f"the thermal expansion of {name} is unknown"
         yield "rod_factor", f"stresses in the rod's layers exclude cooling stresses: {why}"
     if rod.missing:
         yield "rod_factor", f"rod: {rod.missing[0]}"

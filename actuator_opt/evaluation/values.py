@@ -18,7 +18,7 @@ from ..base.numeric import Array, array_of, namespace
 
 
 class Values:
-    """Numerical values by PATH, in SI."""
+    """Numerical values in SI by PATH, such as `cylinder.bore`."""
 
     def __init__(
         self,

@@ -78,7 +78,7 @@ class MetalTube:
     `for_growth` and `for_burst` are the wall thicknesses [m] that bore growth and burst pressure
     require; None if no thickness suffices or if there is no requirement. `thickness` is the larger
     of the two. `growth` [m] is that at supply pressure without axial force. Burst and yield
-    pressures [Pa] are for the load path with the lower pressure.
+    pressures [Pa] are the lower of the values without and with axial force.
     """
 
     material: str
@@ -125,7 +125,7 @@ def mass_per_length(layers: Sequence[Layer], densities: Sequence[float], inner: 
 
 
 def main_layer(layers: Sequence[Layer], inner_radius: float) -> int:
-    """Index of the layer that carries the largest hoop force; a liner counts only without plies."""
+    """Index of the layer with the largest hoop force; if there are plies, metals do not count."""
     tube = layered_tube(layers=[layer.as_tube() for layer in layers], inner_radius=inner_radius)
     carried = tube.wall[3] * (tube.outer - tube.inner)
     plies = [i for i, layer in enumerate(layers) if not layer.isotropic] or range(len(layers))
@@ -241,8 +241,8 @@ def metal_tubes(
     """The wall of the design, and the thinnest barrel for the same duty from each of `METALS`.
 
     The duty is the bore growth of the design's wall without axial force, and the required burst
-    pressure for every load path. If the design's wall has a lower burst pressure, or if the burst
-    check is waived, the burst pressure of the design's wall is the requirement.
+    pressure, both without and with axial force. If the design's wall has a lower burst pressure, or
+    if the burst check is waived, the burst pressure of the design's wall is the requirement.
     """
     wall, inner, pressure = run.wall, float(run.geometry.inner_radius), v["supply.pressure"]
     burst = least(wall.burst_pressure)[0]

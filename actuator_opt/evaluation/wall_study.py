@@ -112,9 +112,10 @@ class Ratio:
 class Shares:
     """Stress divided by strength through the wall, (layers, points).
 
-    The load path and climate (service temperature) have the least strength ratio of the wall. The
-    ratios of plies along the fibre, across it and in shear have a sign. For metals, the ratio is
-    von Mises stress divided by yield strength. Ratios that do not apply to a layer are NaN.
+    They are given for the load path (pressure without or with axial force) and service temperature
+    at which the wall has its least strength ratio. The ratios of plies along the fibre, across it
+    and in shear have a sign. For metals, the ratio is von Mises stress divided by yield strength.
+    Ratios that do not apply to a layer are NaN.
     """
 
     path: str
@@ -139,7 +140,8 @@ class Ladder:
     """Pressures [Pa] from working pressure to burst pressure; None if unknown.
 
     Locations have the same names as in the metrics. `path` is the load path with the lowest burst
-    pressure, and `steps` are the failures on it by the maximum-stress criterion.
+    pressure: pressure without or with axial force. `steps` are the failures on this path by the
+    maximum-stress criterion.
     """
 
     working: float
@@ -207,8 +209,8 @@ _STRENGTHS = {
 class _StressField:
     """Stresses (layers, points, loads).
 
-    The loads are supply pressure on every load path, then zero pressure at every extreme service
-    temperature (climate).
+    The loads are supply pressure without and with axial force (the load paths), then zero pressure
+    at the coldest and hottest service temperature (the climates).
     """
 
     paths: tuple[str, ...]
@@ -364,7 +366,9 @@ def _stress_field(
 def _residual_stresses(
     layers: Sequence[Layer], autofrettage: Autofrettage, radius: Array
 ) -> list[Array]:
-    """Residual stresses of autofrettage at all points, in tube axes z, t, r and ply axes.
+    """Residual stresses of autofrettage at all points.
+
+    They are given in tube axes (axial z, hoop t, radial r) and in ply axes.
 
     The wrap, all layers around the liner, stays elastic under the pressure and axial force from the
     liner. In the liner,
@@ -427,7 +431,7 @@ def _utilisations(layers: Sequence[Layer], field: _StressField) -> list[_Utilisa
 
 
 def _ratios(utilisation: _Utilisation, field: _StressField) -> list[Ratio]:
-    """Least strength ratio of every layer, with failure mode, point, temperature and load path."""
+    """Least strength ratio of every layer, with its mode, point, temperature and axial force."""
     rows = []
     for k, layer in enumerate(utilisation.layers):
         values = utilisation.values[:, :, k]
@@ -453,7 +457,7 @@ def _ratios(utilisation: _Utilisation, field: _StressField) -> list[Ratio]:
 def _profiles(field: _StressField, utilisations: Sequence[_Utilisation]) -> tuple[WallProfile, ...]:
     """Stresses through the wall at supply pressure for every load path, with the utilisation.
 
-    A load path gives the wall's axial force per unit pressure.
+    The load paths are pressure without and with axial force.
     """
     profiles = []
     for p, path in enumerate(field.paths):
@@ -477,7 +481,7 @@ def _at_rest(field: _StressField) -> tuple[WallProfile, ...]:
 
 
 def _shares(layers: Sequence[Layer], field: _StressField, ratios: Sequence[Ratio]) -> Shares | None:
-    """Stress divided by strength, for the load path and temperature of the least strength ratio."""
+    """Stress divided by strength, for the axial force and temperature of least strength ratio."""
     loaded = [row for row in ratios if row.ratio is not None]
     if not loaded:
         return None
@@ -512,7 +516,7 @@ def _ladder(
     *,
     exact: bool,
 ) -> Ladder:
-    """Pressures from working to burst pressure, and the failures on the weakest load path."""
+    """Pressures from working to burst pressure, and the failures that lead to the lowest burst."""
     wall, g = run.wall, run.geometry
     yields, yield_place = least(wall.yield_pressure)
     first, first_place = least(wall.first_ply_pressure)

@@ -35,7 +35,7 @@ from ..sweeps.result import MORE_IS_BETTER, better
 from ..version import VERSION
 
 AXES = 8
-"""Number of parallel axes that the page shows at first."""
+"""Number of axes that the page's parallel-coordinates plot shows at first."""
 REASONS = 3
 """Maximum number of failure reasons listed."""
 MOST = 1e30
@@ -60,7 +60,7 @@ def payload(explored: Explored, *, design: str, plugins: Sequence[str]) -> dict[
         "columns": columns,
         "exact": _exact(explored),
         "command": command,
-        "where": f"Run it in the folder of {design}, the base design beside this page.",
+        "where": f"Run this command in the folder of {design}, the base design beside this page.",
         "limits": limits,
         "held": further_checks,
         "shapes": _shapes(explored),
@@ -171,7 +171,7 @@ def _label(limit: MetricLimit, quantity: Quantity, plugins: Sequence[Plugin]) ->
 
 
 def _start(explored: Explored, columns: list[dict[str, Any]]) -> dict[str, Any]:
-    """Choose what the page plots at first: two axes and a colour, and the parallel axes.
+    """Choose what the page first shows in its scatter plot and its parallel-coordinates plot.
 
     The objective is plotted against a required metric or, without one, a varied input. Metrics that
     the user has selected take precedence.
@@ -260,7 +260,8 @@ def _shapes(explored: Explored) -> dict[str, Any]:
 def _template(template: Template, dimensions: list[int]) -> dict[str, Any]:
     """Return a template of a section drawing, whose coordinates [mm] are linear in the dimensions.
 
-    The JSON has each coordinate's value for zero dimensions, and its slopes by the dimensions.
+    The JSON has each coordinate's value for zero dimensions, and its derivatives with respect to
+    the dimensions.
     """
     zero = template.numbers - template.slopes[:, dimensions] @ template.origin[dimensions]
     rows, places = np.nonzero(template.slopes[:, dimensions])

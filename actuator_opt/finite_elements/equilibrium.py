@@ -123,7 +123,7 @@ class _SurfacePoints:
 class ContactPair:
     """Two bodies that may touch: nodes of the upper body, and edges of the lower body.
 
-    The edges run towards decreasing x, as the upper surface of a body does anticlockwise.
+    The edges run towards decreasing x, because a body's boundary is listed anticlockwise.
 
     Parameters
     ----------
@@ -176,7 +176,7 @@ class ContactPair:
     def update(
         self, touching: Booleans, force: Floats, places: Floats, pull: float
     ) -> tuple[Booleans, Floats]:
-        """Update which nodes touch, and their forces.
+        """Update which upper nodes touch the lower body, and their contact forces.
 
         An open node touches if it penetrates the lower surface. A touching node separates if its
         tension reaches `pull`.
@@ -388,7 +388,7 @@ def _update_walls(problem: ElementProblem, state: ElementState, force: Floats, p
 
 @dataclass(slots=True)
 class _Links:
-    """Constraints and their forces: one per touching node, then one between the two level nodes."""
+    """Constraints and their forces: one per touching node, then one that keeps two nodes level."""
 
     gap: Floats
     rows: csc_matrix
@@ -426,7 +426,7 @@ def _step(
     stiffness: csc_matrix,
     links: _Links,
 ) -> tuple[Floats, Floats, float]:
-    """Changes of unknowns and of constraint forces in a Newton step; largest residual before it."""
+    """Newton step: changes of the unknowns, new constraint forces, largest residual before it."""
     section, bounds = problem.section, problem.bounds
     fixed = np.zeros(section.unknowns, dtype=bool)
     fixed[: section.displacements] = state.at_lower | state.at_upper
@@ -456,7 +456,7 @@ def _step(
 
 
 def _damped(problem: ElementProblem, state: ElementState, move: Floats) -> float:
-    """Share of a Newton step that moves no node farther than permitted and inverts no element."""
+    """Share of a Newton step to make, so that it moves no node too far and inverts no element."""
     section = problem.section
     longest = float(np.max(np.abs(move[: section.displacements])))
     share = min(1.0, LONGEST_MOVE / max(longest, 1e-300))
@@ -573,7 +573,7 @@ def check_inputs(
     checks = (
         (
             not section > 0,
-            f"section {section:g} m is not positive",
+            f"the section diameter {section:g} m is not positive",
             "give the diameter of the undeformed section",
         ),
         (
@@ -613,7 +613,7 @@ class ElementSeal(Protocol):
     def contact(
         self, state: ElementState, pressure: float, length: float, modulus: float
     ) -> MountedContact:
-        """Contact on the sliding face, in SI; `length` and `modulus` are the reference values."""
+        """Contact on the sliding face in SI, from a solution scaled by `length` and `modulus`."""
 
 
 def follow(

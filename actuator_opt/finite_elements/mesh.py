@@ -27,8 +27,8 @@ class Mesh:
     ----------
     nodes : positions, n x 2 [m]
     triangles : the six nodes of every element
-    corners : numbers of the multiplier unknowns at the three corners of every element, from 0 to
-        `corner_count` - 1
+    corners : at the three corners of every element, the numbers of the unknowns of the Lagrange
+        multiplier (a pressure that enforces the volume), from 0 to `corner_count` - 1
     corner_count : number of corner nodes, which carry the multiplier
     edges : boundary edges in order, anticlockwise: corner, middle, corner
     gradients : derivatives of the six shape functions, elements x points x 6 x 2 [1/m]

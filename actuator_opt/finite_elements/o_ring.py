@@ -116,7 +116,7 @@ class RoundRing:
     def contact(
         self, state: ElementState, pressure: float, length: float, modulus: float
     ) -> MountedContact:
-        """Contact on the sliding face, in SI; `length` and `modulus` are the reference values."""
+        """Contact on the sliding face in SI, from a solution scaled by `length` and `modulus`."""
         return mounted_contact(
             self.section, state, self.boundary, pressure, length, modulus, wall=self.wall
         )

@@ -181,7 +181,7 @@ class StepRing:
     def contact(
         self, state: ElementState, pressure: float, length: float, modulus: float
     ) -> MountedContact:
-        """Contact on the rod, in SI; `length` and `modulus` are the reference values."""
+        """Contact on the rod in SI, from a solution scaled by `length` and `modulus`."""
         return mounted_contact(self.section, state, self.flat, pressure, length, modulus)
 
 
@@ -278,7 +278,7 @@ def squeezed_step_ring(
         (
             not thinnest >= 0.2 * shape.thickness,
             "chamfer or relief uses up the thickness of the slide ring",
-            "make them flatter or the ring thicker",
+            "make chamfer and relief flatter, or the ring thicker",
         ),
     )
     modulus = rubber.youngs_modulus

@@ -87,7 +87,7 @@ class FrictionLaw:
     def friction(
         self, seal: SealSizes, contact: SealContact, load: Array, speed: Array
     ) -> Friction:
-        """Dry friction of seals in series: sliding friction, or at rest the Coulomb friction.
+        """Dry friction of seals in series; at rest, the running friction is the Coulomb friction.
 
         Parameters
         ----------

@@ -37,7 +37,8 @@ class Sliding:
     ----------
     piece : the section, with its motion
     hydraulic : hydraulic force p_1 A_1 - p_2 A_2 [N]
-    resisting : F_L + m a [N], the part of the hydraulic force that is not friction
+    resisting : load F_L plus inertia force m a [N], the part of the hydraulic force that is not
+        friction
     pressure : the higher chamber pressure, gauge [Pa]
     resting : speed below which the rod may be at rest [m/s]
     """
@@ -50,7 +51,7 @@ class Sliding:
 
     @property
     def friction(self) -> Array:
-        """Friction force F_r = p_1 A_1 - p_2 A_2 - F_L - m a [N]."""
+        """Friction force [N]: hydraulic force minus load and inertia force."""
         return self.hydraulic - self.resisting
 
     @property
@@ -77,8 +78,9 @@ def slide(
 ) -> list[Sliding]:
     """Friction along every section of a record, from the force balance.
 
-    F_r = p_1 A_1 - p_2 A_2 - F_L - m a, [Huang2017] eq. 1. The areas include the growth of the
-    bore.
+    The friction is F_r = p_1 A_1 - p_2 A_2 - F_L - m a [Huang2017] eq. 1, with pressures p and
+    areas A of the chambers, load F_L, mass m and acceleration a. The areas include the growth of
+    the bore.
 
     Parameters
     ----------
@@ -173,12 +175,15 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
 
 
 _ERRORS = {
-    "x": ("x seems to have the wrong sign", "x increases as the rod extends: reverse its sign"),
+    "x": (
+        "x seems to have the wrong sign",
+        "reverse the sign of x: it must increase as the rod extends",
+    ),
     "F_L": (
         "F_L seems to have the wrong sign",
-        "F_L is positive if it opposes extension: reverse its sign",
+        "reverse the sign of F_L: it must be positive if it opposes extension",
     ),
-    "p": ("p1 and p2 seem swapped", "swap them, e.g. with --column p1=... --column p2=..."),
+    "p": ("p1 and p2 seem swapped", "swap p1 and p2, e.g. with --column p1=... --column p2=..."),
 }
 """Possible sign errors of x and F_L, and swapped pressures: message and remedy of each."""
 

@@ -88,7 +88,7 @@ class Specimen:
             )
         if self.shear_modulus is not None and (outer is None or self.shear_compliance is not None):
             _refuse(
-                "shear_modulus needs the diameters, and excludes shear_compliance",
+                "shear_modulus needs the diameters, and must not be stated beside shear_compliance",
                 "state shear_compliance alone, 1/(kappa G A)",
             )
 
@@ -116,7 +116,7 @@ class Specimen:
         return float(1 / (kappa * self.shear_modulus * area))
 
     def deflection(self, strain: float) -> float | None:
-        """Mid-span deflection [m] at a strain e: e L^2/(6 D) for the depth D [ISO178]."""
+        """Mid-span deflection [m] at a strain e: e L^2/(6 D) with span L and depth D [ISO178]."""
         return None if self.height is None else strain * self.span**2 / (6 * self.height)
 
 
@@ -259,16 +259,16 @@ def _percent(share: float) -> str:
 def bending(record: Record, specimen: Specimen) -> BendingResult:
     """The bending modulus from a three-point bending test.
 
-    The slope of force versus deflection is fitted in the straight part, with an own offset for each
-    loading and unloading. Loading and unloading have equal weight, because support friction that is
-    proportional to the load makes one slope too steep by as much as it makes the other too flat.
-    The 95 % confidence intervals allow for correlated noise (`straight.term`) and for the change of
-    slope along the straight part.
+    The slope of force versus deflection is fitted in the straight part, with a separate offset for
+    each loading and unloading. Loading and unloading have equal weight, because support friction
+    that is proportional to the load makes one slope too steep by as much as it makes the other too
+    flat. The 95 % confidence intervals allow for correlated noise (`straight.term`) and for the
+    change of slope along the straight part.
 
     Parameters
     ----------
-    record : record with channels F_L and w, with any offsets. The specimen is unloaded at the
-        start; both channels increase or both decrease under load
+    record : record with the channels F_L (force) and w (deflection), which need not start at zero.
+        The specimen is unloaded at the start; both channels increase or both decrease under load
     specimen : span and section, and shear and indentation if known
 
     Returns

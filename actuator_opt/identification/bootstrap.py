@@ -1,22 +1,23 @@
 """Confidence intervals by resampling (a wild bootstrap), instead of from the linearised model.
 
 There are few points of steady sliding, and often a single point determines a parameter: the slowest
-point determines F_S, the fastest sigma_2. Drawing points with replacement would lose such a point.
-Therefore every draw keeps all points and gives them new random noise [Wu1986], whose size follows
-from their residuals. With r_i the residual of a point, h_i its leverage and s^2 the sum of squares
-divided by n - p, the variance is E[noise_i^2 | residuals] = r_i^2 + h_i s^2 for independent noise
-of unit weight [derived]. Where the fit follows a point closely, s^2 dominates, elsewhere the
-residual. The samples of a time window around a reversal are correlated, so all residuals of a
-window are multiplied by the same random number. To first order this equals drawing whole windows
-with replacement, but every draw contains both directions and the sharpest reversals.
+point determines the static friction F_S, the fastest the viscous friction sigma_2. Drawing points
+with replacement would lose such a point. Therefore every draw keeps all points and gives them new
+random noise [Wu1986], whose size follows from their residuals. The variance of the noise of point i
+is r_i^2 + h_i s^2, with its residual r_i, its leverage h_i, and s^2, the sum of squares divided by
+the number of points less that of parameters [derived for independent noise of unit weight]. Where
+the fit follows a point closely, the term with s^2 dominates, elsewhere the residual. The samples of
+a time window around a reversal are correlated, so all residuals of a window are multiplied by the
+same random number. To first order this equals drawing whole windows with replacement, but every
+draw contains both directions and the sharpest reversals.
 
 Each draw also scales the noise by sqrt(nu/chi^2_nu), because only nu degrees of freedom determine
 its size. For a linear model, the intervals are then those of Student's t. A new fit is made to
-every draw, within the search limits, by damped Gauss-Newton steps that start from the optimum, for
-a Stribeck curve with three initial values of v_s. The confidence limits are percentiles of these
-fits. Percentiles respect the search limits, follow skewed distributions, and do not depend on the
-parametrisation. The BCa method would need fits that leave out one point at a time. Such a fit does
-not exist if that point alone determines a parameter.
+every draw, within the search limits, by damped Gauss-Newton steps that start from the optimum. For
+a Stribeck curve, they also start from two other values of the Stribeck speed v_s. The confidence
+limits are percentiles of these fits. Percentiles respect the search limits, follow skewed
+distributions, and do not depend on the parametrisation. The BCa method would need fits that leave
+out one point at a time. Such a fit does not exist if that point alone determines a parameter.
 
 The selection of fitted parameters is not repeated for each draw. The intervals are thus valid for
 the parameters already selected.
@@ -59,13 +60,16 @@ RANK = 1e-10
 """Singular values of the residuals' derivatives below this share of the largest one are taken as
 rounding errors and do not enter the leverage."""
 LOGS = ("stribeck_speed", "bristle_stiffness")
-"""Parameters whose logarithms are searched. That of sigma_1 is not, because sigma_1 may be 0."""
+"""Parameters whose logarithms are searched. The bristle damping sigma_1 itself is searched, because
+it may be 0."""
 PHYSICAL = ("static", "viscous", "bristle_damping")
-"""Parameters with a physical lower limit: F_C for F_S, 0 for the others."""
+"""Parameters with a physical lower limit: Coulomb friction F_C for the static friction F_S, 0 for
+the other two."""
 SIGNED = ("offset", "pressure_slope", "lag")
 """Parameters that may be 0. If their interval contains 0, they still count as known."""
 AT_END = 1e-6
-"""A search limit counts as reached if a value is at most this share of its size away from it."""
+"""A draw counts as having reached a search limit if it is closer to the limit than this share of
+the largest value among all draws."""
 
 
 def resampled(
@@ -302,14 +306,18 @@ def _search(
 
 
 def searched(names: Sequence[str], values: Mapping[str, float]) -> Array:
-    """The values that the search varies: logarithms of `LOGS`, F_S - F_C for F_S, others as is."""
+    """The values that the search varies.
+
+    They are the logarithms of the parameters in `LOGS`, F_S - F_C in place of the static friction
+    F_S (with Coulomb friction F_C), and the other parameters unchanged.
+    """
     numbers = dict(values)
     numbers["static"] = numbers.get("static", numbers["coulomb"]) - numbers["coulomb"]
     return np.array([np.log(numbers[n]) if n in LOGS else numbers[n] for n in names])
 
 
 def natural(names: Sequence[str], rows: Array, values: Mapping[str, float]) -> dict[str, Array]:
-    """Convert searched values, (rows, searched values), to parameters, each of shape (rows,).
+    """Convert searched values, (draws, searched values), to parameters, each of shape (draws,).
 
     Parameters that are not searched are added with their entry in `values`.
     """

@@ -48,8 +48,9 @@ def of_curve(
     if abs(share) > MISFIT:
         yield (
             f"at {points[worst].pressure / 1e5:.3g} bar, the measured friction deviates from the "
-            f"contact law by {100 * share:+.0f} % of F_C; the fitted factor is the mean over the "
-            "record's pressures, and its confidence interval covers the factors at all of them"
+            f"contact law by {100 * share:+.0f} % of F_C; the fitted factor of the coefficients is "
+            "the mean over the record's pressures, and its confidence interval covers the factors "
+            "at all of them"
         )
 
 
@@ -198,10 +199,11 @@ def calibration(identification: Identification) -> Calibration:
     The coefficients of all rings and wipers are multiplied by the same factor, because a record of
     a whole cylinder cannot separate the piston's friction from the rod's. With this factor, the
     mean Coulomb friction of the design at the pressures of the steady points equals the measured
-    one. Every ring gets the same F_S/F_C and v_s; the viscous friction sigma_2 is shared out in
-    proportion to circumference. Each parameter is taken from the Stribeck fit or the LuGre fit,
-    whichever gives it the narrower confidence interval. If neither determines it, the design's
-    value stays. A record of a single speed gives only the factor.
+    one. Every ring gets the same ratio F_S/F_C of static to Coulomb friction and the same Stribeck
+    speed v_s; the viscous friction sigma_2 is shared out in proportion to circumference. Each
+    parameter is taken from the Stribeck fit or the LuGre fit, whichever gives it the narrower
+    confidence interval. If neither determines it, the design's value stays. A record of a single
+    speed gives only the factor.
 
     Parameters
     ----------
@@ -309,9 +311,9 @@ def _from_fits(
 ) -> tuple[list[SealParameter], dict[str, str], Array]:
     """Parameters from Stribeck and LuGre fit, reasons for missing parameters, F_C at every point.
 
-    The factor is the mean measured Coulomb friction divided by that of the design. Its confidence
-    interval also covers this ratio at every single point, so a contact law with a wrong pressure
-    dependence widens the interval.
+    The design's friction coefficients are multiplied by a factor: the mean measured Coulomb
+    friction F_C divided by that of the design. Its confidence interval also covers this ratio at
+    every single point, so a contact law with a wrong pressure dependence widens the interval.
     """
     bench = identification.bench
     fits = {name: _best(identification, name) for name in _FIT_NAMES}
@@ -348,7 +350,7 @@ def _from_fits(
 def _from_level(
     bench: Bench, points: Sequence[FrictionPoint]
 ) -> tuple[list[SealParameter], Array, list[str]]:
-    """The factor alone, from a record whose friction was measured at a single speed only.
+    """The factor for the friction coefficients, from a record of friction at a single speed.
 
     At other speeds the Stribeck curve of the design is kept. If that curve is above Coulomb
     friction at the measured speed, the upper confidence limit of the factor is computed as if the
@@ -402,7 +404,10 @@ def _scaled(parameter: Parameter, factor: float) -> Parameter:
 
 
 def _ratio(over: Parameter, under: Parameter) -> Parameter:
-    """F_S/F_C with its interval for independent errors; computed by logarithms to stay positive."""
+    """Ratio F_S/F_C of static to Coulomb friction, with its interval for independent errors.
+
+    It is computed by logarithms, so that the interval stays positive.
+    """
     ratio = over.value / under.value
     up = hypot(log(over.upper / over.value), log(under.value / under.lower))
     down = hypot(log(over.value / over.lower), log(under.upper / under.value))
@@ -425,7 +430,7 @@ def _same_for_rings(name: str, parameter: Parameter, bench: Bench, source: str) 
 
 
 def _viscous(parameter: Parameter, bench: Bench, source: str) -> SealParameter:
-    """sigma_2, distributed over the seals by circumference."""
+    """Viscous friction sigma_2, distributed over the seals in proportion to circumference."""
     total = sum(float(ring["diameter"]) for ring in bench.rings)
     rings = {f"{ring.groove.path}viscous_friction": ring for ring in bench.rings}
     return SealParameter(

@@ -11,20 +11,20 @@ from ..base.numeric import Array
 SPIKE, QUANTA, RANGE = 6.0, 3.0, 1e-3
 """Smallest height of a spike above the median of its neighbours: the largest of `SPIKE` robust
 standard deviations, `QUANTA` sensor steps, and the share `RANGE` of the channel's range (our
-choices: one sample of normal noise in 5e8 lies as far out; rounding alone makes two steps; the
-usual noise of pressures reaches that share)."""
+choices: of samples with normal noise, one in 5e8 deviates by `SPIKE` standard deviations; rounding
+alone causes two sensor steps; the usual noise of pressures reaches the share `RANGE`)."""
 JUMP, BURST, FLANK = 0.7, 0.45, 0.3
 """A group of outlying samples is a spike if it rises by the share `JUMP` of its height within one
 sample; otherwise it is a true peak of the signal. The smaller share `BURST` is sufficient unless
 the signal already moves towards the group on both sides, by more than `FLANK` times the step at the
-group's edge. All three are our choices. In one sample, three adjacent stray samples rise by half
-their height or more, the top of a triangle as wide as the median's window by a third, and that of a
-half sine by 0.6."""
+group's edge. All three are our choices. Within one sample, three adjacent stray samples rise by
+half their height or more. For a true peak as wide as the window of the running median, the rise is
+a third of the height if it is a triangle, and 0.6 if it is a half sine."""
 WINDOW = 5e-3
 """Half the width of the neighbourhood of a sample [s] (our choice: a sixth of a 30 Hz period)."""
 SAMPLED = 100_000
-"""Number of samples from which the spread of a channel is estimated (our choice: accurate to 1
-%)."""
+"""Number of samples from which a channel's robust standard deviation is estimated (our choice:
+accurate to 1 %)."""
 LEVELS = 20_000
 """Number of samples from which the resolution of a sensor is estimated (our choice: each step of a
 fine sensor then occurs several times)."""

@@ -33,7 +33,8 @@ choice: after this time, a step response is within 0.2 % of its final value)."""
 BRIDGE = 5
 """Largest number of successive missing samples that are interpolated linearly. A longer gap is
 interpolated too if it lasts less than a quarter of a period of the cut-off (our choices: 5 ms at 1
-kHz; over a quarter of a period, a chord misses a sine at a tenth of the cut-off by 0.3 %)."""
+kHz; over a quarter of a period of the cut-off, a straight line deviates by 0.3 % from a sine of a
+tenth of the cut-off frequency)."""
 ORDERS = 10
 """Highest order of the filter in a pass (our choice: a filter of higher order rings for longer than
 `EDGE`)."""
@@ -421,7 +422,7 @@ cut-off (our choice: after this time, a step response is within 0.5 % of its fin
 
 
 def velocities(piece: RecordSection, motion: ConditionedRecord, first: int, last: int) -> Array:
-    """Velocity along a section, at the record's cut-off and at lower cut-offs.
+    """Velocity along a section, filtered at the record's cut-off and at lower cut-offs.
 
     Where a lower cut-off changes the position by more than the sensor's errors, the next higher
     cut-off is used instead.

@@ -12,8 +12,9 @@ from ..base.numeric import Array
 from .points import ALIKE, FrictionPoint
 
 REACH = 1.5
-"""Multiple of the Stribeck speed that a record must reach to separate F_C from sigma_2 (our choice:
-at this speed, the Stribeck part has dropped to e^(-1.5^2) = 0.1 of its height, for exponent 2)."""
+"""Multiple of the Stribeck speed that a record must reach to separate Coulomb friction F_C from
+viscous friction sigma_2 (our choice: at this speed, the Stribeck part has dropped to e^(-1.5^2) =
+0.1 of its height, for exponent 2)."""
 SPREAD, APART = 0.2, 3.0
 """Smallest pressure range that can show an effect of pressure: the share `SPREAD` of the highest
 pressure, or `APART` times the pressure that overcomes friction alone, whichever is larger (our
@@ -29,7 +30,7 @@ cannot explain a misfit of `BEYOND` times their size."""
 SIGNED = ("offset", "pressure_slope")
 """Parameters that may be 0; they can be known although their interval contains 0."""
 INSEPARABLE = ("coulomb", "viscous", "stribeck_speed", "exponent")
-"""Parameters that are unknown if a record cannot separate F_C from sigma_2."""
+"""Parameters that are unknown if a record cannot separate Coulomb from viscous friction."""
 
 
 def unbounded(parameters: Mapping[str, Parameter], names: Iterable[str]) -> dict[str, Parameter]:
@@ -176,7 +177,7 @@ def _groups(speed: Array) -> Array:
 
 
 def hidden(parameters: Mapping[str, Parameter], fastest: float, falls: bool) -> str | None:
-    """One-line reason why F_C and sigma_2 cannot be separated; None if they can.
+    """Reason why Coulomb friction F_C and viscous friction sigma_2 are inseparable, or None.
 
     Parameters
     ----------

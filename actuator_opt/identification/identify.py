@@ -60,9 +60,10 @@ def lag_to_correct(parameter: Parameter | None) -> tuple[float, str]:
     """The pressure lag to correct [s], 0 for none, and a note, which may be empty.
 
     A lag is corrected if its 95 % confidence interval lies above zero. A negative lag is not
-    corrected, because damping of the bristles looks like early pressures: sigma_0 z + sigma_1 dz/dt
-    is about sigma_0 z advanced by sigma_1/sigma_0. The record only gives the difference between the
-    lag and this time.
+    corrected, because damping of the bristles looks like early pressures. Their force is sigma_0 z
+    + sigma_1 dz/dt, with deflection z, stiffness sigma_0 and damping sigma_1; it is nearly equal to
+    the value of sigma_0 z at a time sigma_1/sigma_0 later. The record only gives the difference
+    between the lag and this time.
 
     Parameters
     ----------
@@ -107,7 +108,7 @@ def rejected_correction(parameter: Parameter, remaining: Parameter | None) -> st
 
 
 def with_uncertain_damping(lugre: LuGreFit | str) -> LuGreFit | str:
-    """The LuGre model without confidence limits on sigma_1, for a record with an unknown lag."""
+    """Remove the confidence limits of bristle damping sigma_1, as the pressure lag is unknown."""
     if isinstance(lugre, str):
         return lugre
     doubt = "σ₁ is valid only if the pressures do not lag; a lag τ would add σ₀ τ to it"
@@ -269,8 +270,8 @@ def _warmth(record: Record, bench: Bench) -> list[str]:
         return []
     kelvin = 273.15
     return [
-        f"T is {mean - kelvin:.0f} degC, but contact forces and stiffness are computed for "
-        f"{bench.temperature - kelvin:.0f} degC, as in the design's first load case"
+        f"the record has {mean - kelvin:.0f} degC (T), but contact forces and stiffness are "
+        f"computed for {bench.temperature - kelvin:.0f} degC, as in the design's first load case"
     ]
 
 
@@ -375,7 +376,7 @@ def _conditioned(
 def _sizes(
     slidings: Sequence[Sliding], motion: ConditionedRecord, settling: float
 ) -> tuple[Mean, float, bool]:
-    """Mean friction |F_r| in sliding, largest |F_r|, and whether the rod slides.
+    """Mean absolute friction in sliding, largest absolute friction, and whether the rod slides.
 
     The confidence interval of the mean follows from the means of several batches of samples. After
     a reversal or rest, the rod is in pre-sliding until it has moved `BENDS` breakaway travels.

@@ -34,11 +34,11 @@ from .stribeck_fit import (
 from .windows import LAG, Windows, no_windows, windows
 
 TRAVELS = (1e-6, 3e-3)
-"""Range in which the bristle travel F_S/sigma_0 is searched [m] (our choice: nearly two decades on
-either side of 50 um)."""
+"""Range in which the breakaway travel F_S/sigma_0, static friction by bristle stiffness, is
+searched [m] (our choice: nearly two decades on either side of 50 um)."""
 DAMPING_TIMES = (1e-6, 0.3)
-"""Range in which sigma_1/sigma_0 is searched [s] (our choice: from no damping to the length of a
-window)."""
+"""Range in which sigma_1/sigma_0, bristle damping by bristle stiffness, is searched [s] (our
+choice: from no damping to the length of a window)."""
 USUAL = 5e-3
 """Usual standard deviation of the pressure lag [s]. If a record does not show the lag, the
 confidence intervals allow for it (our choice: sensors and lines of a test bench lag by up to 10
@@ -116,7 +116,7 @@ def sizes(names: Sequence[str], largest: float, steady: Steady | None) -> Array:
 
 
 def _rise(static: float) -> dict[str, float]:
-    """Initial Stribeck parameters for a search in which friction falls from F_S to F_C."""
+    """Initial Stribeck parameters for friction that falls from F_S to F_C as speed increases."""
     speed = float(np.sqrt(SPEEDS[0] * SPEEDS[1]))
     return {"exponent": EXPONENT, "static": static, "stribeck_speed": speed}
 
@@ -169,7 +169,10 @@ class LugreProblem:
         self.sizes = sizes(self.names, self.largest, self.steady)
 
     def _release_static(self, stribeck: StribeckFit) -> None:
-        """Fit F_S and v_s to the windows if the points do not determine them."""
+        """Fit static friction F_S and Stribeck speed v_s to the windows around reversals.
+
+        This is done only if the points of steady sliding do not determine them.
+        """
         static = stribeck.parameters.get("static")
         if self.held.pop("exponent", None) is not None:
             self.begin["exponent"] = EXPONENT
@@ -179,7 +182,7 @@ class LugreProblem:
             self.begin |= _rise(max(self.largest, 1.01 * self.begin["coulomb"]))
 
     def values(self, rows: Array) -> dict[str, Array]:
-        """Convert searched values, (rows, searched), to parameters, each (rows,)."""
+        """Convert searched values, one set per row, to parameters, each of shape (rows,)."""
         searched = {}
         for name, column in zip(self.names, rows.T, strict=True):
             searched[name] = np.exp(column) if name in LOGARITHMIC else column
@@ -189,11 +192,11 @@ class LugreProblem:
         return held | searched
 
     def values_at(self, x: Array) -> dict[str, float]:
-        """Convert one set of searched values, (searched,), to parameters."""
+        """Convert one set of searched values to parameters."""
         return {name: float(column[0]) for name, column in self.values(x[None]).items()}
 
     def residuals(self, rows: Array) -> Array:
-        """Weighted residuals, (rows, residuals), for searched values, (rows, searched)."""
+        """Weighted residuals, (rows, residuals), for searched values, one set per row."""
         values = self.values(rows)
         misfits = (self.windows.misfit(values) / self.spread).reshape(len(rows), -1)
         if self.steady is None:
@@ -202,7 +205,7 @@ class LugreProblem:
         return np.concatenate([self.steady.residual(steady), misfits], axis=1)
 
     def residuals_at(self, x: Array) -> Array:
-        """Weighted residuals, (residuals,), for one set of searched values, (searched,)."""
+        """Weighted residuals, (residuals,), for one set of searched values."""
         return self.residuals(x[None])[0]
 
     def slopes(self, x: Array) -> Array:
@@ -281,12 +284,12 @@ class LugreProblem:
     def whitened(self, residuals: Array, slopes: Array) -> Array:
         """Derivatives J' with J'^T J' = cov^-1, where cov is the covariance of the parameters.
 
-        An equivalent problem with independent residuals of unit variance has these derivatives.
-        The covariance is cov = H^-1 J^T R J H^-1 with H = J^T J, the derivatives J (`slopes`) and
-        the covariance R of the residuals r. Points are independent. Within a window, residuals k
-        samples apart have the covariance c_k = sum r_t r_(t+k)/n of n samples, which is the same
-        for all windows [SeberWild1989]. With J = U S V^T, the result is J' = L^-1 S V^T, where L
-        L^T = U^T R U [derived].
+        An equivalent problem with independent residuals of unit variance has these derivatives. The
+        covariance is cov = H^-1 J^T R J H^-1 with H = J^T J, the derivatives J (`slopes`) and the
+        covariance R of the residuals r. Points are independent. Residuals k samples apart in the
+        same window have the covariance c_k = sum r_t r_(t+k)/n, where the sum covers all n samples
+        of all windows [SeberWild1989]. With J = U S V^T, the result is J' = L^-1 S V^T, where L L^T
+        = U^T R U [derived].
         """
         from scipy.linalg import solve_triangular, toeplitz  # slow import, rarely used
 
@@ -513,10 +516,11 @@ def fit_lugre(
     """Fit a LuGre model to a record; return the reason if it is not possible.
 
     Least squares over points of steady sliding and windows around reversals, each weighted by its
-    scatter [AaltoThesis] eq. 27-31. Without a Stribeck curve, as in pre-sliding, F_C and the
-    bristles are fitted to the windows alone. While the contact sticks, sigma_0 z + sigma_1 dz/dt is
-    about sigma_0 z advanced by sigma_1/sigma_0. This looks as if the pressures were early, so
-    either the lag or sigma_1 is fitted, not both.
+    scatter [AaltoThesis] eq. 27-31. Without a Stribeck curve, as in pre-sliding, Coulomb friction
+    F_C and the bristles are fitted to the windows alone. While the contact sticks, the bristle
+    force is sigma_0 z + sigma_1 dz/dt, with deflection z, stiffness sigma_0 and damping sigma_1. It
+    is nearly equal to the value of sigma_0 z at a time sigma_1/sigma_0 later, as if the pressures
+    were early. Therefore either the lag or sigma_1 is fitted, not both.
 
     Parameters
     ----------
@@ -585,7 +589,10 @@ def _from_windows(reversals: Windows, fixed: Mapping[str, float]) -> LuGreFit:
             "and F_S; record plateaus or sweeps at other speeds"
         )
     else:
-        doubt = "the rod hardly slides, so the record shows bristles, but no sliding friction"
+        doubt = (
+            "the rod hardly slides, so the record shows the deflection of the bristles, but no "
+            "sliding friction"
+        )
         fit = replace(fit, parameters=unbounded(fit.parameters, ("coulomb",)))
     return replace(fit, doubts=(*fit.doubts, doubt))
 
@@ -646,7 +653,8 @@ def _unseparated(
 ) -> LuGreFit:
     """Widen the intervals of F_S and sigma_0 of a model whose F_C and sigma_2 are inseparable.
 
-    The intervals then also cover the values of a fit with sigma_2 = 0.
+    The intervals of static friction F_S and bristle stiffness sigma_0 then also cover the values of
+    a fit without viscous friction (sigma_2 = 0).
     """
     held = {"viscous": 0.0, "exponent": EXPONENT, **fixed}
     other = LugreProblem(reversals, points, stribeck, held).solve()

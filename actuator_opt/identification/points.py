@@ -332,7 +332,7 @@ def _balanced(halves: Sequence[FrictionPoint]) -> FrictionPoint:
 
 
 def settled(sliding: Sliding, settling: float = SETTLED) -> Array:
-    """Flags for samples more than `settling` [m] after the last reversal or rest."""
+    """Indices of moving samples more than `settling` [m] after the last reversal or rest."""
     piece, moving = sliding.piece, sliding.moving
     way = np.where(moving, np.sign(piece.velocity), 0.0)
     begins = np.flatnonzero(np.diff(way, prepend=0.0) != 0)

@@ -374,7 +374,7 @@ class Record:
         return None if self.first_line is None else self.first_line + sample
 
     def fault(self, message: str, remedy: str, sample: int | None = None) -> InputError:
-        """Create an error that names this record and, if `sample` is given, the line of it."""
+        """Create an error that names this record and, if `sample` is given, its line."""
         line = None if sample is None else self.line(sample)
         return InputError(Diagnostic(message, remedy, file=self.name, line=line))
 
@@ -764,7 +764,7 @@ def parse_column(
         (k for k, cell in enumerate(cells) if cell[0].strip().lower() in _TIMES), None
     )
     if time_place is None:
-        raise fault("no column t", 'add one with its unit, "t [s]"')
+        raise fault("no column t", 'add the time with its unit, "t [s]"')
     time_cell, title = cells[time_place], cells[place][0]
     unit = unit or units.of(title, dimension)
     if not unit:

@@ -72,7 +72,8 @@ class Identification(Displayed):
     lag_seen : lag of the pressures as fitted before any correction [s]; None if no lag was fitted.
         The confidence limits of the lag are infinite if the record does not show it
     spectrum : frequencies at which motion ends and noise begins, to judge the filter's cut-off
-    mean, largest : mean |F_r| in sliding (not pre-sliding), and largest |F_r| of the record [N]
+    mean, largest : absolute friction force [N]: its mean in sliding (not pre-sliding), and its
+        largest value in the record
     slides : whether the rod slides; if not, `mean` is the mean while it moves
     area : piston area of the cap end [m^2]
     points : points of steady sliding

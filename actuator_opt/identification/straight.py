@@ -16,9 +16,9 @@ from .conditioning import ConditionedRecord
 from .record import Record
 
 TERMS = 8
-"""Number of cosine terms from which the variance of correlated noise is estimated (our choice: few
-enough for noise that is correlated over an eighth of a loading; confidence intervals are then 18 %
-wider than if the noise were known)."""
+"""Number of cosine terms from which the variance of correlated noise is estimated (our choice: so
+few also suit noise that is correlated over an eighth of a loading; confidence intervals are then 18
+% wider than if the noise were known)."""
 PER_TERM = 4
 """Smallest number of degrees of freedom per cosine term (our choice: limits the length of
 correlation that is allowed for in short records)."""

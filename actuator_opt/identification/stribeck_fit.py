@@ -16,8 +16,8 @@ from .doubtful import INSEPARABLE, hidden, misled, spread, unbounded, unequal, w
 from .points import FrictionPoint
 
 STATIC_MOST = 3.0
-"""Largest F_S that is searched, as a multiple of the largest measured friction (our choice: a
-higher F_S is a guess)."""
+"""Largest static friction F_S in the search, as a multiple of the largest measured friction (our
+choice: a higher F_S is a guess)."""
 SPEEDS, EXPONENTS = (2e-4, 5e-2), (0.5, 2.5)
 """Ranges in which the Stribeck speed [m/s] and its exponent are searched (our choices: a decade on
 either side of the few mm/s of seals; half a unit beyond the exponents 1 and 2 of the usual
@@ -27,7 +27,7 @@ EXPONENT = 2.0
 SHARED = 0.85
 """Smallest scatter about the curve that is assumed for the points of a sweep, as a share of their
 standard errors (our choice, from records of known friction). The filter correlates neighbouring
-points, so they scatter less than their errors."""
+points, so they scatter less than their standard errors suggest."""
 OTHER = 0.5
 """If the exponent is fixed, the confidence intervals allow for this second exponent as well. Bo and
 Pavelescu use 0.5 to 1, Tustin uses 1, others use 2 [ArmstrongHelouvry1994]."""
@@ -131,11 +131,12 @@ def curve(
 def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | str:
     """Fit a Stribeck curve to points of steady sliding; return the reason if it is not possible.
 
-    F_C and sigma_2 are always fitted. With five different speeds or more, F_S and v_s are fitted if
-    they improve the fit (corrected Akaike information). With seven speeds or more the exponent is
-    then always fitted, because fitting it only if it improves the fit would bias it and F_S. An
-    offset is fitted if the rod moves in both directions. A pressure effect is fitted if there are
-    five points or more and the pressure varies enough (`doubtful.spread`).
+    Coulomb friction F_C and viscous friction sigma_2 are always fitted. With five different speeds
+    or more, static friction F_S and Stribeck speed v_s are fitted if they improve the fit
+    (corrected Akaike information). With seven speeds or more the exponent is then always fitted,
+    because fitting it only if it improves the fit would bias it and F_S. An offset is fitted if the
+    rod moves in both directions. A pressure effect is fitted if there are five points or more and
+    the pressure varies enough (`doubtful.spread`).
 
     Parameters
     ----------

@@ -130,8 +130,8 @@ class Windows:
     def measured(self, lag: Array) -> Array:
         """Measured friction, with the hydraulic force taken from a time `lag` later.
 
-        Lags, (rows,), give friction, (rows, lanes, samples). Values between samples are
-        interpolated by cubic polynomials.
+        An array of lags, (rows,), gives friction of shape (rows, lanes, samples), where each lane
+        is a window. Values between samples are interpolated by cubic polynomials.
         """
         count = self.velocity.shape[-1]
         rows = []
@@ -156,8 +156,9 @@ class Windows:
     def misfit(self, values: Mapping[str, Array]) -> Array:
         """Friction of the model minus measured friction at the samples in use.
 
-        The result has the shape (rows, lanes, kept); `values` are the parameters, each (rows,). The
-        model's friction is filtered like the record.
+        `values` are the parameters, each (rows,). The result has the shape (rows, lanes, kept):
+        each lane is a window, and `kept` are the samples in use. The model's friction is filtered
+        like the record.
         """
         measured = self.measured(values["lag"])
         model = self._integrated({n: v[:, None, None] for n, v in values.items()}, measured)

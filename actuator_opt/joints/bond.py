@@ -62,9 +62,10 @@ def _strength(loaded: Loaded) -> Strength | str:
 
 
 def _envelope(loaded: Loaded, burst: Mapping[str, Array]) -> dict[str, Array]:
-    """Upper bounds of the bond's safety factor, one computed from the stiffness of each wall alone.
+    """Two upper bounds of the bond's safety factor.
 
-    The two bounds are equal if the walls are equally stiff.
+    One is computed from the stiffness of the barrel wall alone, the other from that of the skirt.
+    They are equal if the two are equally stiff.
     """
     overlap = _overlap(loaded)
     if isinstance(overlap, str):

@@ -22,8 +22,8 @@ choice for this size range."""
 NOT_BONDED = "the caps are not bonded"
 
 ROUNDING = 1e-5
-"""Relative tolerance within which a value still meets its limit, as an optimum often lies on a
-limit."""
+"""A value that misses its limit by at most this relative tolerance still meets it, because an
+optimum often lies exactly on a limit."""
 
 
 class JointSizes(Protocol):
@@ -107,9 +107,9 @@ class JointField(NamedTuple):
 
 
 class FactorBasis(NamedTuple):
-    """Words for the strength on which a safety factor is based: a `measure`, `of` some parts.
+    """Words that name the strength on which a safety factor is based, such as "rupture of threads".
 
-    For example, the measure "rupture" of "threads and skirt".
+    `measure` is the kind of strength ("rupture"), `of` names the parts ("threads and skirt").
     """
 
     measure: str
@@ -245,7 +245,7 @@ class Loaded:
 
 
 class Pulsed(NamedTuple):
-    """Stress in a metal part under pulsating pressure: its range `span`, and its mean [Pa]."""
+    """Stress in a metal part under pulsating pressure [Pa]: its range (`span`) and its mean."""
 
     place: str
     material: str
@@ -319,8 +319,8 @@ class Joint:
     kinds: tuple[str, ...]
     """Allowed kinds of the material `retention.material`; empty if the joint has no material."""
     without: Mapping[str, tuple[str, str]]
-    """For some keys that the joint does not use: error message and remedy that replace the general
-    message for an unused key."""
+    """Error message and remedy for some keys that the joint does not use, by key. They replace the
+    general message for an unused key."""
     faults: Callable[[StatedValues], Iterable[Fault]]
     """Function that yields errors in the values of a design file."""
     material_faults: Callable[[StatedValues, KnownMaterials], Iterable[Fault]]
@@ -346,16 +346,17 @@ class Joint:
     own: Callable[[Loaded], Mapping[str, Array]]
     """Values of the metrics that only this joint has; `metrics` lists their names."""
     envelope: Callable[[Loaded, Mapping[str, Array]], Mapping[str, Array]] | None
-    """Function for upper bounds of `Strength.working`, given `Strength.burst`; or None. It is
-    needed only if the working factor is not a convex function, to prove a bound on the optimum."""
+    """Function that gives upper bounds of `Strength.working` from `Strength.burst`; or None. It is
+    needed only if the working factor is not a convex function of the design's numbers; the bounds
+    then serve to prove how good an optimum is."""
     metrics: Mapping[str, str]
     """Metrics that only this joint has, each with the text that says why other joints do not have
     it."""
     judged: tuple[FactorBasis, FactorBasis]
     """Words for the strengths on which the working factor and the burst factor are based."""
     models: Mapping[tuple[str, str], str]
-    """Names of models, such as `rod.section_area`: for a pair (metric, location), the main model
-    that computes this metric there."""
+    """Main model, such as `rod.section_area`, that computes a metric at a location; the keys are
+    pairs (metric, location)."""
     usual: tuple[Usual, ...]
     warnings: Callable[[Loaded, Mapping[str, Quantity]], Iterable[tuple[str, str]]]
     """Function that yields a pair (metric, sentence) for each warning; its second argument has the
@@ -373,7 +374,7 @@ def nothing(*_: object) -> Iterator[Any]:
 
 
 def check(joints: Iterable[Joint]) -> None:
-    """Refuse joints that declare the same metric, the same location of a model, or the same key.
+    """Refuse two joints that declare the same metric, model location or key.
 
     Raises
     ------
@@ -395,7 +396,7 @@ def chosen(stated: StatedValues, path: str) -> bool:
 
 
 def judged_later(stated: StatedValues, varied: Iterable[str]) -> bool:
-    """Whether checking these sizes is left to the search, which tries every combination of choices.
+    """Whether the search checks these sizes later, when it tries every combination of choices.
 
     `varied` are the PATHs of the sizes. The check is left to the search if one of the sizes is a
     variable, and one of them or the type of joint has several choices.
@@ -416,7 +417,7 @@ def models_at(joints: Iterable[Joint], metric: str) -> dict[str, str]:
 
 
 def judged_on(joints: Iterable[Joint], index: int) -> str:
-    """Words for the strengths on which the safety factors of all joints are based.
+    """Words that name the strengths on which the safety factors of all joints are based.
 
     `index` is 0 for the working factor, 1 for the burst factor.
     """
@@ -431,7 +432,7 @@ def judged_on(joints: Iterable[Joint], index: int) -> str:
 
 
 def _alternatives(parts: Sequence[str]) -> str:
-    """Join parts with "or"; put a comma before it if a part is itself a list.
+    """Join parts with "or", or with ", or of" if one of the parts is itself a list.
 
     >>> _alternatives(["threads", "tie rods"]), _alternatives(["threads and skirt", "tie rods"])
     ('threads or tie rods', 'threads and skirt, or of tie rods')

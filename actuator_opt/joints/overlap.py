@@ -63,7 +63,7 @@ class Overlap:
         return factors
 
     def least_peak_ratio(self, materials: MaterialProperties, stiffness: Array) -> Array:
-        """Lower bound of the ratio of peak to mean bond shear, given one wall's stiffness."""
+        """Lower bound of peak shear / mean shear in the bond, from the stiffness of one wall."""
         return lap_joint.least_bond_peak_ratio(
             membrane_stiffness=stiffness, **self._adhesive(materials)
         )
@@ -95,7 +95,7 @@ class Overlap:
 
 
 def mismatch(materials: MaterialProperties, metal: str, tube: Array) -> Array:
-    """Axial expansion of the metal minus that of the tube; None if unknown."""
+    """Axial thermal expansion of the metal minus that of the tube [1/K]; None if unknown."""
     metal_expansion = materials.get(metal, "thermal_expansion")
     return None if metal_expansion is None or tube is None else metal_expansion - tube
 

@@ -50,8 +50,8 @@ OTHERWISE = "bond the caps (type: bond), or clamp them (type: tie_rods)"
 
 LANDS = ("geometry_barrel_thread", "geometry_skirt_thread")
 CREST = "geometry_thread_crest"
-"""Names of the metrics for the metal left under the thread roots of barrel and skirt, and for the
-overlap of the thread flanks."""
+"""Names of the three metrics of a thread: metal left under the barrel's thread root and under the
+skirt's, and overlap of the thread flanks."""
 
 HARD = 830e6
 """Lowest tensile strength of a metal that counts as hard [Pa]. Our choice, to separate the grades
@@ -198,7 +198,7 @@ def _layer_faults(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
             (*layer, "thickness"),
             f"{_text(sizes.layer)} of {name}: the thread leaves {rest} of it, "
             f"but {_text(LEAST_METAL)} is needed",
-            f"write a thickness of at least {_text(least)}, a finer pitch, {OTHERWISE}",
+            f"write a thickness of at least {_text(least)} or a finer pitch, {OTHERWISE}",
         )
 
 
@@ -532,8 +532,8 @@ JOINT = Joint(
             "turns of the thread",
             5.0,
             60.0,
-            "our choice: two turns at start and run-out carry nothing, and the first turns carry "
-            "most of the load",
+            "our choice: of few turns, the two at start and run-out carry nothing; of many, the "
+            "first ones carry most of the load",
             lambda end: end.sizes["length"] / end.sizes["thread.pitch"],
         ),
     ),

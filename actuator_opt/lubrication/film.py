@@ -38,8 +38,8 @@ LEAST_CONTACT = 1e-12
 """Smallest ratio of static pressure to asperity stiffness. Where it is lower, this value is used,
 so that the film thickness at rest stays finite."""
 SLOWEST = 1e-4
-"""If Newton's method does not converge directly, the speed is raised in steps from this first speed
-[m/s]."""
+"""First speed [m/s] from which the speed is raised in steps if Newton's method does not converge
+directly at the stated speed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ class Film:
 
     @property
     def contact_pressure(self) -> Vector:
-        """Pressure of the asperities [Pa]."""
+        """Contact pressure that the asperities carry [Pa]."""
         _, bed = scaled(self.contact)
         return pressure_scale(self.contact) * contact_pressure(bed, self.state.film)
 
@@ -190,7 +190,7 @@ def _at_rest(contact: Contact, bed: Bed) -> FilmState:
 
 
 def _starved(cavitation: Vector, contact: Contact) -> Vector:
-    """The cavitated fractions, with both end values replaced by those that the contact states."""
+    """Copy the cavitated fractions; set the two end values to those stated by the contact."""
     ends = [contact.sealed_cavitation], [contact.outer_cavitation]
     return np.concatenate([ends[0], cavitation[1:-1], ends[1]])
 
@@ -276,14 +276,15 @@ def _film(contact: Contact, outcome: NewtonResult) -> Film:
 def sensitivities(film: Film, stepped: Sequence[Contact]) -> Vector:
     """Derivatives of viscous drag, asperity load, flow and mean film with respect to the inputs.
 
-    Each direction of differentiation is the contact of the film with a complex step added to any of
-    its numbers, such as ``width * (1 + 1j * STEP)``. The state changes by -J^-1 times the change of
-    the residual at the solved state, with the Jacobian J. One factorisation serves all directions.
+    Each direction of differentiation is given by a copy of the film's contact in which some
+    numbers have a complex step added, such as ``width * (1 + 1j * STEP)``. The state changes by
+    -J^-1 times the change of the residual at the solved state, with the Jacobian J. One
+    factorisation serves all directions.
 
     Parameters
     ----------
     film : a converged film
-    stepped : for each direction, the contact of the film with a complex step of size `numeric.STEP`
+    stepped : for each direction, the film's contact with a complex step of size `numeric.STEP`
 
     Returns
     -------

@@ -32,10 +32,11 @@ TOLERANCE = 1e-9
 """Largest scaled residual of a converged film."""
 MOST_ITERATIONS = 60
 _GROWTH, _LEAST_GROWTH = 8.0, 1.02
-"""Initial and smallest factor between the values of successive steps of `follow`."""
+"""Factor by which `follow` changes its input from one step to the next: initial value, and smallest
+value before it gives up."""
 _CLOSED, _PRESSURE_STEP = 0.5, 0.6
-"""Largest relative decrease of the film thickness, and largest change of a scaled pressure, in one
-Newton step."""
+"""Limits of one Newton step: largest relative decrease of the film thickness, and largest change
+of a scaled pressure."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,7 +266,7 @@ class LinearSystem:
 
 
 def _allowed(state: FilmState, change: FilmState) -> float:
-    """Share of a Newton step that keeps the film open and limits the change of pressure."""
+    """Share of a Newton step at which the film stays open and no pressure changes too much."""
     fall = np.max(-change.film / state.film)
     jump = np.max(np.abs(change.pressure))
     return float(min(1.0, _CLOSED / max(fall, 1e-300), _PRESSURE_STEP / max(jump, 1e-300)))
@@ -324,7 +325,7 @@ def _newton(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResult:
             state.film + part * change.film,
             state.shift + part * change.shift,
         )
-    residuals = f"flux spread {spread:.1e}, load {load:.1e}"
+    residuals = f"relative errors: flow along the film {spread:.1e}, load {load:.1e}"
     reason = f"no equilibrium within {MOST_ITERATIONS} iterations ({residuals})"
     return NewtonResult(state, reason, MOST_ITERATIONS, spread, load)
 
@@ -355,6 +356,6 @@ def follow(
             continue
         growth = growth**0.5
         if growth < _LEAST_GROWTH:
-            reason = f"{trial.reason}; the stepwise approach to the solution failed at {value:.2e}"
+            reason = f"{trial.reason}; changing the speed in steps failed beyond {value:.2e} m/s"
             return replace(trial, reason=reason, iterations=iterations)
     return replace(outcome, iterations=iterations)

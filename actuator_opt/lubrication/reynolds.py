@@ -197,7 +197,7 @@ def _range_fault(contact: Contact) -> str:
         if not 0 <= getattr(contact, name) < 1:
             return f"{name.replace('_', ' ')} {getattr(contact, name):g}: use 0 to below 1"
     if not 0 <= contact.surface.rod_share <= 1:
-        return f"rod share {contact.surface.rod_share:g} of the roughness: use 0 to 1"
+        return f"rod share {contact.surface.rod_share:g} (of squared roughness): use 0 to 1"
     if not -1 < contact.elastic.poissons_ratio <= 0.5:
         return f"Poisson's ratio {contact.elastic.poissons_ratio:g}: use -1 to 0.5"
     for side, pressure in (
@@ -260,9 +260,10 @@ class ReynoldsProblem:
 
 @dataclass(frozen=True, slots=True)
 class FaceFlux:
-    """Flux through each face between two nodes, and its derivatives by the states of these nodes.
+    """Flux through each face between two nodes, and its derivatives.
 
-    Each pair of derivatives is by the value at the node before the face and at the node after it.
+    `pressure`, `film` and `cavitation` are pairs: the derivative of the flux with respect to that
+    quantity at the node before the face, and at the node after it.
     """
 
     flux: Vector
@@ -283,9 +284,9 @@ def flux(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vect
 
 
 def faces(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vector) -> FaceFlux:
-    """Flux and its derivatives for a real state.
+    """Flux through every face and its derivatives, for a state of real numbers.
 
-    The laws of oil and gap are differentiated by complex steps, all else by formulas.
+    The laws of oil and gap are differentiated by complex steps, everything else by formulas.
     """
     density, fluidity = flow.oil(pressure + 1j * STEP)
     opening, carried = flow.gap(film + 1j * STEP)
@@ -321,7 +322,7 @@ def faces(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vec
 def banded(before: Vector, after: Vector) -> tuple[Vector, Vector, Vector]:
     """Bands of a tridiagonal matrix: derivatives of flux out minus flux in at the inner nodes.
 
-    The bands (lower, middle, upper) are the derivatives by the states of the node before, the node
-    itself and the node after.
+    The bands (lower, middle, upper) are the derivatives with respect to the state of the node
+    before, of the node itself and of the node after it.
     """
     return -before[:-1], before[1:] - after[:-1], after[1:]

@@ -13,11 +13,11 @@ from .newton import Bed, FilmState, NewtonResult, follow, kernel, newton, weight
 from .reynolds import Elastic, Lubricant, ReynoldsProblem, Vector
 
 _NARROWEST = 0.04
-"""Smallest width of the initial elliptic pressure: the square of its half width divided by the
-width of the face."""
+"""Smallest width of the initial elliptic pressure, stated as the square of (half width / width of
+the face)."""
 _FASTER = (1.0, 30.0)
-"""A loaded film is first solved at one of these multiples of its speed, then at its speed itself.
-The multiples are tried in turn; a larger one gives a thicker initial film."""
+"""A loaded film is first solved at a multiple of the stated speed, then at the stated speed. These
+multiples are tried in turn; a larger one gives a thicker initial film."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,8 +173,8 @@ def _fixed_gap(gap: Gap) -> SmoothFilm:
 def _loaded_gap(gap: Gap) -> SmoothFilm:
     """Solve a loaded gap, starting from dry contact with a thin film, or else from a thick film.
 
-    The thin film is that which the inlet lets pass: h* = sqrt(8 eta U/(9 w)), with the pressure
-    gradient w there, viscosity eta and speed U.
+    The thin film is the film that the inlet lets pass: h* = sqrt(8 eta U/(9 w)), with viscosity
+    eta, speed U and the pressure gradient w at the inlet.
     """
     pressure = _scales(gap)
     rise = 4 * (gap.line_load or 0.0) / gap.width**2

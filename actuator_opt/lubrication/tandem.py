@@ -17,8 +17,7 @@ MATCH = 1e-8
 two, and the flow that the rod drags along."""
 _MOST_TRIALS = 60
 _EMPTY = 0.9
-"""Share of the space between the seals that has no oil, where the solution of starved films
-starts."""
+"""The search for starved films starts with this share of the space between the seals empty."""
 _NO_LIMIT = (
     "with {:.4g} Pa between the seals, the inner seal still passes more oil than the outer seal: "
     "the pressure between them exceeds this value"
@@ -75,7 +74,7 @@ class _Row:
     films: tuple[Film | None, Film | None] = (None, None)
 
     def solve(self, pressure: float, cavitation: float = 0.0) -> tuple[Film, Film]:
-        """Solve both films; the seal that draws oil from the space between both may starve.
+        """Solve both films; the seal that draws oil from the space between the seals may starve.
 
         `cavitation` is the share of that space without oil. In an outstroke the outer seal draws
         oil from it, in an instroke the inner seal.
@@ -183,8 +182,8 @@ def _search(row: _Row, guess: float, low: float, high: float) -> Tandem:
 def _next(trials: list[tuple[float, float]], bottom: float, top: float) -> float:
     """The next pressure to try, by a secant through the last two trials or by halving the range.
 
-    `bottom` and `top` enclose the solution. If all trials lie on the same side of the solution, the
-    end of the range on its other side is tried early. Every fifth step halves the range.
+    `bottom` and `top` enclose the solution. If all trials lie on one side of the solution, the
+    opposite end of the range is tried early. Every fifth step halves the range.
     """
     middle = (bottom + top) / 2
     if len(trials) < 2:

@@ -20,7 +20,7 @@ Wall = Literal["layered", "thin_laminate"]
 """Wall models of a laminated barrel."""
 
 CRITERION = "criterion"
-"""Placeholder for the name of a model, which is the failure criterion that the design selects."""
+"""Stands for the model's name where the model is the failure criterion that the design selects."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +114,7 @@ class MetricRow:
 
     @property
     def quantity(self) -> Quantity:
-        """Quantity of the metric, which formats it for tables and texts."""
+        """The metric's `Quantity`, which formats its values for tables and texts."""
         return Quantity(
             self.name,
             self.symbol,

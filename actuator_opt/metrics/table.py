@@ -61,11 +61,11 @@ ROWS = table((
               worst="max", model="gland.extrusion_gap", feeds=("wall",),
               check=CheckLine("2.6", "extrusion gap at the piston seal")),
     MetricRow("seal_squeeze", "C_min", "ratio", "%",
-              "smallest seal squeeze after growth and tolerance", worst="min",
+              "smallest seal squeeze after bore growth and tolerance", worst="min",
               model="gland.squeeze_extremes", feeds=("wall",),
               check=CheckLine("5.1", "smallest seal squeeze", 0.08,
-                          "our choice: 8 % after growth and tolerances (gland tables: 8 % for "
-                          "5.33 mm sections, 15 % for 1.78 mm)")),
+                          "our choice: 8 % after bore growth and tolerances (gland tables: 8 % "
+                          "for 5.33 mm sections, 15 % for 1.78 mm)")),
     MetricRow("seal_squeeze_max", "C_max", "ratio", "%", "largest seal squeeze at assembly",
               worst="max", model="gland.squeeze_extremes", feeds=(),
               check=CheckLine("5.2", "largest seal squeeze", 0.25,
@@ -349,7 +349,7 @@ ROWS = table((
               "margin to the nearest service temperature limit of any material",
               worst="min", model=None, feeds=(),
               check=CheckLine("11.1", "temperature range", 0.0,
-                          "service limits of all materials used")),
+                          "service temperature limits of all materials used")),
     MetricRow("oil_viscosity", "nu", "kinematic_viscosity", "mm^2/s",
               "oil viscosity at the temperature of the load case", worst="max",
               model="fluid.viscosity_astm_d341", feeds=(), check=None),
@@ -475,5 +475,5 @@ OWN = frozenset(fed_by("own", ROWS))
 
 
 def of_metric(name: str) -> Quantity:
-    """Quantity (label, dimension, unit) of a metric; if it is not declared, a plain ratio."""
+    """Quantity (label, dimension, unit) of a metric; for an undeclared name, a plain ratio."""
     return METRICS.get(name) or Quantity(name, "", "ratio", "", name.replace("_", " "))

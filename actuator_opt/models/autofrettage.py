@@ -102,11 +102,11 @@ class _Liner(NamedTuple):
 
 
 class _Contact(NamedTuple):
-    """Linear response of liner and wrap to x, p and dT.
+    """Linear response of liner and wrap to x, p and dT (symbols: see the module's docstring).
 
-    q = kappa Y x - mu p - tau. The elements of `strain` give eps_z: the first times q, plus the
-    second times p, plus the third, which is thermal. `pull` is the axial force in the wrap per unit
-    of q, divided by 2 pi.
+    q = kappa Y x - mu p - tau. The axial strain eps_z is the first element of `strain` times q,
+    plus the second times p, plus the third, which is thermal. `pull` is the axial force in the wrap
+    per unit of q, divided by 2 pi.
     """
 
     kappa: Array
@@ -167,7 +167,10 @@ def _contact(liner: _Liner, wrap: LayeredTube | None, change: Array) -> _Contact
 
 
 def _spread(xp: Any, kappa: Array, depth: Array) -> Array:
-    """Root x of y - m (e^y - 1) + s = 0, y = ln x <= 0, m = 1 - 2 `kappa`, s = `depth` > 0."""
+    """Extent x of yielding in a partly plastic liner (see the module's docstring).
+
+    Solves y - m (e^y - 1) + s = 0 with y = ln x <= 0, m = 1 - 2 `kappa` and s = `depth` > 0.
+    """
     near, rest = 2 * real(kappa), real(depth)
     bend = 1 - near
     y = -2 * rest / (near + xp.sqrt(near * near + 2 * maximum(bend, 0 * bend) * rest))
@@ -181,8 +184,9 @@ def _spread(xp: Any, kappa: Array, depth: Array) -> Array:
 class _Yielding(NamedTuple):
     """Pressures of first and of full yield, and three values of x at the overpressure.
 
-    x measures how far the liner has yielded, see the module's docstring. `spread` is the actual x,
-    `elastic` that of a liner which never yields, `spent` the latter without thermal stress.
+    x measures how far the liner has yielded, see the module's docstring. `spread` is the actual x.
+    `elastic` is the x of a liner that never yields, and `spent` is `elastic` without thermal
+    stress.
     """
 
     first: Array
@@ -197,7 +201,7 @@ def _yielding(
 ) -> _Yielding:
     """Find the yield pressures, and how far the liner has yielded at the overpressure.
 
-    At this pressure, the liner is elastic, partly plastic or plastic.
+    At the overpressure, the liner may be elastic, partly plastic or fully plastic.
     """
     kappa, square = contact.kappa, liner.outer / liner.inner
     half = xp.log(square) / 2
@@ -344,7 +348,7 @@ def _all_stresses(
 def _loaded(
     liner: _Liner, contact: _Contact, found: _Yielding, yield_strength: Array, pressure: Array
 ) -> tuple[Array, Array]:
-    """Radial stress at the bore and E e_z, at the overpressure, divided by the yield strength."""
+    """Radial stress at the bore and E e_z (see the module), at the overpressure, divided by Y."""
     by_press, by_pressure, by_heat = contact.strain
     press = contact.kappa * yield_strength * found.spread - contact.mu * pressure - contact.tau
     stretch = by_press * press + by_pressure * pressure + by_heat - liner.free
@@ -352,9 +356,9 @@ def _loaded(
 
 
 def _margin(ratio: Array, loaded: tuple[Array, Array], bore: Array, way: Array) -> Array:
-    """Distance of sigma_z to the nearer of sigma_r and sigma_t, divided by Y.
+    """Distance of sigma_z to the nearer end of the range sigma_r to sigma_t, divided by Y.
 
-    The result is the smaller of the values at both edges of the yielded zone.
+    The result is the smaller of its values at the inner and the outer edge of the yielded zone.
     """
     radial, stretch = loaded
     margins = []

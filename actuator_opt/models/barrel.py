@@ -76,8 +76,8 @@ def bore_growth_as_published(
 ) -> Array:
     """Radial growth of the bore as the source prints it, with the outer radius and for open ends.
 
-    u = (r_o p/E) (lambda + nu). The result is r_o/r_i times too large,
-    because theory requires the inner radius.
+    u = (r_o p/E) (lambda + nu), lambda = (k^2 + 1)/(k^2 - 1), k = r_o/r_i. The result is r_o/r_i
+    times too large, because theory requires the inner radius.
 
     Parameters
     ----------
@@ -116,7 +116,8 @@ def bore_stresses(
 ) -> tuple[Array, Array, Array]:
     """Principal stresses at the bore of a thick cylinder.
 
-    sigma_hoop = p lambda, sigma_radial = -p, sigma_axial = N/(pi (r_o^2 - r_i^2)).
+    sigma_hoop = p lambda, sigma_radial = -p, sigma_axial = N/(pi (r_o^2 - r_i^2)),
+    lambda = (k^2 + 1)/(k^2 - 1), k = r_o/r_i.
 
     Parameters
     ----------

@@ -22,7 +22,8 @@ def pressure_shortening(
 ) -> Array:
     """Free axial shortening of an open barrel by its internal pressure.
 
-    delta_p = 2 nu p L/(E (k^2 - 1)): the Poisson contraction that unloads a tie-rod joint.
+    delta_p = 2 nu p L/(E (k^2 - 1)), k = r_o/r_i: the Poisson contraction that unloads a tie-rod
+    joint.
 
     Parameters
     ----------

@@ -95,11 +95,11 @@ class BurstLadder:
     first_ply_pressure : first failure of a composite ply
     burst_pressure : largest load of the ladder
     liner_yield_pressure : first yield of a metal layer in the intact wall; infinite without one
-    record : for each step the row of the failing mode in `intact`, its pressure, and whether each
-        design took this step
-    order : position from the bore of each layer in the internal order, which lists metals first
-    intact : 1/p for the pressure p at which each mode fails in the intact wall: rows over modes,
-        faces and layers, then over the yield of metals
+    record : for each step, three arrays over the designs: the row in `intact` of the mode that
+        fails, its pressure, and whether the design takes this step at all
+    order : for each layer in the internal order (metals first), its position counted from the bore
+    intact : 1/p for the pressure p at which each mode fails in the intact wall: one row for each
+        failure mode at each face of each layer, then the rows for the yield of metals
     faces : number of stations through each layer
     """
 
@@ -119,7 +119,7 @@ class BurstLadder:
         return plies + [(self.order[i % metals], "yield") for i in range(metals * self.faces)]
 
     def steps(self, index: tuple[int, ...] = ()) -> tuple[LadderStep, ...]:
-        """List the failures of the design at `index` of the arrays; () if there is one design."""
+        """List the failures of the design at `index` of the arrays; pass () for a single design."""
         named = self.modes()
         ladder = []
         for code, pressure, counted in self.record:
@@ -146,7 +146,7 @@ class Mechanics(Protocol):
 
     @property
     def order(self) -> tuple[int, ...]:
-        """Position from the bore of each layer in the internal order, which lists metals first."""
+        """For each layer in the internal order (metals first), its position from the bore."""
 
     @property
     def stressed(self) -> bool:
@@ -155,11 +155,12 @@ class Mechanics(Protocol):
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
         """Stresses 1, 2, 12, 3 at every face and layer, per unit pressure and at zero pressure.
 
-        The second comes from yielded metals and other initial stress; None without either.
+        The stresses at zero pressure come from yielded metals and other initial stress; the second
+        result is None if there is neither.
         """
 
     def frozen(self, held: Any, yielded: Array, stress: Array) -> Any:
-        """State `held` of the yielded metals after the metals marked in `yielded` have joined them.
+        """Add the metals marked in `yielded` to `held`, the state of those that yielded before.
 
         `stress` is the stress of all metals at this moment, (4, faces, metals, ...).
         """
@@ -210,7 +211,7 @@ def stacked_rows(xp: Any, columns: Sequence[Sequence[Array]], dims: int) -> Arra
 
 
 def _above(value: Array) -> Array:
-    """Raise the strength left over for the load to a small positive number if none is left."""
+    """Strength left for the load; a small positive number if the initial stress leaves none."""
     return where(real(value) > _FLOOR, value, 0 * value + _FLOOR)
 
 
@@ -230,7 +231,7 @@ def _yields(rate: Array, base: Array | None, inverse: Array) -> Array:
 def _utilisations(
     xp: Any, metals: int, inverse: Array, rate: Array, base: Array | None, *, free: bool
 ) -> Array:
-    """1/p for the pressure p at which each mode fails: modes, faces, layers, then metals' yield.
+    """1/p for the pressure p at which each mode fails; rows as in `BurstLadder.intact`.
 
     `free`: the metals have no stress at zero pressure.
     """
@@ -247,7 +248,7 @@ def _utilisations(
 
 
 def _critical(xp: Any, values: Array, rows: Array, shape: Array) -> tuple[Array, ...]:
-    """Code, one-hot mask and failure load of the most utilised mode; whether any is loaded."""
+    """Row number, mask and failure load of the most utilised mode; whether any mode is loaded."""
     code = xp.argmax(real(values), axis=0)
     hit = rows == code
     inverse = xp.sum(where(hit, values, 0.0), axis=0)
@@ -269,7 +270,7 @@ def _softening(xp: Any, hit: Array, faces: int, count: int, metals: int) -> Arra
 
 
 def _together(xp: Any, walls: Sequence[WallLayer], dims: int) -> Array:
-    """Mask of the layers that soften together, (layers, layers, ...)."""
+    """Mask (layers, layers, ...): entry (i, j) is true if layers i and j soften together."""
     count, ones = len(walls), (1,) * dims
     same = [
         [i == j or (a.material == b.material and bool(a.strength) and bool(b.strength))
@@ -284,7 +285,9 @@ def _together(xp: Any, walls: Sequence[WallLayer], dims: int) -> Array:
 
 @geometry
 def climb(xp: Any, mechanics: Mechanics, layers: Sequence[WallLayer], shape: Array) -> BurstLadder:
-    """Follow the failures of a wall to burst; `shape`: zeros in shape and type of the designs.
+    """Follow the failures of a wall to burst.
+
+    `shape` is an array of zeros that has the shape and number type of the designs' results.
 
     References
     ----------
@@ -447,9 +450,10 @@ def burst_by_ply_discount(
     -----
     Valid: thin walls with fibres.
 
-    For a wall of metals only, the burst pressure is that of yield; use
-    `barrel.burst_pressure_thick` instead. The frozen stress of the liner is in equilibrium and
-    nowhere above yield. It makes all pressures continuous where yield and ply failure coincide.
+    For a wall of metals only, this burst pressure is merely the yield pressure; use
+    `barrel.burst_pressure_thick` instead. The stress that a yielded liner keeps is in equilibrium
+    and nowhere above yield. All pressures are therefore continuous where yield and ply failure
+    coincide.
 
     References
     ----------

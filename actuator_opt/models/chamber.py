@@ -150,7 +150,7 @@ def _shares(
     """Change of the oil volume f - 1, gas volume alpha r, and -d(f + alpha r)/dp.
 
     f, alpha and r are those of `density_ratio`; `total` is the absolute pressure. If the gauge
-    `pressure` is known too, pass it: near zero it has more significant digits.
+    `pressure` is known too, pass it, because near zero it has more significant digits than `total`.
     """
     modulus, slope, air, index, atmosphere = law
     strain = (total - atmosphere if pressure is None else pressure) / modulus

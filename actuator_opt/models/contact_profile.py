@@ -24,13 +24,13 @@ from itertools import pairwise
 from ..base.numeric import Array, clip, geometry, maximum, positive, real, sqrt, where
 
 LIP_PLACES, LIP_SHARE = (0.0, 0.2, 0.6, 1.0), 0.42
-"""Knots t of the lip profile; pressure above p_a at the third knot divided by the pressure at the
-second (*choice*, surrogate)."""
+"""Knots t of the lip profile, and a ratio: pressure above p_a at the third knot, divided by the
+pressure at the second knot (*choice*, surrogate)."""
 O_RING_POWER = 10
-"""Exponent of the part that the sealed pressure p adds, p (1 - t^10). It is within 0.18 p of this
-project's finite-element profiles at a squeeze of 0.10 to 0.20 and p up to the rubber's Young's
-modulus; the difference is largest near the outer edge. The mean of those profiles is 0.89 to
-0.94 p."""
+"""Exponent in p (1 - t^10), the part of the profile that the sealed pressure p adds. It differs by
+at most 0.18 p from the same part of this project's finite-element profiles, at a squeeze of 0.10 to
+0.20 and p up to the rubber's Young's modulus; the difference is largest near the outer edge. The
+mean of the finite-element part is 0.89 to 0.94 p."""
 
 
 def o_ring_profile(
@@ -141,7 +141,7 @@ def o_ring_excess(
 
 
 def _inner_slope(before: Array, after: Array, left: float, right: float) -> Array:
-    """Harmonic mean of two slopes weighted by their intervals, 0 where they differ in sign."""
+    """Harmonic mean of two slopes, weighted by interval lengths; 0 if they differ in sign."""
     same = real(before) * real(after) > 0
     one, two = 2 * right + left, right + 2 * left
     below = where(same, one * after + two * before, 1.0)
@@ -149,7 +149,7 @@ def _inner_slope(before: Array, after: Array, left: float, right: float) -> Arra
 
 
 def _end_slope(near: Array, far: Array, length: float, following: float) -> Array:
-    """Slope at an end: that of a parabola through three points, limited against overshoot."""
+    """Slope at an end knot, from a parabola through three knots; limited to avoid overshoot."""
     slope = ((2 * length + following) * near - length * far) / (length + following)
     steep = real(slope) * real(near) > 3 * real(near) * real(near)
     bounded = where((real(near) * real(far) <= 0) & steep, 3 * near, slope)

@@ -182,7 +182,7 @@ def secant(*, friction: Array, speed: Array) -> Array:
 
 
 def power_law(*, speed: Array, coefficient: Array, exponent: Array) -> Array:
-    """Power-law fit of the secant VDC, B = a v^b; b < 0 where B falls.
+    """Power-law fit of the secant VDC, B = a v^b; b < 0 if B falls with speed.
 
     The source prints b > 0, which contradicts its own falling curves.
 

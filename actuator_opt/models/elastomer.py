@@ -174,9 +174,9 @@ def temperature_factor(
     """Modulus divided by its value at the reference temperature, E(T)/E(T_ref).
 
     The factor is e^(-b (T - T_ref)) s(T)/s(T_ref). The exponential is the measured softening with
-    heat, and s is the stiffening towards the glass transition: s = 1 + 9 (a_T/a_T10)^(1/2),
-    log10 a_T = -17.44 (T - T_g)/(51.6 + T - T_g), T_g = T_10 - 5 K. Below T_g, a_T keeps its value
-    at T_g.
+    heat, and s is the stiffening towards the glass transition: s = 1 + 9 (a_T/a_T10)^(1/2), with
+    the shift factor a_T, log10 a_T = -17.44 (T - T_g)/(51.6 + T - T_g), T_g = T_10 - 5 K. a_T10 is
+    the value of a_T at T_10. Below T_g, a_T keeps its value at T_g.
 
     Parameters
     ----------

@@ -18,8 +18,9 @@ def cycles_to_failure(
 ) -> Array:
     """Cycles of a pulsating stress until failure.
 
-    Amplitude and mean s_a, s_m = s (1 -+ R)/2; Goodman s_r = s_a/(1 - s_m/R_m); the Basquin line
-    from 0.9 R_m at 1e3 cycles through the fatigue limit, solved for N.
+    Amplitude and mean are s_a, s_m = s (1 -+ R)/2. Goodman's line gives the equivalent fully
+    reversed amplitude s_r = s_a/(1 - s_m/R_m). The Basquin line from 0.9 R_m at 1e3 cycles through
+    the fatigue limit then gives the cycles N at s_r.
 
     Parameters
     ----------
@@ -70,8 +71,8 @@ def fatigue_factor(
 ) -> Array:
     """Factor by which a pulsating stress may grow before the part misses its required life.
 
-    1/(s_a/S_f + s_m/R_m), where S_f is the fully reversed amplitude endured for the required
-    cycles.
+    1/(s_a/S_f + s_m/R_m), with the amplitude s_a and the mean s_m of the stress. S_f is the fully
+    reversed amplitude endured for the required cycles.
 
     Parameters
     ----------

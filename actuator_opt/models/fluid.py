@@ -15,7 +15,7 @@ from ..base.numeric import Array, maximum, namespace, real, where
 ATMOSPHERIC_PRESSURE = 101325.0
 """Standard atmosphere, Pa absolute."""
 LEAST_VISCOSITY = 2e-6
-"""Kinematic viscosity down to which ASTM D341 holds in the form used here, m^2/s."""
+"""Smallest kinematic viscosity for which ASTM D341 holds in the form used here, m^2/s."""
 BARUS_PRESSURE, ROELANDS_PRESSURE, LINEAR_PRESSURE = 1e8, 1e9, 500e5
 """Gauge pressures up to which Barus's law, Roelands's law and the linear bulk modulus hold, Pa."""
 

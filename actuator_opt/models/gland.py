@@ -171,7 +171,7 @@ def extrusion_gap(*, clearance: Array, growth: Array) -> Array:
 
 @geometry
 def limited_width(*, contact_width: Array, groove_width: Array) -> Array:
-    """Contact width no wider than the groove.
+    """Contact width, limited to the width of the groove.
 
     Parameters
     ----------
@@ -379,11 +379,11 @@ def squeeze_extremes(
 
 
 Points: TypeAlias = Sequence[tuple[Array, Array]]
-"""Points of pressure [Pa] and gap [m], pressure rising."""
+"""Pairs of pressure [Pa] and largest gap [m], in the order of rising pressure."""
 
 
 Table: TypeAlias = Sequence[tuple[Array, Points]]
-"""Rows, each a hardness [Shore A] with its points of pressure and gap, hardness rising."""
+"""Rows in the order of rising hardness: a hardness [Shore A] with its pairs of pressure and gap."""
 
 
 ROUNDING = 1e-9

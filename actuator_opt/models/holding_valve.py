@@ -8,8 +8,8 @@ from ..base.numeric import Array, maximum, minimum, real, where
 from .valve import edge_conductance, edge_flow
 
 LEAST = 1e-12
-"""Smallest flow per flow coefficient at which an edge counts as able to supply oil [sqrt(Pa)]. By
-`valve.edge_flow`, which is linear near zero, this is the flow at a pressure drop of 1e-10 Pa."""
+"""An edge counts as able to pass oil only if its flow per unit flow coefficient exceeds this value
+[sqrt(Pa)]. `valve.edge_flow`, which is linear near zero, gives it at a drop of 1e-10 Pa."""
 
 
 class FeedingEdges(NamedTuple):
@@ -30,14 +30,16 @@ def feeding_edges(
 ) -> FeedingEdges:
     """Flow coefficients of both edges of a chamber at rest, so that oil in and oil out balance.
 
-    One edge only leaks; the other opens as far as necessary:
+    One edge only leaks; the other opens as far as necessary. The flows Q_S from the supply and Q_T
+    to the tank, and the coefficient K of each edge, are
 
     Q_S = max(K0s sqrt(into), K0t sqrt(out) + q), Q_T = Q_S - q; K = Q/sqrt(dp), at most K10.
 
     Parameters
     ----------
     rated_coefficient : K10 [m^3/s/sqrt(Pa)]
-    leakage_supply, leakage_tank : K0 of the edges to supply and to tank [m^3/s/sqrt(Pa)]
+    leakage_supply, leakage_tank : K0s and K0t, leakage coefficients of the edges to supply and to
+        tank [m^3/s/sqrt(Pa)]
     into, out : pressure drops p_S - p and p - p_T [Pa]
     lost : flow q that leaves the chamber past the piston [m^3/s]
 
@@ -78,15 +80,16 @@ def feeding_edges(
 class ValveSlopes(NamedTuple):
     """Small-signal flows about a held load, for one direction of the spool.
 
-    Into A, dq_A = G_A du - C_A dp_A; out of B, dq_B = G_B du + C_B dp_B.
+    With the spool signal u, the flow into A changes by dq_A = G_A du - C_A dp_A, and the flow out
+    of B by dq_B = G_B du + C_B dp_B.
     """
 
     gain_a: Array
-    """Flow into chamber A per signal [m^3/s/V]."""
+    """Flow into chamber A per unit of spool signal [m^3/s/V]."""
     gain_b: Array
-    """Flow out of chamber B per signal [m^3/s/V]."""
+    """Flow out of chamber B per unit of spool signal [m^3/s/V]."""
     conductance_a: Array
-    """Flow out of chamber A through both of its edges, per pressure in A [m^3/s/Pa]."""
+    """Flow out of chamber A through both of its edges, per unit of pressure in A [m^3/s/Pa]."""
     conductance_b: Array
 
 
@@ -109,8 +112,8 @@ def valve_slopes(
     that opens: P-A and B-T extending, A-T and P-B retracting. The conductance of a chamber is that
     of both its edges. If opening in this direction makes up for the leakage, the conductance is
     taken at the spool position that holds the load (`feeding_edges`). Otherwise it is taken at the
-    centre of the spool, where the load slowly drifts. A held chamber has the larger conductance of
-    both directions.
+    centre of the spool, where the load slowly drifts. For a chamber that is held, call the function
+    for both directions and take the larger conductance.
 
     Parameters
     ----------

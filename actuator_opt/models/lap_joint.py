@@ -8,7 +8,10 @@ from ..base.numeric import Array, geometry, namespace, positive, sqrt
 
 
 def _edge_ratio(*, loaded: Array, free: Array, reach: Array) -> Array:
-    """Ratio of edge to mean shear; `loaded` is K_l, `free` is K_f, and `reach` is G L^2/t_a."""
+    """Ratio of edge shear to mean shear, as in `bond_edge_shear`.
+
+    `loaded` is K_l, `free` is K_f, and `reach` is G L^2/t_a.
+    """
     half = sqrt(positive(reach * (1 / loaded + 1 / free))) / 2
     wave = namespace(half).tanh(half)
     return half * ((1 / wave - wave) + 2 * free / (free + loaded) * wave)  # no term below zero
@@ -25,7 +28,7 @@ def least_bond_peak_ratio(
     """Lower bound on the ratio of peak to mean shear in a bonded overlap, from one wall alone.
 
     (w/2) coth(w/2), w^2 = 2 G L^2/(t_a K). This is the exact ratio for two walls of equal
-    stiffness K; a second wall of another stiffness only raises the peak.
+    stiffness K; if the second wall is stiffer or softer, the ratio is higher.
 
     Parameters
     ----------
@@ -42,9 +45,9 @@ def least_bond_peak_ratio(
     -----
     Valid: as `bond_edge_shear`; exact for equal walls.
 
-    At the edge where the softer wall ends, tau ~ (coth(w)/K_1 + csch(w)/K_2)/w with
-    w^2 = (G L^2/t_a)(1/K_1 + 1/K_2), which falls as 1/K_2 rises: 2 sinh w <= w + sinh w cosh w and
-    sinh w <= w cosh w.
+    At the edge where wall 2 ends and wall 1 carries the whole force,
+    tau ~ (coth(w)/K_1 + csch(w)/K_2)/w with w^2 = (G L^2/t_a)(1/K_1 + 1/K_2). This falls as 1/K_2
+    rises, because 2 sinh w <= w + sinh w cosh w and sinh w <= w cosh w.
 
     References
     ----------

@@ -148,7 +148,8 @@ def _unknowns(
 def forcing(xp: Any, transfer: Array, inner: Array, outer: Array, held: tuple[Array, ...]) -> Array:
     """Effect of thermal and frozen stresses on the outputs of `LayeredTube.transfer`, per layer.
 
-    `held` contains these stresses: z, t, r (and s).
+    `held` contains these stresses: z, t, r (and s). Frozen stresses are those that yielded metal
+    keeps at zero strain.
 
     References
     ----------
@@ -253,7 +254,7 @@ def _held(
 def _state(
     xp: Any, tube: LayeredTube, held: tuple[Array, ...] | None, faces: Faces, change: Array
 ) -> TubeState:
-    """State of the tube from the solved unknowns; adds the radial strain at the faces."""
+    """Collect the state of the tube from the solved unknowns, and add the radial strains."""
     radius = together([tube.inner, tube.outer])
     shear = radius * faces.twist
     _, _, zr, _, tr, rr, _, _, rs, _ = tube.wall
@@ -277,9 +278,10 @@ def _state(
 
 
 def tube_stresses(*, tube: LayeredTube, state: TubeState) -> tuple[Array, Array, Array, Array]:
-    """Stresses of every layer in tube axes, at both its faces.
+    """Stresses of every layer in tube axes, at both faces of the layer.
 
-    sigma_i = C_ij eps_j - K_i dT; for a balanced pair the mean of both plies.
+    sigma_i = C_ij eps_j - K_i dT, with the thermal stress K_i per kelvin; for a balanced pair, the
+    result is the mean of both plies.
 
     Parameters
     ----------

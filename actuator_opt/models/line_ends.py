@@ -1,4 +1,4 @@
-"""Terminations of a line: closed, conductance, accumulator, reducing valve, or several of them.
+"""Ends of a hydraulic line: closed, conductance, accumulator, reducing valve, or several of them.
 
 Each line end is an admittance, a ratio of two polynomials in s, so it can be used directly in the
 linear model.
@@ -97,7 +97,8 @@ def reducing_valve_end(
 ) -> LineEnd:
     """Pressure reducing valve, Y = g + G omega^2/(s^2 + 2 zeta omega s + omega^2).
 
-    At low frequency, the valve holds its pressure with the conductance G + g. It lags at every
+    omega and zeta are the natural frequency [rad/s] and the damping ratio of the spool. At low
+    frequency, the valve holds its pressure with the conductance G + g. It lags at every
     frequency, like an inertance. Well above its natural frequency only g remains, the conductance
     of its opening.
 
@@ -171,18 +172,19 @@ def end_admittance(*, end: LineEnd, frequency: Array) -> Array:
 def antiresonance_frequency(
     *, conductance: Array, natural_frequency: Array, damping_ratio: Array, compliance: Array
 ) -> Array:
-    """Frequency where chamber and reducing valve take no reactive flow in sum: C + Im(Y)/w = 0.
+    """Frequency at which the reactive flows of chamber and reducing valve cancel: C + Im(Y)/w = 0.
 
-    Y is the admittance of the valve (`reducing_valve_end`). The valve lags: below this frequency it
-    acts as an inertance that outweighs the compliance. At this frequency only Re(Y) remains, and
-    the actuator's stiffness A^2 w/|Re(Y)| peaks if Re(Y) is small. The line is stable only if
-    Re(Y) > 0 here, so the passive conductance must outweigh the negative share that the regulating
-    valve contributes. With k = G/(C w0),
+    w is the angular frequency and Y the admittance of the valve (`reducing_valve_end`). The valve
+    lags: below this frequency it acts as an inertance that outweighs the compliance. At this
+    frequency only Re(Y) remains, and the stiffness of the actuator with piston area A,
+    A^2 w/|Re(Y)|, peaks if Re(Y) is small. The line is stable only if Re(Y) > 0 here, so the
+    passive conductance must outweigh the negative share that the regulating valve contributes.
+    With k = G/(C w0),
     w^2 = w0^2 [1 - 2 zeta^2 + sqrt(4 zeta^4 - 4 zeta^2 + 2 zeta k)], the upper root.
 
     Parameters
     ----------
-    conductance : G of the controlled flow [m^3/s/Pa]
+    conductance : G, as in `reducing_valve_end` [m^3/s/Pa]
     natural_frequency : w0/(2 pi) [Hz]
     damping_ratio : zeta [-]
     compliance : C of chamber, line and walls before the valve [m^3/Pa], > 0

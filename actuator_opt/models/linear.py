@@ -33,15 +33,17 @@ class Side:
     """Compliance of the line's far half [m^3/Pa]."""
     end: LineEnd = CLOSED
     flow_gain: Array = 0.0
-    """Flow of the valve into the line's far end per spool signal [m^3/s/V]; negative for B."""
+    """Flow of the valve into the line's far end per unit of spool signal [m^3/s/V]; negative for
+    chamber B."""
 
 
 @dataclass(frozen=True, slots=True)
 class LinearActuator:
-    """Polynomials of N(s) x = M(s) F + T(s) o: load position x, load force F, spool signal o.
+    """Polynomials N, M and T of the equation of motion N(s) x = M(s) F + T(s) o.
 
-    N, M and T are `characteristic`, `mobile` and `drive`. x/F = M/N is the compliance under the
-    load's force, and x/o = T/N is the plant of the position loop.
+    x is the position of the load, F the force on the load and o the spool signal. N, M and T are
+    `characteristic`, `mobile` and `drive`. x/F = M/N is the compliance under the force on the load,
+    and x/o = T/N is the plant of the position loop.
     """
 
     characteristic: Polynomial
@@ -64,8 +66,9 @@ class _Eliminated(NamedTuple):
 def _eliminated(side: Side, leakage: Array) -> _Eliminated:
     """Eliminate the far end's pressure p_f and the line's flow q into the chamber.
 
-    Far end: (C s + Y) p_f = G o - q, with the admittance Y beyond the line. Line:
-    (R + 1/g + L s) q = p_f - p, with the conductance g of the throttle.
+    Far end: (C s + Y) p_f = G o - q, with the compliance C of the line's far half and the
+    admittance Y beyond the line. Line: (R + 1/g + L s) q = p_f - p, with its resistance R and
+    inertance L and the conductance g of the throttle.
 
     Everything is multiplied by the line end's denominator and by the throttle's conductance, so
     that a closed throttle (g = 0) causes no division by zero. With a closed end and no oil at the
@@ -96,10 +99,12 @@ def linear_actuator(
 ) -> LinearActuator:
     """Polynomials of the held actuator; rod and mount are a spring between piston and load.
 
-    Chambers: m_i p_i + e_i (c s - g) p_j = d_i G_i o - e_i a_i s x_p with a = (A_A, -A_B); m_i is
+    Chamber i, with the other chamber j: m_i p_i + e_i (c s - g) p_j = d_i G_i o - e_i a_i s x_p
+    with a = (A_A, -A_B). The polynomials e_i and d_i describe the line of chamber i, and m_i is
     e_i (C_i s + g) plus a term for the flow into the line. Piston: F = a^T p - (B s + k_s) x_p.
     Load: m s^2 x = F + F_L, and x_p = x + f F. Elimination of p by Cramer's rule gives
-    N x = M F_L + T o with N = m s^2 M + P, M = det + f P, P = (B s + k_s) det + s a^T adj(.) e a.
+    N x = M F_L + T o with N = m s^2 M + P, M = det + f P, P = (B s + k_s) det + s a^T adj(.) e a,
+    with the determinant det and the adjugate adj(.) of the chambers' 2 x 2 matrix.
 
     Parameters
     ----------
@@ -156,6 +161,8 @@ def linear_actuator(
 
 def dynamic_stiffness(*, model: LinearActuator, frequency: Array) -> Parts:
     """Dynamic stiffness F/x = N(i omega)/M(i omega) as real and imaginary part.
+
+    N and M are `characteristic` and `mobile` of the model.
 
     Parameters
     ----------

@@ -48,8 +48,9 @@ def liner_cycle(
 ) -> LinerCycle:
     """Elastic strain range of an isotropic liner and its utilisation of the yield strength.
 
-    With the von Mises stress s(.), range = s(sigma)/E, shakedown = s(sigma)/(2 Y), s(residual)/Y at
-    rest, s(residual + sigma)/Y at pressure.
+    With the elastic stress sigma and the von Mises stress s(.): range = s(sigma)/E,
+    shakedown = s(sigma)/(2 Y). The utilisation is s(residual)/Y at rest and s(residual + sigma)/Y
+    at pressure.
 
     Parameters
     ----------

@@ -247,7 +247,8 @@ _LEVELS = 28
 
 
 _NEAR = 20.0
-"""Largest |r sqrt(i omega/nu)| for the continued fraction; beyond it, the asymptotic series."""
+"""Largest |r sqrt(i omega/nu)| at which the continued fraction is used; beyond it, the asymptotic
+series is used."""
 
 
 _SERIES = (-1 / 2, -1 / 8, -1 / 8, -25 / 128, -13 / 32, -1073 / 1024, -103 / 32)

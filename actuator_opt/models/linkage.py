@@ -186,7 +186,8 @@ def reflected_inertia(*, inertia: Array, lever_arm: Array, lever_slope: Array) -
 
     Returns
     -------
-    mass [kg] and velocity factor [kg/m]; infinite at a dead point, the factor 0 at l'' = 0
+    mass [kg] and velocity factor [kg/m]; both are infinite at a dead point (the factor is 0 there
+    if l'' = 0)
 
     Notes
     -----

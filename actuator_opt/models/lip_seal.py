@@ -18,9 +18,10 @@ from ..base.numeric import Array, geometry, maximum, minimum, namespace, real, s
 from .contact_profile import lip_mean
 
 LYING_STEPS = 7
-"""Number of Newton steps for the free span. They start above the root of a convex function, at the
-smaller of the roots of its two terms, so they never overshoot. After six steps, even the worst case
-is exact to rounding."""
+"""Number of Newton steps that find the free span s in `lip_free_span`. They start above the
+solution, at the smaller of two spans: those that the quartic and the linear term of the equation
+would give alone. The function is convex, so they never overshoot. After six steps, even the worst
+case is exact to rounding."""
 
 
 @geometry
@@ -122,10 +123,11 @@ def lip_free_span(
     lip_thickness: Array,
     lip_length: Array,
 ) -> Array:
-    """Length s of the lip that does not lie on the surface: root of p s^4/(72 D) + theta s/3 = g.
+    """Length s of the lip that does not lie on the surface, from p s^4/(72 D) + theta s/3 = g.
 
-    theta = (g + delta)/l is the slope of the free lip, g the clearance at its root; s = l while
-    only the rim touches, so the lip lies down above p = 24 D (2 g - delta)/l^4.
+    theta = (g + delta)/l is the slope of the free lip, g the clearance at its root, and D the
+    bending stiffness in `lip_stiffness`. s = l while only the rim touches, so the lip lies down
+    above p = 24 D (2 g - delta)/l^4.
 
     Parameters
     ----------
@@ -187,8 +189,8 @@ def line_load(
 
     While only the rim touches, f = k delta + 3 p l/8 (propped cantilever). Once the lip lies down
     with a free span s, f = (k - 3 D/l^3) delta + p s/3 + 2 D theta/s^2 + p (l - s); the transition
-    is continuous. A span shorter than the lip's thickness is no beam, so the bending term keeps its
-    value at s = t.
+    is continuous. `lip_stiffness` defines k and D, `lip_free_span` s and theta. A span shorter than
+    the lip's thickness is no beam, so for s < t the bending term keeps its value at s = t.
 
     Parameters
     ----------
@@ -259,6 +261,8 @@ def peak_pressure(
     edge_radius: Array,
 ) -> Array:
     """Highest contact pressure of a lip, p_max = sqrt(F E/[pi rho (1 - nu^2)]) + p, F = k delta.
+
+    k is the stiffness of `lip_stiffness`.
 
     Parameters
     ----------

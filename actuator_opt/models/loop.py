@@ -176,7 +176,8 @@ def open_loop(
 ) -> PositionOpenLoop:
     """Open position loop at unit gain: a second-order spool in front of the actuator.
 
-    L = omega_v^2/(s^2 + 2 zeta omega_v s + omega_v^2) T(s)/N(s).
+    L = omega_v^2/(s^2 + 2 zeta omega_v s + omega_v^2) T(s)/N(s), with natural frequency omega_v and
+    damping ratio zeta of the spool, and T and N of the `linear.LinearActuator`.
 
     Parameters
     ----------
@@ -210,7 +211,7 @@ def open_loop(
 
 
 def _crossings(polynomial: Polynomial) -> np.ndarray:
-    """Positive real roots in w = omega^2, NaN elsewhere, (..., n)."""
+    """Positive real roots w = omega^2 of a polynomial in w, (..., n); NaN for all other roots."""
     along, across = root_parts(polynomial)
     near_axis = np.abs(across) <= 1e-6 * np.hypot(along, across)
     return np.where(near_axis & (along > 0), along, np.nan)
@@ -225,12 +226,15 @@ def _value(polynomial: Polynomial, point: Array) -> Array:
 
 
 def _lifted(polynomial: Polynomial) -> Polynomial:
-    """Real parts of the coefficients with a new last axis, to evaluate each at many points."""
+    """Real parts of the coefficients with a new last axis, for evaluation at many points."""
     return tuple(array_of(real(coefficient))[..., None] for coefficient in polynomial)
 
 
 def _chosen(crossings: np.ndarray, score: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The crossing with the lowest score (1 without a crossing), and whether a crossing exists."""
+    """The crossing with the lowest score, and whether there is a valid crossing at all.
+
+    Only valid crossings have a finite score. If there is none, the number 1 replaces the crossing.
+    """
     if not score.shape[-1]:
         return np.ones(score.shape[:-1]), np.zeros(score.shape[:-1], dtype=bool)
     best = _least_at(score)
@@ -252,8 +256,9 @@ class UltimateGain(NamedTuple):
 def ultimate_gain(*, loop: PositionOpenLoop) -> UltimateGain:
     """Smallest gain with a closed-loop pole on the imaginary axis.
 
-    Im[N(i omega) conj D(i omega)] = 0 gives every crossing in w = omega^2; there
-    K = -|D|^2/Re(N conj D), and the smallest positive value is the limit.
+    With the open loop N/D at unit gain, Im[N(i omega) conj D(i omega)] = 0 gives every frequency
+    omega at which a pole may cross the axis. There K = -|D|^2/Re(N conj D); the smallest positive K
+    is the limit.
 
     Parameters
     ----------
@@ -341,8 +346,9 @@ class PositionLoopMargins(NamedTuple):
 def margins(*, loop: PositionOpenLoop, gain: Array) -> PositionLoopMargins:
     """Phase margin, the crossover where it occurs, and -3 dB bandwidth of the position loop.
 
-    |K N|^2 = |D|^2 gives the crossovers, |D + K N|^2 = 2 |K N|^2 the bandwidth (its first root);
-    the phase margin is the smallest angle between K N/D and -1 over all crossovers.
+    The open loop is K N/D. |K N|^2 = |D|^2 gives the crossovers, and the first root of
+    |D + K N|^2 = 2 |K N|^2 gives the bandwidth. The phase margin is the smallest angle between
+    K N/D and -1 over all crossovers.
 
     Parameters
     ----------
@@ -391,7 +397,7 @@ def margins(*, loop: PositionOpenLoop, gain: Array) -> PositionLoopMargins:
 
 
 def _phase(upper: Polynomial, lower: Polynomial, omega: Array) -> Array:
-    """Angle of -N/D at i omega."""
+    """Angle of the ratio -`upper`/`lower` at s = i omega."""
     top, low = at_frequency(upper, omega), at_frequency(lower, omega)
     along = top.real * low.real + top.imaginary * low.imaginary
     across = top.imaginary * low.real - top.real * low.imaginary

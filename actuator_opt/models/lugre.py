@@ -105,11 +105,11 @@ def lugre_steady_deflection(*, speed: Array, level: Array, bristle_stiffness: Ar
 
 
 def lugre_passive_speed(*, level: Array, bristle_damping: Array, viscous: Array) -> Array:
-    """Largest speed at which the LuGre model cannot create energy, 4 g (s1 + s2)/s1^2.
+    """Largest speed at which the LuGre model cannot create energy.
 
-    With the stored energy sigma0 z^2/2, the dissipation is a quadratic form in (z, dz/dt),
-    non-negative while |v| <= 4 g(v)(sigma1 + sigma2)/sigma1^2. Beyond that speed, taper sigma1
-    (`lugre_tapered_damping`).
+    The speed is 4 g (sigma1 + sigma2)/sigma1^2. With the stored energy sigma0 z^2/2, the
+    dissipation is a quadratic form in (z, dz/dt), which is not negative up to this speed. Beyond
+    it, taper sigma1 (`lugre_tapered_damping`).
 
     Parameters
     ----------

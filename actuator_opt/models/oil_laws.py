@@ -250,10 +250,12 @@ class BulkModulusLaw:
     ----------
     name, help : word that selects the law in a design, and the meaning of this word
     needs : properties of the oil beyond bulk modulus and density
-    modulus : tangent bulk modulus [Pa] by (properties, temperature [K], gauge pressure [Pa])
-    density : density [kg/m^3] by (properties, density at zero pressure, temperature, pressure)
-    largest_pressure : gauge pressure up to which the law is known [Pa]
-    model : its model function; None for a law without a formula
+    modulus : function of (properties, temperature [K], gauge pressure [Pa]) that returns the
+        tangent bulk modulus [Pa]
+    density : function of (properties, density at zero pressure, temperature, pressure) that
+        returns the density [kg/m^3]
+    largest_pressure : gauge pressure up to which the law holds [Pa]
+    model : function of `models` that states the law's formula; None for a law without a formula
     """
 
     name: str
@@ -273,7 +275,8 @@ class ViscosityLaw:
     ----------
     name, help : word that selects the law in a design, and the meaning of this word
     needs : properties of the oil; the first is the coefficient of the law [1/Pa]
-    model : dynamic viscosity by (viscosity, pressure, coefficient); None: independent of pressure
+    model : function of (viscosity, pressure, coefficient) that returns the dynamic viscosity; None
+        if it does not depend on pressure
     largest_pressure : gauge pressure up to which the law holds [Pa]
     words : name of the law in a report
     """
@@ -329,9 +332,9 @@ def _tait(oil: Properties, temperature: Array, pressure: Array) -> Array:
 def _compressed(
     modulus: Callable[[Properties, Array, Array], Array], *, sloped: bool
 ) -> Callable[[Properties, Array, Array, Array], Array]:
-    """Function that gives the density if the bulk modulus is linear in pressure or constant.
+    """Function that gives the density for a bulk modulus that is constant or linear in pressure.
 
-    It is linear if `sloped`.
+    The bulk modulus is linear in pressure if `sloped`, else constant.
     """
 
     def density_at(oil: Properties, rho: Array, temperature: Array, pressure: Array) -> Array:
@@ -407,7 +410,7 @@ VISCOSITY_LAWS = kinds(
     ),
     ViscosityLaw(
         "roelands",
-        "less than exponentially at high pressure",
+        "by Roelands's law: less than exponentially at high pressure",
         needs=("pressure_viscosity",),
         model=fluid.roelands,
         largest_pressure=fluid.ROELANDS_PRESSURE,

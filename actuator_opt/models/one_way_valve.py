@@ -228,6 +228,6 @@ def _inward_drop(wanted: Array, valve: dict[str, Array]) -> Array:
 def _opened(
     pressure_difference: Array, cracking_pressure: Array, opening_span: Array
 ) -> tuple[Array, Array]:
-    """Open share of the check valve, and its derivative by the pressure difference."""
+    """Open share of the check valve's area, and its derivative by the pressure difference."""
     share = clip((-pressure_difference - cracking_pressure) / opening_span, 0.0, 1.0)
     return share * share * (3 - 2 * share), -6 * share * (1 - share) / opening_span

@@ -83,8 +83,9 @@ class SealLaw:
     line_load : normal force per length of circumference, N/m
     contact_width : width of the contact, m (limit it by `gland.limited_width`)
     peak_pressure : highest contact pressure, Pa gauge
-    squeeze_limits : squeezes a design may have with this law, -; outside, the width exceeds the
-        free section or its load is meaningless (compared with finite elements at 0.08 to 0.30)
+    squeeze_limits : squeezes that a design may have with this law, -; outside, the contact is wider
+        than the free section, or the load is meaningless (compared with finite elements at 0.08 to
+        0.30)
     squeeze_range : squeezes at which the law was compared with data, -
     pressure_range : pressure / Young's modulus at which the law was compared with data, -
     reference : source
@@ -141,7 +142,7 @@ class EnergisedRing:
     half_pressure: float
 
     def _mounted(self, squeeze: Array) -> tuple[Array, Array]:
-        """b_0/W and p_0/E, which hold without oil pressure, for a positive squeeze."""
+        """Contact width b_0/W and peak pressure p_0/E without oil pressure, at positive squeeze."""
         force = squeeze * (self.dry_force[0] + self.dry_force[1] * squeeze)
         narrow = 1 - self.narrowing * squeeze * squeeze
         return sqrt((6 / math.pi) * force) * narrow, 4 * sqrt(force / (6 * math.pi)) / narrow
@@ -292,7 +293,7 @@ LAWS = kinds(
     # p_max = 4 f0/(pi b0) + p; k_p 0.72 to C 0.15, 0.80 from 0.20.
     SealLaw(
         "plane_strain",
-        "an older fit; under pressure, up to 38 % more force than the law energised",
+        'an older fit; under pressure, it gives up to 38 % more force than "energised"',
         _plane_strain_load,
         _plane_strain_width,
         _plane_strain_peak,
@@ -328,7 +329,7 @@ LAWS = kinds(
     # b = (pi W/4)[1/(1 - C) - (1 - C)] by area conservation, f = p b (choice).
     SealLaw(
         "stadium",
-        "a flattened ring of unchanged cross-section area; gives no force at zero pressure either",
+        "a flattened ring of unchanged cross-section area; it gives no force at zero pressure",
         _stadium_load,
         _stadium_width,
         _uniform_peak,

@@ -66,7 +66,7 @@ class _Form:
 
 
 def _form(ends: tuple[str, str], flex: Pair, length: Pair) -> _Form:
-    """Buckling condition for these ends, from flex = 1/sqrt(EI) of both segments."""
+    """Buckling condition for these ends; `flex` is 1/sqrt(EI) of each segment."""
     b1, b2 = flex
     a1, a2 = b1 * length[0], b2 * length[1]
     frequencies = (a1 + a2, a1 - a2)
@@ -95,7 +95,7 @@ def _form(ends: tuple[str, str], flex: Pair, length: Pair) -> _Form:
 
 
 def _pair(weights: Pair, waves: Pair) -> Array:
-    """Weighted sum of two waves, g_1 T(s x) + g_2 T(d x)."""
+    """Weighted sum of two waves (sines or cosines)."""
     return weights[0] * waves[0] + weights[1] * waves[1]
 
 
@@ -106,7 +106,11 @@ def _times(first: Pair, second: Pair) -> Pair:
 
 @dataclass(frozen=True, slots=True)
 class _Waves:
-    """A buckling condition with the weights of G, G', G'' (`outer`) and of H, H', H'' (`inner`)."""
+    """A buckling condition and its derivatives.
+
+    `outer` are the weights of G, G' and G'', `inner` those of H, H' and H''; `_Form` defines G and
+    H.
+    """
 
     form: _Form
     outer: tuple[Pair, Pair, Pair]
@@ -114,7 +118,7 @@ class _Waves:
 
     @classmethod
     def of(cls, form: _Form) -> _Waves:
-        """Derive the weights by the rules d sin = cos and d cos = -sin."""
+        """Weights of a form and of its derivatives, by the rules (sin)' = cos and (cos)' = -sin."""
         sign = 1 if form.sine else -1
         squares = _times(form.frequencies, form.frequencies)
         fall = (-squares[0], -squares[1])
@@ -174,9 +178,9 @@ def _lower_bound(ends: tuple[str, str], stiffness: Pair, length: Pair) -> Array:
 
 
 def _first_zero(xp: Any, waves: _Waves, load: Array, steps: int) -> Array:
-    """Rise from a lower bound `load` to the first zero by P + f/sqrt(f'^2 - f f'').
+    """First zero of a buckling condition, by steps P + f/sqrt(f'^2 - f f'') up from a lower bound.
 
-    The derivatives by P are computed from those by x = sqrt(P).
+    `load` is the lower bound. The derivatives by P are computed from those by x = sqrt(P).
     """
     order = waves.form.order
     for _ in range(steps):

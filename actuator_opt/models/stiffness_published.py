@@ -193,8 +193,8 @@ def line_stiffness_as_published(
 def cylinder_expansion_as_published(*, pressure: Array, area: Array, stroke: Array) -> Array:
     """Evaluate the source's "cylinder expansion stiffness" dp A/L_p, which is no true stiffness.
 
-    It has the right unit, but it grows with pressure, whereas the true stiffness A^2/(dV/dp) does
-    not.
+    L_p is the stroke. The result has the right unit, but it grows with pressure, whereas the true
+    stiffness A^2/(dV/dp) does not.
 
     Parameters
     ----------
@@ -240,7 +240,8 @@ def equivalent_stiffness_as_published(
 ) -> tuple[Array, Array]:
     """Equivalent stiffness and radial expansion of the bore over time, as in figure 10.
 
-    k = dp A/L_p, with the area A of the bore expanded by eq. 12, is put in series with oil and rod.
+    k = dp A/L_p, with the stroke L_p and the area A of the bore expanded by eq. 12, is put in
+    series with oil and rod.
     The result is zero at zero pressure, since `cylinder_expansion_as_published` is no stiffness.
     The correct stiffness, `stiffness.hydraulic_stiffness` with `barrel.chamber_compliance`, treats
     each chamber separately and does not depend on the pressure.

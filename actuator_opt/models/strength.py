@@ -145,8 +145,8 @@ def tsai_wu_modes(
 
 
 _LEAST = 1e-9
-"""Lower limit of 1 - <r, r>, where r is the residual stress: keeps the result finite if the
-residual stress alone yields the metal."""
+"""Lower limit of the term 1 - <r, r> in `yield_utilisation`. It keeps the result finite if the
+residual stress r alone yields the metal."""
 
 
 def mises_product(*, first: Stress, second: Stress) -> Array:

@@ -211,7 +211,7 @@ def max_stress_modes(
 
 
 def _strains(stress: Stress, elastic: PlyRatios) -> tuple[Array, Array, Array]:
-    """Strains that a stress causes, times moduli: E_1 epsilon_1, E_2 epsilon_2 and tau_12."""
+    """Strains that a stress causes, each times its modulus: E_1 eps_1, E_2 eps_2 and tau_12."""
     along, across, radial, slip = stress
     e = elastic
     first = along - e.poissons_ratio_12 * across - e.poissons_ratio_13 * radial
@@ -274,8 +274,9 @@ def max_strain_modes(
 def _exit_root(square: Array, half: Array, left: Array) -> Array:
     """1/SR where the growing load leaves the region square SR^2 + 2 half SR <= left.
 
-    The load may start outside and enter the region first. Of the two equal forms
-    (half + root)/left and square/(root - half), the code uses the form that loses no digits.
+    The load may start outside and enter the region first. 1/SR has two equal forms,
+    (half + root)/left and square/(root - half), with the square root of the discriminant; the code
+    uses the form that loses no digits.
     """
     inside = half * half + square * left
     root = namespace(inside).sqrt(where(real(inside) > 0, inside, 0.0))
@@ -286,7 +287,11 @@ def _exit_root(square: Array, half: Array, left: Array) -> Array:
 
 
 def _fails_pulled(across: Array, slip: Array, held: Array, held_slip: Array) -> Array:
-    """Whether sigma_2 >= 0 at the load that fails the ply; `slip` and `held_slip` are tau/S."""
+    """Whether sigma_2 >= 0 at the load that fails the ply.
+
+    `across` is sigma_2 and `slip` tau/S of the load, `held` and `held_slip` those of the residual
+    stress.
+    """
     across, slip, held, held_slip = real(across), real(slip), real(held), real(held_slip)
     at_zero = held_slip * across - held * slip
     passes = at_zero * at_zero < across * across
@@ -434,7 +439,11 @@ def hashin_modes(
 
 
 def _in_mode_c(across: Array, slip: Array, corner: tuple[Array, Array]) -> Array:
-    """Whether a stress is in mode C: beyond the line from zero to the corner of modes B and C."""
+    """Whether a stress (sigma_2, tau/S) is in Puck's mode C.
+
+    It is in mode C beyond the line from zero stress through the point where the surfaces of modes B
+    and C meet (`corner`).
+    """
     return -real(across) * real(corner[1]) > real(corner[0]) * absolute(real(slip))
 
 

@@ -123,7 +123,8 @@ def engaged_length(*, length: Array, pitch: Array) -> Array:
 def male_strip_area(*, diameter: Array, pitch: Array, engagement: Array) -> Array:
     """Shear area of the male thread, which strips off at the crests of the female thread.
 
-    A = pi D_1 (L_e/P) [P/2 + (d_2 - D_1)/sqrt(3)] = 0.75 pi D_1 L_e.
+    A = pi D_1 (L_e/P) [P/2 + (d_2 - D_1)/sqrt(3)] = 0.75 pi D_1 L_e, with the pitch diameter d_2
+    and the minor diameter D_1 of the female thread.
 
     Parameters
     ----------
@@ -160,7 +161,8 @@ def female_strip_area(
 ) -> Array:
     """Shear area of the female thread, which strips off at the crests of the male thread.
 
-    A = pi d_c (L_e/P) [P/2 + (d_c - D_2)/sqrt(3)]; with full crests (d_c = d), A = 0.875 pi d L_e.
+    A = pi d_c (L_e/P) [P/2 + (d_c - D_2)/sqrt(3)], with the pitch diameter D_2; with full crests
+    (d_c = d), A = 0.875 pi d L_e.
 
     Parameters
     ----------
@@ -197,6 +199,8 @@ def female_strip_area(
 def crest_overlap(*, diameter: Array, pitch: Array, crest_diameter: Array) -> Array:
     """Radial overlap of the flanks as a share of that with full crests, (d_c - D_1)/(d - D_1).
 
+    D_1 is the minor diameter of the female thread.
+
     Parameters
     ----------
     diameter : nominal diameter d [m]
@@ -228,7 +232,8 @@ def crest_overlap(*, diameter: Array, pitch: Array, crest_diameter: Array) -> Ar
 def flank_area(*, diameter: Array, pitch: Array, engagement: Array, crest_diameter: Array) -> Array:
     """Projected area of the flanks in contact, A = pi d_2 (d_c - D_1)/2 (L_e/P).
 
-    With full crests the flanks overlap by (d - D_1)/2 = (5/8) H.
+    d_2 is the pitch diameter, D_1 the minor diameter of the female thread. With full crests the
+    flanks overlap by (d - D_1)/2 = (5/8) H.
 
     Parameters
     ----------
@@ -302,8 +307,8 @@ def stripping_reductions(*, strength_ratio: Array) -> tuple[Array, Array]:
 def spread_stress(*, force: Array, thickness: Array, engagement: Array) -> Array:
     """Hoop stress in a thin ring with a female thread, which the force on the flanks widens.
 
-    sigma = p_s d_2/(2 t) = F tan(30 deg)/(2 pi L_e t), as p_s = F tan(30 deg)/(pi d_2 L_e) is the
-    radial pressure on the thread.
+    sigma = p_s d_2/(2 t) = F tan(30 deg)/(2 pi L_e t), with the pitch diameter d_2, because
+    p_s = F tan(30 deg)/(pi d_2 L_e) is the radial pressure on the thread.
 
     Parameters
     ----------

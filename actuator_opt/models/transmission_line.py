@@ -96,7 +96,7 @@ def input_impedance(*, matrix: LineMatrix, end_impedance: Array) -> Array:
 
     Parameters
     ----------
-    matrix : of the line: A, D [-], B [Pa s/m^3], C [m^3/s/Pa]
+    matrix : matrix of the line, with A, D [-], B [Pa s/m^3], C [m^3/s/Pa]
     end_impedance : Z at the far end [Pa s/m^3]: 0 if at constant pressure, infinite if closed
 
     Returns
@@ -127,7 +127,7 @@ def input_admittance(*, matrix: LineMatrix, end_admittance: Array) -> Array:
 
     Parameters
     ----------
-    matrix : of the line: A, D [-], B [Pa s/m^3], C [m^3/s/Pa]
+    matrix : matrix of the line, with A, D [-], B [Pa s/m^3], C [m^3/s/Pa]
     end_admittance : Y at the far end [m^3/s/Pa]: 0 if closed, infinite if at constant pressure
 
     Returns

@@ -44,8 +44,8 @@ def least_energy_motion(
 ) -> TrialMotion:
     """Trial motion that gives `trial_motion_stiffness` its least value for one actuator.
 
-    v = (A_a/(A_b c_a) + 1/c_b)/(1/c_a + 1/c_b + 1/w_a + 1/w_b), where s is added to the c of the
-    pulling chamber (c, w and s are explained below).
+    Its `exchange` is v = (A_a/(A_b c_a) + 1/c_b)/(1/c_a + 1/c_b + 1/w_a + 1/w_b), where s is added
+    to the c of the pulling chamber (c, w and s are explained below).
 
     Parameters
     ----------

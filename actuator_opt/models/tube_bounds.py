@@ -26,6 +26,7 @@ def least_growth(
 ) -> Array:
     """Lower bound on a layered tube's radial bore growth per unit pressure.
 
+    With the bore pressure p and the outer radius r_k of layer k, the bore grows by
     u >= p r_i/sum K_k a_k (1 - x_k^(-2 b_k))/(2 b_k), K_k = C_tt - 2 b_k C_tr + b_k^2 C_rr,
     x_k = r_k/r_(k-1), a_k = prod x_j^(-2 b_j) over all layers inside k. This is the energy of the
     trial displacement that falls as r^(-b_k), with no axial strain. Each layer may be cut into
@@ -165,8 +166,8 @@ def greatest_pressure(
     """Upper bound on the pressure that a layered tube bears before its first damage.
 
     From the outer face (p_n = 0) inwards, the pressure p_(k-1) on the inner face of a layer is
-    p_k r_k/r_(k-1) + S_k t_k/r_(k-1) for a ply and p_k + (2/sqrt(3)) sigma_y ln(r_k/r_(k-1)) for
-    a metal layer.
+    p_k r_k/r_(k-1) + S_k t_k/r_(k-1) for a ply of thickness t_k, and
+    p_k + (2/sqrt(3)) sigma_y ln(r_k/r_(k-1)) for a metal layer.
 
     Parameters
     ----------
@@ -183,9 +184,9 @@ def greatest_pressure(
     -----
     Valid: C_tt >= C_rr; axial strain and warmth alone cause no hoop stress above S_k in any ply.
 
-    Each layer is in equilibrium. In a ply d(r sigma_r)/dr = sigma_t, and the mean of sigma_t is no
-    more than its value at the faces. In a metal d sigma_r/dr = (sigma_t - sigma_r)/r, which von
-    Mises limits.
+    Each layer is in equilibrium. In a ply d(r sigma_r)/dr = sigma_t, and the mean of sigma_t
+    through the ply is at most the larger of its values at the two faces. In a metal d sigma_r/dr =
+    (sigma_t - sigma_r)/r, which von Mises limits.
 
     References
     ----------

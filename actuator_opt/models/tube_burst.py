@@ -58,7 +58,7 @@ def _isotropic(modulus: Array, ratio: Array) -> dict[str, Array]:
 
 
 def _recovery(xp: Any, tube: LayeredTube) -> Array:
-    """Factors from hoop strain, radial stress and axial strain to a ply's stresses 1, 2, 12."""
+    """Factors by which hoop strain, radial stress and axial strain give ply stresses 1, 2, 12."""
     c11, c12, c13, c22, c23, _, c66 = tube.ply
     _, _, zr, _, tr, rr, *_ = tube.wall
     along, slip = (1 + xp.cos(2 * tube.angle)) / 2, xp.sin(2 * tube.angle) * c66
@@ -84,8 +84,8 @@ class _Tube:
 
     Yielded metals keep their mean stress deviator. `hold` has the stresses that would hold back the
     thermal expansion, in tube axes z, t, r and in ply axes 1, 2, 3. `transfer`, `recovery` and
-    `hold` have an axis for the states intact and failed before the axes of the batch: (.., layers,
-    2, ...).
+    `hold` have an axis for the states intact and failed before the axes of the designs: (..,
+    layers, 2, ...).
     """
 
     transfer: Array
@@ -111,7 +111,7 @@ class _Tube:
         return self.order == tuple(range(len(self.order)))
 
     def _chosen(self, table: Array, mask: Array | None) -> Array:
-        """Values from `table`: failed for layers in `mask` (bore first), intact for all others."""
+        """Values from `table`: for failed layers where `mask` is true (bore first), else intact."""
         intact = table[:, :, :, 0, ...]
         return intact if mask is None else where(mask, table[:, :, :, 1, ...], intact)
 
@@ -119,7 +119,8 @@ class _Tube:
         """Stresses per unit pressure, and stresses from clamp, cooling and yielded metals.
 
         The second result is None if there are no such stresses. One pass through the layers gives
-        both results: an additional axis, before the axes of the batch, holds the two loads.
+        both results: an additional axis, before the axes of the designs, holds the two loads, which
+        are unit pressure and all others.
         """
         xp = namespace(self.axial)
         mask = soft
@@ -204,7 +205,7 @@ class _Tube:
 def _both_states(
     xp: Any, layers: Sequence[WallLayer], inner_radius: Array, residual: float, dims: int
 ) -> LayeredTube:
-    """The tube with every layer intact and failed, on an axis before the axes of the designs."""
+    """The tube in two states, all layers intact and all failed, on an axis before the designs."""
 
     def spread(value: Array) -> Array:
         """The value reshaped to the axes of the designs, after the axis of the states."""
@@ -232,7 +233,7 @@ def _both_states(
 
 
 def _spread_or_zero(spread: Callable[[Array], Array], value: Array) -> Array:
-    """An expansion, reshaped by `spread`; a plain zero stays zero and skips the thermal part."""
+    """A thermal expansion, reshaped by `spread`; a plain zero stays a plain zero."""
     return 0.0 if isinstance(value, (float, int)) and value == 0.0 else spread(value)
 
 
@@ -291,7 +292,7 @@ def burst_of_tube(
     -----
     Valid: walls with fibres; burst means that a fibre fails at the most stressed face.
 
-    For a wall of metals only, the burst pressure of this function is that of yield; use
+    For a wall of metals only, this function returns the yield pressure as burst pressure; use
     `barrel.burst_pressure_thick` instead. The stress that a yielded metal keeps is its mean over
     the layer. Cure stresses act in the intact wall and vanish where it fails: a cracked matrix no
     longer pulls on its neighbours, and a yielded liner no longer restrains them.

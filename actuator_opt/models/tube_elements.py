@@ -82,7 +82,7 @@ class LayeredTube:
     twisting: bool
 
     def lifted(self, dims: int) -> LayeredTube:
-        """The tube with axes of length 1 before its batch, to match loads of `dims` axes."""
+        """The tube with axes of length 1 before its designs, to match loads with `dims` axes."""
         missing, shape = dims - self.inner.ndim + 1, self.transfer.shape
         if missing <= 0:
             return self
@@ -110,7 +110,7 @@ class LayeredTube:
 
 
 class _Basis(NamedTuple):
-    """Functions of l and tau = ln x at the outer face, and their integrals over x."""
+    """Functions of l and tau in the module's solution, at the outer face, and their integrals."""
 
     order: Array
     power: Array
@@ -125,7 +125,7 @@ class _Basis(NamedTuple):
 
 
 def _basis(xp: Any, wall: TubeStiffness, inner: Array, outer: Array) -> _Basis:
-    """The functions cosh, sinh/l, phi_1 and dphi_1/dtau; integrals of the first three."""
+    """cosh, sinh/l, phi_1 and dphi_1/dtau (see the module); integrals of the first three."""
     ratio = outer / inner
     way = xp.log(ratio)
     order = xp.sqrt(wall[3] / wall[5])
@@ -146,8 +146,9 @@ def _basis(xp: Any, wall: TubeStiffness, inner: Array, outer: Array) -> _Basis:
 def _transfer(k: _Basis, wall: TubeStiffness, inner: Array, outer: Array) -> list[list[Array]]:
     """Table (inputs by outputs) of one layer, see `LayeredTube.transfer`.
 
-    u follows from the basis, and q_a = (s - R - C_tr e)/C_rr, where e and s are the hoop strain and
-    radial stress at the inner face and R is the radial stress caused by the other inputs.
+    The displacement u follows from the basis `k`, and q_a = (s - R - C_tr e)/C_rr, where e and s
+    are the hoop strain and radial stress at the inner face and R is the radial stress caused by the
+    other inputs.
     """
     zz, zt, zr, _, tr, rr, _, _, _, _ = wall
     soft, narrow, spread = 1 / rr, 1 / k.ratio, zt - zr
@@ -174,7 +175,7 @@ def _transfer(k: _Basis, wall: TubeStiffness, inner: Array, outer: Array) -> lis
 def _twist(
     k: _Basis, t: list[list[Array]], wall: TubeStiffness, inner: Array, outer: Array
 ) -> list[list[Array]]:
-    """The table `t` of a layer plus twist, which shears the layer and loads it through phi_2."""
+    """The table `t` of a layer, extended by twist, which causes shear and the term H phi_2."""
     _, zt, zr, _, tr, rr, zs, ts, rs, ss = wall
     way = namespace(inner).log(k.ratio)
     near = way * expm1_quotient((k.order - 2) * way)

@@ -1,10 +1,11 @@
-"""The actuator as an optimisation problem, and the derivatives of its results by parameters.
+"""The actuator as an optimisation problem, and how its results change with parameters.
 
 The variables are the design's free numbers, named by PATH. Each limit gives one margin per load
-case and location. A parameter is a fixed number of the design or a bound of a variable. Derivatives
-of objective and margins by a parameter use the complex step. Derivatives of their gradients use
-central differences of complex-step gradients. Where the complex step disagrees with a finite
-difference (as in a look-up table), the finite difference is used.
+case and location. A parameter is a fixed number of the design or a bound of a variable. The
+derivatives of objective and margins with respect to a parameter use the complex step. The
+derivatives of the gradients of objective and margins use central differences of complex-step
+gradients. Where the complex step disagrees with a finite difference (as in a look-up table), the
+finite difference is used.
 """
 
 from __future__ import annotations
@@ -130,9 +131,9 @@ def goal_of(subject: PreparedDesign) -> Goal:
 
 @dataclass
 class Refusals:
-    """Counts designs at which a custom metric has no value although the built-in models have.
+    """Counts designs for which a custom metric has no value but the built-in models have results.
 
-    The built-in models count as having values if they give the design a mass.
+    The built-in models count as having results if they compute a mass for the design.
     """
 
     names: frozenset[str] = frozenset()
@@ -179,8 +180,8 @@ class ActuatorProblem:
     refusals: Refusals = field(default_factory=Refusals)
     """Counts the designs where a custom metric has no value."""
     recorded: RecordedFunction | None = None
-    """Objective and margins as a recorded function of the variables and all positive numbers; None
-    with custom metrics, whose code may do anything."""
+    """Objective and margins as a function recorded from the models; its inputs are the variables
+    and all positive numbers of the design. None with custom metrics, whose code may do anything."""
 
     def parametric(self, parameters: tuple[str, ...]) -> ParametricProblem:
         """The problem with the design's numbers at the PATHs `parameters` as its parameters."""
@@ -234,7 +235,7 @@ class ActuatorProblem:
         return "compiled program" if recorded else "NumPy"
 
     def confirmed(self, x: Vector) -> bool:
-        """Whether the recorded models agree with the models at the point x (n,)."""
+        """Whether the recorded models agree with the models themselves at the point x (n,)."""
         if self.recorded is None:
             return True
         with np.errstate(all="ignore"):
@@ -257,7 +258,7 @@ class ActuatorProblem:
         parameters: Mapping[str, Array],
         outputs: list[MetricArrays] | None = None,
     ) -> PointValues:
-        """As `evaluate`, through the models themselves."""
+        """Like `evaluate`, but by the models themselves instead of the recorded function."""
         varied = dict(parameters) | dict(zip(self.paths, points, strict=True))
         numbers = self.subject.values(varied)
         count = points.shape[1]
@@ -330,7 +331,8 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
     Parameters
     ----------
     subject : the prepared design
-    fault : builds the Diagnostic of a faulty variable; default: one with the PATH but no line
+    fault : builds the Diagnostic of a faulty variable; by default, the Diagnostic states the PATH
+        but not the line in the file
 
     Raises
     ------
@@ -396,7 +398,7 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
 
 
 def _with_recording(actuator: ActuatorProblem, read: Collection[str]) -> ActuatorProblem:
-    """The problem with a function that records itself, of the variables and positive numbers."""
+    """The problem with `recorded`: the models as a function of variables and positive numbers."""
     count, known = len(actuator.paths), actuator.subject.numbers
     others = sorted(p for p in read if p not in actuator.paths and known.get(p, 0.0) > 0)
     names = (*actuator.paths, *others)
@@ -489,7 +491,7 @@ RELATIVE_STEP = 1e-5
 
 @dataclass(frozen=True)
 class Responses:
-    """Derivatives at one point with respect to q parameters, bounds included.
+    """Derivatives at one point with respect to q parameters, which include bounds of variables.
 
     nf is the number of free variables.
 
@@ -518,7 +520,7 @@ class Responses:
 def responses(
     parametric: ParametricProblem, evaluator: Evaluator, point: Point, weights: Vector
 ) -> Responses:
-    """Derivatives of all results by the parameters.
+    """Derivatives of all results with respect to the parameters.
 
     `weights` (rows,) are the factors of objective, constraints and equalities in the Lagrangian.
     """

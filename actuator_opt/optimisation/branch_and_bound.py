@@ -1,11 +1,12 @@
 """Branch and bound for variables that only take listed values, singly or in groups.
 
-The search first re-optimises all roundings of the continuous optimum together. It then splits the
-most promising box (part of the search space) again and again; among nearly equal boxes, it takes
-the newest, which is the most divided. The bound of a box is the objective of its continuous
-optimum, which starts from the optimum of the enclosing box. This optimum is local, so the best
-point of the search is not proven to be the best of all. If a small box has no continuous free
-variables, all its points are evaluated in one model call.
+The search first rounds the listed variables of the continuous optimum in every way (each up or
+down) and re-optimises all these designs together. It then splits the most promising box (part of
+the search space) again and again; among boxes that are nearly as promising, it takes the newest,
+which is the smallest. The bound of a box is the objective of its continuous optimum, which starts
+from the optimum of the enclosing box. This optimum is local, so the best point of the search is not
+proven to be the best of all. If a small box has no continuous free variables, all its points are
+evaluated in one model call.
 """
 
 from __future__ import annotations
@@ -89,8 +90,8 @@ class Listed:
     def around(self, x: Vector) -> list[int]:
         """Rows to which a point (k,) can be rounded, the nearest first.
 
-        For each combination of roundings (every value up or down), the nearest such row. A point
-        that is on a row has only this row.
+        The list has the nearest row for each way to round, with every value up or down. For a point
+        that is on a row, it has only this row.
         """
         all_rows = tuple(range(len(self.rows)))
         own_row = self.at(x, all_rows)
@@ -356,7 +357,7 @@ class _Run:
     def reoptimised_together(
         self, assignments: list[Assignment]
     ) -> list[tuple[Assignment, Vector | None]]:
-        """Re-optimise assignments together; return those not solved, each with a start or None."""
+        """Re-optimise assignments together; return the unsolved, each with a start (or None)."""
         present = self.x[self.index]
         point, evaluator = self._nearest_point(present, present, self.x)
         names = [self.problem.names[i] for i in self.index]
@@ -435,7 +436,7 @@ class _Run:
         self.ends.append((self.reference, None))  # the box has no optimum for comparison
 
     def relax(self, parts: Sequence[Box], x: Vector, boxes: _Boxes) -> None:
-        """Evaluate small boxes; keep larger ones if their continuous optimum beats the best."""
+        """Evaluate small boxes; keep large boxes whose continuous optimum beats the best design."""
         large = []
         for box in parts:
             if self.can_evaluate(box):
@@ -455,7 +456,7 @@ class _Run:
         return lower, np.concatenate([rows.max(axis=0) for rows in values])
 
     def parts(self, box: Box, x: Vector, objective: float) -> list[Box]:
-        """Split a box at its continuous optimum; return the parts that may be better."""
+        """Split a box at its continuous optimum; return the parts that may have a better design."""
         widest: float = ON
         halves: tuple[int, list[list[int]]] | None = None
         for k, (group, rows) in enumerate(zip(self.listed, box, strict=True)):

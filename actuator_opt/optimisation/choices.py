@@ -88,7 +88,7 @@ class ChoiceSearch:
         return frozenset().union(*lists) - frozenset.intersection(*lists) if lists else frozenset()
 
     def ranked(self) -> list[Look]:
-        """The combinations by requirements met, checks met, then objective; ties in file order."""
+        """The combinations sorted by requirements met, checks met, objective and file order."""
         mendable = self.mendable()
 
         def rank(look: Look) -> tuple[bool, float, int, float, int]:
@@ -416,7 +416,7 @@ def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
 
 
 _SIZING = {
-    "found": "the search found its best design with listed sizes",
+    "found": "the search gave this combination's best design with listed sizes",
     "sizes of the best": "computed with the listed sizes of the best design",
     "none better": "the search found no better design with listed sizes",
     "none": "the search found no feasible design with listed sizes",
@@ -426,7 +426,7 @@ _SIZING = {
 
 
 _WITHOUT = ("none", "none better", "no size fits")
-"""Results of the size search without a design that could be compared."""
+"""Results of the size search that give no design to compare."""
 
 
 _WAYS: dict[How, str] = {"multistart": "many starts: ", "quick": "quick look: ", "evaluated": ""}

@@ -104,7 +104,7 @@ def cures(actuator: ActuatorProblem, conflict: Conflict) -> Cures:
     Parameters
     ----------
     actuator : the infeasible problem
-    conflict : its infeasibility
+    conflict : why it is infeasible: the limits that conflict, and by how much
     """
     if conflict.laws or not conflict.joint:
         return Cures()

@@ -107,7 +107,7 @@ def _joint(
     mask: npt.NDArray[np.bool_],
     point: Point,
 ) -> tuple[RelaxedConstraint, ...]:
-    """The relaxations at a point of the elastic problem, largest first."""
+    """The relaxations (slacks) at a point of the relaxed problem, largest first."""
     amounts = point.x[len(problem.names) :]
     joint = [
         RelaxedConstraint(problem.constraint_names[group[0]], int(group[0]), float(amount))
@@ -125,9 +125,9 @@ def _smaller_relaxation(
     sole: Sequence[RelaxedConstraint],
     point: Point,
 ) -> Point | None:
-    """A smaller relaxation of one limit alone, if it is less than the joint total; else None.
+    """A relaxation of one limit alone that is less than the joint total; None if not found.
 
-    Such a relaxation exists if the descent to the joint relaxation stalled.
+    Such a relaxation exists only if the descent to the joint relaxation stalled.
     """
     single = [(r.amount, group) for r, group in zip(sole, candidates, strict=True) if r.amount]
     amount, group = min(single, key=lambda entry: entry[0], default=(np.inf, groups[0]))

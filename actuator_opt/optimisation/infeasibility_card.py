@@ -189,7 +189,7 @@ def _bound_entry(actuator: ActuatorProblem, bound: Opening) -> dict[str, Any]:
 def _texts(
     quantity: Quantity, limit: float, needed: float | None, *, upwards: bool
 ) -> dict[str, str]:
-    """Both limits in the display unit; `needed` is rounded so that the printed value is enough."""
+    """Stated and needed limit as text; `needed` is rounded so that the printed value is enough."""
     texts = {"limit_text": quantity.text(limit, MORE_DIGITS), "needed_text": ""}
     if needed is not None:
         fine = abs(needed - limit) < 0.01 * abs(limit)
@@ -222,8 +222,8 @@ def percent(share: float) -> str:
     return f"{100 * share:+.3g} %"
 
 
-_ACTS = {"dimension": "free {}", "choice": "change {}", "bound": "open {}"}
-"""Imperative for each kind of cure, except for limits."""
+_ACTS = {"dimension": "change {}", "choice": "change {}", "bound": "widen {}"}
+"""Advice for each kind of cure, except for limits; {} is replaced by the change."""
 
 
 def _sentence(
@@ -239,8 +239,9 @@ def _sentence(
         return "infeasible, and the search found no relaxation of the requirements that is enough"
     cure = sufficient[0] if sufficient else None
     if cure is not None and cure["kind"] in _ACTS:
-        enough_text = "together are enough" if "together" in cure else "alone is enough"
-        return f"infeasible: {_ACTS[cure['kind']].format(change_text(cure))} {enough_text}"
+        enough_text = " together" if "together" in cure else ""
+        advice = _ACTS[cure["kind"]].format(change_text(cure))
+        return f"infeasible: it is enough to {advice}{enough_text}"
     changes = "; ".join(change_text(entry) for entry in joint)
     unsafe = any(entry["safety_factor"] for entry in joint)
     if len(joint) == 1:

@@ -43,7 +43,8 @@ class Active:
 
     Parameters
     ----------
-    gradients : gradients of the margins (a, nf), for a active limits and nf free variables
+    gradients : gradients of the margins (a, nf); a is the number of active limits, nf that of free
+        variables
     margins : margins (a,), at least 0 where met
     constraint, lower, upper : indices of the active constraints, and of the variables at their
         lower and upper bounds; `gradients` and `margins` are in this order
@@ -70,9 +71,9 @@ class KktResidual:
     residual : norm of the Lagrangian's gradient, relative to that of the objective's gradient
     active : labels of active constraints, equalities and bounds ("NAME lower", "NAME upper")
     count, rank : number of active gradients, and how many of them are independent
-    multipliers : (m,) for the constraints: change of the optimal objective per unit of additional
-        margin required
-    equality_multipliers : (e,) for the equalities
+    multipliers : multipliers (m,) of the constraints: change of the optimal objective per unit of
+        additional margin required
+    equality_multipliers : multipliers (e,) of the equalities
     lower_multipliers, upper_multipliers : (n,) for the bounds, per unit of solver coordinate
     curvature : result of the second-order condition; None if not requested
     """
@@ -233,7 +234,7 @@ def slope_scale(evaluator: Evaluator, point: Point, objective_scale: float = 0.0
 def _priced(
     evaluator: Evaluator, point: Point, objective_scale: float
 ) -> tuple[Active, Vector, Vector, float]:
-    """Active limits at a point, their multipliers, those of the equalities, and the residual."""
+    """Active limits at a point, multipliers of these and of the equalities, and the residual."""
     jacobian = evaluator.jacobian(point)
     active = active_set(evaluator, point)
     equalities = jacobian[1 + evaluator.constraint_count :]
@@ -377,7 +378,8 @@ def polish(
 def _acceptable(evaluator: Evaluator, initial: NewtonState, newton_state: NewtonState) -> bool:
     """Whether a point is at least as feasible as the start, and its objective not higher.
 
-    The objective may rise by twice the cost of removing the violation at the start.
+    If the start violates limits, the objective may rise by twice the cost of removing this
+    violation. If the violation at the start is large (above 1e-3), any rise is accepted.
     """
     if newton_state.point.violation > max(FEASIBLE, initial.point.violation):
         return False

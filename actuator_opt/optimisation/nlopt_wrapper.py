@@ -109,7 +109,7 @@ OLDER = {
     "GN_MLSL_LDS": "G_MLSL_LDS+LN_BOBYQA",
     "G_MLSL": "G_MLSL_LDS+LD_LBFGS",
 }
-"""Combinations of two algorithms for which NLopt has a name, and their notation with "+"."""
+"""NLopt's own names for combinations of two algorithms, and our notation of each with "+"."""
 
 INSIDE = {"AUGLAG": "LD_LBFGS", "AUGLAG_EQ": "LD_MMA", "G_MLSL_LDS": "LD_LBFGS"}
 """Inner algorithm of a wrapper if the user names none."""

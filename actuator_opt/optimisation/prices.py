@@ -111,7 +111,7 @@ def optimum_at(evaluator: Evaluator, point: Point, quality: kkt.KktResidual) -> 
 
 
 def margin_slopes(optimum: Optimum, derivatives: Responses) -> Vector:
-    """Derivative (M, q) of every margin by every parameter, with the variables held constant."""
+    """Derivatives (M, q) of the margins with respect to the parameters, at fixed variables."""
     m = len(optimum.margins) - len(derivatives.bounds)
     return np.concatenate([derivatives.rows[1 : 1 + m], derivatives.bounds])
 
@@ -123,7 +123,7 @@ def lagrangian_slopes(optimum: Optimum, derivatives: Responses) -> Vector:
 
 
 def movement(optimum: Optimum, derivatives: Responses) -> tuple[Vector, Vector]:
-    """Derivatives of the optimal point (nf, q) and of its multipliers (M, q) by the parameters.
+    """Change of the optimal point (nf, q) and multipliers (M, q) per unit of the parameters.
 
     The optimum is assumed not to move along directions in which neither objective nor limits
     curve.
@@ -310,7 +310,8 @@ def _by_linear_programming(
 CHANGE = 0.1
 """Relative change of a parameter for which the price's prediction is checked by re-solving."""
 STRAIGHT = 0.25
-"""Largest error up to which a prediction counts as straight, as a share of the re-solved change."""
+"""Largest error, as a share of the re-solved change, with which a straight-line prediction counts
+as good."""
 Kind: TypeAlias = Literal["requirement", "parameter", "material"]
 """A limit that can be negotiated, a fixed number of the design, or a material property."""
 
@@ -504,7 +505,8 @@ class ParameterPrice:
         None where the objective or the parameter is 0
     predicted_up, predicted_down : objective predicted from the price, with the parameter changed by
         +10 % and -10 %; None where infinite
-    resolved_up, resolved_down : the same, re-optimised; None if infeasible or not requested
+    resolved_up, resolved_down : objective of the optimum for the same changes; None if infeasible
+        or not requested
     holds_until : the nearest value of the parameter at which the active limits change; None if it
         is more than ±100 % away
     change : the change of the active limits in words, "LABEL becomes active" or "LABEL stops being
@@ -586,8 +588,8 @@ def _ends(
     Parameters
     ----------
     solved : the unchanged problem
-    derivatives : derivatives by the parameters, bounds of variables included
-    moves : derivatives of the optimum by the parameters (nf, q)
+    derivatives : derivatives with respect to the parameters, which include the bounds of variables
+    moves : derivatives of the optimum with respect to the parameters (nf, q)
     change : relative change
     """
     parametric, point = solved.parametric, solved.valleys[0].point

@@ -147,7 +147,8 @@ class ParametricProblem:
 
     Parameters
     ----------
-    problem : the problem at the present parameter values; its `evaluate` may be faster
+    problem : the problem at the present parameter values; its own `evaluate` may be faster than the
+        `evaluate` below
     parameter_names : label of each parameter (q,)
     parameters : present values (q,)
     evaluate : maps points (n, k) and parameters (q, k) or (q, 1), real or complex, to `PointValues`
@@ -243,7 +244,7 @@ class Space:
         return x
 
     def slope(self, x: Vector) -> Vector:
-        """Derivatives dx/dz (nf, k) of free variables by solver coordinates, at points (n, k)."""
+        """Derivatives dx/dz (nf, k) of free variables x at points (n, k); z: solver coordinates."""
         return np.where(self.logarithmic[:, None], x[self.free], self.scale[:, None])
 
     def complex_steps(self, x: Vector) -> npt.NDArray[np.complex128]:

@@ -33,11 +33,13 @@ SAMPLES = 256
 """Number of points of the sweep that gives another start if the similar combinations fail."""
 
 DOUBTFUL = 0.02
-"""If the least violation found is at most this, the look may have missed a feasible design."""
+"""If the least violation found is at most this, the look may have missed a feasible design, and
+further starts are tried."""
 
 STUCK = 0.3
-"""If the least violation found exceeds this, the search may be stuck. Between `DOUBTFUL` and this
-limit, all starts of the shipped designs led to the same violation, so one start is enough."""
+"""If the least violation found exceeds this, the search may be stuck; further starts follow.
+Between `DOUBTFUL` and this limit, all starts of the shipped designs led to the same violation, so
+one start is enough."""
 
 SETTLED = 1e-2
 """A descent counts as converged up to this residual of the optimality conditions."""
@@ -100,7 +102,7 @@ def look_quickly(
     Parameters
     ----------
     look : the combination, in which the best point is stored
-    starts : the most reliable first
+    starts : starting points, the most reliable first
     seed : seed of the sweep
     seconds : time limit
     """

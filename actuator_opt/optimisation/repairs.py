@@ -46,7 +46,7 @@ ROUGH = 1e-5
 
 
 def common(problem: BoxProblem, room: float) -> BoxProblem:
-    """The elastic problem with a single slack for all constraints and equalities."""
+    """The problem relaxed by a single slack, which is added to all constraints and equalities."""
     m, e = len(problem.constraint_names), len(problem.equality_names)
     n = len(problem.names)
 
@@ -63,7 +63,7 @@ def common(problem: BoxProblem, room: float) -> BoxProblem:
 
 
 def separate(problem: BoxProblem, groups: Sequence[Indices], room: Sequence[float]) -> BoxProblem:
-    """The elastic problem with one slack for each of the `groups`; the rest must be met."""
+    """The problem relaxed by one slack for each of the `groups`; other constraints must be met."""
     n, m = len(problem.names), len(problem.constraint_names)
 
     def evaluate(x: Array) -> PointValues:
@@ -153,7 +153,7 @@ def _miss(point: Point) -> float:
 def descend(
     problem: BoxProblem, x: Vector, slack: Sequence[float], ends: Sequence[Point] = ()
 ) -> Point:
-    """Solve an elastic problem from a point and slacks; stop near a known result (`ends`)."""
+    """Solve a relaxed problem from a point and its slacks; stop near a known result (`ends`)."""
     inner = Evaluator(problem)
     start = inner.point(inner.space.to_z(np.concatenate([x, np.asarray(slack, dtype=float)])))
     if not start.valid:

@@ -70,9 +70,9 @@ class Infeasibility:
 
     An entry of `bounds` is a bound of a variable that is active at the joint relaxation. It
     contains variable, parameter (PATH), quantity, bound (side), value, gain, needed (the bound that
-    is enough if it alone is moved; None if no bound is), change and texts. The gain is the decrease
-    of `total` (see below) per relative change of the bound: moving the bound by 1 % decreases
-    `total` by 0.01 times the gain.
+    is enough if it alone is moved; None if no value is enough), change and texts. The gain is the
+    decrease of `total` (see below) per relative change of the bound: moving the bound by 1 %
+    decreases `total` by 0.01 times the gain.
 
     An entry of `cures` is a single change that is enough, the most advisable first. It contains
     kind (dimension, choice, bound, requirement, safety factor), parameter (PATH), now and needed

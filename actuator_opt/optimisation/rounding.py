@@ -214,7 +214,7 @@ class _FixedSizes:
     def remedy(
         self, eased: BoxProblem, x: Vector, entry: Mapping[str, Any]
     ) -> Iterator[SizeRemedy]:
-        """Yield the remedy if, after its change, the best design with these sizes is better."""
+        """Yield the remedy if it makes the best design with these sizes better than `objective`."""
         point = repairs.near(eased, x)
         if point is None:
             return
@@ -335,7 +335,8 @@ def sizes_of(
     design : the design with its variables
     requested : sizes in addition to those of the file
     materials : materials of the design, by name
-    fault : builds the Diagnostic of a faulty variable; default: one with the PATH but no line
+    fault : builds the Diagnostic of a faulty variable; by default, the Diagnostic states the PATH
+        but not the line in the file
 
     Raises
     ------
@@ -372,7 +373,7 @@ def sizes_of(
 
 
 def _require_plies(design: Design, requested: Wanted, materials: Mapping[str, Material]) -> None:
-    """Check that all fibre layers state a ply thickness, and that fixed layers fit it."""
+    """Check that all fibre layers state a ply thickness, and that fixed layers have whole plies."""
     plies_by_path = dict(layers(design))
     hint = (
         ""
@@ -442,7 +443,7 @@ def rounded(
     Parameters
     ----------
     actuator, solution : the problem and a feasible point
-    sizes : `sizes_of` the design
+    sizes : the listed sizes of the design, from `sizes_of`
     size_search : result of the search for sizes, if already made
     until : time of `time.perf_counter` at which the search stops
     seed : seed of the sweeps

@@ -220,7 +220,7 @@ def optimise(
 
 
 def _confirmed(actuator: ActuatorProblem, **settings: Any) -> Solution:
-    """Solve; if the recorded models are wrong at the optimum, solve again with the models."""
+    """Solve; if the recorded models are wrong at the optimum, solve with the models themselves."""
     solution = solve(actuator.problem, **settings)
     if actuator.confirmed(solution.x):
         return solution

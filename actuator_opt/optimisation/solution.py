@@ -185,7 +185,7 @@ class Solution:
         return self.outcome in (Outcome.INTERRUPTED, Outcome.INTERRUPTED_INFEASIBLE)
 
     def at_bound(self, index: int) -> str | None:
-        """Which bound variable `index` has reached: ``"lower"``, ``"upper"`` or None."""
+        """The bound that variable `index` has reached: ``"lower"``, ``"upper"`` or None."""
         low, high = self.problem.lower[index], self.problem.upper[index]
         room = 1e-6 * max(abs(low), abs(high), high - low)
         if self.x[index] - low <= room:

@@ -315,7 +315,7 @@ def _conclude(search: Descents, swept: Sweep) -> Solution:
         lost = labels[~np.isfinite(point.rows)]
         others = f" and {len(lost) - 3} more" if len(lost) > 3 else ""
         search.warnings.append(
-            f"not computable at the end of the search: {', '.join(lost[:3])}{others}"
+            f"not computable at the point where the search ended: {', '.join(lost[:3])}{others}"
         )
     if evaluator.bad_slopes:
         search.warnings.append(

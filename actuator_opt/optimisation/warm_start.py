@@ -106,7 +106,7 @@ class WarmStart:
         except LimitReached:
             return self._interrupted(evaluator)
         if optimum is not None:
-            return _solution(evaluator, optimum, "full steps, or restoration and descent")
+            return _solution(evaluator, optimum, "SQP steps, or a descent from a feasible point")
         guess = problem.inside(self.point.x)
         starts = [guess if feasible is None else evaluator.space.to_x(feasible[:, None])[:, 0]]
         seed = self.effort.seed
@@ -133,8 +133,8 @@ class WarmStart:
         """Find the optimum for each value of one number, in parallel.
 
         For values that the parallel steps do not solve, single searches follow, beginning with the
-        values nearest to the present one. Above and below it, they stop at the first value for
-        which no design exists.
+        values nearest to the present value. Above and below the present value, they stop at the
+        first value for which no design exists.
 
         Parameters
         ----------
@@ -200,7 +200,7 @@ class WarmStart:
         return self._optimum
 
     def _along(self, changes: Mapping[str, float], size: float) -> Responses:
-        """Derivatives by one parameter that moves several numbers by fixed multiples of itself."""
+        """Derivatives with respect to one parameter that moves several numbers in proportion."""
         self.differentiate(changes)
         parts = [(self._responses[path], change) for path, change in changes.items()]
         first = parts[0][0]
@@ -264,7 +264,7 @@ class WarmStart:
     def _stepped(
         self, evaluator: Evaluator, valleys: Sequence[Valley]
     ) -> tuple[Point | None, Vector | None]:
-        """Optimum by steps from the known optima, and a feasible point (nf,); None if not found."""
+        """Optimum reached from the known optima, and a feasible point (nf,); None if not found."""
         problem = evaluator.problem
         parametric = ParametricProblem(problem, (), np.zeros(0), lambda x, _: problem.evaluate(x))
         if not valleys or not applicable(parametric, evaluator):

@@ -307,7 +307,8 @@ def _metric(quantity: Quantity, value: float | None) -> str:
 def comparison_figure(comparison: Comparison) -> Ink:
     """For every question, a bar to scale for each design; equal parts have equal fills.
 
-    Drawn, not a chart: stacked bars with their sums and a key of the parts.
+    The figure is drawn directly, because a `Chart` has no stacked bars with sums and a key of the
+    parts.
     """
     questions = _with_bars(comparison)
     heads = [wrap(named(comparison, k), _WIDTH - 12.0, 7.0) for k in range(len(comparison.labels))]
@@ -360,7 +361,7 @@ def _fixed(questions: Sequence[Question]) -> float:
 
 
 def _with_bars(comparison: Comparison) -> list[Question]:
-    """Questions whose parts are known."""
+    """Questions for which the contribution of each part of the design is known."""
     return [question for question in comparison.questions if any(map(sum, question.parts.values()))]
 
 

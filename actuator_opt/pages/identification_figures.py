@@ -163,7 +163,7 @@ def _signed_friction(point: FrictionPoint) -> tuple[float, float]:
 
 
 def _velocity_panel(identification: Identification, fit: StribeckFit) -> Panel:
-    """Measured points, the Stribeck curve with its band, and F_C and F_S of the LuGre model."""
+    """Measured points, Stribeck curve with its 95 % band, and F_C and F_S of the LuGre model."""
     points = identification.points
     return Panel(
         f"Friction over velocity, {unit_text(FORCE.unit)}",
@@ -177,7 +177,7 @@ def _velocity_panel(identification: Identification, fit: StribeckFit) -> Panel:
 
 
 def _stribeck_curves(points: Sequence[FrictionPoint], fit: StribeckFit) -> list[Curve]:
-    """Stribeck curves with their bounds, at the mean pressure.
+    """Stribeck curves with their 95 % bounds, at the mean pressure.
 
     If the fitted friction depends on pressure, there are two curves: at the least and at the
     greatest pressure.
@@ -353,7 +353,7 @@ def _overlap(groups: Sequence[Sequence[FrictionPoint]]) -> bool:
 
 
 def _map(points: Sequence[FrictionPoint], fit: StribeckFit | str) -> Panel:
-    """Points over speed and pressure, shaded by damping, drawn on the fitted Stribeck surface."""
+    """Damping over speed and pressure: measured points, drawn on a map of the Stribeck fit."""
     speeds = [speed(point) for point in points]
     pressures = [PRESSURE.to_display(point.pressure) for point in points]
     surface = ShadedMap((), (), np.empty((0, 0)))

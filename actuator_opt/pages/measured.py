@@ -74,7 +74,7 @@ def channel_words(name: str) -> str:
 
 
 def _residuals(overlay: Overlay, before: Overlay | None) -> Table:
-    """A row per channel in its own unit; after a fit, also the residual before the fit."""
+    """Table of residuals, a row per channel; after a fit, also the residual before the fit."""
     columns = [
         Column("channel", width=1.0, breaks=14, least=10),
         Column("unit", style="dim"),
@@ -154,7 +154,7 @@ def _verdict(fitted: Fitted, *, missed: bool) -> str:
         return f"at its {fitted.at_bound} bound"
     if not fitted.parameter.identifiable:
         return fitted.parameter.verdict
-    return "only if the model is exact" if missed else "identified"
+    return "identified only if the model is exact" if missed else "identified"
 
 
 def remarks(overlay: Overlay, fit: Fit | None) -> list[str]:

@@ -32,7 +32,8 @@ from ..rendering.text import trimmed, unit_text, value_text
 from .report import doubts
 
 SHOWN, FEWER = 21, 17
-"""Number of designs in the table for two objectives, and for more, whose headings need more lines.
+"""Number of designs in the table for two objectives, and for more than two, whose headings need
+more lines.
 """
 MOVING = 5
 """Largest number of variables in the table."""
@@ -263,7 +264,7 @@ def _wide(front: ParetoFront) -> Iterator[str]:
 
 
 def front_chart(front: ParetoFront) -> Chart:
-    """Chart with panels side by side: each other objective over the first objective."""
+    """Chart with panels side by side: one for each further objective, over the first objective."""
     first, *others = front.objectives
     panels = [_panel(front, (first, 0), (other, k)) for k, other in enumerate(others, 1)]
     return Chart("Pareto front", panels, height=HEIGHT)

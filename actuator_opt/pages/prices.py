@@ -150,7 +150,7 @@ def quality(optimisation: Optimisation) -> str:
         value = text.value_text(text.metric(optimisation.objective_metric), made.objective_before)
         parts.append(f"Prices are those of the continuous optimum ({value}), before rounding.")
     parts.append(
-        "Price: change of the objective per unit of the column limit. "
+        'Price: change of the objective per unit of the value under "limit". '
         f"At ±{PER_CENT} %: the objective that the price predicts, then the objective of the new "
         "optimum (solved), by which the rows are ranked. "
         f"{DASH}: no design found. Holds until: value up to which the same limits stay active."
@@ -159,7 +159,7 @@ def quality(optimisation: Optimisation) -> str:
         parts.append(
             f"~: the change predicted for ±{PER_CENT} % is wrong by more than "
             f"{round(100 * STRAIGHT)} %, or no design was found on one side; trust the columns "
-            "solved."
+            '"solved".'
         )
     return " ".join(parts)
 

@@ -78,7 +78,7 @@ def page(
 
     Parameters
     ----------
-    subject : what to report
+    subject : the evaluation or optimisation to report
     extra_tables : further tables and drawings, before the appendix
     seals : studies of the piston or rod seals, each on its own sheet
     """

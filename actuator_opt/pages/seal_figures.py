@@ -35,8 +35,8 @@ DAMPING = "Secant damping F/v, kN·s/m"
 def squeeze_figure(study: SealStudy) -> Ink:
     """Bars from the loosest to the tightest squeeze of every ring, with the required limits.
 
-    There is a bar for each combination of temperature and pressure. Drawn, not a chart: each row
-    has its numbers beside its bar.
+    There is a bar for each combination of temperature and pressure. The figure is drawn directly,
+    because a `Chart` cannot print numbers beside each bar.
     """
     rows = study.squeezes
     labels = 62.0

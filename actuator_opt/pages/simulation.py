@@ -56,7 +56,7 @@ SHORT = {
     "stop_speed": "speed at the stops",
     "supply_energy": "work of the supply",
 }
-"""Names of results that are clearer in these words."""
+"""Clearer words for the names of some results."""
 ZERO_BELOW = {
     "steady_state_ratio": 1e-6,
     "overshoot": 1e-6,
@@ -108,7 +108,7 @@ def page(
     simulation : the run
     notes : further sentences for the reader
     measured : time [s] and measured values (SI) by name of the signal that is drawn over them
-    static : positions [m] and static stiffness [N/m], drawn beside the dynamic one
+    static : positions [m] and static stiffness [N/m], drawn beside the dynamic stiffness
     extra : blocks below all others
     """
     return Page(
@@ -138,7 +138,7 @@ def series(simulation: Simulation) -> list[Series]:
 
 
 def _grid(simulation: Simulation) -> tuple[Array, Array]:
-    """Evenly spaced times [s], and indices of their samples (of two at one time, the later)."""
+    """Evenly spaced times [s], and indices of their samples (if two have one time, the later)."""
     time, duration = simulation.time, simulation.scenario.duration
     step = simulation.scenario.sample_time or duration / SAMPLES
     count = max(round(duration / step), 1)
@@ -312,7 +312,7 @@ def results(simulation: Simulation) -> list[ShownResult]:
 
 
 def reasons(simulation: Simulation) -> dict[str, list[str]]:
-    """Why results have no value: reason, then the results; expected reasons are left out."""
+    """By reason: the results that have no value because of it; expected reasons are left out."""
     missing: dict[str, list[str]] = {}
     limited = {requirement.metric for requirement in simulation.requirements}
     bench = simulation.scenario.held_ports is not None
@@ -576,7 +576,7 @@ def _bench(simulation: Simulation) -> list[Tile]:
 
 
 def _blocks(simulation: Simulation, more: Sequence[str]) -> Iterator[Block]:
-    """Results beside the controller; on the terminal also step and energies; then accuracy."""
+    """Results and controller side by side; on the terminal also step and energies; accuracy."""
     sentences = trust(simulation, more)
     notes = Notes("Basis of these results", [tied(words) for words in sentences])
     tables = [block for block in (_results(simulation), _controller(simulation)) if block]

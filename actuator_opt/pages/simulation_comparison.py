@@ -78,7 +78,7 @@ SIGNALS = (
 )  # fmt: skip
 """Signals drawn when the runs have neither a step nor a stiffness in common."""
 Pen: TypeAlias = tuple[int, int]
-"""Colour and dash of the curves of a run, by number."""
+"""Numbers of the colour and of the dash pattern of a run's curves."""
 
 
 def comparison_figure(
@@ -226,7 +226,8 @@ def _taken(run: Simulation) -> dict[str, float]:
 def _energies(runs: Runs) -> Ink:
     """Stacked bars of the dissipated energies, a row for every run.
 
-    Drawn, not a `Chart`: a row shows labelled parts of a stack and has no axis.
+    The figure is drawn directly, because a `Chart` has no rows with labelled parts and without an
+    axis.
     """
     width, top = WIDTHS[1], 11.0
     ink = Ink(width, top + ROW * len(runs) + 1.0)
@@ -353,7 +354,7 @@ def page(
     ----------
     comparison : the runs, by `simulation_comparison.comparison`
     measured : time [s] and measured values (SI) by name of the signal, drawn below the runs' curves
-    static : positions [m] and static stiffness [N/m], drawn beside the dynamic ones
+    static : positions [m] and static stiffness [N/m], drawn beside the dynamic stiffnesses
     extra : blocks below all others
     """
     notes = Notes("Basis of these results", [tied(words) for words in _trust(comparison)])

@@ -88,11 +88,11 @@ def _words(share: EnergyShare) -> str:
 
 
 def share_picture(simulation: Simulation, width: float) -> Ink | None:
-    """Chart of sources and sinks of energy; None if there are no sources.
+    """Picture of the sources and sinks of energy; None if there are no sources.
 
-    Sources are bars that add up from the left, sinks are bars that lead back to zero.
-
-    Drawn, not a `Chart`: each bar starts where the bar above it ends, and has figures beside it.
+    The bars of the sources add up from the left; the bars of the sinks lead back to zero. This is
+    an `Ink` drawing instead of a `Chart`, because each bar starts where the bar above it ends and
+    has its numbers beside it.
     """
     shown = shares(simulation)
     if not shown:
@@ -208,7 +208,7 @@ POWERS: dict[str, Callable[[Simulation], Array | None]] = {
 
 
 def _summed(simulation: Simulation) -> tuple[dict[str, Array], dict[str, float]]:
-    """Energy over time [J] for every flow of known power, and its error at the end of the run.
+    """Energy over time [J] for every energy flow of known power, and its error at the end.
 
     Energy that leaves the machine is positive, but energy of the supply is positive if it enters.
     The error is the difference from the energy that the simulation integrated, as a share of all
@@ -233,9 +233,9 @@ def _summed(simulation: Simulation) -> tuple[dict[str, Array], dict[str, float]]
 def over_time(simulation: Simulation) -> dict[str, Array]:
     """The largest energies over time [J].
 
-    Energy that leaves the machine is positive, but energy of the supply is positive if it enters. A
-    flow is left out if the integral of its sampled power differs from its energy by more than
-    `AGREES`.
+    Energy that leaves the machine is positive, but energy of the supply is positive if it enters.
+    An energy flow is left out if the integral of its sampled power differs by more than `AGREES`
+    from the energy that the simulation integrated.
     """
     curves, off = _summed(simulation)
     curves = {name: energies for name, energies in curves.items() if abs(off[name]) <= AGREES}
@@ -248,12 +248,12 @@ def over_time(simulation: Simulation) -> dict[str, Array]:
 
 
 _LOADED = ("load", "valve edges")
-"""Flows whose power can be computed from the signals only if the system has no hydraulic lines, no
-joint, and no external machine that moves the rod."""
+"""Energy flows whose power can be computed from the signals only if the system has no hydraulic
+lines, no joint, and no external machine that moves the rod."""
 
 
 def doubts(simulation: Simulation) -> list[str]:
-    """A sentence about flows whose energy differs from the sum of their sampled power."""
+    """A sentence on energy flows whose energy differs from the integral of their sampled power."""
     _, off = _summed(simulation)
     wrong = {
         name: error for name, error in off.items() if abs(error) > AGREES and name not in _LOADED

@@ -113,7 +113,7 @@ class Strip(NamedTuple):
 
 
 def parts(simulation: Simulation, measured: Measured, static: Static | None) -> list[FigurePart]:
-    """The panels for this kind of run, drawn beside its signals; the most important first."""
+    """The panels for the kind of run, drawn beside its signals over time; most important first."""
     made: list[FigurePart] = []
     if simulation.servo is not None:
         panel = step_panel(simulation, simulation.servo, measured)
@@ -179,7 +179,7 @@ def _parts_with_room(made: Sequence[FigurePart], height: float) -> list[FigurePa
 
 
 def _stiffness(simulation: Simulation, shaken: HarmonicLoad, static: Static | None) -> list[Panel]:
-    """Magnitude of the dynamic stiffness above its phase, over the stroke or over time."""
+    """Two panels, over stroke or time: magnitude and phase of the dynamic stiffness."""
     over = "stroke" if travelled(shaken.windows, simulation.plant.stroke) else "time"
     limits = (limits_of(simulation, "dynamic_stiffness"), limits_of(simulation, "dynamic_phase"))
     size, phase = stiffness_panels([along(shaken, over)], over, static=static, limits=limits)
@@ -187,12 +187,12 @@ def _stiffness(simulation: Simulation, shaken: HarmonicLoad, static: Static | No
 
 
 def _friction(simulation: Simulation) -> Panel:
-    """Friction over speed during the run."""
+    """Friction versus speed during the run."""
     force, speed = (simulation.told[name].quantity for name in ("friction", "speed"))
     across = scaled(speed, simulation.signals["speed"])
     values = scaled(force, simulation.signals["friction"])
     return Panel(
-        titled("Friction over speed", force),
+        titled("Friction versus speed", force),
         Axis(titled("speed", speed), zero=True),
         Axis(zero=True),
         curves=[Curve("", across, values, weight="thin")],
@@ -209,7 +209,7 @@ def _flows(simulation: Simulation) -> Panel:
     if np.count_nonzero(near) < 0.5 * near.size:
         near[:] = True
     return Panel(
-        titled("Flows over signal", quantity),
+        titled("Flows versus signal", quantity),
         Axis(titled("signal", volts)),
         Axis(zero=True),
         curves=[
@@ -458,7 +458,7 @@ def _sorted(shown: Curve) -> tuple[Array, Array]:
 def _rise(
     servo: Servo, own: Curve, start: float, size: float
 ) -> tuple[list[Curve], list[Points], list[Level]]:
-    """Marks for the rise time from 10 to 90 %; the dimension is drawn at the 10 % level."""
+    """Marks for the rise time from 10 to 90 %; its dimension line is drawn at the 10 % level."""
     rise = servo.metrics.rise_time
     time, values = np.asarray(own.xs), np.asarray(own.ys)
     late = np.flatnonzero((time > 0) & ((values - start) / size >= 0.9))

@@ -19,8 +19,8 @@ SHARES = ((0.0, "cap end"), (0.25, "25 %"), (0.5, "50 %"), (0.75, "75 %"), (1.0,
 """Positions in the table, as shares of the stroke."""
 _TOPOLOGY = {
     "per_chamber": (
-        "Computed per chamber: the share of a part is its strain energy under a unit force; the "
-        "shares add up to the compliance 1/k"
+        "Computed per chamber: the compliance of a part is twice its strain energy under a unit "
+        "force; the parts add up to the compliance 1/k"
     ),
     "aalto_as_published": (
         "As published in [AaltoThesis], not per chamber: total compliances of oil, walls and "
@@ -108,7 +108,7 @@ def gain_sentence(curve: StrokeCurve) -> str:
     oil = sum(value for part, value in compliances.items() if part.startswith("oil"))
     both = ""
     if name.startswith("oil") and oil > share:
-        both = f" (all oil {per_cent(oil)})"
+        both = f" (all oil together: {per_cent(oil)})"
     gain = 1 / (1 - share / 2) - 1
     place = text.trimmed(1e3 * float(curve.position[index]), 3)
     return (
@@ -151,7 +151,7 @@ def _budget(curve: StrokeCurve) -> Block:
         Column("part", "left", 1.3),
         *(Column(name, "right", 0.8) for _, name in SHARES),
         Column(f"weakest, {text.trimmed(1e3 * places[-1], 3)} mm", "right", 1.2, strong=True),
-        Column("of this part alone, kN/mm", "right", 1.2),
+        Column("part's own stiffness, kN/mm", "right", 1.2),
     ]
     return Table("Stiffness budget", columns, rows, note=gain_sentence(curve), total=1, on="paper")
 
@@ -164,7 +164,7 @@ PARTS = (
 
 
 def stiffness_panels(curve: StrokeCurve, requirement: Requirement | None) -> list[Panel]:
-    """Panels over the stroke: stiffness, and compliances of the parts; empty without a stroke."""
+    """Panels over the stroke: stiffness, and compliances of the parts; empty without a curve."""
     positions = [1000.0 * float(x) for x in curve.position]
     stiffness = [float(k) / 1e6 for k in curve.stiffness]
     usable = [(x, k) for x, k in zip(positions, stiffness, strict=True) if math.isfinite(k)]

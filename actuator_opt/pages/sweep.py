@@ -1,4 +1,4 @@
-"""The page of a sweep: counts, best designs and reasons of failures. Also its columns for files."""
+"""The page of a sweep: counts, best designs, reasons of failures; and the columns of its files."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def counts(swept: Swept) -> str:
 
 
 def _verdict(swept: Swept) -> Verdict:
-    """Badge: whether any design is feasible, and how many of the best have no reserve."""
+    """Badge: whether any design is feasible, and how many of the best have almost no margin."""
     if not swept.best:
         words = "NO OBJECTIVE VALUE" if swept.feasible else "NO FEASIBLE DESIGN"
         return Verdict("missed", words)
@@ -104,7 +104,7 @@ def _tiles(swept: Swept) -> Iterator[Tile]:
 
 
 def _hero(swept: Swept) -> Ink:
-    """Figure of parallel axes; empty unless the sweep keeps every design and one is feasible."""
+    """Parallel axes; empty unless the sweep keeps every design and at least one is feasible."""
     study = swept.study
     if swept.best and study.full:
         metrics = chosen(study, ())[: max(1, AXES - len(study.plan.axes))]

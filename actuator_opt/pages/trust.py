@@ -82,7 +82,7 @@ def proof(optimisation: Optimisation, *, shortened: bool = False) -> list[str]:
 
 
 def _of_sizes(optimisation: Optimisation) -> list[str]:
-    """Sentence on the distance of the design with the requested sizes from the proven bound."""
+    """Sentence on how far the design with listed (such as standard) sizes is from the bound."""
     bound, made = _bound(optimisation), optimisation.made
     if made is None or bound is None or not made.objective_after:
         return []
@@ -98,11 +98,11 @@ def _quantity(optimisation: Optimisation) -> Quantity:
 
 
 def _marks(optimisation: Optimisation) -> list[tuple[float, str]]:
-    """Objectives shown beside the optimum: design with sizes, start, and other optima."""
+    """Objectives shown beside the optimum: designs with listed sizes, the start, other optima."""
     best, marks = optimisation.objective_value, []
     rounding = optimisation.rounding
     if rounding is not None and rounding.objective_after is not None:
-        marks.append((rounding.objective_after, "of the requested sizes"))
+        marks.append((rounding.objective_after, "with requested sizes"))
         for row in rounding.runners_up[:2]:
             marks.append((row.objective, "runner-up"))
     if optimisation.choices is not None:
@@ -201,8 +201,8 @@ def _course_block(optimisation: Optimisation) -> list[Block]:
         points = [Points("", numbers, heights, style=3)]
         panels.append(Panel("End of each start", x, _decades(heights), points=points))
     note = (
-        "Left: evaluations of all starts together. Only designs that meet every limit are drawn; "
-        "none: excess below 0.0001 %."
+        "Left: evaluations of all starts together. Only designs that meet every limit are drawn. "
+        '"none": excess below 0.0001 %.'
     )
     return [Chart("How the search went", panels, note, height=52.0, widths=(98.0, 64.0))]
 
@@ -263,7 +263,7 @@ def convergence(optimisation: Optimisation) -> list[str]:
             f"{text.value_text(objective, value)} ({_missed(violation)} at {count})"
             for count, value, violation in picked
         )
-        lines.append(f"Improvements (limits at evaluation): {path}.")
+        lines.append(f"Improvements (limits, at evaluation number): {path}.")
     if optimisation.kkt is not None and optimisation.kkt.active:
         lines.append(f"Active at the optimum: {', '.join(optimisation.kkt.active)}.")
     return lines

@@ -276,7 +276,7 @@ def _causes(study: Uncertainty, output: str) -> Iterator[Block]:
 
 
 def _indices(study: Uncertainty, output: str) -> list[tuple[str, ...]]:
-    """Table rows: sensitivity indices of the main inputs, and the output at both their ends."""
+    """Table rows: sensitivity indices of the main inputs, and the output at 5 and 95 % of each."""
     ranked, swings = study.of_output(output)
     ends = {swing.path: swing for swing in swings}
     rows = []
@@ -320,7 +320,7 @@ def _input(given: Input) -> tuple[str, ...]:
 
 
 def shown(uncertainty: Uncertainty) -> list[LimitYield]:
-    """Requirements and failing checks, those with the lowest probability first."""
+    """Requirements, and checks that some draws miss; the least likely to be met first."""
     failing = [check for check in uncertainty.checks if check.rate.value < 1]
     return [*uncertainty.required, *failing][:MOST]
 

@@ -20,9 +20,9 @@ result, and the result at the position of the time simulation."""
 MEANING = (
     "Evaluation: worst result of the linear models. Linear: result of the same models at the "
     "position of the experiment and with the valve spool open in the same direction; the "
-    "difference refers to this value. Beside: the worst linear result is for the opposite spool "
-    "direction. The spool only passes through it while the load drifts, so no experiment, which "
-    "starts at rest, can check it."
+    'difference refers to this value. "Beside": the worst linear result is for the opposite spool '
+    "direction. The spool is open in that direction only while the load drifts; experiments start "
+    "at rest, so none can check it."
 )
 UNSURE = "?"
 """Mark behind an effect that a run with half the parameter step does not confirm."""
@@ -105,13 +105,13 @@ def tables(verification: Verification) -> tuple[Table, ...]:
     ]
     if not experiments:
         return (both,)
-    heads = ("requirement", "case and place", "experiment", "difference, as seen")
+    heads = ("requirement", "case and place", "experiment", "cause of the difference")
     note = (
         "To find each cause's share of the difference, the experiment is repeated without sticking "
         "friction, then with a fiftieth of the amplitude. The rest is due to the operating point."
     )
     widths = (1, 1.2, 1.5, 3.5)
-    return both, text_table("Experiments behind them", heads, experiments, note, widths=widths)
+    return both, text_table("Experiments for these values", heads, experiments, note, widths=widths)
 
 
 def verdict(verification: Verification) -> str:

@@ -53,7 +53,11 @@ class Rung:
 
 
 def stress_panels(study: WallStudy) -> list[Panel]:
-    """Hoop, axial and radial stress through the wall at supply pressure, for every load path."""
+    """Hoop, axial and radial stress through the wall at supply pressure.
+
+    There is a curve for every load path, that is, for every axial force per unit pressure that the
+    wall may carry.
+    """
     profiles = [(profile, profile.name, k) for k, profile in enumerate(study.profiles)]
     if study.rest:
         at_rest = max(study.rest, key=lambda profile: float(abs(profile.hoop).max()))
@@ -95,7 +99,7 @@ def strength_panels(study: WallStudy) -> list[Panel]:
         for name, values, style in named
         if np.isfinite(values).any()
     ]
-    return [*panels, _panel("Stress over strength", study, curves, (1.0, -1.0))]
+    return [*panels, _panel("Stress / strength", study, curves, (1.0, -1.0))]
 
 
 def _panel(
@@ -471,7 +475,7 @@ def _differences(evaluation: Evaluation, study: WallStudy) -> Block:
         Column("", "left", 1.0),
         Column("exact layered tube", "right", 0.7, strong=not thin),
         Column("thin laminate", "right", 0.7, strong=thin),
-        Column("thin against exact", "right", 0.7),
+        Column("thin relative to exact", "right", 0.7),
     ]
     used = "thin laminate" if thin else "exact tube"
     note = f"The design uses the {used}; the thin laminate is a fast approximation for thin walls."

@@ -19,7 +19,7 @@ MOST_BYTES = 50_000_000
 MOST_FILES = 16
 """Maximum number of attachments (our choice: a report has two, an editor may add some)."""
 NEAR = 4096
-"""Maximum distance in bytes from the type entry of a PDF dictionary to its start and to its end
+"""Maximum distance in bytes from the type entry in a PDF dictionary to either end of the dictionary
 (our choice; our own reports need 200)."""
 _MARK, _OBJECT = b"/EmbeddedFile", b" obj"
 _STREAM = re.compile(rb">>\s{0,16}stream\r?\n")
@@ -202,4 +202,6 @@ def read_attachment(path: Path) -> Attachment:
 def _no_input(content: bytes) -> str:
     """Message on why a PDF has no input attached: written without it, or the file is truncated."""
     complete = b"%%EOF" in content[-2048:]
-    return "has no input to repeat" if complete else "is truncated and has no input"
+    return (
+        "has no input (design file) to run again" if complete else "is truncated and has no input"
+    )

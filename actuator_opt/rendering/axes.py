@@ -208,7 +208,7 @@ def even_ticks(low: float, high: float, count: int) -> Ticks:
 
 
 def spaced(candidates: Iterable[tuple[float, str, int]], axes: Axes) -> Ticks:
-    """Ticks of an x axis (value, words, rank) whose words do not touch; low ranks come first."""
+    """Ticks of an x axis (value, words, rank) whose words do not touch; low ranks have priority."""
     labels: list[tuple[float, str]] = []
     for value, words, _ in sorted(candidates, key=lambda tick: (tick[2], abs(tick[0]))):
         half = text_width(words, 6.5) / 2

@@ -121,7 +121,7 @@ def corner_values(nodes: np.ndarray, triangles: np.ndarray, values: np.ndarray) 
 def mesh_outlines(
     nodes: np.ndarray, triangles: np.ndarray, body: np.ndarray
 ) -> list[list[list[Point]]]:
-    """Outlines of every body in mesh coordinates; `body` is the body's number of each triangle.
+    """Outlines of every body, in mesh coordinates; `body` has the number of each triangle's body.
 
     Holes have the opposite orientation.
     """

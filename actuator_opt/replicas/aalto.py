@@ -92,20 +92,20 @@ def stiffness_note(design: Design, figures: Sequence[Theory]) -> str:
     excess = [float(np.max(theory.published / theory.per_chamber)) - 1 for theory in figures]
     ratio = float(np.squeeze(geometry.area_a / geometry.area_b))
     parts = [
-        f"Rod {text.trimmed(1e3 * float(np.squeeze(geometry.rod_length)))} mm",
+        f"Rod length {text.trimmed(1e3 * float(np.squeeze(geometry.rod_length)))} mm",
         f"barrel {text.trimmed(1e3 * bore)}/{text.trimmed(1e3 * outer)} mm",
     ]
     return (
-        f"kN/mm at {scaled(places(design), 1e3)} mm. "
+        f"Stiffness in kN/mm at positions of {scaled(places(design), 1e3)} mm. "
         f"{other_cylinder(design)}{', '.join(parts)}{_moduli(design)} are assumed. The "
-        "thesis prints no values of its curves, so only their form is compared. Why ours "
-        "is softer: eq. 3 puts the totals of oil, barrel and hoses in series, as if the "
-        "stiff chamber's hose could help the other chamber's oil; and eq. 23 lets the "
-        "wall swell over the rod's annulus only (too stiff by A_A/A_B = "
-        f"{text.trimmed(ratio, 3)}). Together the printed form is up to "
+        "thesis prints no values of its curves, so only their form is compared. Why our "
+        "values per chamber are lower: eq. 3 puts the totals of oil, barrel and hoses in "
+        "series, as if the stiff chamber's hose could help the other chamber's oil; and "
+        "eq. 23 uses the annulus area for the wall too (too stiff by A_A/A_B = "
+        f"{text.trimmed(ratio, 3)}). Together, they make the printed form up to "
         f"{percent(excess[0])} (eq. 37) and {percent(excess[1])} (eq. 38) stiffer. The "
-        "last column adds the barrel's axial stretch, which the thesis leaves out. K 1300 "
-        f"MPa is eq. 5 with {percent(air_behind(PAPER.pressure_a))} of air at 20.5 bar or "
+        "last column adds the barrel's axial stretch, which the thesis leaves out. Eq. 5 "
+        f"gives K = 1300 MPa with {percent(air_behind(PAPER.pressure_a))} of air at 20.5 bar or "
         f"{percent(air_behind(PAPER.pressure_b))} at 42 bar: a single air content does not "
         "give the same modulus in both chambers."
     )
@@ -127,7 +127,9 @@ def _air(test: StaticTest) -> tuple[str, ...]:
             _bubbles(test),
             "The same oil explains both directions.",
         )
-    suspect = "The thesis suspects air that leaves the oil at 17 to 19 bar. We do not know."
+    suspect = (
+        "The thesis suspects that air leaves the oil at 17 to 19 bar. We do not know if it does."
+    )
     return _air_up(test), _air_down(test), _bubbles(test), suspect
 
 
@@ -157,11 +159,11 @@ def _air_down(test: StaticTest) -> str:
     if math.isinf(down):
         words = f"Load down: not even {percent(CONTENTS[1])} is enough"
     else:
-        words = f"Load down: this takes {air_text(down)}"
+        words = f"Load down: the largest displacement takes {air_text(down)}"
     if math.isfinite(up * down) and up * down > 0:
         alike = abs(down / up - 1) < SAME
-        words += f", {'about' if alike else text.trimmed(down / up, 2) + ' times'} as much in the "
-        words += "same oil"
+        words += f", {'about' if alike else text.trimmed(down / up, 2) + ' times'} as much, "
+        words += "although it is the same oil"
     largest = test.assumptions[3].down
     share = largest.range[0] / PAPER.moved_down[0]
     if math.isnan(share):
@@ -199,18 +201,18 @@ def _bubbles(test: StaticTest) -> str:
     for assumption in test.assumptions[4:6]:
         up, down = _judged(assumption.up, PAPER.most_up), _judged(assumption.down, PAPER.most_down)
         fits.append((up == "as much as measured", down == "as much as measured"))
-        words.append(up if up == down else f"{up} up, {down} down")
+        words.append(up if up == down else f"{up} (load up) and {down} (load down)")
     if (True, True) in fits:
         fit = "fit both directions"
     elif any(up for up, _ in fits) and any(down for _, down in fits):
-        fit = "fit each direction, but not in one reading"
+        fit = "fit each direction, but not both in one reading"
     elif any(up or down for up, down in fits):
         fit = f"fit load {'up' if any(up for up, _ in fits) else 'down'} only"
     else:
         fit = "fit neither direction"
     return (
-        f"The bubbles of the thesis' own simulation {fit}: read at atmospheric pressure 0.4 and "
-        f"0.08 ml move {words[0]}, read at 20.5 and 42 bar {words[1]}."
+        f"The bubbles of the thesis' own simulation (0.4 and 0.08 ml) {fit}: with these volumes "
+        f"at atmospheric pressure the piston moves {words[0]}, at 20.5 and 42 bar {words[1]}."
     )
 
 
@@ -226,8 +228,8 @@ def _pressures(test: StaticTest) -> str:
     measured = [softer(PAPER.loaded_up), softer(PAPER.loaded_down)]
     words = (
         f"The pressures show which chamber is softer: at {text.trimmed(1e3 * test.place)} "
-        f"mm the rod chamber changes {text.trimmed(measured[0], 2)} (up) and "
-        f"{text.trimmed(measured[1], 2)} (down) times as much as the head chamber; evenly "
+        f"mm the rod chamber's pressure changes {text.trimmed(measured[0], 2)} (load up) and "
+        f"{text.trimmed(measured[1], 2)} (load down) times as much as the head chamber's; evenly "
         "spread air gives "
     )
     if not all(map(math.isfinite, even)):
@@ -255,7 +257,7 @@ def _by_pass(test: StaticTest) -> str:
         )
     return (
         "With the areas of this design, the pressures of the thesis correspond to "
-        f"{percent(1 - up)} (up) and {percent(1 - down)} (down) of its load; a by-pass "
+        f"{percent(1 - up)} (up) and {percent(1 - down)} (down) of the test load; a by-pass "
         "cannot explain more than the whole load."
     )
 
@@ -316,7 +318,7 @@ def _valve(test: DynamicTest) -> str:
     if all(holds for _, holds, _ in judged):
         words = (
             "the stiffness behaves as the thesis says: soft up to 15 Hz, more than twice the "
-            "static stiffness at 20 Hz, a little above it at 25, the static one at 30 Hz."
+            "static stiffness at 20 Hz, a little above it at 25 Hz, and equal to it at 30 Hz."
         )
     else:
         met = [name for name, holds, _ in judged if holds]
@@ -355,17 +357,23 @@ def throttle_explained(test: DynamicTest) -> bool:
 def _throttle(test: DynamicTest) -> str:
     at = shares(test, test.read_back["reducing_valve"])
     slow, _ = _moves(
-        at[:, 0], more="stiffens at 10 Hz", less="softens at 10 Hz", none="changes nothing at 10 Hz"
+        at[:, 0],
+        more="stiffens the cylinder at 10 Hz",
+        less="softens the cylinder at 10 Hz",
+        none="changes nothing at 10 Hz",
     )
     peak = "the peak" if np.all(np.argmax(at, axis=1) == 2) else "the stiffness at 20 Hz"
     twenty, _ = _moves(
         at[:, 2], more=f"raises {peak}", less=f"lowers {peak}", none=f"does not change {peak}"
     )
     last, acts = _moves(
-        at[:, 4], more="stiffens at 30 Hz", less="softens at 30 Hz", none="changes nothing at 30 Hz"
+        at[:, 4],
+        more="stiffens it at 30 Hz",
+        less="softens it at 30 Hz",
+        none="changes nothing at 30 Hz",
     )
     return (
-        f"If its needle has the measured pressure drop, the throttle {slow} "
+        f"With a needle that has the measured pressure drop, throttling {slow} "
         f"({_times(at[:, 0])} the static stiffness), {twenty} ({_times(at[:, 2])}) and "
         f"{last}{f' ({_times(at[:, 4])})' if acts else ''}."
     )
@@ -405,7 +413,7 @@ def _neighbours(test: DynamicTest) -> str:
     if test.valve.passive_conductance == 0 or test.peak.slowest_decay >= 0:
         return words + "."
     feeds = "would feed the oscillation" if test.without_opening >= 0 else "would be stable as well"
-    return f"{words}; without the opening beside it the valve {feeds}."
+    return f"{words}; without its fixed opening the valve {feeds}."
 
 
 def _closed(test: DynamicTest) -> str:
@@ -418,8 +426,8 @@ def _closed(test: DynamicTest) -> str:
         words = "Closed ports are not as stiff at 10 as at 30 Hz ({} and {} kN/mm)".format(*ends)
     if np.min(closed) > 1.001 * test.static:
         return (
-            f"{words}, and stiffer than the {static} kN/mm with hoses, which a shut throttle "
-            "keeps out."
+            f"{words}, and stiffer than the {static} kN/mm with hoses, because a shut throttle "
+            "shuts off the hoses."
         )
     return f"{words}, and not at every frequency stiffer than the {static} kN/mm with hoses."
 
@@ -454,8 +462,8 @@ def dynamic_note(design: Design, test: DynamicTest) -> str:
     numbers = (
         f"{text.trimmed(valve.natural_frequency)} Hz, damping ratio "
         f"{text.trimmed(valve.damping_ratio)}, regulating "
-        f"{text.trimmed(valve.conductance * 1e11, 2)} ml/s/bar beside an opening of "
-        f"{text.trimmed(valve.passive_conductance * 1e11, 2)}"
+        f"{text.trimmed(valve.conductance * 1e11, 2)} ml/s/bar, with a parallel fixed "
+        f"opening of {text.trimmed(valve.passive_conductance * 1e11, 2)} ml/s/bar"
     )
     end = "So a valve with these parameters does not explain the measured stiffness."
     if does_it(test):
@@ -464,7 +472,7 @@ def dynamic_note(design: Design, test: DynamicTest) -> str:
             "valve of the test did so."
         )
     return (
-        "kN/mm at mid-stroke; line end: constant pressure, or a reducing valve. "
+        "Stiffness in kN/mm at mid-stroke; at the line end: constant pressure or a reducing valve. "
         f"{other_cylinder(design)}The thesis prints no values of these curves. "
         f"{_closed(test)} With full throttling, the stiffness measured at 10 and 20 Hz "
         "exceeds eq. 38. The thesis attributes this to oil that the check valves let in "
@@ -489,8 +497,9 @@ def needles_caption(test: DynamicTest) -> str:
     if change >= OPENINGS_SAY:
         verdict = f"which changes the stiffness at 20 Hz by up to {percent(change - 1)}"
     return (
-        "Mid-stroke, with the oil of the design, without friction. Above: the needle "
-        f"{whose}, {verdict}. Below: the needle that drops the measured 0.4 bar."
+        "Mid-stroke, with the oil of the design, without friction. Above: the needle area "
+        f"{whose}, {verdict}. Below: the needle area that gives the measured pressure drop of "
+        "0.4 bar."
     )
 
 
@@ -511,17 +520,17 @@ def peak_note(design: Design, test: DynamicTest) -> str:
     if math.isnan(needle.temperature):
         source = f"which {_oil(design)} does not have at any temperature"
     elif low <= needle.temperature <= high:
-        source = f"{_oil(design)} at {warm}: within the 25 to 30 °C of the tests"
+        source = f"that of {_oil(design)} at {warm}: within the 25 to 30 °C of the tests"
     else:
-        source = f"{_oil(design)} at {warm}: outside the 25 to 30 °C of the tests"
+        source = f"that of {_oil(design)} at {warm}: outside the 25 to 30 °C of the tests"
     loss = percent(1 - needle.flow_coefficient / PAPER.flow_coefficient, 1)
-    there = f"There C_q is already {loss} below"
+    there = f"At this Re, C_q is already {loss} below"
     if abs(needle.reynolds / PAPER.reynolds - 1) > 0.05:
         there = f"At our Re = {text.trimmed(needle.reynolds, 3)} C_q is {loss} below"
     return (
         f"Re = 100.8 is U d/ν with U = v A_A/A_o of eq. 46 at 20 mm/s and {viscosity}, {source}. "
-        f"{there} 0.611 by laminar and turbulent losses in series, and it falls to zero twice in "
-        f"every cycle. {_drop(design, test)}"
+        f"{there} 0.611 (laminar and turbulent losses in series), and with the flow it falls to "
+        f"zero twice in every cycle. {_drop(design, test)}"
     )
 
 
@@ -531,8 +540,8 @@ def _drop(design: Design, test: DynamicTest) -> str:
     theirs = close(test.area, PAPER.throttle) and close(design.cylinder.bore, PAPER.bore)
     if 0.8 < less < 1.25:
         return (
-            "At 20 mm/s the open needle drops about the 0.4 bar that opened the check "
-            "valve: flow, area and pressure are consistent."
+            "At 20 mm/s the pressure drop of the open needle is about the 0.4 bar that opened "
+            "the check valve: flow, area and pressure are consistent."
         )
     times = f"{text.trimmed(less, 2)} times less than"
     if less < 1:
@@ -542,9 +551,10 @@ def _drop(design: Design, test: DynamicTest) -> str:
     if not throttle_explained(test):
         role = ", which does not explain the throttle's effect either, is only assumed"
     return (
-        f"But at 20 mm/s the open needle drops {times} the 0.4 bar that opened the check "
-        f"valve: flow, area and pressure {'of the thesis' if theirs else 'of this design'} "
-        f"are not consistent. We do not know which of them is wrong; the {size} area{role}."
+        f"But at 20 mm/s the pressure drop of the open needle is {times} the 0.4 bar that opened "
+        "the check valve: flow, area and pressure "
+        f"{'of the thesis' if theirs else 'of this design'} are not consistent. We do not know "
+        f"which of them is wrong; the {size} area in the table{role}."
     )
 
 
@@ -590,15 +600,15 @@ def stiffness_table(evaluation: Evaluation) -> list[Block]:
         ),
     ]
     drawn = Drawing(
-        "Aalto thesis: stiffness along the stroke, as its figures 5, 29 and 32",
+        "Aalto thesis: stiffness along the stroke, as in figures 5, 29 and 32",
         theory_figure(design.cylinder.stroke, oil, figure_29, figure_32),
-        "Both forms with the same numbers, load cell included in figures 29 and 32; per chamber "
-        "without the barrel's stretch.",
+        "The printed equations and the form per chamber use the same numbers; the load cell is "
+        "included in figures 29 and 32. Per chamber: without the barrel's axial stretch.",
     )
     note = stiffness_note(design, (figure_29, figure_32))
     columns = (
         "curve, kN/mm",
-        f"its own formula, {scaled(places(design), 1e3)} mm",
+        f"as printed, at {scaled(places(design), 1e3)} mm",
         "minimum",
         "per chamber",
         "with stretch",
@@ -624,7 +634,7 @@ def _measured(moved: tuple[float, float]) -> str:
 
 
 def _carried(bypass: Bypass, load: float) -> str:
-    beside = f", {percent(bypass.share)} by-pass" if bypass.share >= 0 else ": more than all"
+    beside = f", {percent(bypass.share)} by-pass" if bypass.share >= 0 else ": more than the load"
     return f"{text.trimmed(bypass.force / 1e3, 3)} of {text.trimmed(load / 1e3)} kN{beside}"
 
 
@@ -653,7 +663,7 @@ def static_table(evaluation: Evaluation) -> list[Block]:
     ]
     rows += [
         (
-            "force on the chambers, by the measured pressures",
+            "force of the measured pressures on the piston",
             _carried(test.up, UP),
             _carried(test.down, DOWN),
             text.DASH,
@@ -665,7 +675,7 @@ def static_table(evaluation: Evaluation) -> list[Block]:
          air_text(test.air_down[1]), text.DASH, text.DASH),
     ]  # fmt: skip
     drawn = Drawing(
-        "Aalto thesis: displacement under a force step, as its figure 42",
+        "Aalto thesis: displacement under a force step, as in figure 42",
         static_figure(design.cylinder.stroke, test),
         "Grey: measured, all positions and both piston directions. Load 3.45 and 4.85 kN, "
         "the means of both runs, taken as steps (the text does not state whether they are "
@@ -727,7 +737,7 @@ def peak_table(evaluation: Evaluation) -> list[Block]:
         if np.isfinite(f)
     ]
     rows = (
-        ("T-pipe for 20 Hz", "16.25 m", f"{text.trimmed(test.t_pipe)} m (eq. 18)"),
+        ("length of a T-pipe for 20 Hz", "16.25 m", f"{text.trimmed(test.t_pipe)} m (eq. 18)"),
         (
             "pipe resonance of the longer hose",
             "ruled out",
@@ -739,7 +749,7 @@ def peak_table(evaluation: Evaluation) -> list[Block]:
             f"{text.trimmed(needle.reynolds)} at {text.trimmed(degrees)} °C",
         ),
         (
-            "viscosity behind it",
+            "viscosity for this Reynolds number",
             text.DASH,
             f"{text.trimmed(1e6 * needle.viscosity, 3)} mm²/s at 20 mm/s",
         ),
@@ -757,10 +767,10 @@ def peak_table(evaluation: Evaluation) -> list[Block]:
         (
             "needle area",
             "0.22 cm²",
-            f"{area_text(needle.area)} behind the measured drop",
+            f"{area_text(needle.area)} for the measured drop",
         ),
         (
-            "no reactive flow left, mid-stroke",
+            "antiresonance of chamber and valve, mid-stroke",
             "peak at 20 Hz",
             "; ".join(frequencies) or "nowhere: the valve is too weak",
         ),

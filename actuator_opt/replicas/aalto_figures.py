@@ -203,7 +203,7 @@ def theory_figure(
         for theory, style, words in ((figure_29, DASHED, "eq. 37"), (figure_32, CHAIN, "eq. 38"))
     ]
     highest = max(max(curve.ys) for curve in excess)
-    title = "Totals in series over per chamber, %"
+    title = "Excess of printed form over per chamber, %"
     _panel(ink, (1, 1), title, _POSITION, excess, span=span, top=1.08 * highest)
     return ink
 

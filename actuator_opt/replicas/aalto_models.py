@@ -387,13 +387,13 @@ def static_test(design: Design) -> StaticTest:
         ("0.5 % entrained", usual, usual, False),
         ("0.5 %, by-pass", usual, usual, True),
         (
-            "air for largest, by-pass",
+            "fitted air, by-pass",
             bench.entrained(air_up[1]),
             bench.entrained(air_down[1]),
             True,
         ),
         ("bubbles at 1 bar, by-pass", small, small, True),
-        ("bubbles as held, by-pass", large, large, True),
+        ("bubbles 20/42 bar, by-pass", large, large, True),
     )
     return StaticTest(
         position=bench.position,

@@ -91,7 +91,7 @@ def bending_table(evaluation: Evaluation) -> list[Block]:
             )
         ),
         (
-            "I of a solid bar in eq. 13 corrected",
+            "I of a solid bar, if used in eq. 13, corrected",
             text.DASH,
             text.DASH,
             in_gpa(tube.modulus(SPANS[0], solid=True)),
@@ -103,7 +103,7 @@ def bending_table(evaluation: Evaluation) -> list[Block]:
             _over_spans(lambda x: in_gpa(tube.modulus(x, solid=True, shear=True, local=True))),
         ),
         (
-            "extra compliance for a woven carbon tube",
+            "extra compliance if the tube is woven carbon",
             text.DASH,
             text.DASH,
             _over_spans(lambda x: _hidden(tube, x)),
@@ -131,7 +131,7 @@ def _bending_note(tube: Tube, times: float) -> str:
     upper = f"to {in_gpa(most)}" if math.isfinite(most) else "without an upper limit"
     return (
         "The paper states neither span, section, k₀ nor rollers, and neglects the change "
-        "of section. Assumed: the spans (its two strokes), a tube "
+        "of section at the ends. Assumed: the spans (its two strokes), a tube "
         f"{in_mm(tube.outer_diameter)}/{in_mm(tube.inner_diameter)} of woven carbon with G "
         f"= {in_gpa(tube.shear_modulus)}, rollers of {in_mm(ROLLER_RADIUS)} radius at "
         f"{in_n(FORCE)} (Hertz; a thin tube flattens as well). The modulus may then be "
@@ -144,7 +144,7 @@ def _bending_note(tube: Tube, times: float) -> str:
     )
 
 
-COLUMNS = ("quantity", "published", "its own formula", "ours")
+COLUMNS = ("quantity", "published", "paper's formulas", "ours")
 
 
 def _text(value: float, unit: str, dimension: str) -> str:
@@ -202,7 +202,7 @@ def force_table(evaluation: Evaluation) -> list[Block]:
         f"{in_mm2(second)}, {text.number(first / PAPER.area, 2)} and "
         f"{text.number(second / PAPER.area, 2)} times the {in_mm2(PAPER.area)} of the "
         "bore, so forces and pressure losses cannot both belong to this cylinder. Our "
-        "forces cannot check those of the paper: they are valid at the "
+        "forces cannot check those of the paper: ours apply at the "
         f"{in_mpa(evaluation.design.supply.pressure)} assumed in the design, running and "
         "at breakaway, and this pressure acts on the rod's ring on the instroke only."
     )
@@ -248,7 +248,7 @@ def coefficient_table(evaluation: Evaluation) -> list[Block]:
             in_mm(width),
         ),
         (
-            "eq. 19 relative to ours",
+            "eq. 19 relative to ours, by squeeze",
             text.DASH,
             f"+{percent(wider(0.10))} at 10 %; +{percent(wider(0.20))} at 20 %",
             text.DASH,
@@ -256,7 +256,7 @@ def coefficient_table(evaluation: Evaluation) -> list[Block]:
     )
     note = (
         "µ alone cannot be identified: for rings with preload that pressure energises, "
-        f"{average} agrees with {text.number(coefficient(2e6), 3)} at 2 MPa as well as "
+        f"{average} agrees with µ = {text.number(coefficient(2e6), 3)} at 2 MPa as well as "
         f"with {text.number(coefficient(7e6), 3)} at 7 MPa, and eq. 16 gives no friction "
         "at all without pressure. Eq. 19 is the chord of the unsqueezed circle. It is "
         "wider than the contact by plane-strain finite elements, which our formula "
@@ -295,8 +295,8 @@ def _sizes(evaluation: Evaluation) -> list[Block]:
         f"Table 1 lists a {in_mm(PAPER.piston_diameter)} piston in a {in_mm(PAPER.bore)} "
         f"cylinder, which leaves a radial gap of {in_mm(gap)} that no ring of this size "
         f"can close. The stroke is {in_mm(PAPER.stroke)} in table 1 and "
-        f"{in_mm(PAPER.damping_stroke)} in the damping text. Eq. 1 treats the cylinder as "
-        "a spring to ground with the force k_eq x, although its force is that of an "
+        f"{in_mm(PAPER.damping_stroke)} in the text on damping. Eq. 1 treats the cylinder "
+        "as a spring to ground with the force k_eq x, although this force is that of an "
         "external load."
     )
     return [text_table("El Asswad 2018: dimensions", COLUMNS, rows, note)]
@@ -326,7 +326,7 @@ def _oil(evaluation: Evaluation) -> list[Block]:
             text.DASH,
             f"{in_mpa(aerated(usual))} (VG 32, {percent(usual)} air)",
         ),
-        ("entrained air that gives it", text.DASH, text.DASH, percent(air)),
+        ("entrained air for that value", text.DASH, text.DASH, percent(air)),
         (
             "oil stiffness k_oil",
             in_n_per_mm(PAPER.oil_stiffness),
@@ -343,9 +343,9 @@ def _oil(evaluation: Evaluation) -> list[Block]:
     note = (
         f"Eq. 9 at mid-stroke gives {text.trimmed(bare / PAPER.oil_stiffness, 2)} times "
         f"the published k_oil unless each side has {in_ml(volume)} of line volume, which "
-        "the paper does not mention. The bulk modulus is that of a mineral oil with "
-        f"{percent(air)} of entrained air at the {in_mpa(design.supply.pressure)} of this "
-        "design."
+        "the paper does not mention. The published bulk modulus is that of a mineral oil with "
+        f"{percent(air)} of entrained air at {in_mpa(design.supply.pressure)}, the supply "
+        "pressure of this design."
     )
     return [text_table("El Asswad 2018: oil stiffness", COLUMNS, rows, note)]
 
@@ -374,7 +374,7 @@ def _rod(evaluation: Evaluation) -> list[Block]:
             f"{in_n_per_mm(stiff)} (rod of {in_mm(float(length) / stiff)})",
         ),
         (
-            "E/L behind it",
+            "E/L for this stiffness",
             text.DASH,
             f"{text.number(per_length * 1e-9, 5)} N/mm³",
             text.DASH,
@@ -430,7 +430,7 @@ def _barrel(evaluation: Evaluation) -> list[Block]:
             "modulus of the barrel",
             f"{in_gpa(PAPER.bending_modulus)} (bending)",
             text.DASH,
-            f"{in_gpa(hoop)} (hoop, from our growth)",
+            f"{in_gpa(hoop)} (hoop, from our bore growth)",
         ),
         (
             f"bore growth at {in_mpa(supply)}",
@@ -482,7 +482,7 @@ def _viscous(evaluation: Evaluation) -> list[Block]:
         (
             "dynamic viscosity",
             text.DASH,
-            f"{in_mpas(PAPER.viscosity)} (eq. 6, {in_mm(PAPER.damping_stroke)})",
+            f"{in_mpas(PAPER.viscosity)} (eq. 6, stroke {in_mm(PAPER.damping_stroke)})",
             text.DASH,
         ),
         (
@@ -493,7 +493,7 @@ def _viscous(evaluation: Evaluation) -> list[Block]:
         ),
     )
     note = (
-        f"c was computed with {in_mm(PAPER.damping_stroke)}; the stroke of table 1 gives "
+        f"c was computed with a stroke of {in_mm(PAPER.damping_stroke)}; that of table 1 gives "
         f"{in_ns_per_m(float(by_table))}. Eq. 6 is the wall shear on the barrel, not on "
         "the piston, and the seals' secant damping is "
         f"{text.number(seal / PAPER.damping, 2)} times as large, so these are two "
@@ -543,14 +543,14 @@ def _record(evaluation: Evaluation) -> list[Block]:
         "assumed rings give the published average and largest friction."
     )
     drawn = Drawing(
-        "El Asswad 2018: k_eq and radial expansion along a record, as its figure 10",
+        "El Asswad 2018: k_eq and radial expansion along a record, as in figure 10",
         record_figure(record, curves),
         "A record of our own, with the pressures that give the paper's friction, not its "
         "measured record. The stiffness by eq. 7 with eq. 10 follows the pressure and is "
         "zero without pressure. Stiffness per chamber follows the position of the piston: "
         f"with the paper's values ({in_gpa(PAPER.bending_modulus)}, k_rod, its constant K "
-        "and the line volume that gives its k_oil), and as designed (case "
-        f"{evaluation.curve.case}, ports closed).",
+        "and the line volume that gives its k_oil), and as designed (load case "
+        f'"{evaluation.curve.case}", ports closed).',
     )
     return [text_table("El Asswad 2018: pressure record", COLUMNS, rows, note), drawn]
 

@@ -139,7 +139,7 @@ def cylinder_table(design: Design, study: HuangStudy) -> list[Block]:
         ),
     ]
     drawn = Drawing(
-        "Huang 2017: piston cylinder, as its figure 3",
+        "Huang 2017: piston cylinder, as in figure 3",
         cylinder_figure(study),
         "Piston and rod seals on their oil films, driven outstroke; the rod chamber is at "
         "return pressure. Contours are drawn over speed on a logarithmic axis.",
@@ -158,7 +158,7 @@ def simulated_table(_: Design, study: HuangStudy) -> list[Block]:
     """Figures 15 and 16: claims on the paper's simulation, judged by ours."""
     rows = [*_trends(study), _asymptote(study), *_between_rows(study)]
     drawn = Drawing(
-        "Huang 2017: plunger at 6, 8 and 10 MPa, as its figures 15 and 16",
+        "Huang 2017: plunger at 6, 8 and 10 MPa, as in figures 15 and 16",
         simulated_figure(study),
     )
     note = simulated_note(study)
@@ -212,11 +212,11 @@ def _asymptote(study: HuangStudy) -> tuple[str, ...]:
     last, before = int(known[-1]), int(known[-2])
     ours = (
         f"{mega(float(fast[last]))} MN·s/m at {speed_text(float(study.fast.speeds[last]))}, "
-        f"{percent(float(viscous[last]))} of it oil"
+        f"{percent(float(viscous[last]))} of it from oil shear"
     )
     fell = float(fast[last] / fast[before])
     still = (
-        f", {percent(1 - fell)} below that at half the speed" if fell < 1 else ", no longer falling"
+        f", {percent(1 - fell)} less than at half the speed" if fell < 1 else ", no longer falling"
     )
     return *stated, ours + still, holds(fell > 1 / STILL, fell)
 
@@ -229,14 +229,15 @@ def _between_rows(study: HuangStudy) -> list[tuple[str, ...]]:
     if not np.any(np.isfinite(share)):
         return []
     above = np.flatnonzero(beyond > 1)
-    words = "never above it at 6 MPa up to " + speed_text(float(study.fast.speeds[-1]))
+    words = "at 6 MPa never above it up to " + speed_text(float(study.fast.speeds[-1]))
     if above.size:
-        words = f"above it at 6 MPa from {speed_text(float(study.fast.speeds[above[0]]))}"
+        words = f"at 6 MPa above it from {speed_text(float(study.fast.speeds[above[0]]))}"
     return [
         (
             *claim("huang", "pressure_between"),
             f"{text.trimmed(float(np.nanmin(share)), 2)} to "
-            f"{text.trimmed(float(np.nanmax(share)), 2)} times it up to 10 mm/s; {words}",
+            f"{text.trimmed(float(np.nanmax(share)), 2)} times the sealed pressure up to "
+            f"10 mm/s; {words}",
             holds(bool(above.size or np.nanmax(share) > 1)),
         )
     ]
@@ -276,7 +277,7 @@ def ring_table(_: Design, study: HuangStudy) -> list[Block]:
         ),
     ]
     drawn = Drawing(
-        "Huang 2017: step ring over the sealed pressure, as its figures 17 and 18",
+        "Huang 2017: step ring versus sealed pressure, as in figures 17 and 18",
         ring_figure(study),
         (
             "Contact of a run-in face by its radial force balance; films of the step ring "
@@ -302,12 +303,12 @@ def plunger_table(design: Design, study: HuangStudy) -> list[Block]:
         rows.append((pressure_text(pressure), text.DASH, megas(ours), text.DASH))
     at = ", ".join(text.trimmed(1e3 * v) for v in SHOWN)
     drawn = Drawing(
-        "Huang 2017: plunger over speed and pressure, as its figure 6",
+        "Huang 2017: plunger versus speed and pressure, as in figure 6",
         plunger_figure(study),
         "Above: eq. 31 with the paper's table 2. Below: step ring and Yx seal on their oil "
         "films, with the same flow past both, outstroke.",
     )
-    names = ("pressure", f"table 2, MN·s/m at {at} mm/s", "our films", "ours over table 2")
+    names = ("pressure", f"table 2, MN·s/m at {at} mm/s", "our films", "ours / table 2")
     note = plunger_note(design, study)
     return [text_table("Huang 2017: plunger, test B", names, rows, note), drawn]
 
@@ -351,7 +352,7 @@ def fits_table(_: Design, study: HuangStudy) -> list[Block]:
         for name, fits in curves
     ]
     drawn = Drawing(
-        "Huang 2017: damping over speed and over pressure, as its figures 7 and 8",
+        "Huang 2017: damping versus speed and versus pressure, as in figures 7 and 8",
         speed_figure(study),
         "Left: the paper's table 2; right: our oil films.",
     )
@@ -359,7 +360,7 @@ def fits_table(_: Design, study: HuangStudy) -> list[Block]:
         "curve",
         "a v^b, SI; bounds of b",
         "R², largest error",
-        "a1 e^(b1 v) + a2 e^(b2 v), MN·s/m, s/m",
+        "a1 e^(b1 v) + a2 e^(b2 v), a in MN·s/m, b in s/m",
         "R², largest error",
     )
     return [text_table("Huang 2017: fits over speed", names, rows, fits_note(study)), drawn]
@@ -383,7 +384,7 @@ def parts_table(_: Design, study: HuangStudy) -> list[Block]:
             )
         )
     drawn = Drawing(
-        "Huang 2017: back-up ring, as its figures 19 and 20",
+        "Huang 2017: back-up ring, as in figures 19 and 20",
         back_up_figure(study),
         "PTFE of the step ring, 15 mm wide, edges rounded by 5 µm, 0.1 MPa of mean contact "
         "pressure: all assumed, because the paper states none of them.",
@@ -392,10 +393,10 @@ def parts_table(_: Design, study: HuangStudy) -> list[Block]:
     names = (
         "N·s/m at",
         labels,
-        "back-up ring (0.02 to 0.2 MPa)",
+        "back-up ring (at 0.02 to 0.2 MPa)",
         "chamber",
         "total, eq. 26",
-        "ring and chamber over seals",
+        "ring and chamber / seals",
     )
     note = parts_note(study, dry_ring(study.sealings))
     return [text_table("Huang 2017: plunger part by part", names, rows, note), drawn]
@@ -418,7 +419,7 @@ def kinds_table(_: Design, study: HuangStudy) -> list[Block]:
         "balance k",
         "B at 0.6 MPa, MN·s/m",
         "B at 6 MPa",
-        "6 over 0.6 MPa",
+        "B at 6 / at 0.6 MPa",
     )
     note = kinds_note(study)
     return [text_table("Huang 2017: why damping rises or falls with pressure", names, rows, note)]
@@ -442,7 +443,7 @@ def relief_table(_: Design, study: HuangStudy) -> list[Block]:
     if ink is not None:
         drawn = [
             Drawing(
-                "Huang 2017: relief of the step ring and the trend over pressure",
+                "Huang 2017: relief of the step ring, and trend with pressure",
                 ink,
                 "The land is that of the design as long as it fits on the ring, then the "
                 "width that the relief leaves. k: pressure balance at 3.3 MPa.",
@@ -452,9 +453,9 @@ def relief_table(_: Design, study: HuangStudy) -> list[Block]:
         "relief",
         "land",
         "balance k",
-        "B at 6 over 0.6 MPa: alone",
-        "both, no pressure between",
-        "both, same flow",
+        "B at 6 / at 0.6 MPa: ring alone",
+        "both seals, no pressure between",
+        "both seals, same flow",
     )
     note = relief_note(study)
     none = [("no step ring", *(text.DASH,) * 5)]
@@ -512,7 +513,7 @@ def _reasons(why: tuple[Missing, ...]) -> str:
     """Words on points without a film and the reasons."""
     if not why:
         return ""
-    more = f", and {len(why) - 1} more" if len(why) > 1 else ""
+    more = f", and {len(why) - 1} more points" if len(why) > 1 else ""
     first = why[0]
     at = f"{pressure_text(first.pressure)}, {speed_text(first.speed)}"
     return f" No film at {at}: {first.reason}{more}."
@@ -524,10 +525,10 @@ def cylinder_note(design: Design, study: HuangStudy) -> str:
     i, j = int(np.argmin(np.abs(mapped.pressures - PAPER.shown_pressure))), -1
     piston, rod = float(mapped.piston.friction[i, j]), float(mapped.rod.friction[0, j])
     return (
-        f"{other_cylinder(design)}Seals and oil are those of this design, as the paper "
-        "names only the types of its seals. Nothing is fitted to its curves. At 7.15 MPa "
-        f"and 10 mm/s the friction of the piston seal is {newtons(piston)}, that of the "
-        f"rod seal at return pressure {newtons(rod)}; wiper and guides are neglected. "
+        f"B: damping (friction / speed). {other_cylinder(design)}Seals and oil are those of this "
+        "design, as the paper names only the types of its seals. Nothing is fitted to its "
+        f"curves. At 7.15 MPa and 10 mm/s the friction of the piston seal is {newtons(piston)}, "
+        f"that of the rod seal at return pressure {newtons(rod)}; wiper and guides are neglected. "
         f"{_dry(mapped.piston.viscous)} The paper's R² of 1 (sums of squares "
         f"{listed([text.number(x, 2) for x in PAPER.interpolation])}) results from "
         "surfaces through every point, so it does not show the "
@@ -547,20 +548,26 @@ def plunger_note(design: Design, study: HuangStudy) -> str:
         words = "Our model has no film at one of the two pressures. "
     elif ours > 1 + EVEN:
         words = (
-            f"Table 2 falls to {text.trimmed(theirs, 2)} of its value from 0.6 to 6 MPa at "
-            f"{speed_text(TYPICAL)}, ours rises {times(ours)}, so our model does not "
-            "reproduce the measured trend. "
+            f"From 0.6 to 6 MPa at {speed_text(TYPICAL)}, the damping of table 2 falls to "
+            f"{text.trimmed(theirs, 2)} of its value and ours rises to {times(ours)} its value, "
+            "so our model does not reproduce the measured trend. "
         )
     elif ours < 1 - EVEN:
-        words = f"Both fall with pressure: to {theirs:.2f} (table 2) and {ours:.2f} (ours). "
+        words = (
+            f"From 0.6 to 6 MPa both dampings fall: to {theirs:.2f} (table 2) and {ours:.2f} "
+            "(ours) of their value. "
+        )
     else:
-        words = f"Table 2 falls to {theirs:.2f}, ours does not change with pressure. "
+        words = (
+            f"From 0.6 to 6 MPa, the damping of table 2 falls to {theirs:.2f} of its value; ours "
+            "does not change. "
+        )
     share = [huang_published.balance_error(float(v)) for v in huang_published.SPEEDS]
     return (
         f"{words}{_dry(mapped.viscous)} {_between(study)}The measured fall is doubtful: "
         "friction is the difference of two large forces (eq. 1), and an error of "
         f"{percent(min(share))} to {percent(max(share))} in the change of the pressure "
-        "force, in sensor or area, is as large as the whole fall at the tested speeds. "
+        "force, from sensor or area, is as large as the whole fall at the tested speeds. "
         "The paper states no accuracy. We do not know whether the measured or the "
         f"computed trend is right.{_reasons(mapped.why)}"
     )
@@ -608,8 +615,8 @@ def fits_note(study: HuangStudy) -> str:
     doubt = ""
     if loose:
         doubt = (
-            f" At {listed(loose)} MPa of table 2 at least one parameter has a larger error "
-            "than 30 %."
+            f" In the fits of table 2 at {listed(loose)} MPa, at least one parameter has an "
+            "error above 30 %."
         )
     return (
         "Intervals are for 95 % (Student's t, linearised law); the fits are least squares "
@@ -630,10 +637,10 @@ def simulated_note(study: HuangStudy) -> str:
         "so its curves cannot be recomputed; the curves here are those of this design. "
         f"Friction at 6 MPa from 0.5 to 10 mm/s: table 2 {newtons(float(theirs[0]))} to "
         f"{newtons(float(theirs[1]))}, ours {newtons(ours[0])} to {newtons(ours[-1])}. "
-        f"{_stribeck(ours, study)}sigma2 v is "
+        f"{_stribeck(ours, study)}The viscous part sigma2 v is "
         f"{percent(huang_published.viscous_share(HUANG_TABLE_2[0], 10e-3))} to "
         f"{percent(huang_published.viscous_share(HUANG_TABLE_2[-1], 10e-3))} of the "
-        "friction of table 2 at 10 mm/s, so its asymptote lies outside the tested "
+        "friction of table 2 at 10 mm/s, so the asymptote of B lies outside the tested "
         f"speeds.{_reasons(study.fast.why)}"
     )
 
@@ -656,13 +663,13 @@ def ring_note(study: HuangStudy) -> str:
     ring = study.sealings.plunger.rings[0]
     kind = study.kinds[1]
     words = (
-        f"First rod seal on {text.trimmed(1e3 * PAPER.plunger)} mm, section "
+        f"First rod seal on a {text.trimmed(1e3 * PAPER.plunger)} mm plunger, section "
         f"{text.trimmed(1e3 * ring['section'])} mm, squeeze {percent(ring['squeeze'])}"
     )
     if "relief" in ring.numbers:
         words += (
-            f", relief {text.trimmed(1e3 * ring['relief'])} of {text.trimmed(1e3 * ring['width'])} "
-            "mm, assumed"
+            f", relief {text.trimmed(1e3 * ring['relief'])} mm of the ring's "
+            f"{text.trimmed(1e3 * ring['width'])} mm width, assumed"
         )
     words += (
         f"; pressure balance {text.trimmed(kind.balance, 3)}. The largest stress includes "
@@ -676,7 +683,10 @@ def ring_note(study: HuangStudy) -> str:
     if not known.size:
         return words
     spread = float(known.max() / known.min() - 1)
-    return f"{words}Over all points of the map its mean film changes by {percent(spread)}."
+    return (
+        f"{words}The mean film thickness of this ring varies by {percent(spread)} over all points "
+        "of the map."
+    )
 
 
 def parts_note(study: HuangStudy, dry: float) -> str:
@@ -692,14 +702,14 @@ def parts_note(study: HuangStudy, dry: float) -> str:
     return (
         f"Back-up ring and chamber {verdict}: together their damping is at most {percent(most)} of "
         f"that of the seals, that of the chamber alone {percent(chamber, 1)}. This applies to a "
-        f"ring on a smooth oil film; its least film, {text.trimmed(1e6 * ring, 2)} µm, is "
-        f"thinner than the seals' roughness, and its dry friction would be {newtons(dry)}, "
+        f"ring on a smooth oil film; its least film thickness, {text.trimmed(1e6 * ring, 2)} µm, "
+        f"is thinner than the seals' roughness, and its dry friction would be {newtons(dry)}, "
         f"{percent(dry / seals)} of the least friction of the seals. The paper prints "
         f"{PAPER.chamber_shear} N·s/m for the chamber without inputs. The formula eta pi d L/h_v "
         f"gives this value for L = {text.trimmed(1e3 * member.length)} mm, "
         f"eta = {SEAL_VISCOSITY} Pa·s (both assumed) and "
         f'h_v = {text.trimmed(1e3 * member.gap, 2)} mm, which is not a "fairly large gap"; '
-        f"with 1 mm it would take {text.trimmed(huang_published.chamber_length(gap=1e-3), 3)} m "
+        f"a gap of 1 mm would need {text.trimmed(huang_published.chamber_length(gap=1e-3), 3)} m "
         "of plunger in the oil."
     )
 
@@ -716,12 +726,15 @@ def kinds_note(study: HuangStudy) -> str:
     compact = study.kinds[0]
     if compact.rise > 1 + EVEN:
         share = text.trimmed(compact.balance, 2)
-        words += f"The piston seal has k = {share}, and its B rises {times(compact.rise)}. "
+        words += (
+            f"The piston seal has k = {share}, and from 0.6 to 6 MPa its B rises to "
+            f"{times(compact.rise)} its value. "
+        )
     whole = [kind for kind in study.kinds if kind.name == BOTH]
     for kind in whole:
         words += (
-            f"B of the two rod seals in series rises {times(kind.rise)}, because the outer "
-            "seal carries most of the pressure when the same flow passes both. "
+            f"B of the two rod seals in series rises to {times(kind.rise)} its value, because the "
+            "outer seal carries most of the pressure when the same flow passes both. "
             if kind.rise > 1 + EVEN
             else "B of the two rod seals in series does not rise. "
         )
@@ -740,7 +753,7 @@ def relief_note(study: HuangStudy) -> str:
         return "No relief reverses the trend of its step ring. " + _tandem(study)
     return (
         "For the step ring alone, the trend of B turns from rising to falling at a relief "
-        f"of {1e3 * turn.relief:.2f} mm, {percent(turn.share)} of its width, where k = "
+        f"of {1e3 * turn.relief:.2f} mm, {percent(turn.share)} of the ring's width, where k = "
         f"{turn.balance:.2f}; the design has "
         f"{text.trimmed(1e3 * study.sealings.plunger.rings[0]['relief'])} mm. " + _tandem(study)
     )
@@ -757,9 +770,9 @@ def _tandem(study: HuangStudy) -> str:
         if rise < 1 - EVEN
     ]
     words = (
-        "With the same flow past both seals no relief shown reverses the trend (B rises "
-        f"at least {times(least)}), because the Yx seal behind the step ring carries the "
-        "pressure. "
+        "With the same flow past both seals, no relief shown reverses the trend (B rises "
+        f"to at least {times(least)} its value), because the Yx seal behind the step ring "
+        "carries the pressure. "
         if least > 1
         else "With the same flow past both seals some reliefs reverse the trend too. "
     )
@@ -767,7 +780,7 @@ def _tandem(study: HuangStudy) -> str:
         relief, rise = falls[-1]
         words += (
             "Without pressure between the seals, as if the space there were drained, B "
-            f"falls to {text.number(rise, 2)} at a relief of {1e3 * relief:.2f} mm. "
+            f"falls to {text.number(rise, 2)} of its value at a relief of {1e3 * relief:.2f} mm. "
         )
     return words
 
@@ -779,11 +792,11 @@ def _proven(study: HuangStudy) -> str:
     return (
         "This shows that seal types alone can make B rise on one cylinder and fall on the "
         "other. It does not show that they did so in the tests: a fall requires a long "
-        "relief and no pressure between the seals, and the paper states neither. Table 2 "
-        f"falls to {text.number(measured.rise, 2)} from {mega(measured.damping[0])} MN·s/m "
-        f"at 0.6 MPa, {times(measured.damping[0] / drained.damping[0])} our value without "
-        "pressure between the seals. We chose relief, land, squeeze, lip, oil and "
-        "roughness; the paper gives only the dry friction "
+        "relief and no pressure between the seals, and the paper states neither. In "
+        f"table 2, B is {mega(measured.damping[0])} MN·s/m at 0.6 MPa, "
+        f"{times(measured.damping[0] / drained.damping[0])} our value without pressure between "
+        f"the seals, and falls to {text.number(measured.rise, 2)} of this. We chose relief, "
+        "land, squeeze, lip, oil and roughness; the paper gives only the dry friction coefficients "
         f"{listed([text.trimmed(x) for x in PAPER.dry_friction])}."
     )
 
@@ -795,7 +808,7 @@ TRACES = equations("huang")
 def table(readings: Readings) -> list[Block]:
     """Every equation of the paper with its function."""
     note = (
-        "The functions are in actuator_opt. Beside its numbered equations the paper fits "
+        "The functions are in actuator_opt. In addition to its numbered equations, the paper fits "
         "B = a v^b and B = a1 e^(b1 v) + a2 e^(b2 v), here fits.fit_power_law and "
         "fits.fit_double_exponential. "
     )
@@ -803,11 +816,11 @@ def table(readings: Readings) -> list[Block]:
         thinner = "thinner" if readings.shift > 0 else "thicker"
         note += (
             "The equations as printed were tried on the first seal alone at 6 MPa and 5 "
-            "mm/s. Without the rigid shift its film of "
+            "mm/s. Without the rigid shift of the seal, its film of "
             f"{text.trimmed(1e6 * readings.mean, 3)} µm would be "
             f"{text.trimmed(1e6 * abs(readings.shift), 2)} µm {thinner} and carry "
             f"{percent(abs(readings.excess))} {'more' if readings.excess > 0 else 'less'} "
-            "than the load on it, so no film meets eq. 12. With the roughness on the rod "
+            "than the load on the seal, so no film meets eq. 12. With the roughness on the rod "
             f"side the flow is {percent(readings.swapped / readings.flow - 1)} larger."
         )
     return [

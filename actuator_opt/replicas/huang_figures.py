@@ -229,7 +229,7 @@ def cylinder_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
     cylinder = study.cylinder
     field = _field(cylinder.piston.speeds, cylinder.pressures, cylinder.damping)
     surface(ink, (0, 0), f"Figure 3(c): B, {_UNIT}", field)
-    contours(ink, (0, 1), f"Figure 3(d): B, {_UNIT}, over chamber pressure, MPa", field, LEVELS)
+    contours(ink, (0, 1), f"Figure 3(d): B, {_UNIT}; y axis: chamber pressure, MPa", field, LEVELS)
     return ink
 
 
@@ -239,7 +239,7 @@ def plunger_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
     ours = _field(study.plunger.speeds, study.plunger.pressures, study.plunger.damping)
     for row, words, field in ((0, "table 2", published_field()), (1, "our films", ours)):
         surface(ink, (row, 0), f"Figure 6(a): B, {_UNIT}, {words}", field)
-        contours(ink, (row, 1), f"Figure 6(b): B, {_UNIT}, over MPa, {words}", field, LEVELS)
+        contours(ink, (row, 1), f"Figure 6(b): B, {_UNIT}, {words}; y axis: MPa", field, LEVELS)
     return ink
 
 
@@ -329,7 +329,7 @@ def ring_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
     span = (0.0, float(pressures[-1]))
     stresses = [
         curve(pressures, stress.peak / 1e6, STYLES[0], "highest"),
-        curve(pressures, stress.excess / 1e6, STYLES[1], "over the oil", "pressure"),
+        curve(pressures, stress.excess / 1e6, STYLES[1], "excess over", "oil pressure"),
         curve(pressures, pressures, STYLES[7], "sealed pressure"),
     ]
     panel(
@@ -353,7 +353,7 @@ def ring_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
             ink,
             (1, 0),
             "Figure 18: film of the step ring, µm, 5 mm/s",
-            "from the sealed side, mm",
+            "distance from the sealed side, mm",
             films,
             span=(0.0, max(max(profile.xs) for profile in films)),
             range_=(low - margin, high + margin),
@@ -362,7 +362,7 @@ def ring_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
     means = [curve(study.plunger.pressures / 1e6, 1e6 * thickness, STYLES[0], "mean film")]
     low, high = _limits(means[0].ys)
     panel(
-        ink, (1, 1), "Its mean over pressure, µm, 5 mm/s", _PRESSURE, means,
+        ink, (1, 1), "Mean film of the step ring, µm, 5 mm/s", _PRESSURE, means,
         span=(0.0, max(means[0].xs)), range_=(low - 0.05, high + 0.05),
     )  # fmt: skip
     return ink
@@ -386,7 +386,7 @@ def back_up_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
     damping = np.array([ring.damping for ring in study.rings])
     over = [curve(1e3 * speeds, damping, STYLES[0], "back-up ring")]
     panel(
-        ink, (0, 1), "Figure 20: its B, N·s/m", _SPEED, over,
+        ink, (0, 1), "Figure 20: B of the back-up ring, N·s/m", _SPEED, over,
         span=(0.0, 1e3 * float(speeds[-1])), range_=(0.0, _highest(over)),
     )  # fmt: skip
     return ink
@@ -423,7 +423,7 @@ def relief_figure(study: HuangStudy, *, width: float = 180.0) -> Ink | None:
     panel(
         ink,
         (0, 1),
-        "B at 6 MPa over B at 0.6 MPa",
+        "B at 6 MPa / B at 0.6 MPa",
         "relief of the step ring, mm",
         rises,
         span=(float(lengths[0]), float(lengths[-1])),

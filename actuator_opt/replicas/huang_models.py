@@ -198,7 +198,7 @@ class SealArrangement:
         return self.damping[1] / self.damping[0]
 
 
-BOTH, DRAINED = "plunger, both seals", "plunger, no pressure between"
+BOTH, DRAINED = "plunger, both seals", "plunger, no pressure between seals"
 
 _NAMES = {u_cup.TYPE.name: "Yx", compact.TYPE.name: "compact (DAS)"}
 """Names that the paper uses for these types of seal."""

@@ -158,9 +158,8 @@ def of_another_cylinder(design: Design, source: str, theirs: tuple[float, float,
     names = (
         "{}/{}-{}".format(*(text.trimmed(1e3 * size) for size in sizes)) for sizes in (theirs, ours)
     )
-    return "The {} has a {} cylinder, this design a {}: they need not agree. ".format(
-        source, *names
-    )
+    words = "The {} has a {} cylinder (bore/rod-stroke), this design a {}, so results may differ. "
+    return words.format(source, *names)
 
 
 def rounded(value: float) -> str:

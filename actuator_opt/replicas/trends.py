@@ -290,9 +290,13 @@ def _paths(subject: PreparedDesign, factor: Factor, v: Values) -> Sequence[str]:
     return [path for path in dict.fromkeys(paths) if path in v or path.endswith("groove_width")]
 
 
-TITLE = "Aalto thesis: what raises O-ring friction, its table 1"
+TITLE = "Aalto thesis: what raises O-ring friction (table 1)"
 
-COLUMNS = ("to increase friction, as printed", "ours by coefficient", "ours on the oil film")
+COLUMNS = (
+    "to increase friction, as printed",
+    "our friction by coefficient",
+    "ours on the oil film",
+)
 
 PRINTED = {1: "increase", -1: "decrease"}
 """Words of the column "to increase friction"."""
@@ -350,8 +354,8 @@ def _note(table_1: Trends) -> str:
     dry, two = table_1.coefficient, table_1.film
     point = (
         "Numbers: relative change of friction divided by that of the factor (no effect "
-        f"below {text.trimmed(NEGLIGIBLE)}), both rings together, in load case "
-        f"{table_1.case}: {text.trimmed(dry.running, 3)} N by coefficient, "
+        f"below {text.trimmed(NEGLIGIBLE)}), for both rings together. Friction in load case "
+        f'"{table_1.case}": {text.trimmed(dry.running, 3)} N by coefficient, '
     )
     point += (
         f"no film ({two.why}). "
@@ -373,7 +377,7 @@ def _rings(table_1: Trends) -> str:
         return ""
     return (
         f"The table applies to O-rings, so an O-ring of {ELASTOMER} with the same section "
-        f"and squeeze replaces the {listed(table_1.replaced)} of the design. "
+        f"and squeeze replaces each of these seals of the design: {listed(table_1.replaced)}. "
     )
 
 
@@ -383,11 +387,11 @@ def _pressure(table_1: Trends) -> str:
     said = table_1.coefficient.verdict(_index("hydraulic pressure"))
     ours = {
         "agrees": "our friction falls here too",
-        "disagrees": "our friction rises, as that of a ring pressed on by the pressure must",
+        "disagrees": "our friction rises, as it must for a ring that is pressed on by the pressure",
     }.get(said, "our friction does not depend on pressure here")
     return (
         f"One row of the thesis is reversed: less {listed(odd)} cannot press a ring "
-        "harder. In all ten rows of the scanned text the left and right words are "
+        "harder. In all ten rows of the scanned text the words in both columns are "
         "opposite, so no column is swapped. The table of the O-ring handbook "
         "(ORingFriction, A6-1) agrees in the nine other rows and prints Increase in this "
         f"row; {ours}. Friction that falls with pressure was measured on other seals "
@@ -412,8 +416,8 @@ def _rest(table_1: Trends) -> str:
         else "with the same verdict"
     )
     return (
-        significance + "Surface finish of the O-ring is taken as roughness, like that of "
-        "the metal; taken as quality, a decrease means rougher rubber, "
+        significance + "Surface finish of the O-ring is read as roughness, like that of "
+        "the metal; if read as quality, a decrease means rougher rubber, "
         f"{turned}."
     )
 

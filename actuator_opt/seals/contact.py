@@ -79,7 +79,7 @@ RELIEF = Size(
     "relief",
     "length",
     "axial width of the part of a step ring's face between its sealed side and its land, on which "
-    "the oil pressure acts; default: half of the ring width minus the land",
+    "the oil pressure acts; default: half the difference between ring width and land",
     "1 mm",
 )
 TAPER = Size(
@@ -113,12 +113,14 @@ class SealContact:
     ----------
     line_load : normal force per length of circumference [N/m]
     width : contact width [m]
-    peak : highest contact pressure above the outer pressure [Pa]
+    peak : highest contact pressure above the outer pressure [Pa], that on the side away from the
+        sealed pressure
     profile : function that returns the static contact pressure above the outer pressure [Pa] at t =
         x/b; x is the distance from the sealed side, b the width
     excess : excess of the contact pressure over the oil pressure [Pa]; if it is not positive, the
         sealed pressure opens the contact, and the profile is that of a contact that just touches
-    profile_width : width of the profile [m]: the contact width, or less if the load is too small
+    profile_width : width of the profile [m]: the contact width; for an O-ring less, if a profile of
+        this width with this peak would carry more than the line load
     """
 
     line_load: Array

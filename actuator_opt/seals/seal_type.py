@@ -52,7 +52,7 @@ class SizeFault(NamedTuple):
 
 
 class SealPart(NamedTuple):
-    """A piece of seal compound in a groove: free section area [m^2], depth of its centre [m]."""
+    """Piece of seal compound in a groove: section area before mounting [m^2], centre depth [m]."""
 
     area: Array
     depth: Array
@@ -128,7 +128,7 @@ class SealType:
     face : whether the contact depends on the elastic constants of the sliding face
     o_ring_gland : whether the seal is an O-ring alone in a standard gland; gland fill, stretch and
         section are then checked, and the standard sizes and compounds of O-rings apply
-    model : function that computes the line load, whose sources reports cite; None if the line load
+    model : function that computes the line load; reports cite its sources. None if the line load
         follows from a law of `LAWS`
     contact_model : description of this model for reports; {law} is replaced by the name of the law
     warnings : function that yields reasons to doubt the contact of a seal

@@ -481,8 +481,8 @@ def integrate(
 def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> tuple[bool, ...]:
     """On/off flags of the equations after a restart of the integration.
 
-    The flag of an instant follows from the time. A switch keeps its state; at the very start, the
-    state follows from its guard.
+    There are two kinds of flags. An instant's flag is true after its time. A switch keeps its flag;
+    only at the very start, the flag follows from the sign of the switch's guard expression.
     """
     instants = tuple(t + APART >= instant for instant in compiled.instants)
     if before:
@@ -492,7 +492,10 @@ def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> 
 
 
 def _margins(run: _Run, t: Array, states: Array, m: tuple[bool, ...]) -> tuple[Array, Array]:
-    """Distance of every switch from its next change, and its rate; arrays (switches, samples)."""
+    """Guard expression of every switch, and its rate; arrays (switches, samples).
+
+    Both have the sign for which the guard is positive until the switch changes next.
+    """
     signs = np.where(m[len(run.compiled.instants) :], 1.0, -1.0)[:, None]
     margin = _at_switches(run.compiled, run.compiled.guards, t, states, m) * signs
     return margin, _at_switches(run.compiled, run.compiled.guard_rates, t, states, m) * signs
@@ -505,7 +508,7 @@ def _at_switches(
     states: Array,
     m: tuple[bool, ...],
 ) -> Array:
-    """Guard of every switch, or its rate, at all samples; array (switches, samples)."""
+    """Guard expression of every switch, or its rate, at all samples; array (switches, samples)."""
     count = len(compiled.system.switches)
     if not count:
         return np.empty((0, len(t)))
@@ -603,7 +606,7 @@ def _first_change(
 
 
 def _suspects(times: Array, margin: Array, slope: Array) -> Array:
-    """Whether each guard changes sign in each interval, judged by a cubic from end to end."""
+    """Whether each guard changes sign in each interval, judged by a cubic with its end slopes."""
     step = np.diff(times)
     (a, b), (c, d) = (
         (margin[:, :-1], margin[:, 1:]), (slope[:, :-1] * step, slope[:, 1:] * step),

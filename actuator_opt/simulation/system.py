@@ -245,7 +245,7 @@ class Compiled:
 
 
 def _below(state: Symbol) -> Expression:
-    """The state of a pressure below zero, not below `EMPTY`; 0 for a pressure above zero."""
+    """A pressure state, limited to the range from `EMPTY` atmospheres to 0."""
     return clip(state, EMPTY * ATMOSPHERIC_PRESSURE, 0.0)
 
 

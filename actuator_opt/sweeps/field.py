@@ -120,7 +120,7 @@ class Field:
     def _edge(
         self, table: Array, point: Array
     ) -> tuple[list[float], list[float], list[float]] | None:
-        """Return ends and margins of the grid edge under a point.
+        """Return ends and margins of the grid edge on which a point lies.
 
         None if the point is a node or inside a cell, or if the margin has the same sign at both
         ends.

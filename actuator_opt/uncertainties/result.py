@@ -122,7 +122,7 @@ class Uncertainty(Displayed):
     inputs : uncertain inputs
     count, method, seed : number, method and seed of the draws
     rate : probability of meeting all requirements
-    rate_checks : probability of meeting all requirements and the whole check list
+    rate_checks : probability of meeting all requirements and the built-in checks
     limits : results for each requirement, then each check
     nominal : outputs of the nominal design, by name; the margin of a limit has the name of the
         limit

@@ -347,7 +347,7 @@ class _RobustSearch:
         if self.infeasible:
             return (
                 f"{_no_design_meets(optimisation)} the limits with the margins that a yield of "
-                f"{_percent(self.target)} requires because of scatter: {self._shortfalls()}. The "
+                f"{_percent(self.target)} requires because of scatter ({self._shortfalls()}). The "
                 f"design shown meets all limits in {yield_text} of {outcome.samples} "
                 f"independent draws; without margins for scatter {quantity.label} is {before} "
                 f"at a yield of {_percent(outcome.nominal_rate)}{remarks}. The suggested "
@@ -362,8 +362,8 @@ class _RobustSearch:
             )
         remark = "" if self.converged else ", though the margins added for scatter did not converge"
         return (
-            f"all limits are met in {yield_text} of {outcome.samples} independent draws, "
-            f"{_percent(self.target)} requested{remark}; {cost}{remarks}"
+            f"all limits are met in {yield_text} of {outcome.samples} independent draws "
+            f"(requested: {_percent(self.target)}){remark}; {cost}{remarks}"
         )
 
 

@@ -141,7 +141,7 @@ def test_reversed_pressures_are_detected_and_said(tmp_path):
     swapped = [header[0], "p2 [bar]", "p1 [bar]", *header[3:]]
     line = refused(written(swapped, rows), tmp_path)
     assert "p1 and p2 seem swapped" in line
-    assert "swap them" in line
+    assert "swap p1 and p2" in line
 
 
 @pytest.mark.parametrize(

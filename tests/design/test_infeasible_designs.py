@@ -168,7 +168,9 @@ def test_a_fixed_dimension_that_alone_is_enough_comes_first(path, now):
     result = solved(actuator)
     card, first = result.infeasibility, result.infeasibility.cures[0]
     assert (first["kind"], first["parameter"]) == ("dimension", path)
-    assert card.sentence.startswith(f"infeasible: free {path} {now} -> {first['needed_text']} (")
+    assert card.sentence.startswith(
+        f"infeasible: it is enough to change {path} {now} -> {first['needed_text']} ("
+    )
     ranks = [KINDS.index(cure["kind"]) for cure in card.cures]
     assert ranks == sorted(ranks)
     assert all(cure["advised"] is (cure["kind"] != "safety factor") for cure in card.cures)
@@ -193,7 +195,7 @@ def test_dimensions_that_are_enough_together():
     (both,) = [cure for cure in card.cures if cure["kind"] == "dimension"]
     values = {part["parameter"]: part["needed_text"] for part in both["together"]}
     assert list(values) == ["retention.length", "retention.wall"]
-    assert card.sentence.endswith("together are enough")
+    assert card.sentence.endswith(" together")
     assert solved(actuator, values).status == "optimal"
 
 

@@ -314,7 +314,7 @@ def test_reasons(linerless, thin):
     unknown = evaluated((ROWS, ROWS.replace("t700_epoxy, angle: 28", "t700_2510, angle: 28")))
     for name in ("liner_mismatch_factor", "liner_bond_factor"):
         assert "cure_temperature" in uncured.why(name)
-        assert unknown.why(name) == "t700_2510 has no thermal expansion"
+        assert unknown.why(name) == "the thermal expansion of t700_2510 is unknown"
 
 
 # --- criteria ------------------------------------------------------------------------------------

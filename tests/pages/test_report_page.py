@@ -35,7 +35,7 @@ def test_requirements_show_limit_result_margin_status_and_case():
     rows = rows_of(fixture.page_data(fixture.build_evaluation(), **SOURCE), "Requirements")
     assert rows[5] == [
         "seal_squeeze",
-        "smallest seal squeeze after growth and tolerance",
+        "smallest seal squeeze after bore growth and tolerance",
         "≥ 8 %",
         "9.400 %",
         "+17.5 %",

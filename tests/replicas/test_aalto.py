@@ -144,7 +144,7 @@ def test_the_air_behind_the_static_test(static):
 
 def test_the_assumption_that_meets_the_largest(static):
     """With the air found, the largest displacement is the mean of the two measured."""
-    one = next(a for a in static.assumptions if a.name.startswith("air for largest"))
+    one = next(a for a in static.assumptions if a.name.startswith("fitted air"))
     assert one.up.range[1] == pytest.approx(0.205e-3, rel=1e-3)
     assert one.down.range[1] == pytest.approx(0.475e-3, rel=1e-3)
 

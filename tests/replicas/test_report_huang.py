@@ -133,7 +133,9 @@ def test_the_pages_say_what_is_proven_and_what_is_not(tables):
     assert "It does not show that they did so in the tests" in kinds
     assert "We chose relief, land, squeeze" in kinds
     relief = plain(tables["relief of the step ring"].note)
-    assert re.search(r"rising to falling at a relief of 4\.3\d mm, 74 % of its width", relief)
+    assert re.search(
+        r"rising to falling at a relief of 4\.3\d mm, 74 % of the ring's width", relief
+    )
     assert "no relief shown reverses the trend" in relief
     parts = plain(tables["plunger part by part"].note)
     assert "can be neglected, as the paper says" in parts

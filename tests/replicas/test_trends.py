@@ -432,7 +432,7 @@ def test_the_table_shows_numbers_and_reasons():
     for words in (
         "prints Increase in this row",
         "an O-ring of nbr_70 with the same section and squeeze replaces",
-        "in load case down",
+        'in load case "down"',
     ):
         assert words in table.note
 

@@ -70,7 +70,7 @@ class SymbolArray(np.ndarray):
         return bool(self.view(np.ndarray).item())
 
     def item(self, *index: Any) -> Any:
-        """A number stays a number; a symbol has no number."""
+        """The single element: a plain number, or an array without axes that contains a symbol."""
         value = self.view(np.ndarray).item(*index)
         return wrapped(_boxed(value)) if isinstance(value, Symbol) else value
 
@@ -82,7 +82,7 @@ def _boxed(value: Any) -> Any:
 
 
 def wrapped(value: Any) -> Any:
-    """An object array as symbols; as plain numbers if it contains no symbol."""
+    """Convert an object array to an array of symbols, or of plain numbers if it has no symbols."""
     if isinstance(value, (list, tuple)):
         parts = [wrapped(part) for part in value]
         return parts if isinstance(value, list) else tuple(parts)
@@ -169,7 +169,7 @@ def _real(value: Any) -> Any:
 
 
 def _strip(value: Any) -> Any:
-    """Operand of a comparison: the derivative does not matter."""
+    """Replace `real` of a symbol by the symbol; in a comparison, derivatives do not matter."""
     return value.args[0] if isinstance(value, Symbol) and value.op == "real" else value
 
 
@@ -557,16 +557,16 @@ _QUICK: dict[str, Callable[..., Any]] = {
     "abs": abs,
     "isnan": lambda a: a != a,
 }
-"""Operations on Python numbers that equal those of NumPy, many times faster."""
+"""Operations on Python numbers with the same results as those of NumPy, but many times faster."""
 
 
 class Recorder:
-    """A graph that records a model exactly, at a point that decides its branches.
+    """Records every operation of a model, along the branches that it takes at a given point.
 
     Attributes
     ----------
     graph : the recorded operations
-    guards : truth values that the model asked for, with the answers at the point
+    guards : conditions on which the model branched, each with its truth at the point
     """
 
     def __init__(self) -> None:
@@ -597,7 +597,7 @@ class Recorder:
         return self._known[symbol]
 
     def decide(self, symbol: Symbol) -> bool:
-        """Record a truth value that decides a branch; return it at the point."""
+        """Record a condition on which the model branches; return its truth at the point."""
         symbol = _strip(symbol)
         answer = bool(self.value(symbol))
         self.guards[symbol] = answer

@@ -142,7 +142,10 @@ def _hull(*values: float) -> Bounds:
 
 
 def _of_choice(condition: Any, yes: Any, no: Any) -> Bounds:
-    """Bounds of a choice, which is a minimum or maximum if its condition compares its branches."""
+    """Bounds of a choice between two values.
+
+    If the condition compares these two values, the choice is their minimum or maximum.
+    """
     (a, b), (c, d) = bounds_of(yes), bounds_of(no)
     if getattr(condition, "op", None) in ("lt", "le"):
         less, more = condition.args
@@ -188,8 +191,8 @@ class Graph:
     labels: list[str] = field(default_factory=list)
     """Name of each function in `tables`."""
     truth: Callable[[Symbol], bool] | None = None
-    """Decides a truth value that a model asks for; given for exact graphs only, whose operations
-    are those of NumPy (NaN and rounding included) and are never simplified."""
+    """Function that decides a condition on which a model branches. Only exact graphs have it; their
+    operations are those of NumPy (NaN and rounding included) and are never simplified."""
 
     def variable(self, name: str, limits: Bounds = ANY) -> Symbol:
         """Add a variable: a number within limits, called `name` in generated code."""
@@ -620,7 +623,7 @@ def _scaled(factor: Any) -> Callable[..., Any]:
 
 
 def _steep(value: Any) -> Any:
-    """Replace 0 by infinity, so that the derivative of a root is zero there instead of infinite."""
+    """Replace 0 by infinity, so that the derivative of sqrt(x) at x = 0 is 0 and not infinite."""
     return choose(less(0.0, value), value, math.inf)
 
 
@@ -675,7 +678,7 @@ def vectorised(
     known: Mapping[Symbol, str] | None = None,
     library: Any = np,
 ) -> Callable[..., Any]:
-    """As `function`, for arrays; both branches of every choice are computed.
+    """Like `function`, but for arrays, so that both branches of every choice are computed.
 
     `known` gives code for expressions that are already computed; `library` is NumPy or a
     library with the same function names.

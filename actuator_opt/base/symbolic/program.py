@@ -1,7 +1,7 @@
-"""Programs: the operations that results depend on, on numbered slots, run by a small machine.
+"""Programs: instructions that read and write numbered slots, run by a small virtual machine.
 
-The machine is a C extension. It is built at installation if there is a C compiler; without it,
-callers use the models themselves, through NumPy.
+The virtual machine ("machine" for short) is a C extension. It is built at installation if there is
+a C compiler; without it, callers use the models themselves, through NumPy.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ except ImportError:
     _MACHINE = None
 OPERATIONS: Final[tuple[str, ...]] = getattr(_MACHINE, "OPERATIONS", ())
 AVAILABLE: Final = _MACHINE is not None
-"""Whether the machine was built at installation."""
+"""Whether the virtual machine was built at installation."""
 NOT_BUILT: Final = "the machine was not built at installation"
 """Reason why programs cannot be written or run."""
 MACHINE: Final = Path(__file__).with_name("machine.h")
@@ -33,14 +33,15 @@ MACHINE: Final = Path(__file__).with_name("machine.h")
 SCRIPT: Final = Path(__file__).with_name("machine.js")
 """The same machine in JavaScript, for pages; it takes `Program.for_page`."""
 WIDTHS: Final = (4, 8, 16)
-"""Numbers of directions that the machine differentiates along at once."""
+"""Numbers of directions for which the virtual machine can compute derivatives in one run."""
 SHARED: Final = ("real", "part")
-"""Operations that compute nothing: a value without its derivatives, and one root of several. They
-share the slot of their operand."""
+"""Operations that compute nothing new: the value of the operand without its derivatives, and one of
+the computed roots of a polynomial. Their value is in the slot of their operand."""
 MOST_SLOTS: Final = 2**16
 """Largest number of slots that an instruction can name."""
 _FROZEN: Final = 16
-"""Flag of an instruction whose first operand counts as constant; doubled for each further one."""
+"""Flag of an instruction whose first operand counts as a constant, without derivative; the flag of
+the second operand is twice this number, that of the third four times."""
 
 
 @dataclass(slots=True)
@@ -49,12 +50,13 @@ class Program:
 
     Parameters
     ----------
-    code : (instructions, 5), each an operation with flags, the slot of the result, three operands
-    extra : slots of the coefficients of polynomials
+    code : (instructions, 5); each row has the operation with its flags, the slot of the result, and
+        the slots of three operands
+    extra : slots of the coefficients of polynomials whose roots are computed
     outputs : slot of every output
-    frozen : whether an output has no derivatives in any case
-    constants : values of the slots after the first `slots`
-    slots : number of slots that instructions write
+    frozen : for each output, whether it never has derivatives
+    constants : values of the constants, whose slots follow all others
+    slots : number of slots for inputs and for results of instructions
     inputs : number of inputs; they are in the first slots
     """
 
@@ -78,7 +80,7 @@ class Program:
 
         Parameters
         ----------
-        points : (points, inputs)
+        points : inputs of every point, (points, inputs)
         seeds : change of every input in every direction, (points, inputs, directions)
         """
         code, varies = self.along(seeds.any(axis=(0, 2)))
@@ -117,7 +119,9 @@ class Program:
         }
 
     def along(self, moving: Array) -> tuple[Array, Array]:
-        """The code that carries derivatives of the moving inputs only, and which outputs vary.
+        """Return instructions that only differentiate by `moving` inputs; which outputs vary.
+
+        An input moves if its change is not 0 in some direction.
 
         Parameters
         ----------
@@ -141,7 +145,7 @@ class Program:
 
 
 def program(inputs: Sequence[Symbol], outputs: Sequence[Any]) -> Program:
-    """Program of outputs, each a symbol or a number, from inputs.
+    """Write the program that computes outputs (symbols or numbers) from inputs.
 
     A slot is used again once its value is no longer needed, so that all slots stay in fast memory.
     """
@@ -149,7 +153,7 @@ def program(inputs: Sequence[Symbol], outputs: Sequence[Any]) -> Program:
 
 
 def _owner(node: Symbol) -> Symbol:
-    """The node whose slot a node shares."""
+    """The node whose slot holds the value of `node`; an operation in `SHARED` has no own slot."""
     while node.op in SHARED:
         node = node.args[0]
     return node
@@ -202,7 +206,7 @@ class _Writer:
         return self._finished()
 
     def _place(self, value: Any) -> int:
-        """Slot of an operand; constants count down from -1 until all slots are known."""
+        """Slot of an operand; constants have -1, -2, ... until the number of slots is known."""
         if isinstance(value, Symbol):
             at = 0
             while value.op in SHARED:
@@ -225,7 +229,7 @@ class _Writer:
             return np.where(array < 0, self.count - 1 - array, array).astype(np.int32)
 
         if self.count + len(self.values) > MOST_SLOTS:
-            raise ValueError("its program is too long")
+            raise ValueError("its recorded program is too long")
         code = np.array(self.code, dtype=np.int32).reshape(-1, 5)
         code[:, 2:] = settled(code[:, 2:])
         return Program(

@@ -1,8 +1,9 @@
-"""Functions of many inputs that record themselves once and are then run by the machine.
+"""Functions of many inputs that are recorded once and then run by a small virtual machine.
 
-The function is called with symbols in place of numbers; every operation becomes an instruction. A
-branch that depends on values is recorded as a guard: points that would take the other branch go
-through the function itself. The recording is checked against the function before it is used.
+The function is called with symbols in place of numbers; every operation becomes an instruction of
+the virtual machine ("machine" for short, see `program`). A branch that depends on values is
+recorded as a guard: points that would take the other branch go through the function itself. The
+recording is checked against the function before it is used.
 """
 
 from __future__ import annotations
@@ -19,15 +20,16 @@ from .arrays import Recorder, elements
 from .program_store import MOST_RECORDINGS, Recording
 
 FEW = 20
-"""Number of points outside the recorded branches before their share is judged."""
+"""Number of points with unrecorded branches, above which a function may be recorded again."""
 OFTEN = 0.25
-"""Share of points outside the recorded branches that calls for a new recording."""
+"""A function is recorded again if also more than this share of all points took such branches."""
 AGREEMENT = 1e-9
-"""Largest difference of a checked recording, relative to a value or to 1."""
+"""Largest permitted difference between a recording and its function, divided by the value (or by 1
+if the value is smaller)."""
 
 
 class RecordedFunction:
-    """A function of points (inputs, k), real or complex, with results (rows, k).
+    """A function of k points (inputs, k), real or complex, that returns results (rows, k).
 
     Parameters
     ----------
@@ -88,7 +90,7 @@ class RecordedFunction:
         return rows
 
     def _slopes(self, points: Array) -> Array:
-        """Results with their complex steps; columns with equal real parts share their values."""
+        """Results with their complex steps; points with equal real parts are evaluated together."""
         assert self.recording is not None
         real, steps = points.real, points.imag / STEP
         new = np.append(True, (real[:, 1:] != real[:, :-1]).any(axis=0))
@@ -107,7 +109,7 @@ class RecordedFunction:
         return rows
 
     def _complete(self, points: Array, rows: Array, holds: Array) -> None:
-        """Compute the columns outside the recorded branches; record again if they are many."""
+        """Call the function at points outside the recorded branches; record again if many."""
         self.points += len(holds)
         if holds.all():
             return

@@ -37,7 +37,7 @@ _hertz = quantities.INPUTS["frequency"].text
 def part_lists(
     section: type[Section] = Scenario, loc: tuple[str, ...] = ()
 ) -> Mapping[tuple[str, ...], type[Section]]:
-    """Locations of the signals in a scenario, with the section type of their parts.
+    """Locations of the signals in a scenario, with the class of their parts.
 
     >>> [".".join(loc) for loc in part_lists()][:3]
     ['motor.torque', 'load.force', 'load.torque']
@@ -54,7 +54,7 @@ def part_lists(
 
 
 def _parts(view: FileView) -> Iterator[tuple[Loc, str, type[Section]]]:
-    """Location, shape and section type of every part of a signal whose shape is known."""
+    """Location, shape and class of every signal part that has a known shape."""
     for place, section in part_lists().items():
         for index in range(len(view.items(*place))):
             shape = view.text(*place, index, "shape")
@@ -175,7 +175,7 @@ def stated_references(view: FileView) -> list[str]:
 
 
 def drives(view: FileView) -> Iterator[Fault]:
-    """Check that only one of `signal` and `control` drives the valve, and that it is connected."""
+    """Check that `signal` or `control`, not both, drives the valve, and the valve is connected."""
     driven = [name for name in ("signal", "control") if stated(view, name)]
     if len(driven) == 2:
         message = "both signal and control are stated, and both would drive the valve"

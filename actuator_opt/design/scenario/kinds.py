@@ -263,7 +263,7 @@ class SignalShape:
     lasts : whether the signal keeps its final value
     moves_on : whether the signal changes gradually, so that a following error is defined
     settles : whether the signal becomes constant, so that the response to a superposed step is
-    defined
+        defined
     changes_after : function that returns whether the signal changes after a time [s]
     words : function that returns the text for a report, from the texts of height and times
     """
@@ -444,7 +444,7 @@ SHAPES = kinds(
     ),
     SignalShape(
         "sine",
-        "sine with amplitude value and this frequency, from start to end",
+        "sine of amplitude value and of this frequency, from start to end",
         ("value", "frequency"),
         ("start", "end", "phase"),
         instead={},

@@ -1,4 +1,4 @@
-"""The Scenario: signals and events that act on a design over time, as typed sections in SI.
+"""The Scenario: signals and events that act on a design over time, with a class for each block.
 
 A signal is the sum of the parts in its list.
 """
@@ -349,7 +349,7 @@ class Controller(Section):
         float,
         Of(
             "pressure_gain",
-            "gain of a feedback of load-pressure changes, which is subtracted from the signal",
+            "gain on changes of the load pressure; the product is subtracted from the signal",
         ),
     ] = 0.0
     pressure_time: Annotated[

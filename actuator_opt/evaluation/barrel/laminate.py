@@ -1,10 +1,11 @@
 """The laminated barrel: exact layered tube by default, or thin laminate.
 
 Stresses under unit pressure, unit axial force and unit temperature change are superposed for every
-load path. Cure stresses and the preload of tie rods are residual stresses, independent of the load.
+load path: pressure without axial force, and with the largest axial force. Cure stresses and the
+preload of tie rods are residual stresses, independent of the load.
 
-A gradient varies each variable in a copy of the design. Most variables do not affect the wall, so
-most copies have equal walls: only the distinct walls of a batch are computed.
+To compute a gradient, each variable is varied in a copy of the design. Most variables do not affect
+the wall, so most copies have equal walls: only the distinct walls of a batch are computed.
 """
 
 from __future__ import annotations
@@ -158,7 +159,7 @@ def compute(
     )
     unknown = [layer.name for layer in layers if layer.expansions is None]
     if unknown:
-        wall.why_no_mismatch = f"{unknown[0]} has no thermal expansion"
+        wall.why_no_mismatch = f"the thermal expansion of {unknown[0]} is unknown"
         states = tuple(Climate(state.name, 0.0, cold=state.cold) for state in states)
     else:
         wall.expansion = (solution.axial[WARMTH], solution.warm_hoop)
@@ -238,8 +239,8 @@ def _autofrettage(
 def _load(solution: WallSolution, rows: list[int], axial: Array) -> Stress:
     """Stress per unit pressure in the layers `rows`, (faces, layers, 1, paths, designs).
 
-    The faces are the inner and outer face of each layer. `axial` is the axial force per pressure on
-    each load path, (paths, designs).
+    The faces are the inner and outer face of each layer. `axial` is the axial force per unit
+    pressure on each load path (without and with axial force), (paths, designs).
     """
     parts = []
     for part in solution.stress:
@@ -257,7 +258,10 @@ def _by_climate(values: Sequence[Array]) -> Array:
 def _strengths(
     design: Design, layers: Sequence[Layer], residual: _ResidualStress, supply: Array, wall: Wall
 ) -> None:
-    """Compute pressures at first-ply failure and yield by layer, failure mode and load path."""
+    """Compute pressures at first-ply failure and yield, by layer, failure mode and load path.
+
+    The load paths are pressure without and with axial force.
+    """
     paths, axial = tuple(wall.path.per_pressure), np.stack(list(wall.path.per_pressure.values()))
     brittle = [i for i, layer in enumerate(layers) if layer.strengths]
     if brittle:
@@ -287,8 +291,9 @@ def _rows(
 ) -> Iterator[tuple[str, Array]]:
     """Yield values (climates, paths, designs) for each climate and load path, with their names.
 
-    A climate is the coldest or hottest service temperature. The optimiser treats each pair as a
-    separate smooth limit, because an optimum may lie where two of these limits intersect.
+    A climate is the coldest or hottest service temperature, a load path pressure without or with
+    axial force. The optimiser treats each pair as a separate smooth limit, because an optimum may
+    lie where two of these limits intersect.
     """
     for t in range(values.shape[0]):
         for p, place in enumerate(paths):
@@ -376,7 +381,8 @@ def _ladder(
 ) -> None:
     """Compute burst pressures for each extreme service temperature and load path.
 
-    In a wall with a liner, also compute first-ply failure with a liner that yields.
+    The load paths are pressure without and with axial force. In a wall with a liner, also compute
+    first-ply failure with a liner that yields.
     """
     if wall.missing:
         return

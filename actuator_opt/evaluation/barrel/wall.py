@@ -265,7 +265,7 @@ def metal_swelling(
 def _strengths(
     stock: MaterialValues, name: str, g: Geometry, path: LoadPath, supply: Array, wall: Wall
 ) -> None:
-    """Compute yield and burst pressures of every load path, and the stress of a pressure pulse."""
+    """Compute yield and burst pressures without and with axial force, and the stress of a pulse."""
     size = {"inner_radius": g.inner_radius, "outer_radius": g.outer_radius}
     strength = stock.allowable(name, "yield_strength", "strength_1_tension")
     ultimate = stock.allowable(name, "ultimate_strength", "strength_1_tension")
@@ -296,7 +296,7 @@ def _utilisation(
 ) -> Array:
     """Reciprocal of the pressure at which the bore yields.
 
-    If `clamped`, it includes the stress that the preload of tie rods causes at zero pressure.
+    If `clamped`, the stress that the preload of tie rods causes at zero pressure is included.
     """
     hoop, radial, along = barrel.bore_stresses(pressure=1.0, axial_force=axial, **size)
     zero = 0.0 * hoop

@@ -8,8 +8,8 @@ so it is valid for any tolerance of the solver [Neumaier2004].
 The relaxation uses the logarithms of all quantities. In logarithms, the bounds on a sum are loose
 if its terms vary widely. Such a sum is therefore also stated with the quantities themselves, as a
 linear and so exact row. A product is then not linear: four planes bound it [McCormick1976]. Its two
-factors are the quantity with the widest range and the rest of the product. Thus mass and stiffness
-of a layer, for example, both follow the layer's thickness.
+factors are the quantity with the widest range and the rest of the product. Thus the mass and the
+stiffness of a layer, for example, are both tied to the layer's thickness.
 """
 
 from __future__ import annotations
@@ -147,7 +147,7 @@ LINES_PER_CURVE = 3
 
 
 class Bound(NamedTuple):
-    """Logarithm of the least objective in a box, and where the box's relaxation is loose."""
+    """Lower bound on the objective's logarithm in a box, and where the relaxation is loose."""
 
     value: float
     atoms: Vector
@@ -159,7 +159,8 @@ class Bound(NamedTuple):
     product_errors: Vector
     """For every product, the error of its bounds, weighted with the multipliers of its rows."""
     slopes: Vector
-    """Reduced cost of every column: slope of the objective as the column leaves its best limit."""
+    """Reduced cost of every column: slope of the objective as the column moves off the end of its
+    range at which it is best."""
 
 
 class Bounding:
@@ -209,7 +210,7 @@ class Bounding:
         self.missed = float(np.clip(FINE * gap, *TANGENT_DISTANCES))
 
     def _definitions(self) -> tuple[Any, Vector, Vector]:
-        """Rows that define outputs and directions by atoms, and the constraint rows >= 0."""
+        """Rows that define outputs and directions by atoms, and the constraint rows (each >= 0)."""
         layout = self.layout
         new = np.flatnonzero(layout.plain < 0)
         defined = np.concatenate([new, np.arange(len(layout.plain), len(layout.levels))])
@@ -533,7 +534,7 @@ def samples(lead: Symbol) -> Vector:
 
 
 def ranges(nodes: Sequence[Symbol]) -> dict[Symbol, tuple[float, float]]:
-    """Finite ranges, from samples, of values that a single positive value determines."""
+    """Sampled ranges, if finite, of the values that depend on one positive value alone."""
     leads = Leads()
     groups: dict[Symbol, list[Symbol]] = {}
     for node in nodes:
@@ -557,7 +558,7 @@ ratio of its two terms varies by at least this."""
 
 
 class _PlainAtoms:
-    """Adds atoms for the values of monomials, which the relaxation otherwise has as logarithms."""
+    """Adds atoms for values of monomials, of which the relaxation otherwise has only logarithms."""
 
     def __init__(self, relaxation: Relaxation) -> None:
         self.relaxation = relaxation
@@ -590,7 +591,7 @@ class _PlainAtoms:
         return self.known[powers]
 
     def term(self, form: Form, scale: float) -> Form:
-        """A monomial divided by e^scale, as a multiple of the atom that `atom` adds for it."""
+        """A monomial divided by e^scale, as a multiple of the monomial's own atom (see `atom`)."""
         if not form.powers:
             return Form(math.exp(form.constant - scale))
         number = self.atom(form.powers)

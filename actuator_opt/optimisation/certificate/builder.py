@@ -88,7 +88,7 @@ class Builder:
             if number == 0 or not math.isfinite(number):
                 raise Unknown(
                     f"a factor or term in the model is always {number:g}, "
-                    "whose logarithm is not finite"
+                    "which has no finite logarithm, as the proof requires"
                 )
             return math.copysign(1.0, number), Form(math.log(abs(number)))
         if value.index not in self._forms:
@@ -248,7 +248,7 @@ class Builder:
         return parts[0] if size < (1 - 1e-9) * sum(sizes) else None
 
     def _terms(self, node: Symbol) -> Signomial:
-        """Monomials whose sum is a value; operands of unknown sign are expanded."""
+        """A sum or difference as monomials; operands of unknown sign are expanded."""
         first, second = (self.signomial(arg) for arg in node.args)
         return first.plus(second, -1.0 if node.op == "sub" else 1.0)
 
@@ -302,7 +302,7 @@ class Builder:
     def _difference(
         self, plus: Sequence[Form], minus: Sequence[Form], low: float, high: float
     ) -> Form:
-        """Logarithm of a positive difference plus - minus."""
+        """Logarithm of the sum of `plus` less the sum of `minus`, between `low` and `high`."""
         minuend = self.relaxation.total(plus, 0.0, math.inf)
         subtrahend = self.relaxation.total(minus, 0.0, math.inf)
 
@@ -406,12 +406,13 @@ LEAST_DECAY = 1e-3
 
 
 PARTS = 4
-"""Number of parts per layer of known stiffness in the bound on a wall's growth, which is valid with
-any number."""
+"""Number of parts into which each layer of known stiffness is cut in the bound on a wall's growth.
+The bound is valid with any number."""
 
 
 CONTRACTION = 0.2
-"""Transverse contraction per axial strain in the bound on a wall's stiffness, valid with any value.
+"""Transverse contraction per axial strain, assumed in the bound on a wall's axial stiffness. The
+bound is valid with any value.
 """
 
 
@@ -425,7 +426,10 @@ class EnvelopeProblem(Protocol):
 
 
 class Envelopes:
-    """Bounds on models without a closed formula, in one load case; exact for `reference`."""
+    """Bounds on models without a closed formula, in one load case.
+
+    For the evaluated design `reference`, the bounds are exact.
+    """
 
     def __init__(
         self,
@@ -736,8 +740,8 @@ def _bearable(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> 
 def _hoop(layer: plies.Layer) -> Array:
     """Largest hoop strength of a ply at its service temperatures; at least its fibre strength.
 
-    Axial strain and temperature alone cause far less hoop stress, by the equilibrium of the wall
-    (`tube_bounds.greatest_pressure`).
+    So it is far above the hoop stress that axial strain and temperature cause alone, which
+    `tube_bounds.greatest_pressure` requires.
     """
     strengths = layer.strengths
     fibre_tension = _largest([strength.tension_1 for strength in strengths])

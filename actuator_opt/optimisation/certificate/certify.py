@@ -142,8 +142,9 @@ def _along_the_stroke(
 ) -> Iterator[tuple[Any, Any]]:
     """Bound the minimum stiffness from above by its values at some piston positions.
 
-    The compliance of the two chambers is a 2 x 2 matrix. Elastic walls only add to that
-    of the oil alone, so its determinant and diagonal are at least those of the oil.
+    The compliance of the two chambers is a 2 x 2 matrix. Elastic walls only add compliance to that
+    of the oil, so the matrix has at least the determinant and the diagonal that it has for the oil
+    alone.
     """
     springs, stroke = case_statics.springs, case_statics.base.geometry.stroke
     if springs.topology != "per_chamber" or springs.seals is not None:
@@ -233,8 +234,9 @@ FAR_OFF = 0.2
 """Upper limit on a curve's `Bound.excess` when the gain of a split is estimated, since the first
 split gains most."""
 FLOOR = 0.003
-"""Added to a curve's `Bound.price` in the estimated gain of a split. Among loose curves
-in a chain (each the argument of the next), some have a price of 0."""
+"""Added to a curve's `Bound.price` in the estimated gain of a split. Among loose curves in a chain
+(each the argument of the next), some have a price of 0; without this addition, no gain would be
+expected from a split of their ranges."""
 SQUEEZES = 2
 """Maximum number of rounds that cut the ranges of the first box."""
 DIRECTIONS = 16
@@ -257,7 +259,7 @@ class BoxSearch:
 
     Parameters
     ----------
-    layout, bounding : the relaxation
+    layout, bounding : the relaxation, as arrays and as a linear programme
     best : logarithm of an objective; only designs that are at least as good are of interest
     variables : atoms (elementary quantities) whose ranges are always cut in the first box
     deadline : time of `time.perf_counter` at which the search stops
@@ -388,8 +390,8 @@ class BoxSearch:
 Report: TypeAlias = Callable[[float], None] | None
 
 BOXES = 200
-"""Default limit on the number of boxes. They take some three seconds, and unlike a time limit give
-the same bound on every machine."""
+"""Default limit on the number of boxes, which takes some three seconds. Unlike a time limit, it
+gives the same bound on every machine."""
 
 AIM = 0.049
 """Target gap of a coarse search, which only has to exclude much better designs."""

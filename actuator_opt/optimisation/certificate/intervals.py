@@ -188,7 +188,7 @@ def decided(condition: Any) -> bool | None:
 
 
 def branch(node: Symbol) -> Any:
-    """The branch of a choice that all designs take, except those with NaN; None if not known.
+    """The branch of a conditional that all designs take, except those with NaN; None if unknown.
 
     If one branch is NaN itself, the other branch is the result.
     """
@@ -202,7 +202,7 @@ def branch(node: Symbol) -> Any:
 
 
 def extreme(node: Symbol) -> str | None:
-    """Whether a choice takes the larger ("max") or the smaller ("min") branch; else None."""
+    """Whether a conditional takes the larger ("max") or the smaller ("min") branch; else None."""
     condition, yes, no = node.args
     if getattr(condition, "op", None) not in ("lt", "le"):
         return None
@@ -400,7 +400,7 @@ CROSSED = 1e-8
 
 
 def _lone(form: Form) -> int:
-    """Number of the atom if the form (logarithm of a monomial) is that single atom's; else -1."""
+    """Number of the atom if the monomial of the form is that atom alone; else -1."""
     lone = form.constant == 0 and len(form.powers) == 1 and form.powers[0][1] == 1.0
     return form.powers[0][0] if lone else -1
 
@@ -466,7 +466,7 @@ class Layout:
         return tables, number, np.array([link.level for link in self.links])
 
     def ratios(self, box: Box) -> tuple[Vector, Vector]:
-        """Least and largest ratio out/base of every `Link` within a box."""
+        """Least and largest ratio out/base of the two atoms of every `Link` within a box."""
         if not self.links:
             return np.empty(0), np.empty(0)
         tables, number, constant = self._linked
@@ -479,7 +479,7 @@ class Layout:
 
     @cached_property
     def parts(self) -> tuple[slice, slice, slice]:
-        """Where the list of forms has curve outputs, directions (log ratios), constraint rows."""
+        """Slices of the list of forms: curve outputs, directions (log ratios), constraint rows."""
         outputs_end, directions_end = self.curves, self.curves + self.directions
         return (
             slice(0, outputs_end),
@@ -523,11 +523,11 @@ class Box:
         return cls(lower, upper, none - FAR, none + FAR)
 
     def split(self, direction: int, at: float) -> tuple[Box, Box]:
-        """The two parts of the box, below and above a value of a direction."""
+        """The two parts of the box, below and above a value of a direction (log ratio)."""
         return self.cut(direction, high=at), self.cut(direction, low=at)
 
     def cut(self, direction: int, *, low: float = -FAR, high: float = FAR) -> Box:
-        """The part of the box between two values of a direction."""
+        """The part of the box between two values of a direction (log ratio)."""
         lows, highs = self.low.copy(), self.high.copy()
         lows[direction] = max(lows[direction], low)
         highs[direction] = min(highs[direction], high)
@@ -591,7 +591,7 @@ class _Propagation:
         self._raise(self.lower, self.upper, lower, upper)
 
     def _back(self, low: Vector, high: Vector) -> None:
-        """Cut the directions, using the ranges of the curves' outputs."""
+        """Cut the ranges of the directions (log ratios), using those of the curves' outputs."""
         layout = self.layout
         inner = layout.functions.inverse_hull(low, high)
         ends = [(end - layout.constant) / layout.factor for end in inner]

@@ -172,7 +172,7 @@ class Tables:
     def secant_errors(
         self, low: Vector, high: Vector, slope: Vector, indices: Any
     ) -> tuple[Vector, Vector]:
-        """Least and largest distance of some functions from lines through their first values.
+        """Least and largest distance of some functions from lines through their values at `low`.
 
         Parameters
         ----------
@@ -270,7 +270,7 @@ class CurveFunctions:
         return lowest, highest
 
     def secant_errors(self, low: Vector, high: Vector, slope: Vector) -> tuple[Vector, Vector]:
-        """Least and largest distance of the functions from lines through their first values.
+        """Least and largest distance of the functions from lines through their values at `low`.
 
         Both are 0 for functions that are convex or concave throughout.
         """

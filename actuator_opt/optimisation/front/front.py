@@ -1,11 +1,11 @@
 """Computes an evenly spread Pareto front, and checks it for designs that are only locally best.
 
-The anchors are the designs that are best in one objective each. They share one sweep of the design
-space and one model call per step; between equally good anchors, the other objectives decide.
-Designs between the anchors are computed for levels (upper limits) of the objectives, starting from
-their neighbours and in shared steps. Each design is compared with all others at its own levels, and
-a better design replaces it. Independent full searches at some levels then check whether a better
-design was overlooked.
+The anchors are the designs that are best in one objective each. The searches for them share one
+sweep of the design space and one model call per step; between equally good anchors, the other
+objectives decide. Designs between the anchors are computed for levels (upper limits) of the
+objectives, starting from their neighbours and in shared steps. Each design is compared with all
+others at its own levels, and a better design replaces it. Independent full searches at some levels
+then check whether a better design was overlooked.
 
 On a continuous front, designs at nearly equal levels are close together. If two designs are farther
 apart than their levels permit, the front jumps and no design lies between them.
@@ -128,7 +128,7 @@ def _joint_search(
 
 
 def _with_cache(evaluate: Callable[[Array], PointValues]) -> Callable[[Array], PointValues]:
-    """The function with a cache of its last real points, since every objective sweeps them."""
+    """The function with a cache of its last real (not complex) points, which all sweeps share."""
     cache: dict[bytes, PointValues] = {}
 
     def remembered(points: Array) -> PointValues:

@@ -189,7 +189,10 @@ def _nearest_places(search: FrontSearch, steps: int) -> list[Place]:
 
 
 def _flood(search: FrontSearch, first_places: Iterable[Place], steps: int, max_levels: int) -> int:
-    """Try lattice points, then the neighbours of every success; return the number of successes."""
+    """Try lattice points, then the neighbours of every point whose level a design reaches.
+
+    Returns the number of these points.
+    """
     visited: set[Place] = set()
     queue, successes = list(first_places), 0
     while queue and len(visited) < max_levels:
@@ -480,7 +483,7 @@ def final_designs(search: FrontSearch, count: int) -> Indices:
 
 
 def wide_gaps(search: FrontSearch, indices: Indices) -> list[FrontGap]:
-    """Wide gaps between designs of two objectives, in order."""
+    """Wide gaps along a front of two objectives, in order."""
     units = search.units[:, indices]
     sizes = np.sqrt((np.diff(units, axis=1) ** 2).sum(axis=0))
     reaches = np.array([float(_section_lengths(search, *pair).sum()) for pair in _pairs(indices)])
@@ -492,7 +495,7 @@ def wide_gaps(search: FrontSearch, indices: Indices) -> list[FrontGap]:
 
 
 def close_gaps(search: FrontSearch, count: int) -> None:
-    """Add designs in wide gaps of two objectives, until all remaining wide gaps are jumps."""
+    """Add designs in wide gaps (two objectives only), until all remaining wide gaps are jumps."""
     for number in range(SPACING_ROUNDS):
         indices = final_designs(search, count)
         open_gaps = [gap for gap in wide_gaps(search, indices) if not gap.jump]
@@ -541,7 +544,7 @@ def _pairs(indices: Indices) -> Iterator[tuple[int, int]]:
 
 
 def _section(search: FrontSearch, left: int, right: int) -> Indices:
-    """Indices, in order, of the designs with levels between those of two designs."""
+    """Indices, in order, of the designs whose levels lie between the levels of two designs."""
     levels = np.array([design.level[0] for design in search.designs])
     low, high = sorted((levels[left], levels[right]))
     order = np.argsort(levels, kind="stable")

@@ -144,7 +144,7 @@ class FrontDesign:
     Parameters
     ----------
     level, direction : parameters `a` and `r` of `Objectives.scaled` (objectives,)
-    point : variables and t
+    point : the variables, and t, the level of the objectives, which is minimised
     unit : normalised objectives (objectives,)
     hessian : estimate of the Lagrangian's Hessian, divided by `Tracer.scale`
     """
@@ -249,7 +249,7 @@ class Tracer:
         return self._at_own(starts)
 
     def _at_own(self, starts: Sequence[FrontStart]) -> list[FrontDesign]:
-        """The designs at the starts, with their gradients."""
+        """The start points themselves as designs, with their gradients."""
         z = np.stack([start.z for start in starts], axis=1)
         if not self.exact:
             x = self.evaluator.space.to_x(z)
@@ -289,7 +289,7 @@ class Tracer:
     def exchange(
         self, designs: list[FrontDesign], other_x: Vector, other_units: Vector
     ) -> list[FrontDesign]:
-        """Replace each design for which another is better at its levels, after a descent from it.
+        """Replace each design that another beats at its levels, by a descent from the better one.
 
         Parameters
         ----------
@@ -536,7 +536,7 @@ class FrontSearch:
         self.replaced += [self.tracer.values(design.unit[:, None])[:, 0] for design in designs]
 
     def rescale(self, low: Vector, width: Vector) -> None:
-        """Normalise to another range; `low` and `width` (objectives,) are currently normalised."""
+        """Normalise to another range: `low` and `width` (objectives,), in the present units."""
         tracer = self.tracer
         tracer.rescale(tracer.ideal + low * tracer.width, width * tracer.width)
         self.designs = tracer.at_own_levels(self.designs)
@@ -544,7 +544,7 @@ class FrontSearch:
 
     @property
     def plane(self) -> Vector:
-        """The designs' objectives (objectives, k), projected on the plane of equal sums."""
+        """Normalised objectives (objectives, k), projected on the plane where their sum is 0."""
         units = self.units
         return np.asarray(units - units.mean(axis=0))
 

@@ -30,7 +30,7 @@ from .steps import (
 )
 
 STEPS = 14
-"""Maximum number of steps that use the Hessian of the other optimum."""
+"""Maximum number of steps that use the Hessian of the known, similar optimum."""
 
 MOST_STEPS = 100
 """Maximum number of evaluations by SLSQP after a restoration."""
@@ -50,7 +50,7 @@ class Criteria(NamedTuple):
 
 EXACT = Criteria(SETTLED, 1e-11, RESIDUAL)
 """For final results. The limit on the violation is strict because a violation changes the objective
-to first order; the other two change it only to second order."""
+to first order; step length and residual change it only to second order."""
 
 ROUGH = Criteria(1e-4, 1e-7, 1e-3)
 """For comparisons of designs, which need seven correct digits."""
@@ -66,7 +66,7 @@ WORSE = 0.02
 class Nearest(NamedTuple):
     """The optimum near the start; if there is none, the least infeasible point.
 
-    `followed` is True if steps with the other optimum's Hessian converged.
+    `followed` is True if steps with the Hessian of the known, similar optimum converged.
     """
 
     optimum: Point | None

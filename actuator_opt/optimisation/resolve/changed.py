@@ -27,7 +27,7 @@ from .steps import (
 
 
 def applicable(parametric: ParametricProblem, evaluator: Evaluator) -> bool:
-    """Whether `ChangedProblems` can solve it: no equalities, all gradients by complex steps."""
+    """Whether `ChangedProblems` is applicable: no equalities, all gradients by complex steps."""
     exact = evaluator.complex_works and not evaluator.difference_rows.any()
     return exact and not parametric.problem.equality_names
 

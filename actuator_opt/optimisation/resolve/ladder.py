@@ -158,7 +158,7 @@ class _Ends:
             self.best_feasible[i] = _better(self.best_feasible[i], stop)
 
     def better_designs(self, valleys: Sequence[Point]) -> dict[int, Vector]:
-        """For each problem, the best optimum of another problem, if it beats its own result."""
+        """For each problem that optima of other problems improve, the best of these optima."""
         points = [*valleys, *(optimum for optimum in self.optima if optimum is not None)]
         rows = self.changed.margins_at(points)
         missed = self.changed.evaluator.violations(rows.reshape(len(rows), -1), "worst")

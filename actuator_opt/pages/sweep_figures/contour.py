@@ -135,7 +135,7 @@ def contour_figure(
     first, second = (drawn.axis(axis.path) for axis in drawn.study.plan.axes)
     xs, ys = first.shown(field.xs), second.shown(field.ys)
     ink = Ink(_WIDTH, 400.0)
-    words = f"{track.label} over {first.words} and {second.words}"
+    words = f"{track.label} versus {first.words} and {second.words}"
     top = heading(ink, drawn, words, _notes(drawn, field)) + 4.0
     spans = [(float(values[0]), float(values[-1])) for values in (xs, ys)]
     axes = Axes(ink, (_LEFT, top, _WIDE, _TALL), *spans)
@@ -179,7 +179,7 @@ def _notes(drawn: SweepFigureData, field: Field) -> str:
 
 
 def _paper(axes: Axes, points: Array, scale: Sequence[Any]) -> list[Point]:
-    """Positions on paper of points in SI."""
+    """Convert points from SI values to positions on paper."""
     shown = [convert(points[:, k]).tolist() for k, convert in enumerate(scale)]
     return [(axes.x(x), axes.y(y)) for x, y in zip(*shown, strict=True)]
 

@@ -97,7 +97,7 @@ def _ranges(tracks: Sequence[Track], values: Sequence[Array]) -> list[tuple[floa
 def _lines(
     table: Array, ranges: Sequence[tuple[float, float]], places: Sequence[float], top: float
 ) -> list[list[list[Point]]]:
-    """The line of every design in parts, interrupted where a value is missing."""
+    """The line of every design, divided into parts where a value is missing."""
     low, high = (np.array(side)[:, None] for side in zip(*ranges, strict=True))
     heights = top + (high - table) / (high - low) * _TALL
     lines = []

@@ -130,9 +130,9 @@ def _directions(
 
 
 def _span(feasible: Array, every: Sequence[Array]) -> tuple[float, float]:
-    """Axis range: that of the feasible designs, extended on each side by its own width.
+    """Axis range: the range of the feasible designs, extended on each side by its width.
 
-    It ends earlier where no design lies farther out.
+    On a side where no design lies that far out, the axis ends earlier.
     """
     known = np.concatenate(list(every))
     known = known[np.isfinite(known)]
@@ -201,7 +201,7 @@ def _limits(drawn: SweepFigureData, axes: Axes, metric: str, *, upright: bool) -
 def _line(
     drawn: SweepFigureData, axes: Axes, pair: tuple[str, str], values: Array, exact: bool
 ) -> None:
-    """Draw the Pareto line as a staircase; beyond it, some design is better in both metrics."""
+    """Draw the Pareto line as a staircase; for any point on its worse side, a design is better."""
     if not values.shape[1]:
         return
     xs, ys = (

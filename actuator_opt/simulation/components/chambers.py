@@ -27,9 +27,9 @@ from . import valve
 from .circuit import Circuit
 
 DEEPEST = -12.0
-"""Limit of the travel into an end stop after half the dead volume is used up, divided by half the
-length of the dead volume (our choice). At this limit, a share of 6e-6 of that half is still filled
-with oil."""
+"""Limit of the travel into an end stop, counted from where half the dead volume is used up, and
+divided by half the length of the dead volume (our choice). At this limit, a share of 6e-6 of that
+half is still filled with oil."""
 FLOOR = 1e-6
 """Lower limit of the absolute pressure in the formulas for oil and air [Pa], to guard against
 rounding."""

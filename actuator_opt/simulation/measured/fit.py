@@ -300,7 +300,7 @@ class RecordFitProblem:
         self.weights = {name: 1 / level for name, level in self.levels(x).items()}
 
     def _likelihood_cost(self, x: Array) -> float:
-        """Negative log-likelihood: sum over all samples of the logarithm of the residual level."""
+        """Negative log-likelihood: sum over all samples of ln(rms residual of the channel)."""
         try:
             levels = self.levels(x)
         except Unsolvable:
@@ -491,7 +491,7 @@ def _bandwidth(moments: Array) -> float:
 
 
 def _summed(moments: Array, width: float) -> Array:
-    """Sum of products of samples; their weights fall to zero at a time lag of one bandwidth."""
+    """Sum of products of two samples; the weight falls to zero at a time lag of one bandwidth."""
     total: Array = moments.T @ moments
     for k in range(1, min(int(np.ceil(width)), moments.shape[0])):
         product = moments[:-k].T @ moments[k:]
@@ -500,7 +500,7 @@ def _summed(moments: Array, width: float) -> Array:
 
 
 def _coloured(problem: RecordFitProblem, outputs: Array, residuals: Array) -> Array:
-    """Covariance of U^T r if the residuals r of every channel are an autoregression."""
+    """Covariance of U^T r, with U = `outputs`, if the residuals r are an autoregression."""
     from scipy.linalg import matmul_toeplitz  # slow import, rarely used
 
     total = np.zeros((outputs.shape[1], outputs.shape[1]))
@@ -545,8 +545,8 @@ factor (our choice)."""
 ALIKE: Final = 0.9
 """Correlation above which two parameters are reported as not separable (our choice)."""
 EDGE: Final = 0.01
-"""A parameter counts as at the end of its range if it is closer to it than this share of the range
-(our choice)."""
+"""A parameter counts as at an end of its range if its distance from that end is less than this
+share of the range (our choice)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -218,7 +218,7 @@ class Stand:
 
     @property
     def opening(self) -> float:
-        """Distance of the spool from its centre at rest [V]; positive extends."""
+        """Distance of the spool from its centre at rest [V]; positive on the side that extends."""
         assert self.plant.valve is not None
         return self.rest()["spool"] - self.plant.valve.offset
 
@@ -366,7 +366,7 @@ STICKING = (0.8, 0.9, 1.0, 1.1, 1.22, 1.35, 1.5)
 """Factors on a resonance frequency of the linear models, for seals that slide and for seals that
 stick. Crossovers are searched for between the resulting frequencies. Sticking seals raise the
 resonance, because their bristles add stiffness."""
-HOW_PHASE = "position divided by control error in the closed loop, where this ratio is 1"
+HOW_PHASE = "phase between control error and position, where both amplitudes are equal"
 Loop = Callable[[float], complex]
 """Open loop of the linear models as a function of frequency [Hz], including the controller gain."""
 
