@@ -11,11 +11,13 @@ from ..base import files, runs as run_store
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..design import Design
 from ..evaluation import Evaluation
-from .actuator import Actuator, Plugins, as_actuator, plugins_of
+from ..version import VERSION
+from .actuator import Actuator, Plugins, as_actuator, located, plugins_of
 from .optimum import evaluate
 from .recorded_runs import Run, damage_reported, read_run
 from .reports import date_from_environment, file_name, require_date
 from .restoring import changed_plugins, named_plugins, restore
+from .simulations import Trial, as_trial, placed, with_design
 from .sweeping import store_of, without_variables
 
 if TYPE_CHECKING:
@@ -34,24 +36,28 @@ def export(
     actuator: Actuator | None = None,
     date: str | None = None,
     plugins: Plugins = (),
+    scenario: Trial | str | Path | None = None,
 ) -> list[ExportFile]:
-    """Write a design as STEP, DXF or XLSX files.
+    """Write a design as STEP, DXF, XLSX or C files.
 
     STEP contains the turned parts as solids, in mm, positioned as in the section drawing of the
     retracted actuator; their volumes agree with the mass breakdown. It lacks parts whose shape the
     models do not define: threads, studs and plugs of the rod, eyes, seals and guides, ports, and
     the holes for tie rods in the plates. DXF contains the section with true dimensions and one
     layer per part. XLSX contains the requirements with margins as live formulas, the section as a
-    picture, the variables and the masses.
+    picture, the variables and the masses. C contains metrics, limits and their gradients as a
+    function of the variables and other numbers, in a source file and a header.
 
     Parameters
     ----------
     subject : a design in any form, an evaluation, or an optimisation (its best design)
-    formats : any of "step", "dxf" (both need the extra ``cad``), "xlsx" (extra ``excel``)
+    formats : any of "step", "dxf" (both need the extra ``cad``), "xlsx" (extra ``excel``), "c"
     folder, stem : folder and name of the files; default: the design's name in ``reports/``
     actuator : the design as read, if `subject` is its evaluation; exports are named after its file
     date : ISO date in the files; default: that of SOURCE_DATE_EPOCH, or else none
     plugins : the user's metrics and constraints, for a design that is not an `Actuator` yet
+    scenario : write the equations of this scenario instead, with the design in it; in C only, and
+        named after the scenario's file
 
     Returns
     -------
@@ -59,28 +65,53 @@ def export(
 
     Raises
     ------
-    UsageError : an unknown format, or a date that is not an ISO date
-    InputError : a part cannot be drawn, or the folder cannot be written
+    UsageError : an unknown format, a format without scenarios, or a date that is not an ISO date
+    InputError : a part cannot be drawn, the design cannot be written as C, or the folder cannot be
+        written
     ActuatorError : the extra that the format needs is not installed
     """
     from ..exports import require_formats, write_exports
 
     if date is not None:
         require_date(date)
-    formats = require_formats((formats,) if isinstance(formats, str) else formats)
+    formats = (formats,) if isinstance(formats, str) else formats
+    formats = require_formats(formats, scenario=scenario is not None)
+    date = date or date_from_environment()
     if isinstance(subject, Actuator | Design | str | Path):
-        actuator = as_actuator(subject, plugins)
-        evaluation = evaluate(actuator)
+        exported = as_actuator(subject, plugins)
+        evaluation = None
     else:
         evaluation = subject if isinstance(subject, Evaluation) else subject.best_evaluation
-    source = None if actuator is None else actuator.source
-    return write_exports(
-        evaluation,
-        formats=formats,
-        folder=Path(folder),
-        stem=stem or Path(file_name(evaluation.design, source)).stem,
-        date=date or date_from_environment(),
-    )
+        own = plugins_of(plugins) if actuator is None else actuator.plugins
+        exported = Actuator(evaluation.design, None if actuator is None else actuator.source, own)
+    if scenario is not None:
+        return _export_scenario(as_trial(scenario), exported, Path(folder), stem, date)
+    with located(exported):
+        return write_exports(
+            evaluation or evaluate(exported),
+            exported.subject(),
+            formats=formats,
+            folder=Path(folder),
+            stem=stem or Path(file_name(exported.design, exported.source)).stem,
+            date=date,
+        )
+
+
+def _export_scenario(
+    trial: Trial, actuator: Actuator, folder: Path, stem: str | None, date: str | None
+) -> list[ExportFile]:
+    """Write the equations of a scenario with a design."""
+    from ..exports import written
+    from ..exports.c_scenario import scenario_files
+
+    file = trial.loaded.source.file
+    with placed(trial):
+        contents = scenario_files(
+            trial.scenario, with_design(trial, actuator).subject(), trial.records,
+            stem=stem or ("scenario" if file.startswith("<") else Path(file).stem),
+            program=f"actuator-opt {VERSION}", date=date,
+        )  # fmt: skip
+    return written(folder, contents)
 
 
 ROWS = 5000

@@ -311,20 +311,32 @@ def verify_dynamics(
 
 
 def fitting(trial: Trial, design: Actuator | Design | str | Path) -> Actuator:
-    """Put another design into a scenario, with the values that the scenario sets.
+    """As `with_design`, for a scenario with a cylinder to verify.
 
     Raises
     ------
     InputError
         the scenario does not fit this design, or has no cylinder to verify
     """
-    from ..design.scenario import design_faults
-
-    scenario, source = trial.scenario, trial.loaded.source
+    scenario = trial.scenario
     for key in ("motor", "held_ports"):
         if getattr(scenario, key) is not None:
             fault = trial.loaded.diagnostic(key, "replaces the cylinder")
             raise InputError(replace(fault, remedy="verify with a scenario that lacks this block"))
+    return with_design(trial, design)
+
+
+def with_design(trial: Trial, design: Actuator | Design | str | Path) -> Actuator:
+    """Put another design into a scenario, with the values that the scenario sets.
+
+    Raises
+    ------
+    InputError
+        the scenario does not fit this design
+    """
+    from ..design.scenario import design_faults
+
+    scenario, source = trial.scenario, trial.loaded.source
     changes = {change.path: change.value for change in trial.loaded.changes}
     actuator = as_actuator(design)
     actuator = actuator.changed(changes) if changes else actuator

@@ -246,7 +246,15 @@ def export(
     design: DesignFile,
     formats: Annotated[
         list[str] | None,
-        typer.Option("--format", metavar="step|dxf|xlsx", help="File format. Repeatable."),
+        typer.Option("--format", metavar="step|dxf|xlsx|c", help="File format. Repeatable."),
+    ] = None,
+    scenario: Annotated[
+        str | None,
+        typer.Option(
+            "--scenario",
+            metavar="SCENARIO",
+            help="Write the equations of this scenario with the design instead (C only).",
+        ),
     ] = None,
     sets: Set = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Output folder.")] = REPORTS,
@@ -263,20 +271,25 @@ def export(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Export the design for CAD (STEP, DXF) or Excel (XLSX)."""
+    """Export the design for CAD (STEP, DXF), Excel (XLSX) or a program of your own (C)."""
     from .. import api as verbs
     from ..exports import require_formats
 
-    known = require_formats(formats or [])
+    known = require_formats(formats or [], scenario=scenario is not None)
     job = Job(
         design, sets=sets, plugins=plugin, report=True, out=out, date=date,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
-    evaluation = job.run(verbs.evaluate)
-    exports = verbs.export(evaluation, formats=known, folder=out, actuator=job.actuator, date=date)
+    options: dict[str, Any] = {"formats": known, "folder": out, "date": date}
+    if scenario is None:
+        evaluation = job.run(verbs.evaluate)
+        exports = verbs.export(evaluation, actuator=job.actuator, **options)
+    else:
+        evaluation = None
+        exports = job.run(verbs.export, scenario=scenario, **options)
     files = [file.to_dict() for file in exports]
     job.answer(lambda: {"files": files}, files=files)
-    return verbs.exit_code(evaluation)
+    return ExitCode.MET if evaluation is None else verbs.exit_code(evaluation)
 
 
 def schema(

@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, absolute, real, where
+from ..base.numeric import Array, absolute, array_of, real, where
 from ..base.quantities import Sense
 from ..design.material import Material, allowable_factor, ply_constants
 from ..design.model import Design, LoadCase
@@ -234,7 +234,7 @@ def by_case(
     computed: MetricArrays, metric: str, array: Array, cases: tuple[str, ...], place: str = ""
 ) -> Iterator[tuple[str, Array]]:
     """Yield the name of each load case to which a metric applies, with its values (designs,)."""
-    array = np.asarray(array)
+    array = array_of(array)
     if array.ndim < 2:
         yield ALL_CASES, np.atleast_1d(array)
         return
@@ -273,6 +273,18 @@ def extremes(design: Design, numbers: Mapping[str, float]) -> tuple[float, float
     if design.environment is not None:
         temperatures += [design.environment.temperature_min, design.environment.temperature_max]
     return min(temperatures), max(temperatures)
+
+
+def fixed_when_prepared(path: str) -> bool:
+    """Whether the number at a PATH changes `allowances`, which a prepared design does not renew.
+
+    >>> [fixed_when_prepared(path) for path in ("fluid.temperature", "cylinder.bore")]
+    [True, False]
+    """
+    block, _, key = path.rpartition(".")
+    if block.startswith("materials."):
+        return "knockdown" in key
+    return key in ("temperature", "temperature_min", "temperature_max")
 
 
 def allowances(

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, UsageError, library, shown
 from ..base.files import write_all
+from ..evaluation.kernel import PreparedDesign
 from ..evaluation.result import Evaluation
 
-FORMATS = ("step", "dxf", "xlsx")
-"""Names of the formats, which are also the file suffixes."""
+FORMATS = ("step", "dxf", "xlsx", "c")
+"""Names of the formats, which are also the file suffixes; C has a header file too."""
 
 _NEEDS = {"dxf": "ezdxf", "xlsx": "openpyxl"}
 
@@ -29,12 +30,17 @@ class ExportFile:
         return {"path": str(self.path), "sha256": self.sha256}
 
 
-def require_formats(formats: Sequence[str]) -> tuple[str, ...]:
+def require_formats(formats: Sequence[str], *, scenario: bool = False) -> tuple[str, ...]:
     """Drop duplicate formats; refuse unknown formats, and formats whose library is missing.
+
+    Parameters
+    ----------
+    formats : names of formats
+    scenario : whether the equations of a scenario are written; they have one format only
 
     Raises
     ------
-    UsageError : if a format is unknown, or none is given
+    UsageError : if a format is unknown or does not fit, or none is given
     ActuatorError : if the library of a format is not installed
     """
     if not formats:
@@ -43,29 +49,40 @@ def require_formats(formats: Sequence[str]) -> tuple[str, ...]:
         if name not in FORMATS:
             remedy = f"use {', '.join(FORMATS)}, each with its own --format"
             raise UsageError(Diagnostic(f'unknown format "{shown(name)}"', remedy))
+        if scenario and name != "c":
+            message = f"the equations of a scenario have no {name.upper()} file"
+            raise UsageError(Diagnostic(message, "use --format c only"))
         if name in _NEEDS:
             library(_NEEDS[name])
     return tuple(dict.fromkeys(formats))
 
 
-def _content(evaluation: Evaluation, name: str, date: str | None) -> bytes:
+def _files(
+    evaluation: Evaluation, subject: PreparedDesign, name: str, stem: str, date: str | None
+) -> dict[str, bytes]:
+    """The files of a format, by file name."""
     program = f"actuator-opt {evaluation.version}"
     if name == "step":
         from .step import bodies, step
 
         text = step(bodies(evaluation), name=evaluation.name, program=program, date=date)
-        return text.encode("ascii")
+        return {f"{stem}.step": text.encode("ascii")}
     if name == "dxf":
         from .dxf import dxf
 
-        return dxf(evaluation, program=program, date=date)
+        return {f"{stem}.dxf": dxf(evaluation, program=program, date=date)}
+    if name == "c":
+        from .c_design import design_files
+
+        return design_files(subject, stem=stem, program=program, date=date)
     from .xlsx import xlsx
 
-    return xlsx(evaluation, program=program, date=date)
+    return {f"{stem}.xlsx": xlsx(evaluation, program=program, date=date)}
 
 
 def write_exports(
     evaluation: Evaluation,
+    subject: PreparedDesign,
     *,
     formats: Sequence[str],
     folder: Path,
@@ -76,7 +93,7 @@ def write_exports(
 
     Parameters
     ----------
-    evaluation : evaluation of the design to export
+    evaluation, subject : the design to export, evaluated and prepared
     formats : some of `FORMATS`
     folder, stem : folder (created if missing) and file name without suffix
     date : ISO date in the files, or None
@@ -87,10 +104,17 @@ def write_exports(
 
     Raises
     ------
-    InputError : if a part cannot be drawn, or the folder is not writable; no file is written
+    InputError : if a part cannot be drawn, the design cannot be written as C, or the folder is not
+        writable; no file is written
     """
-    names = require_formats(formats)
-    contents = {f"{stem}.{name}": _content(evaluation, name, date) for name in names}
+    contents: dict[str, bytes] = {}
+    for name in require_formats(formats):
+        contents |= _files(evaluation, subject, name, stem, date)
+    return written(folder, contents)
+
+
+def written(folder: Path, contents: Mapping[str, bytes]) -> list[ExportFile]:
+    """Write files by name into a folder; raises `InputError`, and then writes none."""
     write_all(folder, contents, what="the export")
     return [
         ExportFile(folder / name, hashlib.sha256(content).hexdigest())

@@ -269,7 +269,7 @@ class ActuatorProblem:
             self.refusals.add(run.computed, count)
         return PointValues(
             self.goal.value(run.computed, self.subject.cases),
-            _margins(self.rows, run.computed, numbers, count, self.subject.reserves),
+            _bounded(margins(self.rows, run.computed, numbers, count, self.subject.reserves)),
         )
 
 
@@ -284,7 +284,7 @@ def _bounded(margin: Array) -> Array:
     return where(large, 1.0, bounded)
 
 
-def _margins(
+def margins(
     rows: tuple[LimitRow, ...],
     computed: MetricArrays,
     numbers: Numbers,
@@ -294,6 +294,7 @@ def _margins(
     """Margins (rows, designs) of all limits, in one vectorised operation.
 
     From each margin its reserve is subtracted: an additional margin required because of scatter.
+    Infinite values (a part without load) count as `UNLIMITED`.
     """
     if not rows:
         return np.empty((0, count))
@@ -305,10 +306,10 @@ def _margins(
     value, bound = _stacked(values, count), _stacked(bounds, width)
     value = where(real(value) == np.inf, UNLIMITED, value)
     sign = np.array([[1.0 if row.limit_of.sense == "min" else -1.0] for row in rows])
-    margins = sign * margin(value, bound, "min")
+    relative = sign * margin(value, bound, "min")
     if reserves:
-        margins = margins - np.array([[reserves.get(row.limit_of.name, 0.0)] for row in rows])
-    return _bounded(margins)
+        relative = relative - np.array([[reserves.get(row.limit_of.name, 0.0)] for row in rows])
+    return relative
 
 
 def _stacked(values: Sequence[Array], width: int) -> Array:

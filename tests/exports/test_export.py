@@ -77,13 +77,13 @@ def test_set_and_date(design, tmp_path):
 @pytest.mark.parametrize(
     ("formats", "message", "remedy"),
     [
-        ((), "no format given", "--format step|dxf|xlsx"),
-        (("stp",), '"stp"', "use step, dxf, xlsx"),
-        (("step", "pdf"), '"pdf"', "use step, dxf, xlsx"),
+        ((), "no format given", "--format step|dxf|xlsx|c"),
+        (("stp",), '"stp"', "use step, dxf, xlsx, c"),
+        (("step", "pdf"), '"pdf"', "use step, dxf, xlsx, c"),
         (("step,dxf",), '"step,dxf"', "its own --format"),
-        (("",), '""', "use step, dxf, xlsx"),
-        (("STEP",), '"STEP"', "use step, dxf, xlsx"),
-        (("x" * 5000,), "xxx", "use step, dxf, xlsx"),
+        (("",), '""', "use step, dxf, xlsx, c"),
+        (("STEP",), '"STEP"', "use step, dxf, xlsx, c"),
+        (("x" * 5000,), "xxx", "use step, dxf, xlsx, c"),
     ],
 )
 def test_unknown_formats(design, tmp_path, formats, message, remedy):
@@ -172,7 +172,7 @@ def test_bad_designs_are_told_with_their_line(tmp_path):
 def test_the_verb_takes_any_form_of_a_design(design, tmp_path):
     """A path, an actuator, a design, an evaluation."""
     assert callable(ao.export)
-    assert exports.FORMATS == ("step", "dxf", "xlsx")
+    assert exports.FORMATS == ("step", "dxf", "xlsx", "c")
     actuator = ao.read(design)
     evaluation = ao.evaluate(actuator)
     contents = []

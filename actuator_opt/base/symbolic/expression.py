@@ -189,6 +189,8 @@ class Graph:
     """Tabulated functions of time, such as measured inputs."""
     slopes: dict[int, int] = field(default_factory=dict)
     """For each tabulated function, by its index in `tables`, the index of its slope there."""
+    labels: list[str] = field(default_factory=list)
+    """Name of each function in `tables`."""
     truth: Callable[[Symbol], bool] | None = None
     """Function that decides a condition on which a model branches. Only exact graphs have it; their
     operations are those of NumPy (NaN and rounding included) and are never simplified."""
@@ -208,13 +210,16 @@ class Graph:
         function: Callable[..., Any],
         time: Symbol,
         slope: Callable[..., Any] | None = None,
+        label: str = "table",
     ) -> Symbol:
         """Add a tabulated function of time with its slope; both accept floats and NumPy arrays."""
         number = len(self.tables)
         self.tables.append(function)
+        self.labels.append(label)
         if slope is not None:
             self.slopes[number] = len(self.tables)
             self.tables.append(slope)
+            self.labels.append(f"slope of {label}")
         return self.node("table", (number, time))
 
     def slope(self, number: int, time: Symbol) -> Any:

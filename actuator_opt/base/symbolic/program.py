@@ -6,9 +6,11 @@ a C compiler; without it, callers use the models themselves, through NumPy.
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Callable, Sequence
 from dataclasses import field
 from importlib import import_module
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -24,6 +26,12 @@ except ImportError:
 OPERATIONS: Final[tuple[str, ...]] = getattr(_MACHINE, "OPERATIONS", ())
 AVAILABLE: Final = _MACHINE is not None
 """Whether the virtual machine was built at installation."""
+NOT_BUILT: Final = "the machine was not built at installation"
+"""Reason why programs cannot be written or run."""
+MACHINE: Final = Path(__file__).with_name("machine.h")
+"""Text of the machine, without its Python module."""
+SCRIPT: Final = Path(__file__).with_name("machine.js")
+"""The same machine in JavaScript, for pages; it takes `Program.for_page`."""
 WIDTHS: Final = (4, 8, 16)
 """Numbers of directions for which the virtual machine can compute derivatives in one run."""
 SHARED: Final = ("real", "part")
@@ -75,7 +83,7 @@ class Program:
         points : inputs of every point, (points, inputs)
         seeds : change of every input in every direction, (points, inputs, directions)
         """
-        code, varies = self._for(seeds.any(axis=(0, 2)))
+        code, varies = self.along(seeds.any(axis=(0, 2)))
         count, inputs, directions = seeds.shape
         parts, values = [], np.empty(0)
         for first in range(0, max(directions, 1), WIDTHS[-1]):
@@ -107,7 +115,7 @@ class Program:
         """
         places = np.array([] if columns is None else columns, dtype=np.int32)
         moving = np.isin(np.arange(self.inputs), places)
-        code, varies = self._for(moving)
+        code, varies = self.along(moving)
         count = len(self.outputs)
         results = np.zeros(count if columns is None else (count, states))
         prepared: Callable[[float, Array], Array] = _MACHINE.prepare(
@@ -116,10 +124,34 @@ class Program:
         )  # fmt: skip
         return prepared
 
-    def _for(self, moving: Array) -> tuple[Array, Array]:
+    def for_page(self) -> dict[str, object]:
+        """The program as JSON, for the machine of pages (`SCRIPT`); arrays are in base64.
+
+        A program with 40 000 instructions, as that of the knee, has 540 kB.
+        """
+
+        def packed(array: Array, kind: str) -> str:
+            return b64encode(np.ascontiguousarray(array, dtype=kind).tobytes()).decode("ascii")
+
+        return {
+            "operations": list(OPERATIONS),
+            "code": packed(self.code, "<u2"),
+            "extra": packed(self.extra, "<i4"),
+            "outputs": packed(self.outputs, "<i4"),
+            "frozen": packed(self.frozen, "u1"),
+            "constants": packed(self.constants, "<f8"),
+            "slots": self.slots,
+            "inputs": self.inputs,
+        }
+
+    def along(self, moving: Array) -> tuple[Array, Array]:
         """Return instructions that only differentiate by `moving` inputs; which outputs vary.
 
         An input moves if its change is not 0 in some direction.
+
+        Parameters
+        ----------
+        moving : whether each input changes, (inputs,)
         """
         key = moving.tobytes()
         if key not in self._followed:

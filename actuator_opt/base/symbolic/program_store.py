@@ -88,7 +88,7 @@ def _version() -> bytes:
     while folders:
         entries = sorted(os.scandir(folders.pop()), key=lambda entry: entry.name)
         for entry in entries:
-            if entry.name.endswith((".py", ".c", ".yaml")):
+            if entry.name.endswith((".py", ".c", ".h", ".yaml")):
                 state = entry.stat()
                 digest.update(f"{entry.name} {state.st_size} {state.st_mtime_ns}\n".encode())
             elif entry.name != "__pycache__" and entry.is_dir(follow_symlinks=False):

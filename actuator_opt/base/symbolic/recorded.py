@@ -55,7 +55,7 @@ class RecordedFunction:
         self.names = tuple(names)
         self.present = present
         self.structure = structure
-        self.reason = "" if programs.AVAILABLE else "the machine was not built at installation"
+        self.reason = "" if programs.AVAILABLE else programs.NOT_BUILT
         self.recording: Recording | None = None
         self.recordings = 0
         self.points = 0

@@ -245,7 +245,7 @@ class Clock(Protocol):
     def sine(self, angle: Any) -> Any:
         """Sine of an angle [rad] that is given as an expression."""
 
-    def samples(self, time: Array, values: Array) -> Any:
+    def samples(self, time: Array, values: Array, label: str) -> Any:
         """Interpolate samples linearly, constant before the first and after the last."""
 
 
@@ -364,7 +364,7 @@ def _sine_at_start(part: SignalPart, records: Records) -> float:
 def _record(clock: Clock, part: SignalPart, records: Records) -> Any:
     samples = sampled(part, records)
     assert samples is not None
-    return clock.samples(*samples)
+    return clock.samples(*samples, f"{part.column} of {part.file}")
 
 
 def _record_at_start(part: SignalPart, records: Records) -> float:

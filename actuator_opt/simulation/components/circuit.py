@@ -39,10 +39,10 @@ class _Clock:
     def sine(self, angle: Expression) -> Expression:
         return Namespace.sin(angle)
 
-    def samples(self, time: Array, values: Array) -> Expression:
+    def samples(self, time: Array, values: Array, label: str) -> Expression:
         self.system.bends += _bends(time, values)
         course, slope = _between(time, values), _slope(time, values)
-        return self.system.graph.table(course, self.time, slope)
+        return self.system.graph.table(course, self.time, slope, label)
 
 
 def signal(system: System, parts: Sequence[SignalSegment], records: Records) -> Expression:

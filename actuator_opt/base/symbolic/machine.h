@@ -1,0 +1,346 @@
+/* A machine for recorded models: values of designs, with derivatives along several directions.
+
+   A program is a list of instructions on numbered slots. Every slot holds a value for each of
+   several designs side by side ("lanes"), or the value of a single design with its derivatives
+   along several directions ("dual"). All numbers are doubles; a truth value is 0 or 1. NaN and
+   infinity follow IEEE 754, as in NumPy.
+
+   C99 and C++, without allocation and without variables that outlive a call.
+*/
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define OPERATIONS(X) \
+    X(add) X(sub) X(mul) X(div) X(neg) X(sqrt) X(exp) X(expm1) X(log) X(log1p) X(pow) X(sin) \
+    X(cos) X(tan) X(tanh) X(sinh) X(cosh) X(arctan) X(arcsin) X(arccos) X(atan2) X(abs) X(sign) \
+    X(floor) X(cbrt) X(copysign) X(hypot) X(lt) X(le) X(eq) X(and) X(or) X(not) X(isnan) \
+    X(where) X(roots)
+#define ENUM(name) OP_##name,
+enum { OPERATIONS(ENUM) OPERATION_COUNT };
+
+/* An instruction is five short words: operation and flags, result, and up to three operands. */
+enum { WORDS = 5, MOST_DEGREE = 32 };
+/* Flags: which operands, and whether the result, have derivatives; operands without them. */
+#define OPERATION(at) ((at)[0] & 255)
+#define FLAGS(at) ((at)[0] >> 8)
+enum { FIRST = 1, SECOND = 2, THIRD = 4, RESULT = 8, FROZEN = 16 };
+
+typedef struct {
+    const uint16_t *code;
+    const int32_t *extra, *outputs;
+    const double *constants;
+    ptrdiff_t count, extras, results, constant_count, slots, inputs;
+} Program;
+
+#if defined(__GNUC__)
+#define INLINE static inline __attribute__((always_inline))
+#else
+#define INLINE static inline
+#endif
+
+/* Write the constants of a program to their slots, after those of the instructions. */
+INLINE void constants_to(const Program *p, double *V, const int L) {
+    for (ptrdiff_t k = 0; k < p->constant_count; k++)
+        for (int l = 0; l < L; l++) V[(p->slots + k) * L + l] = p->constants[k];
+}
+
+/* ---- roots of a real polynomial ---- */
+
+static const double BEYOND = 1.324718; /* root of x^3 = x + 1: a start beyond the outer root */
+static const double PI = 3.14159265358979323846;
+static const double SHY = 1 + 1e-15;   /* keeps rounding from carrying a step past the root */
+
+/* Roots of x^3 + b x^2 + c x + d, the real root first [Kahan1986]. */
+static void cubic(double b, double c, double d, double *re, double *im) {
+    double x = b * (-1.0 / 3), inflection = x;
+    double first = x + b, second = first * x + c;
+    double value = second * x + d, rise = (x + first) * x + second;
+    double distance = cbrt(fabs(value)), falls = sqrt(rise < 0 ? -rise : 0.0);
+    if (falls > 0) distance = BEYOND * (distance > falls ? distance : falls);
+    double side = copysign(1.0, value), following = x - side * distance;
+    for (int k = 0; following != x && k < 120; k++) {
+        x = following;
+        first = x + b, second = first * x + c;
+        value = second * x + d, rise = (x + first) * x + second;
+        following = x - value / rise / SHY;
+        if (side * (following - inflection) > 0) following = inflection;
+        if (!(side * (following - x) > 0)) break;
+    }
+    double product = -d / x;
+    int far = fabs(x) * x * x > fabs(d);
+    double linear = far ? (product - c) / x : x + b;
+    if (!far) product = (x + b) * x + c;
+    double half = -0.5 * linear, discriminant = half * half - product;
+    double offset = sqrt(fabs(discriminant)), larger = half + copysign(offset, half);
+    int real = discriminant >= 0;
+    re[0] = x, im[0] = 0.0;
+    re[1] = real ? larger : half, im[1] = real ? 0.0 : offset;
+    re[2] = real ? (larger != 0 ? product / larger : 0.0) : half, im[2] = -im[1];
+}
+
+/* Roots of a monic polynomial with coefficients c[0..n-1], lowest first, all at once [Aberth1973];
+   roots close to the real axis are placed on it and refined there. */
+static void together(const double *c, int n, double *re, double *im) {
+    /* Starts on circles whose radii follow from the corners of the upper hull of log|c| [Bini1996]:
+       few steps suffice even where the sizes of the roots differ by orders of magnitude. */
+    double height[MOST_DEGREE + 1];
+    int corner[MOST_DEGREE + 1], corners = 0;
+    for (int k = 0; k <= n; k++) height[k] = k == n ? 0.0 : c[k] != 0 ? log(fabs(c[k])) : -1e300;
+    for (int k = 0; k <= n; k++) {
+        if (height[k] <= -1e300 && k > 0) continue;
+        while (corners > 1) {
+            const int i = corner[corners - 2], j = corner[corners - 1];
+            if ((height[j] - height[i]) * (k - i) > (height[k] - height[i]) * (j - i)) break;
+            corners--;
+        }
+        corner[corners++] = k;
+    }
+    for (int part = 0; part + 1 < corners; part++) {
+        const int i = corner[part], j = corner[part + 1];
+        const double radius = height[i] <= -1e300 ? 0.0 : exp((height[i] - height[j]) / (j - i));
+        for (int k = i; k < j; k++) {
+            const double angle = 2 * PI * (k - i) / (j - i) + 2 * PI * i / n + 0.7;
+            re[k] = radius * cos(angle), im[k] = radius * sin(angle);
+        }
+    }
+    int done[MOST_DEGREE] = {0};
+    for (int step = 0; step < 200; step++) {
+        int moving = 0;
+        for (int k = 0; k < n; k++) {
+            if (done[k]) continue;
+            double x = re[k], y = im[k], far = hypot(x, y), scale = 1;
+            double pr = 1, pi = 0, sr = 0, si = 0; /* value and slope at x + iy */
+            for (int j = n - 1; j >= 0; j--) {
+                scale = scale * far + fabs(c[j]);
+                double nr = sr * x - si * y + pr, ni = sr * y + si * x + pi;
+                sr = nr, si = ni;
+                nr = pr * x - pi * y + c[j], ni = pr * y + pi * x;
+                pr = nr, pi = ni;
+            }
+            double size = pr * pr + pi * pi;
+            if (fabs(pr) + fabs(pi) <= 1e-16 * scale) { /* rounding */
+                done[k] = 1;
+                continue;
+            }
+            /* Newton's ratio, inverted: P'/P */
+            double qr = (sr * pr + si * pi) / size, qi = (si * pr - sr * pi) / size;
+            for (int j = 0; j < n; j++) {
+                if (j == k) continue;
+                double dx = x - re[j], dy = y - im[j], d2 = dx * dx + dy * dy;
+                if (d2 > 0) qr -= dx / d2, qi += dy / d2;
+            }
+            size = qr * qr + qi * qi;
+            double mx = qr / size, my = -qi / size;
+            if (!(isfinite(mx) && isfinite(my))) continue;
+            re[k] = x - mx, im[k] = y - my;
+            if (mx * mx + my * my <= 1e-32 * (x * x + y * y)) done[k] = 1;
+            else moving = 1;
+        }
+        if (!moving) break;
+    }
+    for (int k = 0; k < n; k++) {
+        double x = re[k];
+        if (fabs(im[k]) > 1e-12 * hypot(x, im[k])) continue;
+        im[k] = 0.0;
+        for (int step = 0; step < 3; step++) {
+            double p = 1, s = 0;
+            for (int j = n - 1; j >= 0; j--) s = s * x + p, p = p * x + c[j];
+            double next = x - p / s;
+            if (!isfinite(next) || fabs(next - x) > 1e-9 * fabs(x)) break;
+            x = next;
+        }
+        re[k] = x;
+    }
+}
+
+/* All roots of a polynomial of degree n, lowest power first: NaN if a coefficient is not finite,
+   a root at minus infinity if the leading one is zero. */
+static void roots(const double *p, int n, double *re, double *im) {
+    double lead = p[n], monic[MOST_DEGREE];
+    int finite = 1, known = 1;
+    double size = pow(fabs(p[0] / lead), 1.0 / n);
+    if (!(isfinite(size) && size > 0)) size = 1.0;
+    for (int k = 0; k <= n; k++) known &= isfinite(p[k]) != 0;
+    if (known && lead == 0) {
+        re[0] = -INFINITY, im[0] = 0.0;
+        if (n > 1) roots(p, n - 1, re + 1, im + 1);
+        return;
+    }
+    for (int k = 0; k < n; k++) {
+        monic[k] = p[k] / lead * pow(size, (double)(k - n));
+        finite &= isfinite(monic[k]) != 0;
+    }
+    if (!finite) {
+        for (int k = 0; k < n; k++) re[k] = im[k] = NAN;
+        return;
+    }
+    if (n == 1) re[0] = -monic[0], im[0] = 0.0;
+    else if (n == 3) cubic(monic[2], monic[1], monic[0], re, im);
+    else together(monic, n, re, im);
+    for (int k = 0; k < n; k++) re[k] *= size, im[k] *= size;
+}
+
+/* ---- values ---- */
+
+#define EACH for (int l = 0; l < L; l++)
+#define VALUE(expression) { EACH { const double a = A[l]; R[l] = (expression); } break; }
+#define VALUES(expression) \
+    { EACH { const double a = A[l], b = B[l]; R[l] = (expression); } break; }
+
+static double sign_of(double a) { return a != a ? a : (a > 0) - (a < 0); }
+
+/* Compute the values of an instruction's result in L lanes. */
+INLINE void value_of(const uint16_t *at, const int32_t *extra, double *V, const int L) {
+    double *R = V + (size_t)at[1] * L;
+    const double *A = V + (size_t)at[2] * L, *B = V + (size_t)at[3] * L;
+    switch (OPERATION(at)) {
+        case OP_add: VALUES(a + b)
+        case OP_sub: VALUES(a - b)
+        case OP_mul: VALUES(a * b)
+        case OP_div: VALUES(a / b)
+        case OP_neg: VALUE(-a)
+        case OP_sqrt: VALUE(sqrt(a))
+        case OP_exp: VALUE(exp(a))
+        case OP_expm1: VALUE(expm1(a))
+        case OP_log: VALUE(log(a))
+        case OP_log1p: VALUE(log1p(a))
+        case OP_pow: VALUES(pow(a, b))
+        case OP_sin: VALUE(sin(a))
+        case OP_cos: VALUE(cos(a))
+        case OP_tan: VALUE(tan(a))
+        case OP_tanh: VALUE(tanh(a))
+        case OP_sinh: VALUE(sinh(a))
+        case OP_cosh: VALUE(cosh(a))
+        case OP_arctan: VALUE(atan(a))
+        case OP_arcsin: VALUE(asin(a))
+        case OP_arccos: VALUE(acos(a))
+        case OP_atan2: VALUES(atan2(a, b))
+        case OP_abs: VALUE(fabs(a))
+        case OP_sign: VALUE(sign_of(a))
+        case OP_floor: VALUE(floor(a))
+        case OP_cbrt: VALUE(cbrt(a))
+        case OP_copysign: VALUES(copysign(a, b))
+        case OP_hypot: VALUES(hypot(a, b))
+        case OP_lt: VALUES(a < b)
+        case OP_le: VALUES(a <= b)
+        case OP_eq: VALUES(a == b)
+        case OP_and: VALUES((a != 0) & (b != 0))
+        case OP_or: VALUES((a != 0) | (b != 0))
+        case OP_not: VALUE(a == 0)
+        case OP_isnan: VALUE(a != a)
+        case OP_where: {
+            const double *C = V + (size_t)at[4] * L;
+            EACH { const double b = B[l], c = C[l]; R[l] = A[l] != 0 ? b : c; }
+            break;
+        }
+        case OP_roots: { /* operands: place of the coefficients' slots in `extra`, and the degree */
+            const int n = at[3];
+            double p[MOST_DEGREE + 1], re[MOST_DEGREE], im[MOST_DEGREE];
+            EACH {
+                for (int k = 0; k <= n; k++) p[k] = V[(size_t)extra[at[2] + k] * L + l];
+                roots(p, n, re, im);
+                for (int k = 0; k < n; k++) {
+                    R[(size_t)k * L + l] = re[k];
+                    R[(size_t)(n + k) * L + l] = im[k];
+                }
+            }
+            break;
+        }
+    }
+}
+
+/* ---- derivatives ---- */
+
+#define ALONG for (int t = 0; t < T; t++)
+
+/* r' = f a' */
+INLINE void scaled(double *R, const double *A, double f, const int T) { ALONG R[t] = f * A[t]; }
+
+/* r' = f a' + g b', where an operand without derivatives counts as constant */
+INLINE void combined(
+    double *R, const double *A, const double *B, double f, double g, int flags, const int T
+) {
+    if ((flags & (FIRST | SECOND)) == (FIRST | SECOND)) ALONG R[t] = f * A[t] + g * B[t];
+    else if (flags & FIRST) scaled(R, A, f, T);
+    else scaled(R, B, g, T);
+}
+
+/* Compute the value and derivatives of every instruction's result, along T directions. */
+INLINE void dual(
+    const uint16_t *code, ptrdiff_t count, const int32_t *extra, double *V, double *D, const int T
+) {
+    for (ptrdiff_t k = 0; k < count; k++) {
+        const uint16_t *at = code + WORDS * k;
+        const int flags = FLAGS(at);
+        if (!(flags & RESULT)) {
+            value_of(at, extra, V, 1);
+            continue;
+        }
+        const double a = V[at[2]], b = V[at[3]];
+        double *R = D + (size_t)at[1] * T;
+        const double *A = D + (size_t)at[2] * T, *B = D + (size_t)at[3] * T;
+        switch (OPERATION(at)) { /* the most frequent operations first, in one step */
+            case OP_mul:
+                V[at[1]] = a * b;
+                combined(R, A, B, b, a, flags, T);
+                continue;
+            case OP_add:
+                V[at[1]] = a + b;
+                combined(R, A, B, 1.0, 1.0, flags, T);
+                continue;
+            case OP_sub:
+                V[at[1]] = a - b;
+                combined(R, A, B, 1.0, -1.0, flags, T);
+                continue;
+            case OP_div: {
+                const double r = a / b;
+                V[at[1]] = r;
+                combined(R, A, B, 1.0 / b, -r / b, flags, T);
+                continue;
+            }
+            case OP_where: {
+                const int chosen = a != 0 ? at[3] : at[4];
+                V[at[1]] = V[chosen];
+                if (flags & (a != 0 ? SECOND : THIRD)) {
+                    const double *C = D + (size_t)chosen * T;
+                    ALONG R[t] = C[t];
+                } else ALONG R[t] = 0.0;
+                continue;
+            }
+            default: break;
+        }
+        value_of(at, extra, V, 1);
+        const double r = V[at[1]];
+        switch (OPERATION(at)) {
+            case OP_pow:
+                combined(R, A, B, b * pow(a, b - 1.0), flags & SECOND ? r * log(a) : 0.0, flags, T);
+                break;
+            case OP_atan2: {
+                const double size = a * a + b * b;
+                combined(R, A, B, b / size, -a / size, flags, T);
+                break;
+            }
+            case OP_copysign: scaled(R, A, signbit(a) == signbit(b) ? 1.0 : -1.0, T); break;
+            case OP_hypot: combined(R, A, B, a / r, b / r, flags, T); break;
+            case OP_neg: scaled(R, A, -1.0, T); break;
+            case OP_sqrt: scaled(R, A, 0.5 / r, T); break;
+            case OP_exp: scaled(R, A, r, T); break;
+            case OP_expm1: scaled(R, A, exp(a), T); break;
+            case OP_log: scaled(R, A, 1.0 / a, T); break;
+            case OP_log1p: scaled(R, A, 1.0 / (1.0 + a), T); break;
+            case OP_sin: scaled(R, A, cos(a), T); break;
+            case OP_cos: scaled(R, A, -sin(a), T); break;
+            case OP_tan: scaled(R, A, 1.0 + r * r, T); break;
+            case OP_tanh: scaled(R, A, 1.0 - r * r, T); break;
+            case OP_sinh: scaled(R, A, cosh(a), T); break;
+            case OP_cosh: scaled(R, A, sinh(a), T); break;
+            case OP_arctan: scaled(R, A, 1.0 / (1.0 + a * a), T); break;
+            case OP_arcsin: scaled(R, A, 1.0 / sqrt(1.0 - a * a), T); break;
+            case OP_arccos: scaled(R, A, -1.0 / sqrt(1.0 - a * a), T); break;
+            case OP_abs: scaled(R, A, sign_of(a), T); break;
+            case OP_cbrt: scaled(R, A, 1.0 / (3.0 * r * r), T); break;
+            default: ALONG R[t] = 0.0; /* steps: their slope is zero */
+        }
+    }
+}
