@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import copy
 import gc
+import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -148,6 +149,7 @@ def _exit_code() -> int:
 def main() -> None:
     """Run the command line; every fault gives a one-line message and an exit code, no traceback."""
     gc.set_threshold(PATIENCE)
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "1")  # else each start lists all packages
     streams.prepare()
     try:
         code = _exit_code()
