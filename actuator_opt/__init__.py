@@ -15,10 +15,10 @@ slow imports loads when a function first needs it.
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from . import version
+from .base.lazy import homes, loader
 
 if TYPE_CHECKING:
     from .api import (
@@ -125,15 +125,12 @@ _PUBLIC = {
 }
 """The public names of each module; a module loads when one of its names is first used."""
 
-_HOMES = {name: module for module, names in _PUBLIC.items() for name in names.split()}
+_HOMES = homes(_PUBLIC)
 
 __all__ = ["__version__", *sorted(_HOMES)]
 
-
-def __getattr__(name: str) -> Any:
-    if name in _HOMES:
-        return getattr(import_module(f".{_HOMES[name]}", __name__), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+if not TYPE_CHECKING:  # so that type checkers know the names above, and no others
+    __getattr__ = loader(__name__, _HOMES)
 
 
 def __dir__() -> list[str]:

@@ -2,8 +2,8 @@
 
 The standard decorator writes and compiles six functions for every class: 1 ms for a frozen class
 with slots, so that 250 classes cost a quarter of a second before any work. Here ``__init__`` is
-compiled when the first object is made, and all other methods are shared functions that read the
-fields. `dataclasses.field`, `fields`, `replace`, `asdict` and `is_dataclass` work as usual.
+compiled when a class has made a few objects, and all other methods are shared functions that read
+the fields. `dataclasses.field`, `fields`, `replace`, `asdict` and `is_dataclass` work as usual.
 """
 
 from __future__ import annotations
@@ -43,6 +43,10 @@ _FIELD: Any = dataclasses._FIELD  # type: ignore[attr-defined]
 _METHODS = ("__setattr__", "__delattr__", "__getstate__", "__setstate__")
 
 
+FEW = 10
+"""Objects that a class makes before its ``__init__`` is compiled, which takes as long as 30."""
+
+
 class _Options:
     """Options of a data class, under the names that `dataclasses` reads."""
 
@@ -50,6 +54,7 @@ class _Options:
     order = unsafe_hash = weakref_slot = False
 
     def __init__(self, frozen: bool, slots: bool, kw_only: bool, eq: bool, repr: bool) -> None:
+        self.made = 0  # objects, until `__init__` is compiled
         self.frozen, self.slots, self.kw_only, self.eq, self.repr = frozen, slots, kw_only, eq, repr
 
 
@@ -127,12 +132,41 @@ def _field(cls: Any, name: str, annotation: Any, kw_only: bool) -> Field[Any]:
 
 
 def _first_init(self: Any, *args: Any, **arguments: Any) -> None:
-    """Compile the ``__init__`` of the class, replace this method by it, and call it."""
+    """Make the first objects; for more, or if an argument is wrong, compile ``__init__``."""
     cls: Any = next(
         each for each in type(self).__mro__ if each.__dict__.get("__init__") is _first_init
     )
-    cls.__init__ = _compiled_init(cls)
-    cls.__init__(self, *args, **arguments)
+    options = cls.__dataclass_params__
+    options.made += 1
+    values = _values(cls, args, arguments) if options.made <= FEW else None
+    if values is None:
+        cls.__init__ = _compiled_init(cls)
+        cls.__init__(self, *args, **arguments)
+        return
+    put = object.__setattr__ if options.frozen else setattr
+    for name, value in values.items():
+        put(self, name, value)
+    if hasattr(cls, "__post_init__"):
+        self.__post_init__()
+
+
+def _values(cls: Any, args: tuple[Any, ...], arguments: dict[str, Any]) -> dict[str, Any] | None:
+    """Values of the fields by the arguments of ``__init__``; None if an argument is wrong."""
+    given = dict(zip(cls.__match_args__, args, strict=False))
+    if len(given) < len(args) or given.keys() & arguments.keys():
+        return None
+    given |= arguments
+    values = {}
+    for name, each in cls.__dataclass_fields__.items():
+        if each.init and name in given:
+            values[name] = given.pop(name)
+        elif each.default_factory is not MISSING:
+            values[name] = each.default_factory()
+        elif each.default is not MISSING:
+            values[name] = each.default
+        elif each.init:
+            return None
+    return None if given else values
 
 
 def _compiled_init(cls: Any) -> Any:

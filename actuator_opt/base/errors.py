@@ -68,6 +68,8 @@ def escaped(text: str, own: str = "") -> str:
     >>> print(escaped("\x1b[2J\u202e" "a\tb"))
     \x1b[2J\u202ea	b
     """
+    if re.search(f"[{CONTROLS}]", text) is None:  # as nearly always, and in a tenth of the time
+        return text
     pattern = f"({own})|{_CONTROL}" if own else f"(?!)()|{_CONTROL}"
     return re.sub(pattern, lambda m: m[1] or m[0].encode("unicode_escape").decode("ascii"), text)
 

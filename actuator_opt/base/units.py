@@ -250,11 +250,12 @@ def units_of(dimension: str) -> tuple[str, ...]:
 def unit(name: str, dimension: str) -> Unit:
     """The unit `name` of `dimension`; `UnitError` if unknown or a unit of another dimension."""
     table = _SCALES[dimension]
-    for candidate in (name.strip(), _normalise(name)):
-        if candidate in table:
-            absolute = dimension == "temperature"
-            offset = _OFFSETS.get(candidate, 0.0) if absolute else 0.0
-            return Unit(candidate, dimension, table[candidate], offset)
+    known = name.strip()
+    if known not in table:
+        known = _normalise(name)
+    if known in table:
+        offset = _OFFSETS.get(known, 0.0) if dimension == "temperature" else 0.0
+        return Unit(known, dimension, table[known], offset)
     choices = ", ".join(list(table)[:5]) or "a bare number"
     lowered = _normalise(name).lower()
     for known in table:

@@ -8,6 +8,8 @@ that need them.
 from __future__ import annotations
 
 import copy
+import gc
+import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -48,6 +50,12 @@ COMMANDS = {
 
 HIDDEN = {"optimize"}
 """Alternative spellings of commands, which the help does not list."""
+
+PATIENCE = 100_000
+"""New objects after which Python looks for unused circles of objects; by default 700.
+
+Imports make many objects that stay, and each search walks through them: a sixth of a short command.
+"""
 
 
 def _main(
@@ -140,6 +148,8 @@ def _exit_code() -> int:
 
 def main() -> None:
     """Run the command line; every fault gives a one-line message and an exit code, no traceback."""
+    gc.set_threshold(PATIENCE)
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "1")  # else each start lists all packages
     streams.prepare()
     try:
         code = _exit_code()
@@ -150,4 +160,5 @@ def main() -> None:
             code = streams.faults([Diagnostic("interrupted")], ExitCode.INTERRUPTED)
         else:
             code = streams.faults(*streams.unexpected(error))
+    gc.freeze()  # the end of the process frees all memory: Python need not sort it first
     sys.exit(code)

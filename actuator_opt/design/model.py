@@ -5,7 +5,7 @@ range checks, JSON Schema and reports. A value may be an optimisation variable w
 confidence bounds from a test, or scatter. These classes contain no physics.
 """
 
-from __future__ import annotations
+# Annotations are objects here, not texts, which Pydantic would compile one by one at each start.
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
@@ -653,11 +653,11 @@ class Design(Section):
     clevis: Clevis | None = None
     seals: Seals
     lines: Annotated[tuple[Line, ...], Field(max_length=24)] = ()
-    stiffness: Stiffness = Stiffness()
+    stiffness: Stiffness = Stiffness.model_construct()
     valve: Valve | None = None
-    ports: Ports = Ports()
+    ports: Ports = Ports.model_construct()
     control: PositionLoop | None = None
-    load: Load = Load()
+    load: Load = Load.model_construct()
     linkage: Linkage | None = None
     load_cases: Annotated[tuple[LoadCase, ...], Field(min_length=1, max_length=100)]
     variables: dict[str, Variable] = {}  # noqa: RUF012 (pydantic copies it)
@@ -670,4 +670,4 @@ class Design(Section):
     """Scatter of values by PATH, in addition to the scatter in libraries and practice tables."""
     materials: dict[str, dict[str, float]] = {}  # noqa: RUF012 (pydantic copies it)
     """Properties (SI) that replace those of the library in this design, by material name."""
-    objective: Objective = Objective(minimise="mass")
+    objective: Objective = Objective.model_construct(minimise="mass")

@@ -1,6 +1,6 @@
 """Seals of piston and rod: sealing elements, wipers, guide rings."""
 
-from __future__ import annotations
+# Annotations are objects here, not texts, which Pydantic would compile one by one at each start.
 
 from typing import Annotated
 

@@ -13,8 +13,10 @@ from __future__ import annotations
 import functools
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
+from itertools import pairwise
+from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
 from ..base import files as store
@@ -133,15 +135,40 @@ class Gland:
         return 1 - self.depth_min / section
 
 
+class _Tables(Mapping[str, Any]):
+    """Tables of a file by name, each parsed when first used."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = str(path)
+        self.text = yaml_source.decode(path.read_bytes(), self.path)
+        starts = [head.start() for head in re.finditer(r"(?m)^\w+:", self.text)]
+        self._places = {
+            self.text[start:end].partition(":")[0]: (start, end)
+            for start, end in pairwise([*starts, len(self.text)])
+        }
+        self._parsed: dict[str, Any] = {}
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._parsed:
+            start, end = self._places[name]
+            before = "\n" * self.text.count("\n", 0, start)  # keeps the line numbers of the file
+            document = yaml_source.parse(before + self.text[start:end], self.path)
+            if document.faults:
+                raise InputError(document.faults)
+            self._parsed[name] = document.data[name]
+        return self._parsed[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._places)
+
+    def __len__(self) -> int:
+        return len(self._places)
+
+
 @functools.lru_cache(maxsize=1)
 def tables() -> Mapping[str, Any]:
     """Contents of ``standards.yaml``; numbers are texts, so that they stay exact."""
-    path = store.data_folder("materials") / "standards.yaml"
-    text = yaml_source.decode(path.read_bytes(), str(path))
-    document = yaml_source.parse(text, str(path))
-    if document.faults:
-        raise InputError(document.faults)
-    return document.data
+    return _Tables(store.data_folder("materials") / "standards.yaml")
 
 
 def metres(text: str) -> float:

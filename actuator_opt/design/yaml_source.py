@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import field
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import yaml
@@ -61,6 +62,12 @@ class Shorthand(NamedTuple):
     entry: NodeSpan
 
 
+@lru_cache(maxsize=4)
+def _lines(text: str) -> list[str]:
+    """Lines of a text; only faults need them."""
+    return _BREAK.split(text)
+
+
 @dataclass(slots=True)
 class Document:
     """A parsed YAML file: its tree of texts, and the locations of keys and values."""
@@ -70,7 +77,6 @@ class Document:
     data: dict[str, Any] = field(default_factory=dict)
     values: dict[Loc, NodeSpan] = field(default_factory=dict)
     keys: dict[Loc, NodeSpan] = field(default_factory=dict)
-    lines: list[str] = field(default_factory=list)
     faults: list[Diagnostic] = field(default_factory=list)
     """Faults that do not stop the parser: duplicate keys, tags, anchors."""
     unusable: set[Loc] = field(default_factory=set)
@@ -79,6 +85,11 @@ class Document:
     """Entries in compact notation, which `layup.expanded` replaces by layers."""
     kind: str = "design"
     """Kind of the file: design, scenario or units."""
+
+    @property
+    def lines(self) -> list[str]:
+        """The text by lines."""
+        return _lines(self.text)
 
     def shorthand(self, loc: Loc) -> Shorthand | None:
         """The compact entry that contains a location."""
@@ -96,8 +107,8 @@ class Document:
         """Diagnostic at a location of this file."""
         line, column = (span.line, span.column) if span else (None, None)
         source = None
-        if line is not None and line <= len(self.lines):
-            text = self.lines[line - 1].replace("\t", " ")
+        if line is not None and line <= len(lines := self.lines):
+            text = lines[line - 1].replace("\t", " ")
             source = text if 0 < len(text) <= 200 and text.isprintable() else None
         return Diagnostic(message, remedy, self.file, line, column, path, source)
 
@@ -127,7 +138,7 @@ def decode(data: bytes, file: str, kind: str = "design") -> str:
 def parse(text: str, file: str, kind: str = "design") -> Document:
     """Parse a YAML text into a tree; raise `InputError` if this is impossible."""
     text = text.removeprefix("\ufeff")
-    document = Document(file, text, lines=_BREAK.split(text), kind=kind)
+    document = Document(file, text, kind=kind)
     if len(text) > MAX_BYTES:
         decode(text.encode("utf-8", "replace"), file, kind)
     control = _CONTROL.search(text)

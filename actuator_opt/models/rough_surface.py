@@ -11,6 +11,7 @@ the rod is higher.
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 
@@ -30,12 +31,17 @@ _WEIGHTS = {
     for order, power in _ORDERS.items()
 }
 """Weights of the trapezium sum at each height, by the order of the asperity integral."""
-_PLACES, _SHARES = (tuple(part.tolist()) for part in np.polynomial.legendre.leggauss(32))
-"""Nodes and weights of Gauss and Legendre on -1 to 1."""
 _FLATTEST = 15.0
 """F_3/2 at about H = -6, the lowest film ratio for which the asperity integral is exact."""
 _CERTAIN = 8.5
 """Film ratio beyond which the normal distribution is 0 or 1 to double precision."""
+
+
+@cache
+def _gauss() -> tuple[list[float], list[float]]:
+    """Nodes and weights of Gauss and Legendre on 0 to 1."""
+    places, shares = np.polynomial.legendre.leggauss(32)  # a slow import, for seal films alone
+    return (0.5 * (places + 1)).tolist(), (0.5 * shares).tolist()
 
 
 def _bells(value: Array) -> Array:
@@ -279,8 +285,7 @@ def mean_gap_ratio(*, film_ratio: Array) -> Array:
     xp = namespace(film_ratio)
     inside = (real(film_ratio) < _CERTAIN) & (real(film_ratio) > -_CERTAIN)
     safe = where(inside, film_ratio, 0.0)
-    places = xp.asarray([0.5 * (place + 1) for place in _PLACES])
-    weights = xp.asarray([0.5 * share for share in _SHARES])
+    places, weights = (xp.asarray(part) for part in _gauss())
     scaled = xp.asarray(safe)[..., None] * places
     density = 1 / math.sqrt(2 * math.pi)
     half = density * safe * xp.sum(weights * xp.exp(-0.5 * scaled * scaled), axis=-1)

@@ -377,6 +377,7 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
         and not float(row.margin[0]) - subject.reserves.get(row.limit_of.name, 0.0) >= -1e-6
     ]
     rows += tuple(missed)
+    place = {id(limit): k for k, limit in enumerate(limits)}
     holder: list[ActuatorProblem] = []
     problem = BoxProblem(
         names=paths,
@@ -386,7 +387,7 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
         constraint_names=tuple(row.label for row in rows),
         start=start,
         relaxable=tuple(row.limit_of.origin != "geometry" for row in rows),
-        groups=tuple(limits.index(row.limit_of) for row in rows),
+        groups=tuple(place[id(row.limit_of)] for row in rows),
     )
     metrics = frozenset({row.limit_of.metric for row in rows} | set(goal.weights))
     plugin_names = {plugin.name for plugin in subject.plugins}

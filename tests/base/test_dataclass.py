@@ -9,11 +9,12 @@ import itertools
 import pickle
 import sys
 from dataclasses import field
+from functools import partial
 from typing import Any, ClassVar
 
 import pytest
 
-from actuator_opt.base.dataclass import dataclass
+from actuator_opt.base.dataclass import FEW, dataclass
 
 OPTIONS = [
     dict(zip(("frozen", "slots", "kw_only", "eq", "repr"), flags, strict=True))
@@ -62,8 +63,10 @@ def outcome(work):
 
 
 @pytest.mark.parametrize("options", OPTIONS, ids=lambda o: "-".join(k for k, v in o.items() if v))
-def test_behaves_as_the_standard_decorator(options):
+@pytest.mark.parametrize("few", [0, 100], ids=["compiled", "first objects"])
+def test_behaves_as_the_standard_decorator(monkeypatch, few, options):
     """Objects, fields, equality, hashes, texts, copies, frozen errors and signatures agree."""
+    monkeypatch.setattr(sys.modules[dataclass.__module__], "FEW", few)
     results = []
     for decorator in (dataclasses.dataclass, dataclass):
         bar, tube, record = classes(decorator, **options)
@@ -121,14 +124,48 @@ def test_a_mutable_default_is_refused():
             names: list[str] = []  # noqa: RUF012
 
 
-def test_no_init_is_compiled_before_the_first_object():
-    """A class that nobody uses costs no compilation."""
+def test_only_a_class_with_many_objects_is_compiled():
+    """A class with few objects costs no compilation."""
 
     @dataclass(frozen=True)
     class Idle:
         length: float
 
+    for number in range(FEW):
+        assert Idle(number).length == number
     assert Idle.__init__.__name__ == "_first_init"
     assert Idle(1.0).length == 1.0
     assert Idle.__init__.__name__ == "__init__"
-    assert "actuator_opt.base.dataclass" in sys.modules
+
+
+@pytest.mark.parametrize("few", [0, 100], ids=["compiled", "first objects"])
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ((), {}),
+        ((1.0, 2.0, 3.0, 4.0), {}),
+        ((1.0,), {"length": 2.0}),
+        ((1.0,), {"width": 2.0}),
+        ((1.0,), {"count": 2}),
+    ],
+)
+def test_wrong_arguments_give_the_errors_of_the_standard_decorator(monkeypatch, few, arguments):
+    """Missing, too many, twice, unknown, and no field."""
+    monkeypatch.setattr(sys.modules[dataclass.__module__], "FEW", few)
+    args, named = arguments
+    bars = [classes(decorator)[0] for decorator in (dataclass, dataclasses.dataclass)]
+    ours, standard = (outcome(partial(bar, *args, **named)) for bar in bars)
+    assert ours[0] is TypeError
+    assert ours == standard
+
+
+def test_names_of_arguments_may_be_those_of_the_helpers():
+    """A field named like an argument of our functions is set like any other."""
+
+    @dataclass
+    class Odd:
+        cls: int
+        args: int
+        arguments: int = 3
+
+    assert dataclasses.astuple(Odd(1, args=2)) == (1, 2, 3)

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given, strategies as st
 
 from actuator_opt.base.errors import InputError
-from actuator_opt.design import standard_sizes as standards
+from actuator_opt.base.files import data_folder
+from actuator_opt.design import standard_sizes as standards, yaml_source
 from actuator_opt.models.gland import groove_width
 
 MM = 1e-3
@@ -24,6 +25,24 @@ def test_the_series_are_complete_and_say_what_was_verified():
         assert values == sorted(set(values))
         assert {size.confidence for size in sizes} == {"secondary", "unverified"}
         assert all(size.source for size in sizes)
+
+
+def test_each_table_is_that_of_the_whole_file():
+    """The file, parsed as a whole, has no faults and the tables that are parsed one by one."""
+    path = data_folder("materials") / "standards.yaml"
+    document = yaml_source.parse(path.read_text("utf-8"), str(path))
+    assert document.faults == []
+    assert document.data == dict(standards.tables())
+
+
+def test_a_fault_in_a_table_names_its_line(tmp_path):
+    """The line is that of the file."""
+    path = tmp_path / "standards.yaml"
+    path.write_text("bores:\n  rows: [1]\n\nrods:\n  rows: *bores\n")
+    tables = standards._Tables(path)
+    assert tables["bores"] == {"rows": ["1"]}
+    with pytest.raises(InputError, match=r"standards.yaml:5:9: alias"):
+        tables["rods"]
 
 
 def test_cylinder_pairs_have_the_published_area_ratios():

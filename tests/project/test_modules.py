@@ -11,6 +11,7 @@ import pytest
 from model_samples import public_functions
 
 import actuator_opt
+import actuator_opt.api
 import actuator_opt.models
 
 ROOT = Path(__file__).parents[2]
@@ -127,24 +128,34 @@ def test_every_model_is_used_or_listed_for_scripts():
     assert set(public_functions()) - used == listed
 
 
-def test_public_names_load_and_are_known_to_type_checkers():
+@pytest.mark.parametrize("package", [actuator_opt, actuator_opt.api], ids=lambda x: x.__name__)
+def test_public_names_load_and_are_known_to_type_checkers(package):
     """Each loads; the imports for type checkers name the same from the same modules."""
-    tree = ast.parse(Path(actuator_opt.__file__).read_text("utf-8"))
-    (typed,) = (node for node in tree.body if isinstance(node, ast.If))
-    static = {alias.asname: node.module for node in typed.body for alias in node.names}
-    assert static == actuator_opt._HOMES
-    assert actuator_opt.__all__ == ["__version__", *sorted(static)]
-    assert dir(actuator_opt) == sorted(actuator_opt.__all__)
-    assert all(getattr(actuator_opt, name) is not None for name in actuator_opt.__all__)
+    tree = ast.parse(Path(package.__file__).read_text("utf-8"))
+    typed = next(node for node in tree.body if isinstance(node, ast.If))
+    static = {
+        alias.asname: "." * (node.level - 1) + node.module
+        for node in typed.body
+        for alias in node.names
+    }
+    assert static == package._HOMES
+    assert {*package.__all__} - {"__version__"} == set(static)
+    assert dir(package) == sorted(package.__all__)
+    assert all(getattr(package, name) is not None for name in package.__all__)
     with pytest.raises(AttributeError, match="no attribute 'evaluat'"):
-        actuator_opt.evaluat  # noqa: B018
+        package.evaluat  # noqa: B018
 
 
-def test_a_class_name_has_one_meaning():
-    """No two public classes of the package share a name, so that a search finds the right class."""
-    places = {}
-    for name, (tree, _) in modules().items():
-        for node in tree.body:
-            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
-                places.setdefault(node.name, []).append(name)
-    assert {name: where for name, where in places.items() if len(where) > 1} == {}
+def test_commands_use_exported_names_alone():
+    """Each `verbs.NAME` of the command line is exported by `api`."""
+    used = {
+        node.attr
+        for name, (tree, _) in modules().items()
+        if name.startswith("actuator_opt.cli")
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute)
+        and isinstance(node.value, ast.Name)
+        and node.value.id == "verbs"
+    }
+    assert len(used) > 20
+    assert used <= set(actuator_opt.api.__all__)

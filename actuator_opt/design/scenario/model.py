@@ -3,7 +3,7 @@
 A signal is the sum of the parts in its list.
 """
 
-from __future__ import annotations
+# Annotations are objects here, not texts, which Pydantic would compile one by one at each start.
 
 from typing import Annotated
 
@@ -382,15 +382,15 @@ class Scenario(Section):
     sample_time: Annotated[
         float | None, Of("sample_time", "sample time of the signals; default: duration / 2000")
     ] = None
-    initial: Initial = Initial()
-    supply: ValveSupply = ValveSupply()
+    initial: Initial = Initial.model_construct()
+    supply: ValveSupply = ValveSupply.model_construct()
     ends: kinds.Ends = None
-    friction: ScenarioFriction = ScenarioFriction()
-    stops: Stops = Stops()
+    friction: ScenarioFriction = ScenarioFriction.model_construct()
+    stops: Stops = Stops.model_construct()
     motor: Motor | None = None
     held_ports: HeldPorts | None = None
-    load: ScenarioLoad = ScenarioLoad()
+    load: ScenarioLoad = ScenarioLoad.model_construct()
     signal: Parts = ()
     control: Controller | None = None
-    analysis: Analysis = Analysis()
+    analysis: Analysis = Analysis.model_construct()
     requirements: dict[str, Limit] = {}  # noqa: RUF012 (pydantic copies it)
