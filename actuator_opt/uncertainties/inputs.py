@@ -11,7 +11,7 @@ limits of their tolerances.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -19,7 +19,9 @@ import numpy as np
 
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
+from ..base.numeric import Array, minimum, namespace, where
 from ..base.quantities import Quantity
+from ..base.symbolic.recorded import RecordedFunction
 from ..design import quantity_of
 from ..design.kinds import ValueFault
 from ..design.material import Property, Spread
@@ -310,6 +312,7 @@ class UncertainModel:
         """Whether each limit is a requirement, of the design or of a load case, and not a check."""
         _require_metrics(self.metrics, nominal.computed)
         self._wanted = {limit.metric for limit in self.limits} | set(self.metrics)
+        self._evaluate: Callable[[Vector], Vector] = self._rows
 
     @property
     def nominal(self) -> ModelDraws:
@@ -334,34 +337,40 @@ class UncertainModel:
             least = np.min(drawn_inputs.margins[self.own], axis=0, initial=np.inf)
         return np.concatenate([margins, least[None], drawn_inputs.metrics])
 
+    def record(self) -> None:
+        """Record the models, so that the machine evaluates many draws; not with custom metrics."""
+        if not self.subject.plugins:
+            present = np.array([entry.value for entry in self.inputs])
+            self._evaluate = RecordedFunction(self._rows, [x.path for x in self.inputs], present)
+
     @np.errstate(all="ignore")
     def where(self, values: Vector) -> ModelDraws:
         """Return margins and metrics at the given input values (d, n), SI."""
+        rows = self._evaluate(values)
+        return ModelDraws(values, rows[: len(self.limits)], rows[len(self.limits) :])
+
+    def _rows(self, values: Array) -> Array:
+        """Margins, then metrics (m + k, n), by the models; also of symbols."""
         count = values.shape[1]
         varied = {entry.path: row for entry, row in zip(self.inputs, values, strict=True)}
         numbers = self.subject.values(varied)
         wanted = None if self.subject.plugins else self._wanted
         computed = compute(self.subject, numbers, wanted).computed
-        margins = [_margin(limit, computed, numbers, count) for limit in self.limits]
-        metrics = [governing(name, computed, numbers, self.subject) for name in self.metrics]
-        return ModelDraws(values, _stacked(margins, count), _stacked(metrics, count))
+        rows = [_margin(limit, computed, numbers, count) for limit in self.limits]
+        rows += [governing(name, computed, numbers, self.subject) for name in self.metrics]
+        if not rows:
+            return np.empty((0, count))
+        xp = namespace(*rows)
+        return xp.stack([xp.broadcast_to(xp.asarray(row), (count,)) for row in rows])
 
 
-def _stacked(arrays: Sequence[Vector], count: int) -> Vector:
-    """Stack arrays (n,) or (1,) as (len, n)."""
-    rows = np.empty((len(arrays), count))
-    for row, array in zip(rows, arrays, strict=True):
-        row[:] = array
-    return rows
-
-
-def _margin(limit: MetricLimit, computed: MetricArrays, numbers: Values, count: int) -> Vector:
+def _margin(limit: MetricLimit, computed: MetricArrays, numbers: Values, count: int) -> Array:
     """Return the least margin of a limit over load cases and places (n,); NaN without a value."""
-    least = np.full(count, np.inf)
+    least: Array = np.full(count, np.inf)
     has_value = False
     for row in rows_of(limit, computed, numbers):
-        least, has_value = np.minimum(least, row.margin), True
-    return np.where(least > UNLIMITED / 1e6, np.inf, least) if has_value else np.full(count, np.nan)
+        least, has_value = minimum(least, row.margin), True
+    return where(least > UNLIMITED / 1e6, np.inf, least) if has_value else np.full(count, np.nan)
 
 
 def _require_metrics(metrics: Sequence[str], computed: MetricArrays) -> None:

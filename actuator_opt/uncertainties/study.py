@@ -82,6 +82,11 @@ POINTS = (0.01, 0.05, 0.5, 0.95, 0.99)
 """Cumulative probabilities at which margins are reported."""
 
 
+RECORDED_FROM = 5000
+"""Smallest number of draws for which recording the models saves time (our choice: recording costs
+as much as some 2000 draws)."""
+
+
 def uncertainty(
     subject: PreparedDesign,
     *,
@@ -110,6 +115,8 @@ def uncertainty(
     began = time.perf_counter()
     uncertain_inputs = inputs(subject)
     model = UncertainModel(subject, uncertain_inputs, metrics or subject.design.objective.metrics)
+    if count + rows * (len(uncertain_inputs) + 2) >= RECORDED_FROM:
+        model.record()
     blocks = BLOCKS if quasi_random else 1
     counts = draw(model, count, seed, blocks)
     rates = counts.rates()
