@@ -271,7 +271,7 @@ def export(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Export the design for CAD (STEP, DXF), Excel (XLSX) or a program of your own (C)."""
+    """Export the design to CAD (STEP, DXF), Excel (XLSX) or C."""
     from .. import api as verbs
     from ..exports import require_formats
 

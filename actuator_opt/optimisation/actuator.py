@@ -27,7 +27,15 @@ from ..design.materials import Library
 from ..evaluation import PreparedDesign, compute, prepare
 from ..evaluation.build import names_of_materials
 from ..evaluation.kernel import extreme, worst_of
-from ..evaluation.limits import UNLIMITED, LimitRow, MetricArrays, all_limits, margin, rows_of
+from ..evaluation.limits import (
+    UNLIMITED,
+    LimitRow,
+    MetricArrays,
+    all_limits,
+    fixed_when_prepared,
+    margin,
+    rows_of,
+)
 from ..evaluation.values import Values as Numbers
 from .evaluator import Evaluator, Point
 from .problem import BoxProblem, ParametricProblem, PointValues, Vector
@@ -194,13 +202,19 @@ class ActuatorProblem:
         return ParametricProblem(self.problem, parameters, present, evaluate)
 
     def fixed_numbers(self, x: Vector) -> list[str]:
-        """PATHs of the positive fixed numbers that the models read at the point x (n,)."""
+        """PATHs of the positive fixed numbers that the models read at the point x (n,).
+
+        Numbers that change the knock-downs of strengths, such as temperatures, are left out: a
+        prepared design keeps its knock-downs.
+        """
         values = self.subject.values(dict(zip(self.paths, x[:, None], strict=True)))
         self.subject.touch(values)
         return [
             path
             for path in sorted(values.read)
-            if path not in self.paths and self.subject.numbers.get(path, 0.0) > 0
+            if path not in self.paths
+            and self.subject.numbers.get(path, 0.0) > 0
+            and not fixed_when_prepared(path)
         ]
 
     def number_steps(self, x: Vector, paths: Sequence[str]) -> PointValues:
