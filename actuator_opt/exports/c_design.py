@@ -113,7 +113,8 @@ def _recorded(subject: PreparedDesign) -> _Recorded:
     names = tuple(
         path
         for path in actuator.recorded.names
-        if path in actuator.paths or not (fixed_when_prepared(path) or _counted(subject, path))
+        if path in actuator.paths
+        or (path in subject.numbers and not (fixed_when_prepared(path) or _counted(subject, path)))
     )
     present = np.array([subject.numbers[path] for path in names])
     known = {row.label for row in actuator.rows}

@@ -10,7 +10,7 @@ finite difference is used.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import field, replace
 from typing import Any
 
@@ -409,9 +409,25 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
     required = None if plugin_names else metrics
     actuator = ActuatorProblem(lenient, goal, paths, rows, fixed, problem, required, refusals)
     if not plugin_names:
-        actuator = replace(actuator, recorded=recorded_models(actuator, numbers.read))
+        actuator = _recording(actuator, numbers.read)
     holder.append(actuator)
     return holder[0]
+
+
+def _recording(actuator: ActuatorProblem, read: Collection[str]) -> ActuatorProblem:
+    """The problem with `recorded`; its models read the numbers at the PATHs `read`."""
+    goal = actuator.goal
+    recorded = recorded_models(
+        lambda subject, points, varied: replace(actuator, subject=subject).by_models(
+            points, varied
+        ),
+        subject=actuator.subject,
+        paths=actuator.paths,
+        read=read,
+        limits=actuator.rows,
+        objective=[sorted(actuator.metrics or ()), goal.weights, goal.scales, goal.sign],
+    )
+    return replace(actuator, recorded=recorded)
 
 
 def idle_metrics(actuator: ActuatorProblem) -> tuple[str, ...]:

@@ -7,10 +7,10 @@ which a material is a number, in the order of its first use in the design.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -18,18 +18,33 @@ from ..base.numeric import Array, namespace
 from ..base.symbolic.recorded import RecordedFunction
 from ..design.structure import leaves, number_of
 from ..evaluation import PreparedDesign
+from ..evaluation.limits import LimitRow
+from .problem import PointValues
 
-if TYPE_CHECKING:
-    from .actuator import ActuatorProblem
 
-
-def recorded_models(actuator: ActuatorProblem, read: Collection[str]) -> RecordedFunction:
+def recorded_models(
+    evaluate: Callable[[PreparedDesign, Array, Mapping[str, Array]], PointValues],
+    *,
+    subject: PreparedDesign,
+    paths: Sequence[str],
+    read: Collection[str],
+    limits: Sequence[LimitRow],
+    objective: Sequence[Any],
+) -> RecordedFunction:
     """Objective and margins (rows) as a recorded function.
 
-    Its inputs are the variables, the other numbers at the PATHs `read` unless zero, the knock-down
+    Its inputs are the variables, the other numbers that the models read unless zero, the knock-down
     factors of strengths, and the tables of material properties.
+
+    Parameters
+    ----------
+    evaluate : objective and margins of a design, at points (variables, n) with changed numbers
+    subject : the prepared design
+    paths : PATHs of the variables
+    read : PATHs of all numbers that the models read
+    limits : the limits of the margins
+    objective : JSON data that describe the objective
     """
-    subject, paths = actuator.subject, actuator.paths
     neutral = _Neutral(subject)
     numbers = sorted(
         (path for path in read if path not in paths and subject.numbers.get(path)), key=neutral
@@ -48,17 +63,16 @@ def recorded_models(actuator: ActuatorProblem, read: Collection[str]) -> Recorde
     third = second + len(factors)
 
     def rows(inputs: Array) -> Array:
-        varied, problem = dict(zip(numbers, inputs[first:second], strict=True)), actuator
+        design, varied = subject, dict(zip(numbers, inputs[first:second], strict=True))
         further = inputs[second:]
         if namespace(inputs) is not np or (further != present[second:, None]).any():
             changed = dict(zip(factors, inputs[second:third], strict=True))
-            changed_subject = replace(subject, factors=dict(subject.factors) | changed)
-            changed_subject = _with_tables(changed_subject, tables, list(inputs[third:]))
-            problem = replace(actuator, subject=changed_subject)
-        values = problem.by_models(inputs[:first], varied)
+            design = replace(subject, factors=dict(subject.factors) | changed)
+            design = _with_tables(design, tables, list(inputs[third:]))
+        values = evaluate(design, inputs[:first], varied)
         xp = namespace(values.constraints)
-        objective = xp.broadcast_to(values.objective, (1, inputs.shape[1]))
-        return xp.concatenate([objective, values.constraints])
+        row = xp.broadcast_to(values.objective, (1, inputs.shape[1]))
+        return xp.concatenate([row, values.constraints])
 
     names = [*paths, *numbers, *map(str, factors)]
     known = [subject.numbers[path] for path in (*paths, *numbers)]
@@ -67,7 +81,12 @@ def recorded_models(actuator: ActuatorProblem, read: Collection[str]) -> Recorde
         names += [f"{place} {k}" for k in range(len(values))]
         known += values
     present = np.array(known)
-    return RecordedFunction(rows, names, present, _structure(actuator, read, neutral))
+    places = [
+        (x.limit_of.name, x.limit_of.metric, x.limit_of.sense, neutral(x.place), x.case_index)
+        for x in limits
+    ]
+    structure = [*_structure(subject, read, neutral), list(map(neutral, paths)), places, objective]
+    return RecordedFunction(rows, names, present, structure)
 
 
 def _with_tables(
@@ -106,9 +125,8 @@ class _Neutral:
         return text
 
 
-def _structure(actuator: ActuatorProblem, read: Collection[str], neutral: _Neutral) -> list[Any]:
+def _structure(subject: PreparedDesign, read: Collection[str], neutral: _Neutral) -> list[Any]:
     """Data that determine the operations of the models, which read the numbers at PATHs `read`."""
-    subject, goal = actuator.subject, actuator.goal
     words = [
         (loc, neutral(str(value)) if number_of(value) is None else type(value).__name__)
         for loc, _, value in leaves(subject.design)
@@ -120,14 +138,6 @@ def _structure(actuator: ActuatorProblem, read: Collection[str], neutral: _Neutr
         for key, entry in sorted(material.properties.items())
         if f"materials.{material.name}.{key}" in read
     ]
-    rows = [
-        (row.limit_of.name, row.limit_of.metric, row.limit_of.sense, neutral(row.place),
-         row.case_index)
-        for row in actuator.rows
-    ]  # fmt: skip
     zero = sorted(neutral(path) for path in read if subject.numbers.get(path) == 0)
     none = [(neutral(key[0]), *key[1:]) for key, value in subject.factors.items() if not value]
-    return [
-        words, materials, rows, list(map(neutral, actuator.paths)), sorted(actuator.metrics or ()),
-        zero, sorted(none), dict(subject.reserves), goal.weights, goal.scales, goal.sign,
-    ]  # fmt: skip
+    return [words, materials, zero, sorted(none), dict(subject.reserves)]

@@ -114,7 +114,7 @@ def test_the_compiled_file_equals_the_models(name, tmp_path):
     wide = points[:, ::10]
     steps = np.repeat(wide, len(low), axis=1) + 1j * STEP * np.tile(np.eye(len(low)), len(wide.T))
     with np.errstate(all="ignore"):
-        plain, stepped = actuator._by_models(points, {}), actuator._by_models(steps, {})
+        plain, stepped = actuator.by_models(points, {}), actuator.by_models(steps, {})
     shape = (len(actuator.rows) + 1, len(wide.T), len(low))
     slopes = np.concatenate([stepped.objective[None], stepped.constraints]).imag / STEP
     slopes = slopes.reshape(shape)

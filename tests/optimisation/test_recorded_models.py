@@ -145,3 +145,25 @@ def test_a_changed_subject_is_recorded_anew():
     subject = ao.read(text_of("steel_baseline")).subject()
     changed = replace(subject, reserves={"buckling_factor": 0.1})
     assert build(subject).recorded is not build(changed).recorded
+
+
+@pytest.mark.parametrize(
+    ("old", "one", "other"),
+    [("iso_vg_32", "iso_vg_32", "iso_vg_46"), ("t700_epoxy", "as4_3501_6", "eglass_epoxy")],
+)
+def test_designs_with_other_materials_share_a_recording(old, one, other):
+    """Their tables, strengths and knock-downs are inputs: one recording gives both results."""
+    text = text_of("knee")
+    assert old in text
+    first, second = (build(ao.read(text.replace(old, new)).subject()) for new in (one, other))
+    rng = np.random.default_rng(7)
+    low, high = first.problem.lower[:, None], first.problem.upper[:, None]
+    points = low + (high - low) * rng.random((len(low), 20))
+    with np.errstate(all="ignore"):
+        first.evaluate(points)
+        mine = rows(second.evaluate(points), 20)
+        theirs = rows(second.by_models(points, {}), 20)
+        others = rows(first.by_models(points, {}), 20)
+    assert second.recorded.recording is first.recorded.recording
+    np.testing.assert_allclose(mine, theirs, rtol=1e-11, atol=1e-11, equal_nan=True)
+    assert not np.allclose(theirs, others, equal_nan=True)

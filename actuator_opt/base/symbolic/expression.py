@@ -266,7 +266,7 @@ class Symbol:
     ) -> None:
         self.graph, self.op, self.args, self.index = graph, op, args, index
         self.bounds = limits
-        self.operands = tuple([a for a in args if isinstance(a, Symbol)])
+        self.operands = tuple([a for a in args if type(a) is Symbol])
 
     def __array_namespace__(self, **_: Any) -> Any:
         return Namespace
@@ -274,9 +274,6 @@ class Symbol:
     def __repr__(self) -> str:
         inside = ", ".join(f"%{a.index}" if isinstance(a, Symbol) else repr(a) for a in self.args)
         return f"%{self.index} = {self.op}({inside})"
-
-    def __hash__(self) -> int:
-        return id(self)
 
     def __bool__(self) -> bool:
         if self.graph.truth is not None:

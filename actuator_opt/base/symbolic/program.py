@@ -42,6 +42,8 @@ MOST_SLOTS: Final = 2**16
 _FROZEN: Final = 16
 """Flag of an instruction whose first operand counts as a constant, without derivative; the flag of
 the second operand is twice this number, that of the third four times."""
+_MISSING: Final = (7 * _FROZEN, 6 * _FROZEN, 4 * _FROZEN)
+"""Flags of the operands that an operation with 0, 1 or 2 operands does not have."""
 
 
 @dataclass(slots=True)
@@ -193,7 +195,7 @@ class _Writer:
         self.slot: dict[int, int] = {node.index: k for k, node in enumerate(inputs)}
         given = set(self.slot)
         self.nodes = [n for n in needed(outputs) if n.index not in given and n.op not in SHARED]
-        self.constants: dict[bytes, int] = {}
+        self.constants: dict[float | str, int] = {}
         self.values: list[float] = []
         self.extra: list[int] = []
         self.code: list[tuple[int, ...]] = []
@@ -207,27 +209,28 @@ class _Writer:
         kept |= {node.index for node in self.inputs}
         free: list[int] = []
         for k, node in enumerate(self.nodes):
+            places = [self._place(a) for a in node.args]
+            wide, words = 1, places
             if node.op == "roots":
                 kept.add(node.index)  # its slots are neighbours and are not used again
-                words = [len(self.extra), len(node.args) - 1, 0]
-                self.extra += [self._place(a) for a in node.args]
-            else:
-                words = [self._place(a) for a in node.args]
-            flags = 0
-            for place in range(3):  # a place without an operand repeats the first
-                operand = node.args[place] if place < len(node.args) else None
-                if operand is None or (isinstance(operand, Symbol) and operand.op == "real"):
-                    flags |= _FROZEN << place
-            for index in {_owner(operand).index for operand in node.operands}:
-                if last[index] == k and index not in kept:
-                    free.append(self.slot[index])
-            wide = 2 * words[1] if node.op == "roots" else 1
+                wide, words = 2 * (len(places) - 1), [len(self.extra), len(places) - 1, 0]
+                self.extra += places
+            flags = _MISSING[len(node.args)] if len(node.args) < 3 else 0
+            for place, operand in enumerate(node.args[:3]):
+                if type(operand) is Symbol:
+                    if operand.op == "real":
+                        flags |= _FROZEN << place
+                    index = (operand if operand.op not in SHARED else _owner(operand)).index
+                    if last[index] == k and index not in kept:
+                        last[index] = -1
+                        free.append(self.slot[index])
             if wide == 1 and free:
                 slot = free.pop()
             else:
                 slot, self.count = self.count, self.count + wide
             self.slot[node.index] = slot
-            words += [words[0]] * (3 - len(words))
+            # a place without an operand repeats the first
+            words = words + [words[0]] * (3 - len(words))
             self.code.append((codes[node.op] | flags << 8, slot, *words))
             if is_steep_at_zero(node):
                 self.code.append((codes["where"], slot, slot, slot, self._place(0.0)))
@@ -235,14 +238,16 @@ class _Writer:
 
     def _place(self, value: Any) -> int:
         """Slot of an operand; constants have -1, -2, ... until the number of slots is known."""
-        if isinstance(value, Symbol):
+        if type(value) is Symbol:
+            if value.op not in SHARED:
+                return self.slot[value.index]
             at = 0
             while value.op in SHARED:
                 at += value.args[1] if value.op == "part" else 0
                 value = value.args[0]
             return self.slot[value.index] + at
         number = float(value)
-        key = np.float64(number).tobytes()
+        key = number or str(number)  # -0 and 0 are equal, but not their texts
         if key not in self.constants:
             self.constants[key] = -1 - len(self.values)
             self.values.append(number)
