@@ -10,6 +10,7 @@ import resource
 import statistics
 import subprocess
 import sys
+import time
 import timeit
 from pathlib import Path
 
@@ -18,6 +19,7 @@ import pytest
 
 import actuator_opt as ao
 from actuator_opt.base.numeric import STEP
+from actuator_opt.base.symbolic import program_store
 from actuator_opt.design import read_design
 from actuator_opt.evaluation import compute, prepare
 from actuator_opt.models.layered_tube import (
@@ -36,6 +38,7 @@ from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.run import sensitivities
 from actuator_opt.optimisation.solver import solve
+from actuator_opt.uncertainties import study
 
 KNEE = Path(__file__).parent.parent / "designs" / "knee.yaml"
 
@@ -137,8 +140,7 @@ def test_recorded_models_against_numpy(benchmark, name, budget):
     x = problem.problem.start
     points = x[:, None] + 1j * STEP * np.diag(x)
     with np.errstate(all="ignore"):
-        while problem.recorded.recording is None and not problem.recorded.reason:
-            problem.evaluate(points)
+        problem.evaluate(points)
         pairs = [
             (timeit.timeit(lambda: problem.evaluate(points), number=20),
              timeit.timeit(lambda: problem.by_models(points, {}), number=20))
@@ -150,6 +152,47 @@ def test_recorded_models_against_numpy(benchmark, name, budget):
     best = 50 * min(recorded for recorded, _ in pairs)
     print(f"\n{name}: {best:.3f} ms; NumPy takes {ratio:.0f} times as long (budget {budget})")
     assert ratio >= budget
+
+
+@pytest.mark.parametrize(("name", "budget"), [("knee", 6), ("servo_knee", 6)])
+def test_stored_models_against_recording(benchmark, name, budget, tmp_path, monkeypatch):
+    """Recording takes at least `budget` times as long as reading what an earlier run stored."""
+    subject = prepare(read_design(KNEE.with_stem(name)).design)
+
+    def first_call(folder: str) -> float:
+        monkeypatch.setenv(program_store.FOLDER, folder)
+        program_store._KNOWN.clear()
+        problem = build(subject)
+        start = problem.problem.start[:, None]
+        with np.errstate(all="ignore"):
+            return timeit.timeit(lambda: problem.evaluate(start), number=1)
+
+    first_call(str(tmp_path))
+    pairs = [(first_call("0"), first_call(str(tmp_path))) for _ in range(9)]
+    ratio = statistics.median(recorded / read for recorded, read in pairs)
+    benchmark.extra_info |= {"ratio": ratio, "budget": budget}
+    benchmark.pedantic(first_call, (str(tmp_path),), rounds=3)
+    best = 1e3 * min(read for _, read in pairs)
+    print(f"\n{name}: {best:.0f} ms; recording takes {ratio:.0f} times as long (budget {budget})")
+    assert ratio >= budget
+
+
+def test_draws_on_recorded_models(benchmark, monkeypatch):
+    """10 000 draws and 1024 rows of indices: NumPy takes at least 1.5 times as long, in pairs."""
+    subject = prepare(read_design(KNEE).design)
+
+    def took(least: float) -> float:
+        monkeypatch.setattr(study, "RECORDED_FROM", least)
+        begin = time.process_time()
+        study.uncertainty(subject, count=10_000, seed=0, quasi_random=False, rows=1024)
+        return time.process_time() - begin
+
+    took(0)
+    pairs = [(took(np.inf), took(0)) for _ in range(3)]
+    ratio = statistics.median(numpy / recorded for numpy, recorded in pairs)
+    benchmark.pedantic(took, (0,), rounds=1)
+    print(f"\n{min(pair[1] for pair in pairs):.2f} s; NumPy takes {ratio:.1f} times as long")
+    assert ratio >= 1.5
 
 
 def test_evaluate_with_gradients(benchmark, knee):
