@@ -187,6 +187,8 @@ class ActuatorProblem:
     may read any metric."""
     refusals: Refusals = field(default_factory=Refusals)
     """Counts the designs where a custom metric has no value."""
+    goals: tuple[Goal, ...] = ()
+    """Objectives of a Pareto front, in addition to `goal`."""
     recorded: RecordedFunction | None = None
     """Objective and margins as a function recorded from the models; its inputs are the variables
     and all positive numbers of the design. None with custom metrics, whose code may do anything."""
@@ -229,18 +231,24 @@ class ActuatorProblem:
         self,
         points: Array,
         parameters: Mapping[str, Array] | None = None,
-        outputs: list[MetricArrays] | None = None,
     ) -> PointValues:
-        """Objective and constraint margins at points (variables, designs).
+        """Objective and constraint margins at points (variables, designs)."""
+        objectives, constraints = self._evaluated(points, parameters or {})
+        return PointValues(objectives[0], constraints)
 
-        Adds the computed metrics to `outputs`.
-        """
-        known = parameters or {}
-        recorded = None if outputs is not None else self.recorded
-        if recorded is not None and known.keys() <= set(recorded.names):
-            rows = recorded(self._inputs(points, known))
-            return PointValues(rows[0], rows[1:])
-        return self.by_models(points, known, outputs)
+    def trade(self, points: Array) -> PointValues:
+        """The list of all `goals`, and the margins, at points (variables, designs)."""
+        objectives, constraints = self._evaluated(points, {})
+        return PointValues(list(objectives[1:]), constraints)
+
+    def _evaluated(
+        self, points: Array, parameters: Mapping[str, Array]
+    ) -> tuple[Sequence[Array], Array]:
+        recorded = self.recorded
+        if recorded is None or not parameters.keys() <= set(recorded.names):
+            return self.values_by_models(points, parameters)
+        rows, count = recorded(self._inputs(points, parameters)), 1 + len(self.goals)
+        return rows[:count], rows[count:]
 
     @property
     def models_run_by(self) -> str:
@@ -248,12 +256,12 @@ class ActuatorProblem:
         recorded = self.recorded is not None and self.recorded.recording is not None
         return "compiled program" if recorded else "NumPy"
 
-    def confirmed(self, x: Vector) -> bool:
-        """Whether the recorded models agree with the models themselves at the point x (n,)."""
+    def confirmed(self, x: Array) -> bool:
+        """Whether the recorded models agree with the models themselves at points (n,) or (n, k)."""
         if self.recorded is None:
             return True
         with np.errstate(all="ignore"):
-            return self.recorded.confirmed(self._inputs(x[:, None], {}))
+            return self.recorded.confirmed(self._inputs(x.reshape(len(x), -1), {}))
 
     def _inputs(self, points: Array, parameters: Mapping[str, Array]) -> Array:
         """All inputs of the recorded function (inputs, designs)."""
@@ -266,25 +274,24 @@ class ActuatorProblem:
             inputs[self.recorded.names.index(path)] = value
         return inputs
 
-    def by_models(
-        self,
-        points: Array,
-        parameters: Mapping[str, Array],
-        outputs: list[MetricArrays] | None = None,
-    ) -> PointValues:
+    def by_models(self, points: Array, parameters: Mapping[str, Array]) -> PointValues:
         """Like `evaluate`, but by the models themselves instead of the recorded function."""
+        objectives, constraints = self.values_by_models(points, parameters)
+        return PointValues(objectives[0], constraints)
+
+    def values_by_models(
+        self, points: Array, parameters: Mapping[str, Array]
+    ) -> tuple[Sequence[Array], Array]:
+        """The objective, all `goals`, and the margins, by the models themselves."""
         varied = dict(parameters) | dict(zip(self.paths, points, strict=True))
         numbers = self.subject.values(varied)
         count = points.shape[1]
         run = compute(self.subject, numbers, self.metrics)
-        if outputs is not None:
-            outputs.append(run.computed)
         if self.refusals.names and not any(np.iscomplexobj(v) for v in varied.values()):
             self.refusals.add(run.computed, count)
-        return PointValues(
-            self.goal.value(run.computed, self.subject.cases),
-            _bounded(margins(self.rows, run.computed, numbers, count, self.subject.reserves)),
-        )
+        values = margins(self.rows, run.computed, numbers, count, self.subject.reserves)
+        goals = (self.goal, *self.goals)
+        return [goal.value(run.computed, self.subject.cases) for goal in goals], _bounded(values)
 
 
 def _bounded(margin: Array) -> Array:
@@ -339,7 +346,9 @@ def _stacked(values: Sequence[Array], width: int) -> Array:
 
 
 @np.errstate(all="ignore")  # the solver handles values that are not finite
-def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProblem:
+def build(
+    subject: PreparedDesign, fault: Fault | None = None, goals: tuple[Goal, ...] = ()
+) -> ActuatorProblem:
     """Build the optimisation problem of a design.
 
     Parameters
@@ -407,7 +416,9 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
     plugin_names = {plugin.name for plugin in subject.plugins}
     refusals, lenient = Refusals(metrics & plugin_names), replace(subject, lenient=True)
     required = None if plugin_names else metrics
-    actuator = ActuatorProblem(lenient, goal, paths, rows, fixed, problem, required, refusals)
+    actuator = ActuatorProblem(
+        lenient, goal, paths, rows, fixed, problem, required, refusals, goals
+    )
     if not plugin_names:
         actuator = _recording(actuator, numbers.read)
     holder.append(actuator)
@@ -416,16 +427,16 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
 
 def _recording(actuator: ActuatorProblem, read: Collection[str]) -> ActuatorProblem:
     """The problem with `recorded`; its models read the numbers at the PATHs `read`."""
-    goal = actuator.goal
+    goals = [(goal.weights, goal.scales, goal.sign) for goal in (actuator.goal, *actuator.goals)]
     recorded = recorded_models(
-        lambda subject, points, varied: replace(actuator, subject=subject).by_models(
+        lambda subject, points, varied: replace(actuator, subject=subject).values_by_models(
             points, varied
         ),
         subject=actuator.subject,
         paths=actuator.paths,
         read=read,
         limits=actuator.rows,
-        objective=[sorted(actuator.metrics or ()), goal.weights, goal.scales, goal.sign],
+        goals=[sorted(actuator.metrics or ()), goals],
     )
     return replace(actuator, recorded=recorded)
 

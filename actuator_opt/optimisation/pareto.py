@@ -13,7 +13,6 @@ import numpy as np
 from ..base.bounds import FRONT
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError, remedy
-from ..base.numeric import Array
 from ..base.quantities import Quantity
 from ..base.tables import Displayed
 from ..design import Design
@@ -21,13 +20,12 @@ from ..design.model import Objective
 from ..evaluation import Evaluation, PreparedDesign, compute, evaluate
 from ..evaluation.build import spec_hash
 from ..evaluation.kernel import governing
-from ..evaluation.limits import MetricArrays
 from .actuator import ActuatorProblem, Fault, Goal, build, idle_metrics
 from .front.front import Front, FrontSettings, NoAnchor, front
 from .front.objectives import Objectives
 from .front.plane import FrontGap
 from .infeasibility_card import explained
-from .problem import PointValues, Vector
+from .problem import Vector
 from .result import Infeasibility
 from .rounding import design_at
 from .solution import MET
@@ -232,17 +230,9 @@ class _ManyObjectives:
     """An actuator's optimisation problem with several objectives."""
 
     actuator: ActuatorProblem
-    goals: tuple[Goal, ...]
     wished: tuple[Wish, ...]
     subject: PreparedDesign
     """The design, with the objective of its file."""
-
-    def evaluate(self, points: Array) -> PointValues:
-        """Objectives (with a changed sign if to be maximised) and margins."""
-        cases = self.actuator.subject.cases
-        outputs: list[MetricArrays] = []
-        values = self.actuator.evaluate(points, outputs=outputs)
-        return replace(values, objective=[goal.value(outputs[0], cases) for goal in self.goals])
 
 
 def pareto(
@@ -273,10 +263,11 @@ def pareto(
         raise UsageError(Diagnostic(message, "choose a number between them"))
     many = _problem(subject, wished, fault)
     names = [wish.metric for wish in wished]
-    result = front(
-        Objectives(names, many.actuator.problem, many.evaluate),
-        FrontSettings(count=count, seed=seed, checks=checks),
-    )
+    traded = Objectives(names, many.actuator.problem, many.actuator.trade)
+    settings = FrontSettings(count=count, seed=seed, checks=checks)
+    result = front(traded, settings)
+    if not isinstance(result, NoAnchor) and not many.actuator.confirmed(result.x):
+        result = front(traded, settings)  # the recorded models are wrong and no longer used
     if isinstance(result, NoAnchor):
         return _without(many, result, began)
     return _result(many, result, seed, began)
@@ -305,16 +296,16 @@ def _problem(
         design=subject.design.model_copy(update={"objective": wish_all}),
         aims={w.metric: w.sense for w in wished},
     )
-    actuator = build(weighted, fault)
+    goals = tuple(
+        Goal({w.metric: 1.0}, {w.metric: 1.0}, 1.0 if w.sense == "min" else -1.0) for w in wished
+    )
+    actuator = build(weighted, fault, goals)
     idle = idle_metrics(actuator)
     if idle:
         message = f"no variable affects {' and '.join(idle)}: nothing to trade off"
         remedy_ = "choose another objective, or free a dimension that it depends on"
         raise InputError(Diagnostic(message, remedy_))
-    goals = tuple(
-        Goal({w.metric: 1.0}, {w.metric: 1.0}, 1.0 if w.sense == "min" else -1.0) for w in wished
-    )
-    return _ManyObjectives(actuator, goals, wished, subject)
+    return _ManyObjectives(actuator, wished, subject)
 
 
 def _points(many: _ManyObjectives, result: Front) -> tuple[FrontPoint, ...]:
@@ -347,7 +338,7 @@ def _result(many: _ManyObjectives, result: Front, seed: int, began: float) -> Pa
     knee = None if result.knee is None else Knee(*result.knee)
     index = 0 if knee is None else knee.index
     design, evaluation = design_at(many.actuator, result.x[:, index])
-    signs = np.array([goal.sign for goal in many.goals])
+    signs = np.array([goal.sign for goal in many.actuator.goals])
     return ParetoFront(
         subject=many.subject.design,
         spec_hash=spec_hash(many.subject),

@@ -19,31 +19,30 @@ from ..base.symbolic.recorded import RecordedFunction
 from ..design.structure import leaves, number_of
 from ..evaluation import PreparedDesign
 from ..evaluation.limits import LimitRow
-from .problem import PointValues
 
 
 def recorded_models(
-    evaluate: Callable[[PreparedDesign, Array, Mapping[str, Array]], PointValues],
+    evaluate: Callable[[PreparedDesign, Array, Mapping[str, Array]], tuple[Sequence[Array], Array]],
     *,
     subject: PreparedDesign,
     paths: Sequence[str],
     read: Collection[str],
     limits: Sequence[LimitRow],
-    objective: Sequence[Any],
+    goals: Sequence[Any],
 ) -> RecordedFunction:
-    """Objective and margins (rows) as a recorded function.
+    """Objectives and margins (rows) as a recorded function.
 
     Its inputs are the variables, the other numbers that the models read unless zero, the knock-down
     factors of strengths, and the tables of material properties.
 
     Parameters
     ----------
-    evaluate : objective and margins of a design, at points (variables, n) with changed numbers
+    evaluate : objectives and margins of a design, at points (variables, n) with changed numbers
     subject : the prepared design
     paths : PATHs of the variables
     read : PATHs of all numbers that the models read
     limits : the limits of the margins
-    objective : JSON data that describe the objective
+    goals : JSON data that describe the objectives
     """
     neutral = _Neutral(subject)
     numbers = sorted(
@@ -69,10 +68,10 @@ def recorded_models(
             changed = dict(zip(factors, inputs[second:third], strict=True))
             design = replace(subject, factors=dict(subject.factors) | changed)
             design = _with_tables(design, tables, list(inputs[third:]))
-        values = evaluate(design, inputs[:first], varied)
-        xp = namespace(values.constraints)
-        row = xp.broadcast_to(values.objective, (1, inputs.shape[1]))
-        return xp.concatenate([row, values.constraints])
+        objectives, margins = evaluate(design, inputs[:first], varied)
+        xp = namespace(margins)
+        shown = [xp.broadcast_to(value, (1, inputs.shape[1])) for value in objectives]
+        return xp.concatenate([*shown, margins])
 
     names = [*paths, *numbers, *map(str, factors)]
     known = [subject.numbers[path] for path in (*paths, *numbers)]
@@ -85,7 +84,7 @@ def recorded_models(
         (x.limit_of.name, x.limit_of.metric, x.limit_of.sense, neutral(x.place), x.case_index)
         for x in limits
     ]
-    structure = [*_structure(subject, read, neutral), list(map(neutral, paths)), places, objective]
+    structure = [*_structure(subject, read, neutral), list(map(neutral, paths)), places, goals]
     return RecordedFunction(rows, names, present, structure)
 
 
