@@ -30,7 +30,7 @@ from .c import (
 )
 
 NO_LOAD = 1e9
-"""Margin above which a limit counts as unloaded; its margin is then infinite (our choice)."""
+"""Margin above which nothing loads the limited part; it is then written as infinite (our choice)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,12 +199,12 @@ HEADER = """\
 extern "C" {
 #endif
 
-/* Places of the inputs, with the values of the design file. The variables are first; gradients are
-   by these. Keep the other inputs positive. Counts, zeros, knock-downs, and temperatures of oil and
+/* Indices of the inputs, with the values of the design file. The variables are first; gradients
+   are by these. Keep the other inputs positive. Counts, zeros, knock-downs, and temperatures of oil and
    environment are no inputs: they have the values of the design file. */
 @in@
-/* Places of the outputs, with the values of the design file: the objective, then the value of each
-   metric that governs all load cases and places, then the margins of the limits. */
+/* Indices of the outputs, with the values of the design file: the objective, then the governing
+   value of each metric over all load cases and locations, then the margins of the limits. */
 @out@
 /* A margin is (value - limit) / |limit| for a lower limit, with the opposite sign for an upper
    limit; a limit of zero does not divide. The limit is met if the margin is 0 or more. */

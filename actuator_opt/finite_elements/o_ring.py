@@ -82,7 +82,7 @@ class RoundRing:
     def mount(self, squeeze: float, groove_width: float) -> ElementState:
         """Lower the groove bottom and the side walls onto the ring.
 
-        Without friction, their order does not matter. The centre of the ring keeps its axial
+        Without friction, it does not matter which of them moves first. The centre of the ring keeps its axial
         position.
         """
         bounds, centre = self.problem.bounds, 2 * self.centre

@@ -220,7 +220,7 @@ class Straight(NamedTuple):
     parts : samples of each loading and unloading that lie in the straight part
     ends : deflections at both ends of the straight part, counted from zero force [m]
     bent : change of slope along the straight part, divided by the slope
-    unsure : size of `bent`, less what noise can explain
+    unsure : absolute value of `bent` minus the part that noise can cause; 0 if noise can cause all
     cut : whether the straight part is only a part of the searched range
     """
 
@@ -264,7 +264,7 @@ class Loop:
         return parts
 
     def begins(self) -> list[float]:
-        """Deflection of every branch at which its force is `BEGUN` of its highest force."""
+        """Deflection of every branch at which its force is the share `BEGUN` of its highest."""
         deflections = []
         for samples, _ in self.branches:
             force = self.force[samples] - self.floor
@@ -389,7 +389,8 @@ def _channels(record: Record) -> tuple[Array, Array]:
 def _oriented(w: Array, force: Array) -> tuple[Array, Array, float, bool]:
     """Deflection and force, increasing with bending.
 
-    Also returns the force without load, and whether the specimen is bent in both directions.
+    Also returns the reading of the force channel for the unloaded specimen, and whether the
+    specimen is bent in both directions.
 
     Whatever the offsets, the specimen is taken to be unloaded at the start of the record. The
     exception is a record of a single unloading. A specimen bent in both directions is unloaded

@@ -227,8 +227,9 @@ def windows(
     ----------
     slidings, motion : friction along the record, and the conditioned record with its filter
     reference : reference pressure, which is subtracted from the pressures [Pa]
-    slowest : lowest speed of the points of steady sliding [m/s]; steady sliding at higher speeds is
-        left to these points
+    slowest : lowest speed of the points of steady sliding, which are fitted besides the windows
+        [m/s]. In the windows, steady sliding above this speed has no weight, because these points
+        already cover it
     settling : distance after a reversal beyond which sliding is steady [m]
 
     Returns

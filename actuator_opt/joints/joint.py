@@ -231,7 +231,8 @@ class Loaded:
     """An end of the barrel under load.
 
     `force` is the largest force that separates cap and barrel [N]. `paths` are the axial forces in
-    the barrel wall per unit pressure [m^2], by load path. `line_stiffness` is the axial E t of the
+    the barrel wall per unit pressure [m^2], by name of the load path: pressure without and with
+    axial force. `line_stiffness` is the axial E t of the
     wall [N/m], and `expansion` its axial thermal expansion [1/K], None if unknown.
     """
 
@@ -374,7 +375,7 @@ def nothing(*_: object) -> Iterator[Any]:
 
 
 def check(joints: Iterable[Joint]) -> None:
-    """Refuse two joints that declare the same metric, model location or key.
+    """Refuse two joints that declare the same key or metric, or models for the same location.
 
     Raises
     ------
@@ -396,10 +397,10 @@ def chosen(stated: StatedValues, path: str) -> bool:
 
 
 def judged_later(stated: StatedValues, varied: Iterable[str]) -> bool:
-    """Whether the search checks these sizes later, when it tries every combination of choices.
+    """Whether some sizes are checked only later, when the search tries each combination of choices.
 
-    `varied` are the PATHs of the sizes. The check is left to the search if one of the sizes is a
-    variable, and one of them or the type of joint has several choices.
+    `varied` are the PATHs of the sizes. They are checked later if one of them is a variable of the
+    optimisation, and one of them or the type of joint has several choices.
     """
     paths = tuple(varied)
     free = any(stated.has("variables", path) for path in paths)

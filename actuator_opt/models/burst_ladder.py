@@ -155,8 +155,9 @@ class Mechanics(Protocol):
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
         """Stresses 1, 2, 12, 3 at every face and layer, per unit pressure and at zero pressure.
 
-        The stresses at zero pressure come from yielded metals and other initial stress; the second
-        result is None if there is neither.
+        `soft` marks the layers that have softened so far, None if none have; `held` is the state of
+        the metals that have yielded. The stresses at zero pressure come from these metals and from
+        other initial stress; the second result is None if there is neither.
         """
 
     def frozen(self, held: Any, yielded: Array, stress: Array) -> Any:
@@ -200,7 +201,7 @@ def metals_first(layers: Sequence[WallLayer]) -> tuple[int, ...]:
 
 
 def stacked_rows(xp: Any, columns: Sequence[Sequence[Array]], dims: int) -> Array:
-    """Stack the values of all layers as an array (values, layers, ...) with `dims` batch axes."""
+    """Stack the values of all layers as an array (values, layers, ...) with `dims` axes for designs."""
     rows = list(zip(*columns, strict=True))
     zero = batch_zero([value for row in rows for value in row])
     ones = (1,) * dims
@@ -248,7 +249,7 @@ def _utilisations(
 
 
 def _critical(xp: Any, values: Array, rows: Array, shape: Array) -> tuple[Array, ...]:
-    """Row number, mask and failure load of the most utilised mode; whether any mode is loaded."""
+    """Most utilised mode: its row, a mask of that row, its failure load; and whether it is loaded."""
     code = xp.argmax(real(values), axis=0)
     hit = rows == code
     inverse = xp.sum(where(hit, values, 0.0), axis=0)
@@ -258,7 +259,7 @@ def _critical(xp: Any, values: Array, rows: Array, shape: Array) -> tuple[Array,
 
 
 def _softening(xp: Any, hit: Array, faces: int, count: int, metals: int) -> Array:
-    """Mask of the layer that softens at this step, by matrix or shear failure or by yield."""
+    """Mask of the layers with the failing mode, if it is matrix or shear failure, or yield."""
     plies = _YIELD * faces * count
     modes = xp.reshape(hit[:plies, ...], (_YIELD, faces, count, *hit.shape[1:]))
     modes = xp.any(modes, axis=1)
