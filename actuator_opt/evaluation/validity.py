@@ -152,7 +152,7 @@ def _leak_at_rest(subject: PreparedDesign) -> Iterable[tuple[str, str]]:
 
 
 def _film(name: str, table: FilmTable) -> Iterable[tuple[str, str]]:
-    """Warn of film tables with large errors or unsolved points, or whose range excludes the design."""
+    """Warn of film tables with large errors or unsolved points, or that do not cover the design."""
     for quantity, metric in _SURROGATES.items():
         if table.errors[quantity] > FILM_ERROR:
             error = 100 * table.errors[quantity]
@@ -295,7 +295,7 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
         yield (
             "cycle_life",
             f"pressure-cycle life beyond {LONGEST_LIFE / 1e6:.0f} million cycles is extrapolated: "
-            "the part lasts at least that long; this is for metals only, not for adhesive and plies",
+            "a part lasts at least that long; this is for metals only, not adhesive or plies",
         )
     section = subject.design.fluid
     yield from state.warnings(section, subject.materials[section.material], v.cases, run.state)

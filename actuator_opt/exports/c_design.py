@@ -30,7 +30,7 @@ from .c import (
 )
 
 NO_LOAD = 1e9
-"""Margin above which nothing loads the limited part; it is then written as infinite (our choice)."""
+"""Margin above which a limited part counts as unloaded and its margin as infinite (our choice)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,8 +200,8 @@ extern "C" {
 #endif
 
 /* Indices of the inputs, with the values of the design file. The variables are first; gradients
-   are by these. Keep the other inputs positive. Counts, zeros, knock-downs, and temperatures of oil and
-   environment are no inputs: they have the values of the design file. */
+   are by these. Keep the other inputs positive. Counts, zeros, knock-downs, and temperatures of
+   oil and environment are no inputs: they have the values of the design file. */
 @in@
 /* Indices of the outputs, with the values of the design file: the objective, then the governing
    value of each metric over all load cases and locations, then the margins of the limits. */

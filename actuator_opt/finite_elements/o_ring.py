@@ -82,8 +82,8 @@ class RoundRing:
     def mount(self, squeeze: float, groove_width: float) -> ElementState:
         """Lower the groove bottom and the side walls onto the ring.
 
-        Without friction, it does not matter which of them moves first. The centre of the ring keeps its axial
-        position.
+        Without friction, it does not matter which of them moves first. The centre of the ring keeps
+        its axial position.
         """
         bounds, centre = self.problem.bounds, 2 * self.centre
         state = self.problem.start()

@@ -16,9 +16,10 @@ STEADY, FLOOR = 0.04, 2e-5
 whichever is larger (our choices: viscous friction changes by at most that share; 2e-5 m/s is two
 sensor steps of 10 um in a second)."""
 LASTING = 0.15
-"""Shortest plateau [s]. The first and last fifth of a plateau are excluded. Samples within
-the settling distance from its start are excluded too, if enough others remain (our choices: five independent samples
-remain at 30 Hz; the filter blurs the adjacent ramps into the excluded fifths)."""
+"""Shortest plateau [s]. The first and last fifth of a plateau are excluded. Samples within the
+settling distance from its start are excluded too, if enough others remain (our choices: five
+independent samples remain at 30 Hz; the filter blurs the adjacent ramps into the excluded
+fifths)."""
 ALIKE = 0.06
 """Relative difference of speed within which plateaus are merged into one point (our choice: more
 than `STEADY`, less than the steps between the speeds of a test)."""
@@ -141,7 +142,7 @@ def _moderated(points: Sequence[FrictionPoint], motion: ConditionedRecord) -> li
 def _plateaus(
     sliding: Sliding, motion: ConditionedRecord, settling: float
 ) -> Iterator[tuple[FrictionPoint, float]]:
-    """Points from plateaus of constant velocity, each with its possible error due to pre-sliding [N]."""
+    """Points from plateaus of constant velocity, each with its error due to pre-sliding [N]."""
     from scipy.signal import savgol_filter
 
     step = motion.sample_time

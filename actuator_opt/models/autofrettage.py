@@ -21,10 +21,11 @@ pressure p - q above combine into one equation for y = ln x,
 
     y - m (e^y - 1) + s = 0,    m = 1 - 2 kappa < 1,    s = 2 (1 + mu)(p_full - p)/Y,
 
-where p_full is the pressure at which the whole liner has yielded. Its left side increases with y, and its curvature has one sign. Newton's method therefore converges
-in a few steps from a start that is exact at the double root (m = 1, s = 0: collapse of a bare
-liner). The last step carries the imaginary parts, so complex-step derivatives are exact. Unloading
-is elastic: the residual state is the state at p minus the elastic state at p.
+where p_full is the pressure at which the whole liner has yielded. The left side increases with y,
+and its curvature has one sign. Newton's method therefore converges in a few steps from a start that
+is exact at the double root (m = 1, s = 0: collapse of a bare liner). The last step carries the
+imaginary parts, so complex-step derivatives are exact. Unloading is elastic: the residual state is
+the state at p minus the elastic state at p.
 """
 
 from __future__ import annotations

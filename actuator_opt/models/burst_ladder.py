@@ -201,7 +201,7 @@ def metals_first(layers: Sequence[WallLayer]) -> tuple[int, ...]:
 
 
 def stacked_rows(xp: Any, columns: Sequence[Sequence[Array]], dims: int) -> Array:
-    """Stack the values of all layers as an array (values, layers, ...) with `dims` axes for designs."""
+    """Stack the values of all layers: (values, layers, ...), with `dims` axes for cases and designs."""
     rows = list(zip(*columns, strict=True))
     zero = batch_zero([value for row in rows for value in row])
     ones = (1,) * dims
@@ -249,7 +249,7 @@ def _utilisations(
 
 
 def _critical(xp: Any, values: Array, rows: Array, shape: Array) -> tuple[Array, ...]:
-    """Most utilised mode: its row, a mask of that row, its failure load; and whether it is loaded."""
+    """Most utilised mode: its row, a mask of this row, its failure load, whether it is loaded."""
     code = xp.argmax(real(values), axis=0)
     hit = rows == code
     inverse = xp.sum(where(hit, values, 0.0), axis=0)
