@@ -113,8 +113,9 @@ def _pressure_factors(
 ) -> None:
     """Compute the barrel's safety factors against yield, first-ply failure and burst.
 
-    A factor is the failure pressure divided by supply pressure, or by proof pressure. `yields` and
-    `bursts` are the yield and burst pressures by location, in barrel and joint.
+    A factor is the failure pressure divided by supply pressure or, in the proof check, by proof
+    pressure. `yields` and `bursts` are the yield and burst pressures by location, in barrel and
+    joint.
     """
     proof = v["supply.proof_ratio"] * supply
     liner = {place: p / supply for place, p in wall.yield_pressure.items()}

@@ -228,7 +228,7 @@ def seal_models(
 
 
 def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:
-    """Contact model of a ring; for an O-ring, the name of its contact law."""
+    """Contact model of a ring; `doubted` states whether it is used outside its range."""
     element = ring.element
     at = f"squeeze {100 * element.squeeze:.4g} %"
     if element.contact:

@@ -364,7 +364,8 @@ def _bounded(
 
     The limits are infinite if draws reach a search limit that has no physical meaning.
 
-    Parameters named in `wider` get the wider of their previous and their new interval.
+    Parameters named in `wider` get the wider of their previous and their new interval. `spare` is
+    the number of degrees of freedom, from which standard errors follow.
     """
     count = rows.shape[0]
     samples = natural(search.names, rows, values)

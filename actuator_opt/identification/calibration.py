@@ -34,7 +34,10 @@ weakly identifiable)."""
 def of_curve(
     points: Sequence[FrictionPoint], stribeck: StribeckFit, level: Array, stated: Array
 ) -> Iterator[str]:
-    """Notes on measured effects that the design's friction law cannot show, such as an offset."""
+    """Notes on measured effects that the design's friction law cannot show, such as an offset.
+
+    `level` and `stated` are the Coulomb friction at each point, as measured and by the design.
+    """
     offset = stribeck.parameters.get("offset")
     if offset is not None and (offset.lower > 0 or offset.upper < 0):
         yield (
@@ -97,8 +100,8 @@ _FIT_NAMES = ("coulomb", "static", "stribeck_speed", "viscous")
 """Names of the same parameters in the fits."""
 RISEN = 0.05
 """At the speed of the record, the friction of the design may exceed its Coulomb part. A note is
-written if the excess is larger than this share of the Coulomb part (our choice: the error of a good
-record)."""
+written if the excess is larger than this share of the Coulomb part (our choice: the relative error of a good
+record's friction)."""
 
 
 @dataclass(frozen=True, slots=True)

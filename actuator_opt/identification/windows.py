@@ -1,6 +1,7 @@
 """Sections ('windows') of a record around reversals, and the LuGre friction along them.
 
-The LuGre model is integrated along each window. Its friction is then filtered like the record.
+The LuGre model is integrated along each window. The friction that it gives is then filtered like
+the record.
 """
 
 from __future__ import annotations

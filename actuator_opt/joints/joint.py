@@ -76,7 +76,7 @@ class StatedValues(Protocol):
         ...
 
     def items(self, *loc: str | int) -> Sequence[Any]:
-        """The entries of a list."""
+        """The entries of the list at a path in the file."""
         ...
 
 

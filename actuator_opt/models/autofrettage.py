@@ -94,7 +94,10 @@ class Autofrettage:
 
 
 class _Liner(NamedTuple):
-    """Elastic constants of the liner, radii squared, free strain alpha dT, and N/(2 pi p)."""
+    """Elastic constants of the liner, radii squared, thermal strain alpha dT, and N/(2 pi p).
+
+    N is the axial force in the wall at the pressure p.
+    """
 
     modulus: Array
     ratio: Array

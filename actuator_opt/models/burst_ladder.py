@@ -179,6 +179,9 @@ def batch_zero(values: Sequence[Array]) -> Array:
 def inverse_strengths(layer: WallLayer) -> tuple[Array, ...]:
     """1/X_t, 1/Y_t, 1/S, 1/X_c, 1/Y_c, 1/S, 1/yield of a layer; zero where a mode is missing.
 
+    X and Y are the strengths along and across the fibre in tension (t) and compression (c), S is
+    the shear strength.
+
     References
     ----------
     [derived] the maximum-stress criterion mode by mode, as `strength_modes.max_stress_modes`
@@ -201,7 +204,7 @@ def metals_first(layers: Sequence[WallLayer]) -> tuple[int, ...]:
 
 
 def stacked_rows(xp: Any, columns: Sequence[Sequence[Array]], dims: int) -> Array:
-    """Stack the values of all layers: (values, layers, ...), with `dims` axes for cases and designs."""
+    """Stack the values of all layers: (values, layers, ...), with `dims` axes for case and design."""
     rows = list(zip(*columns, strict=True))
     zero = batch_zero([value for row in rows for value in row])
     ones = (1,) * dims
@@ -217,7 +220,11 @@ def _above(value: Array) -> Array:
 
 
 def _yields(rate: Array, base: Array | None, inverse: Array) -> Array:
-    """1/p for the pressure p at which each metal yields."""
+    """1/p for the pressure p at which each metal yields.
+
+    `rate` is the stress per unit pressure, `base` the stress at zero pressure, and `inverse` the
+    reciprocal of the yield strength.
+    """
 
     def stress(values: Array) -> Stress:
         return values[0, ...], values[1, ...], values[3, ...], 0 * values[2, ...]
