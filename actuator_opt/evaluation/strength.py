@@ -191,7 +191,7 @@ def joint_metrics(loaded_joint: LoadedJoint | None, out: MetricArrays) -> None:
 
 
 def _fittings(stock: MaterialValues, bond: Overlap | str, push: Array, out: MetricArrays) -> None:
-    """Compute the strength of the rod fittings' bonds under the push, the larger of the forces."""
+    """Compute the strength of the rod fittings' bonds under the push, which exceeds the pull."""
     if isinstance(bond, str):
         out.skip("fitting_factor", bond)
     else:

@@ -35,7 +35,7 @@ NO_LOAD = 1e9
 
 @dataclass(frozen=True, slots=True)
 class _Recorded:
-    """The recorded evaluation of a design: its variables come first among the inputs."""
+    """The evaluation of a design, recorded as a program; its first inputs are the variables."""
 
     recording: Recording
     inputs: Sequence[DeclaredNumber]
@@ -100,9 +100,9 @@ def design_files(
 
 @np.errstate(all="ignore")  # results that are not finite are written as such
 def _recorded(subject: PreparedDesign) -> _Recorded:
-    """Record objective, metrics and limits of a design."""
+    """Record the computation of objective, metrics and limits of a design as a program."""
     if subject.plugins:
-        remedy = "leave out --plugin and the requirements on its metrics"
+        remedy = "leave out --plugin, and the requirements on metrics of the plug-in"
         raise InputError(Diagnostic("custom metrics cannot be written as C", remedy))
     if not subject.design.variables:
         message = "a C file needs variables, by which it computes gradients"

@@ -76,7 +76,7 @@ class RoundRing:
             part, last = wetted(chain, barrier, state, pressure)
             wet[part] = 1.0
         if last is None or wet[self.boundary].all():
-            raise NotConverged("the fluid passes the ring")
+            raise NotConverged("the fluid leaks past the ring")
         return wet
 
     def mount(self, squeeze: float, groove_width: float) -> ElementState:

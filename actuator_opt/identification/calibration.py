@@ -100,8 +100,8 @@ _FIT_NAMES = ("coulomb", "static", "stribeck_speed", "viscous")
 """Names of the same parameters in the fits."""
 RISEN = 0.05
 """At the speed of the record, the friction of the design may exceed its Coulomb part. A note is
-written if the excess is larger than this share of the Coulomb part (our choice: the relative error of a good
-record's friction)."""
+written if the excess is larger than this share of the Coulomb part (our choice: the error of
+friction from a good record)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -385,7 +385,7 @@ def _from_level(
 
 
 def _best(identification: Identification, name: str) -> tuple[Parameter, str] | None:
-    """A parameter from the fit with the narrowest interval, and the name of the fit.
+    """A parameter from the fit that gives it the narrower interval, and the name of that fit.
 
     None if unknown.
     """

@@ -281,7 +281,7 @@ class WallPressures(NamedTuple):
     """Pressures at which the barrel yields and bursts at the joint [Pa].
 
     Both are dicts whose keys are locations, such as "barrel under the thread, ..." with the load
-    path.
+    path (pressure without or with axial force).
     """
 
     yields: Mapping[str, Array] = {}

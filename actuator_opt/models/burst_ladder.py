@@ -204,7 +204,7 @@ def metals_first(layers: Sequence[WallLayer]) -> tuple[int, ...]:
 
 
 def stacked_rows(xp: Any, columns: Sequence[Sequence[Array]], dims: int) -> Array:
-    """Stack the values of all layers: (values, layers, ...), with `dims` axes for case and design."""
+    """Stack the values of all layers: (values, layers, ...), with `dims` axes for the designs."""
     rows = list(zip(*columns, strict=True))
     zero = batch_zero([value for row in rows for value in row])
     ones = (1,) * dims
