@@ -1,10 +1,11 @@
 """Write recorded computations as C: a source file with its header, for any C99 or C++ compiler.
 
-A recorded computation, called a program, becomes tables of numbers, which an interpreter runs. It is
-the interpreter of the Python extension, called the machine; its text (`machine.h`) is copied into
-the file. C statements instead of tables would give values five times as fast, but even for the
-values of the example design `knee` alone, a compiler takes 15 s for them instead of 0.3 s. The files
-allocate no memory, have no variables outside functions, and need only the mathematics library.
+A recorded computation, called a program, becomes tables of numbers, which an interpreter runs. The
+interpreter is that of the Python extension, called the machine; its text (`machine.h`) is copied
+into the file. C statements instead of tables would give values five times as fast, but even for the
+values of the example design `knee` alone, a compiler takes 15 s for them instead of 0.3 s. The
+files allocate no memory, have no variables outside functions, and need only the mathematics
+library.
 """
 
 from __future__ import annotations

@@ -27,8 +27,8 @@ FARTHER = 1.05
 reported (our choice)."""
 MISFIT = 0.1
 """If measured friction deviates from the contact law at a pressure of the record by more than this
-share of F_C, a note says so (our choice: a third of the confidence interval that makes a parameter
-weakly identifiable)."""
+share of F_C, a note says so (our choice: a third of the confidence interval above which a parameter
+is only weakly identifiable)."""
 
 
 def of_curve(

@@ -20,8 +20,8 @@ TERMS = 8
 few also suit noise that is correlated over an eighth of a loading; confidence intervals are then 18
 % wider than if the noise were known)."""
 PER_TERM = 4
-"""Smallest number of degrees of freedom per cosine term (our choice: limits the length of
-correlation that is allowed for in short records)."""
+"""Smallest number of degrees of freedom per cosine term (our choice: in short records, it limits
+the length of the correlation that is taken into account)."""
 MEMORY = 0.99
 """Largest correlation of neighbouring residuals that is taken into account (our choice: above it
 the fit mistakes noise for a part of the slope)."""
@@ -339,8 +339,8 @@ def by_way(parts: Sequence[Part], degree: int) -> dict[bool, list[Term]]:
 def scatter(parts: Sequence[Part]) -> float:
     """Scatter 1 - r^2 of force versus deflection, for the branch that scatters least.
 
-    r is the correlation. The scatter is the relative difference between the regressions of force on
-    deflection and of deflection on force. If only the deflection is noisy, the noise lowers the
+    r is the correlation. The scatter is the relative difference between the slopes of two
+    regressions, of force on deflection and of deflection on force. If only the deflection is noisy, the noise lowers the
     slope by this share [derived].
     """
     shares = [

@@ -328,7 +328,7 @@ def _grain(places: Sequence[float], step: float) -> float:
 def _lanes(
     slidings: Sequence[Sliding], motion: ConditionedRecord, room: tuple[int, int]
 ) -> list[tuple[Sliding, int]]:
-    """Section of the record and sample at the reversal or start of motion, for each window.
+    """For each window: its section of the record, and the sample at which the rod reverses or starts.
 
     If the rod never reverses or starts, the windows are spread evenly.
     """

@@ -46,7 +46,7 @@ class MaterialProperties(Protocol):
         ...
 
     def get(self, name: str, *properties: str, default: Array = None) -> Array:
-        """The first stated property of several; `default` if none is stated."""
+        """The first of several properties that the material states; `default` if it states none."""
         ...
 
     def allowable(self, name: str, *properties: str, cold: bool = False) -> Array:
