@@ -431,7 +431,7 @@ class LugreProblem:
         )
 
     def _early(self, x: Array) -> float:
-        """Absolute change of the fitted lag [s] if all velocities are filtered at the record's cut-off."""
+        """Absolute change of the fitted lag [s] if all velocities have the record's cut-off."""
         windows = self.windows
         if np.array_equal(windows.velocity, windows.options[0]):
             return 0.0

@@ -340,8 +340,8 @@ def scatter(parts: Sequence[Part]) -> float:
     """Scatter 1 - r^2 of force versus deflection, for the branch that scatters least.
 
     r is the correlation. The scatter is the relative difference between the slopes of two
-    regressions, of force on deflection and of deflection on force. If only the deflection is noisy, the noise lowers the
-    slope by this share [derived].
+    regressions, of force on deflection and of deflection on force. If only the deflection is noisy,
+    the noise lowers the slope by this share [derived].
     """
     shares = [
         1 - float(np.corrcoef(part.deflection, part.force)[0, 1]) ** 2

@@ -328,7 +328,7 @@ def _grain(places: Sequence[float], step: float) -> float:
 def _lanes(
     slidings: Sequence[Sliding], motion: ConditionedRecord, room: tuple[int, int]
 ) -> list[tuple[Sliding, int]]:
-    """For each window: its section of the record, and the sample at which the rod reverses or starts.
+    """For each window: its section of the record, and the sample of the reversal or start.
 
     If the rod never reverses or starts, the windows are spread evenly.
     """
