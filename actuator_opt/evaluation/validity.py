@@ -295,7 +295,7 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
         yield (
             "cycle_life",
             f"pressure-cycle life beyond {LONGEST_LIFE / 1e6:.0f} million cycles is extrapolated: "
-            "a part lasts at least that long; this is for metals only, not adhesive or plies",
+            "read it as more than that, for metals only, not for adhesive or plies",
         )
     section = subject.design.fluid
     yield from state.warnings(section, subject.materials[section.material], v.cases, run.state)
