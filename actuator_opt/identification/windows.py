@@ -61,7 +61,7 @@ class Windows:
     hydraulic : hydraulic force; it has `margin` extra samples at both ends, so that it can be
         shifted in time
     resisting : sum of load and inertia force
-    step : time between samples [s]
+    step : time between samples of a window [s]
     sections, reach : second-order sections of the record's filter for the time step `step`, and the
         number of mirrored samples that the filter adds at both ends
     kept : indices of the samples that are compared with the model: independent, not at the ends
@@ -73,7 +73,7 @@ class Windows:
         q/a) [s]
     grain : position error due to resolution that shifts all reversals alike [m]
     noise : position error due to white sensor noise, independent in every reversal [m]
-    sample_time : sample time of the record [s]
+    sample_time : time between samples of the record, of which `step` is a multiple [s]
     quick : True if the rod is too fast in every window, so that none shows the bristles; all
         windows are then kept
     """
