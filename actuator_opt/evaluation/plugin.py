@@ -45,8 +45,8 @@ class View:
         self._values = values
         self._metrics = metrics
         self._design = design
-        """Index of the single design that the function gets, and number of designs; None: all
-        designs at once."""
+        """Index of the single design that the function gets, and number of designs; None if it gets
+        all designs at once."""
 
     def __getitem__(self, path: str) -> Array:
         """The number at a PATH (``cylinder.bore``), a float or an array of designs."""

@@ -165,7 +165,7 @@ TABLE: tuple[Proportion, ...] = (
         "our choice: most of the oil should be swept", _dead("b"),
     ),
     Proportion(
-        "lines", "times the swept volume of the piston in a single line", 0.0, 20.0, _WIDE,
+        "lines", "times the swept volume of the piston (volume of one line)", 0.0, 20.0, _WIDE,
         _lines,
     ),
     Proportion(
@@ -187,10 +187,10 @@ TABLE: tuple[Proportion, ...] = (
         "cylinder.stroke", _BORE, 0.1, 60.0, _WIDE, lambda v, design, g: g.stroke / g.bore,
     ),
     Proportion(
-        "barrel.layup", "times the inner radius in wall thickness", 0.005, 2.0, _WIDE, _wall,
+        "barrel.layup", "times the inner radius (wall thickness)", 0.005, 2.0, _WIDE, _wall,
     ),
     Proportion(
-        "supply.pressure", "MPa of mean hoop stress (pressure x radius / wall thickness)", 0.2,
+        "supply.pressure", "MPa as mean hoop stress (pressure x radius / wall thickness)", 0.2,
         2500.0, "our choice: the fibres of the library do not withstand more", _hoop,
     ),
     Proportion(
@@ -233,11 +233,11 @@ TABLE: tuple[Proportion, ...] = (
         lambda v, design, g: v["cylinder.stop_travel"] / g.stroke,
     ),
     Proportion(
-        "seals.piston", "times the bore in groove depth", 0.004, 0.25,
+        "seals.piston", "times the bore (groove depth)", 0.004, 0.25,
         "our choice, from ISO 3601-2 grooves", _gland("piston"),
     ),
     Proportion(
-        "seals.rod", "times the rod diameter in groove depth", 0.004, 0.4,
+        "seals.rod", "times the rod diameter (groove depth)", 0.004, 0.4,
         "our choice, from ISO 3601-2 grooves", _gland("rod"),
     ),
     Proportion(
@@ -255,7 +255,7 @@ TABLE: tuple[Proportion, ...] = (
         for usual in joint.usual
     ),
     Proportion(
-        "load.mass", "m/s^2 of load acceleration at supply pressure", 0.05, inf, _WIDE,
+        "load.mass", "m/s^2 as acceleration of the load at supply pressure", 0.05, inf, _WIDE,
         _acceleration,
     ),
     Proportion("load_cases", "strokes per second", 1e-5, 200.0, _WIDE, _strokes),

@@ -151,7 +151,7 @@ class Metric:
 
     `value` is in SI; if it is None, `why` is the reason. `by_case` has the worst value of each load
     case. `sense` states whether the smallest ("min") or the largest ("max") value governs; None if
-    all values are equal.
+    the values of all load cases and locations are equal.
     """
 
     name: str

@@ -322,7 +322,8 @@ def volume_ratio(
 def _extrusion(v: Values, stock: MaterialValues, ring: Ring, gap: Array) -> Array:
     """Allowable divided by actual extrusion gap, at supply pressure.
 
-    The allowable gap is that of the seal or of its back-up ring.
+    The allowable gap is that of the seal or, if there is a back-up ring, the larger of both gaps
+    whose data cover the pressure.
     """
     pressure, element = v["supply.pressure"], ring.element
     if stock.material(element.compound).properties.get("extrusion_gap_max") is None:

@@ -136,7 +136,7 @@ class Springs:
         square_a, square_b = g.area_a * g.area_a, g.area_b * g.area_b
 
         def in_series(a: Array, b: Array) -> Array:
-            """Compliance of the springs of both chambers in parallel."""
+            """Compliance of two springs in parallel, one for each chamber."""
             return a * b / (a + b)
 
         def side_a(cause: str) -> Array:

@@ -203,7 +203,7 @@ class LoadState:
     reach: Array
     """Piston position for buckling and side load: as stated, else the full stroke (worst)."""
     demands: dict[str, Demand]
-    """Force, speed and mass that the load demands, by position (`linkage.demands`)."""
+    """Force, speed and mass that the load demands, by position (keys: see `linkage.demands`)."""
     force: Array
     """Force at the stated position, else the largest force: at a linkage's shortest lever arm."""
     speed: Array

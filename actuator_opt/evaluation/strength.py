@@ -113,8 +113,9 @@ def _pressure_factors(
 ) -> None:
     """Compute the barrel's safety factors against yield, first-ply failure and burst.
 
-    A factor is the failure pressure divided by supply pressure, or by proof pressure. `yields` and
-    `bursts` are the yield and burst pressures by location, in barrel and joint.
+    A factor is the failure pressure divided by supply pressure or, in the proof check, by proof
+    pressure. `yields` and `bursts` are the yield and burst pressures by location, in barrel and
+    joint.
     """
     proof = v["supply.proof_ratio"] * supply
     liner = {place: p / supply for place, p in wall.yield_pressure.items()}
@@ -190,7 +191,7 @@ def joint_metrics(loaded_joint: LoadedJoint | None, out: MetricArrays) -> None:
 
 
 def _fittings(stock: MaterialValues, bond: Overlap | str, push: Array, out: MetricArrays) -> None:
-    """Compute the strength of the rod fittings' bonds under the push, the larger of the forces."""
+    """Compute the strength of the rod fittings' bonds under the push, which exceeds the pull."""
     if isinstance(bond, str):
         out.skip("fitting_factor", bond)
     else:

@@ -152,7 +152,7 @@ def _leak_at_rest(subject: PreparedDesign) -> Iterable[tuple[str, str]]:
 
 
 def _film(name: str, table: FilmTable) -> Iterable[tuple[str, str]]:
-    """Warn of film tables with large errors or unsolved points, or that exclude the design."""
+    """Warn of film tables with large errors or unsolved points, or that do not cover the design."""
     for quantity, metric in _SURROGATES.items():
         if table.errors[quantity] > FILM_ERROR:
             error = 100 * table.errors[quantity]
@@ -228,7 +228,7 @@ def seal_models(
 
 
 def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:
-    """Contact model of a ring; for an O-ring, the name of its contact law."""
+    """Contact model of a ring; `doubted` states whether it is used outside its range."""
     element = ring.element
     at = f"squeeze {100 * element.squeeze:.4g} %"
     if element.contact:
@@ -295,7 +295,7 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
         yield (
             "cycle_life",
             f"pressure-cycle life beyond {LONGEST_LIFE / 1e6:.0f} million cycles is extrapolated: "
-            "treat it as a lower bound, for metals only, without adhesive and plies",
+            "read it as more than that, for metals only, not for adhesive or plies",
         )
     section = subject.design.fluid
     yield from state.warnings(section, subject.materials[section.material], v.cases, run.state)

@@ -241,8 +241,8 @@ def metal_tubes(
     """The wall of the design, and the thinnest barrel for the same duty from each of `METALS`.
 
     The duty is the bore growth of the design's wall without axial force, and the required burst
-    pressure, both without and with axial force. If the design's wall has a lower burst pressure, or
-    if the burst check is waived, the burst pressure of the design's wall is the requirement.
+    pressure, which a wall must reach without and with axial force. If the design's wall has a lower
+    burst pressure, or if the burst check is waived, its burst pressure is the requirement.
     """
     wall, inner, pressure = run.wall, float(run.geometry.inner_radius), v["supply.pressure"]
     burst = least(wall.burst_pressure)[0]

@@ -79,9 +79,8 @@ def _seals(v: Values, g: Geometry) -> Array:
 def _rod_ends(v: Values, design: Design, rod: RodSection) -> Array:
     """Mass of the rod's threaded stud, of the two plugs in its bore, and of its bonded fittings.
 
-    Stud and plugs are each one thread diameter long.
-
-    A plug closes each end; a fitting is itself a plug, or a sleeve around a plug.
+    A plug closes the bore at each end. A bonded fitting is itself such a plug, or a sleeve around
+    one. Stud and plugs are each one thread diameter long.
     """
     density = v[f"materials.{rod.end_material}.density"]
     hole, total = rod.inner_diameter, 0.0

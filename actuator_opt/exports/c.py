@@ -1,9 +1,11 @@
-"""Write recorded programs as C: a source file with its header, for any C99 or C++ compiler.
+"""Write recorded computations as C: a source file with its header, for any C99 or C++ compiler.
 
-A program becomes tables of numbers. They are run by the machine of the Python extension, whose text
-(`machine.h`) is copied into the file. Statements instead of tables would give values five times as
-fast, but for the values of the knee alone a compiler takes 15 s instead of 0.3 s. The files
-allocate no memory, have no variables outside functions, and need only the mathematics library.
+A recorded computation, called a program, becomes tables of numbers, which an interpreter runs. The
+interpreter is that of the Python extension, called the machine; its text (`machine.h`) is copied
+into the file. C statements instead of tables would give values five times as fast, but even for the
+values of the example design `knee` alone, a compiler takes 15 s for them instead of 0.3 s. The
+files allocate no memory, have no variables outside functions, and need only the mathematics
+library.
 """
 
 from __future__ import annotations
@@ -38,7 +40,7 @@ class DeclaredNumber:
     Parameters
     ----------
     name, unit, label : name, SI unit, and description ("" if the name says it)
-    present : value at the design of the file, in SI
+    present : value in the exported design or at the start of the scenario, in SI
     lower, upper : bounds of a variable; a fixed number has none
     """
 
@@ -169,7 +171,7 @@ def enumeration(names: Sequence[str], entries: Sequence[DeclaredNumber], last: s
 
 
 def program_tables(name: str, program: Program, code: Array) -> str:
-    """A program as constant arrays in C, and the structure that the machine takes."""
+    """A program as constant arrays in C, and the structure that the interpreter takes."""
     parts = [
         table("uint16_t", f"CODE_OF_{name}", code.ravel().tolist()),
         table("int32_t", f"EXTRA_OF_{name}", program.extra.tolist()),
@@ -191,7 +193,7 @@ def filled(template: str, **values: object) -> str:
 
 
 def machine() -> str:
-    """Text of the machine, with the function that runs a program once."""
+    """C text of the interpreter (`machine.h`), with the function that runs a program once."""
     return MACHINE.read_text("utf-8") + RUN
 
 

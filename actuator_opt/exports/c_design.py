@@ -30,12 +30,12 @@ from .c import (
 )
 
 NO_LOAD = 1e9
-"""Margin above which a limit counts as unloaded; its margin is then infinite (our choice)."""
+"""Margin above which a limited part counts as unloaded and its margin as infinite (our choice)."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Recorded:
-    """The recorded evaluation of a design: its variables come first among the inputs."""
+    """The evaluation of a design, recorded as a program; its first inputs are the variables."""
 
     recording: Recording
     inputs: Sequence[DeclaredNumber]
@@ -100,9 +100,9 @@ def design_files(
 
 @np.errstate(all="ignore")  # results that are not finite are written as such
 def _recorded(subject: PreparedDesign) -> _Recorded:
-    """Record objective, metrics and limits of a design."""
+    """Record the computation of objective, metrics and limits of a design as a program."""
     if subject.plugins:
-        remedy = "leave out --plugin and the requirements on its metrics"
+        remedy = "leave out --plugin, and the requirements on metrics of the plug-in"
         raise InputError(Diagnostic("custom metrics cannot be written as C", remedy))
     if not subject.design.variables:
         message = "a C file needs variables, by which it computes gradients"
@@ -200,12 +200,12 @@ HEADER = """\
 extern "C" {
 #endif
 
-/* Places of the inputs, with the values of the design file. The variables are first; gradients are
-   by these. Keep the other inputs positive. Counts, zeros, knock-downs, and temperatures of oil and
-   environment are no inputs: they have the values of the design file. */
+/* Indices of the inputs, with the values of the design file. The variables are first; gradients
+   are by these. Keep the other inputs positive. Counts, zeros, knock-downs, and temperatures of
+   oil and environment are no inputs: they have the values of the design file. */
 @in@
-/* Places of the outputs, with the values of the design file: the objective, then the value of each
-   metric that governs all load cases and places, then the margins of the limits. */
+/* Indices of the outputs, with the values of the design file: the objective, then the governing
+   value of each metric over all load cases and locations, then the margins of the limits. */
 @out@
 /* A margin is (value - limit) / |limit| for a lower limit, with the opposite sign for an upper
    limit; a limit of zero does not divide. The limit is met if the margin is 0 or more. */

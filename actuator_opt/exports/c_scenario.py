@@ -51,11 +51,12 @@ def scenario_files(
     Raises
     ------
     InputError
-        a missing valve or gain, equations that are too long, or an installation without the machine
+        the scenario lacks a valve or a gain, its equations are too long, or the package was
+        installed without its compiled part
     """
     if not programs.AVAILABLE:
         reason = f"the scenario cannot be written as C: {programs.NOT_BUILT}"
-        raise InputError(Diagnostic(reason, "install a C compiler, then install this again"))
+        raise InputError(Diagnostic(reason, "install a C compiler, then reinstall actuator-opt"))
     actuator = plant(subject)
     tuned = tune(scenario, actuator, records)
     gains = None if tuned is None else tuned.gains
@@ -75,7 +76,9 @@ def scenario_files(
         }
     except ValueError as error:
         reason = f"the scenario cannot be written as C: {error}"
-        raise InputError(Diagnostic(reason, "use fewer lines or parts of signals")) from None
+        raise InputError(
+            Diagnostic(reason, "use fewer hydraulic lines, or signals with fewer pieces")
+        ) from None
     inputs, signals = _declared(system, tables, written["SIGNALS"])
     return _texts(
         file_word(stem), inputs, signals, len(symbols), written,
@@ -87,7 +90,7 @@ def scenario_files(
 def _declared(
     system: System, tables: Sequence[Symbol], signals: Program
 ) -> tuple[list[DeclaredNumber], list[DeclaredNumber]]:
-    """Inputs with their values at the start, and the signals then."""
+    """The inputs, then the signals and guards of switches, with their values at the start."""
     count = len(system.instants)
     start = np.array(
         [
@@ -192,12 +195,13 @@ HEADER = """\
 extern "C" {
 #endif
 
-/* Places of the inputs, with their values at the start: the time, the states, then flags and
-   recorded inputs. Restart the integration where a flag changes. The state s of a gauge pressure p
+/* Indices of the inputs, with their values at the start: the time, the states, the flags, then
+   recorded inputs. A flag is 1 after a given time, or while the guard of its switch is positive;
+   else it is 0. Restart the integration where a flag changes. The state s of a gauge pressure p
    is p above zero; below, it is a * log(1 + p / a) with the atmospheric pressure a. */
 @in@
-/* Places of the signals, with their values at the start: first the signals, then the guards of the
-   switches. */
+/* Indices of the outputs, with their values at the start: first the signals, then the guards of the
+   switches, each of which sets the flag of the same name. */
 @out@
 enum { @NAME@_STATES = @states@, @NAME@_WORK = @work@ /* numbers in `work` */ };
 

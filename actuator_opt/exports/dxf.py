@@ -101,7 +101,8 @@ def _clear(middle: float, half: float, lines: Sequence[float]) -> bool:
 def _middle(length: Length, paper: DrawingSizes, lines: Sequence[float]) -> tuple[float, bool]:
     """Centre of a dimension text, and whether the text is beside its dimension line.
 
-    A text that does not fit on its dimension line is placed beside it, clear of all `lines`.
+    `lines` are axial positions of extension lines, which the text must not touch. A text that does
+    not fit on its dimension line is placed beside it.
     """
     half, pad = paper.width(length.text) / 2, 0.5 * paper.letter
     centre = (length.start + length.end) / 2

@@ -180,7 +180,7 @@ def bounds_solid(profile: Profile) -> bool:
 
 def _fault(part: str) -> InputError:
     remedy = (
-        "enlarge the part until its grooves and walls fit: see the geometry_... metrics of evaluate"
+        "enlarge the part until grooves and walls fit: see the geometry_... metrics of `evaluate`"
     )
     return InputError(
         Diagnostic(

@@ -73,7 +73,9 @@ def both_ways(boundary: Integers, start: int) -> tuple[Integers, Integers]:
 def wetted(
     chain: Integers, barrier: Floats, state: ElementState, pressure: float
 ) -> tuple[Integers, int | None]:
-    """Which nodes of a chain the fluid reaches, and the index of the first node at the outer wall.
+    """Nodes of a chain that the fluid reaches; and index of its first node at the outer side wall.
+
+    The index is None if the chain has no node at this wall.
 
     The fluid advances to the first node whose contact pressure exceeds the fluid pressure. That
     node seals until its contact pressure is below the fluid pressure by the share `HOLDING`. The

@@ -135,9 +135,9 @@ class ContactPair:
         self.upper, self.edges = upper, edges
 
     def _locate(self, places: Floats) -> tuple[Integers, Floats, Booleans]:
-        """For every upper node: the edge under it, coordinate on the edge, whether there is one.
+        """For every upper node: the edge under it, position on that edge, whether there is an edge.
 
-        The coordinate runs from -1 to 1.
+        The position runs from -1 to 1 along the edge.
         """
         x = places[self.upper, 0]
         ends = places[self.edges, 0]

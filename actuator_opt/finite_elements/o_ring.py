@@ -76,14 +76,14 @@ class RoundRing:
             part, last = wetted(chain, barrier, state, pressure)
             wet[part] = 1.0
         if last is None or wet[self.boundary].all():
-            raise NotConverged("the fluid passes the ring")
+            raise NotConverged("the fluid leaks past the ring")
         return wet
 
     def mount(self, squeeze: float, groove_width: float) -> ElementState:
         """Lower the groove bottom and the side walls onto the ring.
 
-        Without friction, their order does not matter. The centre of the ring keeps its axial
-        position.
+        Without friction, it does not matter which of them moves first. The centre of the ring keeps
+        its axial position.
         """
         bounds, centre = self.problem.bounds, 2 * self.centre
         state = self.problem.start()

@@ -121,7 +121,7 @@ class StepRing:
         face, _ = both_ways(self.flat, self.sealed_end)
         part, last = wetted(face, barrier, state, pressure)
         if len(part) == last:
-            raise NotConverged("the fluid passes the slide ring")
+            raise NotConverged("the fluid leaks past the slide ring")
         wet[part] = 1.0
         return np.minimum(wet, 1.0)
 

@@ -94,7 +94,8 @@ def resampled(
     interval: its optimum lies in a flat valley, and the draws show the scatter around the optimum,
     not the length of the valley. The bristle parameters and the lag always get the wider interval.
     So do all parameters of the LuGre model if F_C has no confidence limits, or if neither lag nor
-    bristle damping is fitted, because the linearised intervals then contain more than scatter.
+    bristle damping is fitted, because the linearised intervals then allow for more than
+    scatter, such as a lag that was not fitted.
     The covariance of the Stribeck curve stays that of the linearised model.
 
     Parameters
@@ -363,7 +364,8 @@ def _bounded(
 
     The limits are infinite if draws reach a search limit that has no physical meaning.
 
-    Parameters named in `wider` get the wider of their previous and their new interval.
+    Parameters named in `wider` get the wider of their previous and their new interval. `spare` is
+    the number of degrees of freedom, from which standard errors follow.
     """
     count = rows.shape[0]
     samples = natural(search.names, rows, values)

@@ -27,14 +27,17 @@ FARTHER = 1.05
 reported (our choice)."""
 MISFIT = 0.1
 """If measured friction deviates from the contact law at a pressure of the record by more than this
-share of F_C, a note says so (our choice: a third of the confidence interval that makes a parameter
-weakly identifiable)."""
+share of F_C, a note says so (our choice: a third of the confidence interval above which a parameter
+is only weakly identifiable)."""
 
 
 def of_curve(
     points: Sequence[FrictionPoint], stribeck: StribeckFit, level: Array, stated: Array
 ) -> Iterator[str]:
-    """Notes on measured effects that the design's friction law cannot show, such as an offset."""
+    """Notes on measured effects that the design's friction law cannot show, such as an offset.
+
+    `level` and `stated` are the Coulomb friction at each point, as measured and by the design.
+    """
     offset = stribeck.parameters.get("offset")
     if offset is not None and (offset.lower > 0 or offset.upper < 0):
         yield (
@@ -97,8 +100,8 @@ _FIT_NAMES = ("coulomb", "static", "stribeck_speed", "viscous")
 """Names of the same parameters in the fits."""
 RISEN = 0.05
 """At the speed of the record, the friction of the design may exceed its Coulomb part. A note is
-written if the excess is larger than this share of the Coulomb part (our choice: the error of a good
-record)."""
+written if the excess is larger than this share of the Coulomb part (our choice: the error of
+friction from a good record)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -382,7 +385,7 @@ def _from_level(
 
 
 def _best(identification: Identification, name: str) -> tuple[Parameter, str] | None:
-    """A parameter from the fit with the narrowest interval, and the name of the fit.
+    """A parameter from the fit that gives it the narrower interval, and the name of that fit.
 
     None if unknown.
     """

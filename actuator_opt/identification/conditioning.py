@@ -417,8 +417,9 @@ BENT = 1.5
 the change, divided by the mean square error of the sensor (our choice: the ratio is 1 if only
 errors are removed)."""
 PADDING = 1.5
-"""Time before and after the samples of interest that is filtered with them, in periods of a lower
-cut-off (our choice: after this time, a step response is within 0.5 % of its final value)."""
+"""Length of record that is filtered besides the samples of interest, before and after them, in
+periods of the lower cut-off (our choice: after this time, a step response is within 0.5 % of its
+final value)."""
 
 
 def velocities(piece: RecordSection, motion: ConditionedRecord, first: int, last: int) -> Array:

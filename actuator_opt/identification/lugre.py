@@ -34,11 +34,11 @@ from .stribeck_fit import (
 from .windows import LAG, Windows, no_windows, windows
 
 TRAVELS = (1e-6, 3e-3)
-"""Range in which the breakaway travel F_S/sigma_0, static friction by bristle stiffness, is
+"""Range in which the breakaway travel F_S/sigma_0, static friction divided by bristle stiffness, is
 searched [m] (our choice: nearly two decades on either side of 50 um)."""
 DAMPING_TIMES = (1e-6, 0.3)
-"""Range in which sigma_1/sigma_0, bristle damping by bristle stiffness, is searched [s] (our
-choice: from no damping to the length of a window)."""
+"""Range in which sigma_1/sigma_0, bristle damping divided by bristle stiffness, is searched [s]
+(our choice: from no damping to the length of a window)."""
 USUAL = 5e-3
 """Usual standard deviation of the pressure lag [s]. If a record does not show the lag, the
 confidence intervals allow for it (our choice: sensors and lines of a test bench lag by up to 10
@@ -431,7 +431,7 @@ class LugreProblem:
         )
 
     def _early(self, x: Array) -> float:
-        """Change of the lag if the velocity is filtered at the record's cut-off, absolute [s]."""
+        """Absolute change of the fitted lag [s] if all velocities have the record's cut-off."""
         windows = self.windows
         if np.array_equal(windows.velocity, windows.options[0]):
             return 0.0

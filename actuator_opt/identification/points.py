@@ -16,9 +16,10 @@ STEADY, FLOOR = 0.04, 2e-5
 whichever is larger (our choices: viscous friction changes by at most that share; 2e-5 m/s is two
 sensor steps of 10 um in a second)."""
 LASTING = 0.15
-"""Shortest plateau [s]. The first and last fifth of a plateau are excluded. Samples before the
-settling distance are excluded too, if enough others remain (our choices: five independent samples
-remain at 30 Hz; the filter blurs the adjacent ramps into the excluded fifths)."""
+"""Shortest plateau [s]. The first and last fifth of a plateau are excluded. Samples within the
+settling distance from its start are excluded too, if enough others remain (our choices: five
+independent samples remain at 30 Hz; the filter blurs the adjacent ramps into the excluded
+fifths)."""
 ALIKE = 0.06
 """Relative difference of speed within which plateaus are merged into one point (our choice: more
 than `STEADY`, less than the steps between the speeds of a test)."""
@@ -40,7 +41,7 @@ SETTLING = 8.0
 reversal, friction is then within 2 e^-8, less than 0.1 %, of its final value)."""
 LEVELS = 0.1
 """Range within which pressures count as equal, as a share of the highest pressure (our choice: less
-than the steps between the loads of a test, more than friction itself changes them)."""
+than the steps between the loads of a test, more than friction alone changes the pressures)."""
 PRIOR = 8
 """The scatter of a point is averaged with the usual scatter of the record, which counts as this
 number of independent samples (our choice: some points only have four of their own)."""
@@ -141,7 +142,7 @@ def _moderated(points: Sequence[FrictionPoint], motion: ConditionedRecord) -> li
 def _plateaus(
     sliding: Sliding, motion: ConditionedRecord, settling: float
 ) -> Iterator[tuple[FrictionPoint, float]]:
-    """Points from plateaus of constant velocity, each with its error by pre-sliding [N]."""
+    """Points from plateaus of constant velocity, each with its error due to pre-sliding [N]."""
     from scipy.signal import savgol_filter
 
     step = motion.sample_time

@@ -20,8 +20,8 @@ TERMS = 8
 few also suit noise that is correlated over an eighth of a loading; confidence intervals are then 18
 % wider than if the noise were known)."""
 PER_TERM = 4
-"""Smallest number of degrees of freedom per cosine term (our choice: limits the length of
-correlation that is allowed for in short records)."""
+"""Smallest number of degrees of freedom per cosine term (our choice: in short records, it limits
+the length of the correlation that is taken into account)."""
 MEMORY = 0.99
 """Largest correlation of neighbouring residuals that is taken into account (our choice: above it
 the fit mistakes noise for a part of the slope)."""
@@ -220,7 +220,7 @@ class Straight(NamedTuple):
     parts : samples of each loading and unloading that lie in the straight part
     ends : deflections at both ends of the straight part, counted from zero force [m]
     bent : change of slope along the straight part, divided by the slope
-    unsure : size of `bent`, less what noise can explain
+    unsure : absolute value of `bent` minus the part that noise can cause; 0 if noise can cause all
     cut : whether the straight part is only a part of the searched range
     """
 
@@ -264,7 +264,7 @@ class Loop:
         return parts
 
     def begins(self) -> list[float]:
-        """Deflection of every branch at which its force is `BEGUN` of its highest force."""
+        """Deflection of every branch at which its force is the share `BEGUN` of its highest."""
         deflections = []
         for samples, _ in self.branches:
             force = self.force[samples] - self.floor
@@ -339,9 +339,9 @@ def by_way(parts: Sequence[Part], degree: int) -> dict[bool, list[Term]]:
 def scatter(parts: Sequence[Part]) -> float:
     """Scatter 1 - r^2 of force versus deflection, for the branch that scatters least.
 
-    r is the correlation. The scatter is the relative difference between the regressions of force on
-    deflection and of deflection on force. If only the deflection is noisy, the noise lowers the
-    slope by this share [derived].
+    r is the correlation. The scatter is the relative difference between the slopes of two
+    regressions, of force on deflection and of deflection on force. If only the deflection is noisy,
+    the noise lowers the slope by this share [derived].
     """
     shares = [
         1 - float(np.corrcoef(part.deflection, part.force)[0, 1]) ** 2
@@ -389,7 +389,8 @@ def _channels(record: Record) -> tuple[Array, Array]:
 def _oriented(w: Array, force: Array) -> tuple[Array, Array, float, bool]:
     """Deflection and force, increasing with bending.
 
-    Also returns the force without load, and whether the specimen is bent in both directions.
+    Also returns the reading of the force channel for the unloaded specimen, and whether the
+    specimen is bent in both directions.
 
     Whatever the offsets, the specimen is taken to be unloaded at the start of the record. The
     exception is a record of a single unloading. A specimen bent in both directions is unloaded

@@ -184,7 +184,7 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
     elif "exponent" not in best.parameters:
         doubts.append(
             f"the Stribeck exponent is fixed at {EXPONENT:g}, but the confidence intervals allow "
-            f"for {OTHER:g} as well; seven speeds would determine it"
+            f"for {OTHER:g} as well; seven speeds would determine the exponent"
         )
     slowest, *_, fastest = sorted(points, key=lambda point: point.speed)
     falls = abs(fastest.friction) < abs(slowest.friction)

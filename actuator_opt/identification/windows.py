@@ -1,6 +1,7 @@
 """Sections ('windows') of a record around reversals, and the LuGre friction along them.
 
-The LuGre model is integrated along each window. Its friction is then filtered like the record.
+The LuGre model is integrated along each window. The friction that it gives is then filtered like
+the record.
 """
 
 from __future__ import annotations
@@ -60,7 +61,7 @@ class Windows:
     hydraulic : hydraulic force; it has `margin` extra samples at both ends, so that it can be
         shifted in time
     resisting : sum of load and inertia force
-    step : time between samples [s]
+    step : time between samples of a window [s]
     sections, reach : second-order sections of the record's filter for the time step `step`, and the
         number of mirrored samples that the filter adds at both ends
     kept : indices of the samples that are compared with the model: independent, not at the ends
@@ -72,7 +73,7 @@ class Windows:
         q/a) [s]
     grain : position error due to resolution that shifts all reversals alike [m]
     noise : position error due to white sensor noise, independent in every reversal [m]
-    sample_time : sample time of the record [s]
+    sample_time : time between samples of the record, of which `step` is a multiple [s]
     quick : True if the rod is too fast in every window, so that none shows the bristles; all
         windows are then kept
     """
@@ -227,8 +228,9 @@ def windows(
     ----------
     slidings, motion : friction along the record, and the conditioned record with its filter
     reference : reference pressure, which is subtracted from the pressures [Pa]
-    slowest : lowest speed of the points of steady sliding [m/s]; steady sliding at higher speeds is
-        left to these points
+    slowest : lowest speed of the points of steady sliding, which are fitted besides the windows
+        [m/s]. In the windows, steady sliding above this speed has no weight, because these points
+        already cover it
     settling : distance after a reversal beyond which sliding is steady [m]
 
     Returns
@@ -326,7 +328,7 @@ def _grain(places: Sequence[float], step: float) -> float:
 def _lanes(
     slidings: Sequence[Sliding], motion: ConditionedRecord, room: tuple[int, int]
 ) -> list[tuple[Sliding, int]]:
-    """Section of the record and sample at the reversal or start of motion, for each window.
+    """For each window: its section of the record, and the sample of the reversal or start.
 
     If the rod never reverses or starts, the windows are spread evenly.
     """

@@ -46,7 +46,7 @@ class MaterialProperties(Protocol):
         ...
 
     def get(self, name: str, *properties: str, default: Array = None) -> Array:
-        """The first stated property of several; `default` if none is stated."""
+        """The first of several properties that the material states; `default` if it states none."""
         ...
 
     def allowable(self, name: str, *properties: str, cold: bool = False) -> Array:
@@ -76,7 +76,7 @@ class StatedValues(Protocol):
         ...
 
     def items(self, *loc: str | int) -> Sequence[Any]:
-        """The entries of a list."""
+        """The entries of the list at a path in the file."""
         ...
 
 
@@ -231,7 +231,8 @@ class Loaded:
     """An end of the barrel under load.
 
     `force` is the largest force that separates cap and barrel [N]. `paths` are the axial forces in
-    the barrel wall per unit pressure [m^2], by load path. `line_stiffness` is the axial E t of the
+    the barrel wall per unit pressure [m^2], by name of the load path: pressure without and with
+    axial force. `line_stiffness` is the axial E t of the
     wall [N/m], and `expansion` its axial thermal expansion [1/K], None if unknown.
     """
 
@@ -280,7 +281,7 @@ class WallPressures(NamedTuple):
     """Pressures at which the barrel yields and bursts at the joint [Pa].
 
     Both are dicts whose keys are locations, such as "barrel under the thread, ..." with the load
-    path.
+    path (pressure without or with axial force).
     """
 
     yields: Mapping[str, Array] = {}
@@ -374,7 +375,7 @@ def nothing(*_: object) -> Iterator[Any]:
 
 
 def check(joints: Iterable[Joint]) -> None:
-    """Refuse two joints that declare the same metric, model location or key.
+    """Refuse two joints that declare the same key or metric, or models for the same location.
 
     Raises
     ------
@@ -396,10 +397,10 @@ def chosen(stated: StatedValues, path: str) -> bool:
 
 
 def judged_later(stated: StatedValues, varied: Iterable[str]) -> bool:
-    """Whether the search checks these sizes later, when it tries every combination of choices.
+    """Whether some sizes are checked only later, when the search tries each combination of choices.
 
-    `varied` are the PATHs of the sizes. The check is left to the search if one of the sizes is a
-    variable, and one of them or the type of joint has several choices.
+    `varied` are the PATHs of the sizes. They are checked later if one of them is a variable of the
+    optimisation, and one of them or the type of joint has several choices.
     """
     paths = tuple(varied)
     free = any(stated.has("variables", path) for path in paths)

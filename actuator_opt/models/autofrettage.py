@@ -8,21 +8,24 @@ in the elastic and in the plastic zone
 
     eps_t = (1 - nu^2) Y x b^2/(E r^2) + (1 + nu)(1 - 2 nu) sigma_r/E - nu e_z + alpha dT.
 
+Here eps_z and eps_t are the axial and the hoop strain, and alpha dT is the free thermal strain.
 x measures how far the liner has yielded: x = (c/b)^2 if the plastic zone ends at the radius c.
 Where x is below (a/b)^2, the whole liner is elastic; where x is above 1, all of it is plastic. q is
 the pressure on the wrap. The liner bears the remaining pressure p - q, which is
 
     elastic: Y x (b^2/a^2 - 1)/2,   partly plastic: Y [ln(c/a) + (1 - x)/2],   plastic: Y ln(b/a).
 
-The wrap responds linearly: q = kappa Y x - mu p - tau. For a partly plastic liner, both conditions
-combine into one equation for y = ln x,
+The wrap responds linearly: q = kappa Y x - mu p - tau, where the constants kappa, mu and tau follow
+from equal strains of liner and wrap; tau is thermal. For a partly plastic liner, this and the
+pressure p - q above combine into one equation for y = ln x,
 
-    y - m (e^y - 1) + s = 0,    m = 1 - 2 kappa < 1,    s = 2 (1 + mu)(p_full - p)/Y.
+    y - m (e^y - 1) + s = 0,    m = 1 - 2 kappa < 1,    s = 2 (1 + mu)(p_full - p)/Y,
 
-Its left side increases with y, and its curvature has one sign. Newton's method therefore converges
-in a few steps from a start that is exact at the double root (m = 1, s = 0: collapse of a bare
-liner). The last step carries the imaginary parts, so complex-step derivatives are exact. Unloading
-is elastic: the residual state is the state at p minus the elastic state at p.
+where p_full is the pressure at which the whole liner has yielded. The left side increases with y,
+and its curvature has one sign. Newton's method therefore converges in a few steps from a start that
+is exact at the double root (m = 1, s = 0: collapse of a bare liner). The last step carries the
+imaginary parts, so complex-step derivatives are exact. Unloading is elastic: the residual state is
+the state at p minus the elastic state at p.
 """
 
 from __future__ import annotations
@@ -72,8 +75,8 @@ class Autofrettage:
         `layered_tube.ply_stresses_at_faces`; the liner's 1, 2, 3 are z, t, r [Pa]
     reverse_yield : Tresca stress at the unloaded bore, thermal stress included, divided by the
         yield strength [-]
-    elastic_limit : pressure at which the liner yields next, with all loads in the same proportion
-        [Pa]
+    elastic_limit : pressure at which the liner yields next, if all loads have the same ratios to
+        each other as during the overpressure [Pa]
     axial_margin : distance of sigma_z to the nearer end of the range sigma_r to sigma_t in the
         yielded zone, divided by the yield strength [-]
     """
@@ -91,7 +94,10 @@ class Autofrettage:
 
 
 class _Liner(NamedTuple):
-    """Elastic constants of the liner, radii squared, free strain alpha dT, and N/(2 pi p)."""
+    """Elastic constants of the liner, radii squared, thermal strain alpha dT, and N/(2 pi p).
+
+    N is the axial force in the wall at the pressure p.
+    """
 
     modulus: Array
     ratio: Array

@@ -112,7 +112,7 @@ def equivalent_second_moment(
     Parameters
     ----------
     second_moments : I of each part from the support to the middle [m^4]; for a part of
-        another material, E_j/E times its I
+        another modulus E_j, E_j/E times its I, with the modulus E of the other parts
     steps : distance of each change of section from the support, one fewer than parts [m]
     span : L between the supports [m]
 

@@ -155,8 +155,9 @@ class Mechanics(Protocol):
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
         """Stresses 1, 2, 12, 3 at every face and layer, per unit pressure and at zero pressure.
 
-        The stresses at zero pressure come from yielded metals and other initial stress; the second
-        result is None if there is neither.
+        `soft` marks the layers that have softened so far, None if none have; `held` is the state of
+        the metals that have yielded. The stresses at zero pressure come from these metals and from
+        other initial stress; the second result is None if there is neither.
         """
 
     def frozen(self, held: Any, yielded: Array, stress: Array) -> Any:
@@ -177,6 +178,9 @@ def batch_zero(values: Sequence[Array]) -> Array:
 
 def inverse_strengths(layer: WallLayer) -> tuple[Array, ...]:
     """1/X_t, 1/Y_t, 1/S, 1/X_c, 1/Y_c, 1/S, 1/yield of a layer; zero where a mode is missing.
+
+    X and Y are the strengths along and across the fibre in tension (t) and compression (c), S is
+    the shear strength.
 
     References
     ----------
@@ -200,7 +204,7 @@ def metals_first(layers: Sequence[WallLayer]) -> tuple[int, ...]:
 
 
 def stacked_rows(xp: Any, columns: Sequence[Sequence[Array]], dims: int) -> Array:
-    """Stack the values of all layers as an array (values, layers, ...) with `dims` batch axes."""
+    """Stack the values of all layers: (values, layers, ...), with `dims` axes for the designs."""
     rows = list(zip(*columns, strict=True))
     zero = batch_zero([value for row in rows for value in row])
     ones = (1,) * dims
@@ -216,7 +220,11 @@ def _above(value: Array) -> Array:
 
 
 def _yields(rate: Array, base: Array | None, inverse: Array) -> Array:
-    """1/p for the pressure p at which each metal yields."""
+    """1/p for the pressure p at which each metal yields.
+
+    `rate` is the stress per unit pressure, `base` the stress at zero pressure, and `inverse` the
+    reciprocal of the yield strength.
+    """
 
     def stress(values: Array) -> Stress:
         return values[0, ...], values[1, ...], values[3, ...], 0 * values[2, ...]
@@ -248,7 +256,7 @@ def _utilisations(
 
 
 def _critical(xp: Any, values: Array, rows: Array, shape: Array) -> tuple[Array, ...]:
-    """Row number, mask and failure load of the most utilised mode; whether any mode is loaded."""
+    """Most utilised mode: its row, a mask of this row, its failure load, whether it is loaded."""
     code = xp.argmax(real(values), axis=0)
     hit = rows == code
     inverse = xp.sum(where(hit, values, 0.0), axis=0)
@@ -258,7 +266,7 @@ def _critical(xp: Any, values: Array, rows: Array, shape: Array) -> tuple[Array,
 
 
 def _softening(xp: Any, hit: Array, faces: int, count: int, metals: int) -> Array:
-    """Mask of the layer that softens at this step, by matrix or shear failure or by yield."""
+    """Mask of the layers with the failing mode, if it is matrix or shear failure, or yield."""
     plies = _YIELD * faces * count
     modes = xp.reshape(hit[:plies, ...], (_YIELD, faces, count, *hit.shape[1:]))
     modes = xp.any(modes, axis=1)
