@@ -32,7 +32,7 @@ class Actuator:
     plugins: tuple[Plugin, ...] = ()
 
     def subject(self) -> PreparedDesign:
-        """The design with its materials and numbers, ready for the models."""
+        """The design with the properties of its materials, in the form that the models take."""
         return prepare(self.design, plugins=self.plugins)
 
     def changed(self, values: Mapping[str, float | str]) -> Actuator:
@@ -131,7 +131,7 @@ def fault_of(actuator: Actuator) -> Callable[[str, str, str], Diagnostic] | None
 
 @contextmanager
 def located(actuator: Actuator) -> Iterator[None]:
-    """If a fault states a value's PATH but no line, add the value's line in the design file."""
+    """Within this context, add the line in the design file to faults that only state a PATH."""
     try:
         yield
     except InputError as error:

@@ -192,7 +192,7 @@ def bending(
 
     if specimen is None:
         if span is None or design is None:
-            message = "the section of the bending test is not known"
+            message = "the cross-section of the tested part is not known"
             raise InputError(Diagnostic(message, "give span and design, or a specimen"))
         specimen = specimen_of(as_actuator(design).subject(), part, span)
     return run(_record(record, columns, units, ("F_L", "w")), specimen)
@@ -206,7 +206,8 @@ class Calibrated(Displayed):
     ----------
     actuator : the design with the new values and their uncertainties
     calibration : the parameters found from the record
-    redesign : requirements with old and new values, for the design as tested and for the optimum
+    redesign : how the measured friction changes the requirements, in the tested design and in the
+        optimum
     """
 
     actuator: Actuator
@@ -286,7 +287,7 @@ def calibrate(
 
 
 def _with_values(before: Actuator, calibration: Calibration) -> tuple[Actuator, list[str]]:
-    """The actuator with the measured values, which are no longer variables; and warnings."""
+    """The actuator with the measured values, which are then fixed (no variables); and warnings."""
     design, values = before.design, calibration.values()
     variables = {path: x for path, x in design.variables.items() if path not in values}
     choices = {path: x for path, x in design.choices.items() if path not in values}
@@ -308,7 +309,7 @@ def _with_values(before: Actuator, calibration: Calibration) -> tuple[Actuator, 
     if seal_choices:
         doubts.append(
             "the friction was measured with the tested seals, but is also used for the "
-            f"other choices of {', '.join(seal_choices)}"
+            f"other seals that the choices allow: {', '.join(seal_choices)}"
         )
     return Actuator(after, before.source, before.plugins), doubts
 

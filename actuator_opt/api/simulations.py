@@ -311,12 +311,13 @@ def verify_dynamics(
 
 
 def fitting(trial: Trial, design: Actuator | Design | str | Path) -> Actuator:
-    """As `with_design`, for a scenario with a cylinder to verify.
+    """Do as `with_design`, but refuse a scenario in which another component replaces the cylinder.
 
     Raises
     ------
     InputError
-        the scenario does not fit this design, or has no cylinder to verify
+        the scenario does not fit this design, or has a motor or held ports in place of a
+        cylinder
     """
     scenario = trial.scenario
     for key in ("motor", "held_ports"):

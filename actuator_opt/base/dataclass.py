@@ -44,7 +44,8 @@ _METHODS = ("__setattr__", "__delattr__", "__getstate__", "__setstate__")
 
 
 FEW = 10
-"""Objects that a class makes before its ``__init__`` is compiled, which takes as long as 30."""
+"""Number of objects of a class after which its ``__init__`` is compiled; compiling takes as long as
+making 30 objects."""
 
 
 class _Options:

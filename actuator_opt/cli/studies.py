@@ -131,7 +131,10 @@ Pressure = Annotated[
 ]
 Mapped = Annotated[
     bool,
-    typer.Option("--map", help="Also compute a map over speed and pressure (also as CSV)."),
+    typer.Option(
+        "--map",
+        help="Also compute the results over a grid of speeds and pressures; write a map and CSV.",
+    ),
 ]
 FiniteElements = Annotated[
     bool,

@@ -35,7 +35,7 @@ from .seals import Seals
 
 
 class Line(Section):
-    """A pipe or hose of chamber a (cap side) or b (rod side); the list starts at the port."""
+    """A pipe or hose of chamber a (cap side) or b (rod side); listed from the port outwards."""
 
     chamber: choices.Chamber
     type: choices.LineType = "pipe"
@@ -43,9 +43,11 @@ class Line(Section):
     inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
     outer_diameter: Annotated[float, Of("diameter", "outer diameter")]
     material: Annotated[str, MaterialName("isotropic")]
-    rigid: Annotated[bool, Boolean("rigid wall: only the oil is compliant")] = False
+    rigid: Annotated[
+        bool, Boolean("whether the wall counts as rigid, so that only the oil is compliant")
+    ] = False
     beyond_throttle: Annotated[
-        bool, Boolean("the throttle is between the actuator and this line")
+        bool, Boolean("whether the throttle is between the actuator and this line")
     ] = False
 
 

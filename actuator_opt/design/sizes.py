@@ -154,9 +154,10 @@ def groups(
     Parameters
     ----------
     tree : a design, or its tree in SI
-    plies : whether to round layers that state their ply thickness to whole plies, and angles to
-        the allowed angles
-    standard : whether to round all variables with a standard series too
+    plies : whether layers that state their ply thickness take only whole plies, and angles only the
+        allowed angles
+    standard : whether every variable for which a standard series exists takes only sizes of that
+        series
 
     Returns
     -------

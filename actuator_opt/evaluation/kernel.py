@@ -438,7 +438,7 @@ def _at_stops(
     parts: dict[str, Array],
     out: MetricArrays,
 ) -> None:
-    """Compute stiffness and frequency under the force and mass at each stop of a linkage."""
+    """Compute stiffness and frequency for each stop, if the linkage makes the load differ there."""
     s = basis.state
     differing = joint.open_cases(v, design, s.positions)
     if not differing.any():

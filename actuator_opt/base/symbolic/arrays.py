@@ -54,7 +54,7 @@ class SymbolArray(np.ndarray):
 
     def __getitem__(self, key: Any) -> Any:
         if isinstance(key, SymbolArray):
-            raise TypeError("an index that depends on symbols is not recorded")
+            raise TypeError("cannot record an array index that depends on symbols")
         value = self.view(np.ndarray)[key]
         return wrapped(value if isinstance(value, np.ndarray) else _boxed(value))
 
@@ -301,7 +301,7 @@ def _reduced(
 ) -> Any:
     options.pop("dtype", None)
     if options.get("out") is not None or options.get("where", True) is not True:
-        raise TypeError("reductions with out or where are not recorded")
+        raise TypeError("cannot record reductions with the arguments out or where")
     known = {"initial": options["initial"]} if "initial" in options else {}
     if known.get("initial", 0.0) is np._NoValue:
         known = {}
@@ -509,7 +509,10 @@ def _symbolic(value: Any) -> bool:
 
 
 def _root_parts(coefficients: Sequence[Any]) -> tuple[Any, Any]:
-    """Parts of all roots of polynomials, lowest power first; their derivatives are not recorded."""
+    """Real and imaginary parts of all roots of polynomials; their derivatives are not recorded.
+
+    The coefficients are given with that of the lowest power first.
+    """
     rows = np.broadcast_arrays(*(_plain(asarray(c)) for c in coefficients))
     shape, degree = rows[0].shape, len(rows) - 1
     along, across = (np.empty((*shape, degree), dtype=object) for _ in range(2))
@@ -517,7 +520,9 @@ def _root_parts(coefficients: Sequence[Any]) -> tuple[Any, Any]:
         values = [_strip(row[at]) for row in rows]
         symbol = next((value for value in values if isinstance(value, Symbol)), None)
         if symbol is None:
-            raise TypeError("roots of a polynomial without symbols are not recorded")
+            raise TypeError(
+                "cannot record the roots of a polynomial whose coefficients are all plain numbers"
+            )
         node = symbol.graph.exact_node(
             "roots", *(v if isinstance(v, Symbol) else float(v) for v in values)
         )
@@ -588,7 +593,7 @@ class Recorder:
             return symbol
         for node in needed([symbol], self._known):
             if node.op not in NUMPY_OF:
-                raise TypeError("a branch that depends on the roots of a polynomial")
+                raise TypeError("a branch depends on the roots of a polynomial")
             operands = [self._known[a] if isinstance(a, Symbol) else a for a in node.args]
             quick = _QUICK.get(node.op)
             self._known[node] = (
