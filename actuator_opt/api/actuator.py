@@ -124,7 +124,8 @@ def as_actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -
 def fault_of(actuator: Actuator) -> Callable[[str, str, str], Diagnostic] | None:
     """Return a function that makes a `Diagnostic` from a variable's PATH, a fault and its remedy.
 
-    The function adds the variable's line number in the file; None if the design has no file.
+    The function adds the variable's line number in the file. If the design has no file, None is
+    returned instead of a function.
     """
     return None if actuator.source is None else actuator.source.of_variable
 

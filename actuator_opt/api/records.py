@@ -34,7 +34,8 @@ _NOT_TESTED = (
     "objective",
     "measured",
 )
-"""Keys that do not describe the tested actuator; designs that only differ here count as equal."""
+"""Keys that do not describe the tested actuator; designs that differ only in them count as
+equal."""
 Units = str | Path | Mapping[str, str] | None
 """Units of columns without a unit in their header: ``"SI"``, a file, or a mapping by column."""
 
@@ -320,7 +321,7 @@ def _require_use(
     reading: Mapping[str, object],
     settings: Mapping[str, Any],
 ) -> None:
-    """Reject settings that an identified record would ignore, and records of another actuator."""
+    """Reject settings without effect on an identified record, or a design other than its own."""
     unused = [*(name for name, argument in reading.items() if argument), *settings]
     if unused:
         message = f"{', '.join(unused)}: without effect, as the record is already identified"

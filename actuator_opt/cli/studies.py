@@ -62,7 +62,8 @@ Metrics = Annotated[
     typer.Option(
         "--metric",
         metavar="METRIC",
-        help="Metric to analyse besides all margins; default: the objective. Repeatable.",
+        help="Metric to analyse besides the margins of all limits; default: the objective. "
+        "Repeatable.",
     ),
 ]
 

@@ -490,7 +490,9 @@ def _own_fields() -> dict[str, Any]:
         field.key: field for joint in JOINTS.values() for field in joint.fields if field.quantity
     }
     for key in joint_fields.keys() & _Retention.model_fields.keys():
-        raise ValueError(f"joint field {key}: shared by all joints, must not state a quantity")
+        raise ValueError(
+            f"joint field {key}: all joints share this key, so none may state its quantity"
+        )
     return {
         key: (Annotated[float | None, Of(field.quantity, field.help)], None)
         for key, field in joint_fields.items()

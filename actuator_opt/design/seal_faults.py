@@ -326,7 +326,7 @@ def reach(view: FileView) -> Iterator[Fault]:
 
 
 def films(view: FileView) -> Iterator[Fault]:
-    """Check that tandem seals have the same friction law, and that at most two rings share a film."""
+    """Check that tandem seals have the same friction law, and at most two rings share a film."""
     for name in ("piston", "rod"):
         both: list[Loc] = [("seals", name)]
         if view.has("seals", name, "secondary"):

@@ -146,8 +146,8 @@ def _housing(ring: Ring) -> Iterator[str]:
         for housing in standard_housings[:2]
     )
     yield (
-        f"{ring.label}: the groove is {1e3 * depth:.3g} x {1e3 * length:.3g} mm, in "
-        f"{standard_housings[0].standard} it is {listed} mm"
+        f"{ring.label}: groove (depth x length) {1e3 * depth:.3g} x {1e3 * length:.3g} mm, in "
+        f"{standard_housings[0].standard} {listed} mm"
     )
 
 

@@ -367,7 +367,7 @@ def statics(
     if not g.rod_thicknesses:
         out.skip("geometry_rod_bore", "the rod has no layers")
     if not g.has_skirts:
-        out.skip("geometry_skirts", "the ends have no skirts")
+        out.skip("geometry_skirts", "cap and head have no skirts over the barrel")
     _manufacture(v, subject, out)
     out.put("barrel_length", g.barrel_length)
     out.put("closed_length", g.closed_length)

@@ -28,24 +28,26 @@ class SymbolArray(np.ndarray):
             return _matmul(*inputs)
         function = _UFUNCS.get(ufunc)
         if function is None:
-            raise TypeError(f"numpy.{ufunc.__name__} of symbols is not recorded")
+            raise TypeError(f"cannot record numpy.{ufunc.__name__} of symbols")
         if method == "__call__":
             if options.get("out") is not None or options.get("where", True) is not True:
-                raise TypeError(f"numpy.{ufunc.__name__}: out and where are not recorded")
+                raise TypeError(
+                    f"cannot record numpy.{ufunc.__name__} with the arguments out or where"
+                )
             return wrapped(function(*plain))
         if method == "reduce":
             return _reduced(function, plain[0], **options)
         if method in ("accumulate", "outer"):
             options.pop("dtype", None)
             return wrapped(getattr(function, method)(*plain, **options))
-        raise TypeError(f"numpy.{ufunc.__name__}.{method} of symbols is not recorded")
+        raise TypeError(f"cannot record numpy.{ufunc.__name__}.{method} of symbols")
 
     def __array_function__(self, func: Any, types: Any, args: Any, kwargs: Any) -> Any:
         own = _FUNCTIONS.get(func)
         if own is not None:
             return own(*args, **kwargs)
         if func not in _STRUCTURAL:
-            raise TypeError(f"numpy.{func.__name__} of symbols is not recorded")
+            raise TypeError(f"cannot record numpy.{func.__name__} of symbols")
         kwargs = {name: _plain(value) for name, value in kwargs.items()}
         return wrapped(func(*(_plain(value) for value in args), **kwargs))
 
@@ -441,7 +443,7 @@ def _einsum(subscripts: str, *operands: Any, **_: Any) -> Any:
     inputs, output = subscripts.replace(" ", "").split("->")
     parts = inputs.split(",")
     if "." in subscripts:
-        raise TypeError(f"einsum {subscripts} is not recorded")
+        raise TypeError(f"cannot record einsum {subscripts}")
     letters = [*output, *sorted(set("".join(parts)) - set(output))]
     total: Any = None
     for part, operand in zip(parts, operands, strict=True):
@@ -593,7 +595,7 @@ class Recorder:
             return symbol
         for node in needed([symbol], self._known):
             if node.op not in NUMPY_OF:
-                raise TypeError("a branch depends on the roots of a polynomial")
+                raise TypeError("cannot record a branch that depends on the roots of a polynomial")
             operands = [self._known[a] if isinstance(a, Symbol) else a for a in node.args]
             quick = _QUICK.get(node.op)
             self._known[node] = (

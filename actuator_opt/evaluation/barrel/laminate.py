@@ -216,7 +216,7 @@ def _autofrettage(
 ) -> Autofrettage | None:
     """Residual stress of autofrettage; None if not stated or not covered by the model.
 
-    The open barrel is overpressurised once, before it is machined.
+    The barrel is overpressurised once, without axial force, before it is machined.
     """
     if design.barrel.autofrettage_pressure is None or not layers[0].yields:
         return None
