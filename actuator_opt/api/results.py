@@ -51,7 +51,7 @@ class ResultKind:
     record : records the run of (result, actuator=, command=, date=)
     data : gives plain data for JSON, SI
     remarks : gives lines that are printed to standard error after the text
-    writes : tells whether a report or CSV can be written for a result; None: always
+    writes : returns whether a report or CSV can be written for a result; None: always
     """
 
     type: str

@@ -164,8 +164,8 @@ class Session:
     """A design's optimum, prepared so that changed problems can be re-solved quickly.
 
     Every call states its changes relative to the design as read; no call affects a later call. A
-    weighted sum as objective divides each of its terms by the term's value in a design: in `solve`,
-    as in `optimise`, in the changed design; in all other methods, in the design as read.
+    weighted sum as objective divides each of its terms by the term's value in a design. For
+    `solve` (and `optimise`) this is the changed design, for other methods the design as read.
 
     Attributes
     ----------

@@ -349,7 +349,7 @@ def _entries(item: Mapping[str, Any], layers: Sequence[PlyGroup]) -> Iterator[di
 
 
 def _places(document: Document, loc: Loc, layer_loc: Loc, layer: PlyGroup) -> dict[Loc, NodeSpan]:
-    """Where a layer's values are written; the place of its angle also stands for its thickness."""
+    """Where a layer's values are written; its thickness is placed where its angle is."""
     angle_span = _character(document, (*loc, "plies"), layer.offset)
     places = {layer_loc: angle_span} | {
         (*layer_loc, key): angle_span for key in ("angle", "thickness", "balanced")
