@@ -310,7 +310,7 @@ def _group(view: FileView, members: Sequence[_Rule]) -> VariableGroup:
 
 
 def _fixed(view: FileView, rule: _Rule, column: dict[str, int]) -> float | None:
-    """Value of the parent variable if the design fixes it; None if it varies or is missing."""
+    """Fixed value of the parent (on which the sizes depend); None if it varies or is missing."""
     if rule.parent is None or rule.parent in column:
         return None
     if child_at(view.tree, ("variables", rule.parent)) is None:

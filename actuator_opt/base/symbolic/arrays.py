@@ -171,7 +171,7 @@ def _real(value: Any) -> Any:
 
 
 def _strip(value: Any) -> Any:
-    """Replace `real` of a symbol by the symbol; in a comparison, derivatives do not matter."""
+    """Replace a recorded `real(x)` by x itself, where derivatives do not matter (comparisons)."""
     return value.args[0] if isinstance(value, Symbol) and value.op == "real" else value
 
 

@@ -29,7 +29,7 @@ if the value is smaller)."""
 
 
 class RecordedFunction:
-    """A function of k points (inputs, k), real or complex, that returns results (rows, k).
+    """A function of k points (inputs, k), real or complex; it returns one row per result (rows, k).
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ class RecordedFunction:
         return rows
 
     def _complete(self, points: Array, rows: Array, holds: Array) -> None:
-        """Call the function at points outside the recorded branches; record again if many."""
+        """Call the function itself for points on unrecorded branches; if many, record it again."""
         self.points += len(holds)
         if holds.all():
             return

@@ -44,7 +44,7 @@ from .wall import (
 )
 
 FEW = 32
-"""Smallest number of designs for which dropping repeated designs saves time."""
+"""Smallest number of designs for which it saves time to compute repeated designs only once."""
 
 
 def distinct(arguments: Mapping[str, Any]) -> tuple[dict[str, Any], Callable[[Array], Array]]:
