@@ -421,7 +421,7 @@ def _against(check: Check) -> str:
 
 
 def _curve(run: ModelRun, v: Values, case: str | None) -> StrokeCurve:
-    """Calculate stiffness over the stroke in the governing load case."""
+    """Calculate the stiffness along the stroke in `case`, or else in the first load case."""
     stroke = float(np.squeeze(run.geometry.stroke))
     index = v.cases.index(case) if case in v.cases else 0
     weakest = of_case(run.weakest, index)
