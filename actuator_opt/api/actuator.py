@@ -32,7 +32,7 @@ class Actuator:
     plugins: tuple[Plugin, ...] = ()
 
     def subject(self) -> PreparedDesign:
-        """The design with its materials and numbers, ready for the models."""
+        """The design with the properties of its materials, in the form that the models take."""
         return prepare(self.design, plugins=self.plugins)
 
     def changed(self, values: Mapping[str, float | str]) -> Actuator:
@@ -124,14 +124,15 @@ def as_actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -
 def fault_of(actuator: Actuator) -> Callable[[str, str, str], Diagnostic] | None:
     """Return a function that makes a `Diagnostic` from a variable's PATH, a fault and its remedy.
 
-    The function adds the variable's line number in the file; None if the design has no file.
+    The function adds the variable's line number in the file. If the design has no file, None is
+    returned instead of a function.
     """
     return None if actuator.source is None else actuator.source.of_variable
 
 
 @contextmanager
 def located(actuator: Actuator) -> Iterator[None]:
-    """If a fault states a value's PATH but no line, add the value's line in the design file."""
+    """Within this context, add the line in the design file to faults that only state a PATH."""
     try:
         yield
     except InputError as error:

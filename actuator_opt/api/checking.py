@@ -68,7 +68,10 @@ def examine(
 
 
 def _of_models(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
-    """Faults that only the models reveal: missing metrics, unused variables, impossible choices."""
+    """Faults that only the models reveal, such as requirements on metrics that do not exist.
+
+    The others are variables that no model reads, and impossible choices.
+    """
     try:
         faults = requirement_faults(actuator, subject)
         if faults:

@@ -135,7 +135,7 @@ def _packages() -> Iterator[Finding]:
     if not core:
         remedy = "install it with pip"
         yield Finding(
-            "dependency", _NAME, "fault", "the list of its dependencies is missing", remedy
+            "dependency", _NAME, "fault", "the list of packages that it needs is missing", remedy
         )
     for text in core:
         name, value, fault = _package(text, modules)
@@ -242,7 +242,7 @@ def _programs() -> Finding:
     finding = _folder("recorded models", place, remedy)
     if finding.status == "ok":
         return finding
-    words = f"not stored, so each run records anew: {finding.value}"
+    words = f"not stored, so every run must record them again: {finding.value}"
     return Finding("folder", "recorded models", "missing", words, remedy)
 
 
@@ -259,8 +259,8 @@ def _compiled() -> Finding:
     from ..base.symbolic.program import AVAILABLE
 
     if AVAILABLE:
-        return Finding("machine", "recorded models", "ok", "run by the compiled program")
-    words = "run by NumPy: there was no C compiler at installation"
+        return Finding("machine", "recorded models", "ok", "run by the compiled virtual machine")
+    words = "run by NumPy, which is slower: there was no C compiler at installation"
     remedy = f"install {_NAME} again with a C compiler"
     return Finding("machine", "recorded models", "missing", words, remedy)
 

@@ -115,7 +115,7 @@ def optimise(
 
 
 def estimated(optimisation: Optimisation, plugins: tuple[Plugin, ...]) -> Optimisation:
-    """Add the yield to an optimum: from the sample of `robust`, or else a quick estimate."""
+    """Add the yield to an optimum: that of its robust search, or else a quick estimate."""
     best, sample = optimisation.best_evaluation, optimisation.robust
     if sample is not None:
         yield_estimate = YieldEstimate(

@@ -34,7 +34,8 @@ _NOT_TESTED = (
     "objective",
     "measured",
 )
-"""Keys that do not describe the tested actuator; designs that only differ here count as equal."""
+"""Keys that do not describe the tested actuator; designs that differ only in them count as
+equal."""
 Units = str | Path | Mapping[str, str] | None
 """Units of columns without a unit in their header: ``"SI"``, a file, or a mapping by column."""
 
@@ -192,7 +193,7 @@ def bending(
 
     if specimen is None:
         if span is None or design is None:
-            message = "the section of the bending test is not known"
+            message = "the cross-section of the tested part is not known"
             raise InputError(Diagnostic(message, "give span and design, or a specimen"))
         specimen = specimen_of(as_actuator(design).subject(), part, span)
     return run(_record(record, columns, units, ("F_L", "w")), specimen)
@@ -206,7 +207,8 @@ class Calibrated(Displayed):
     ----------
     actuator : the design with the new values and their uncertainties
     calibration : the parameters found from the record
-    redesign : requirements with old and new values, for the design as tested and for the optimum
+    redesign : how the measured friction changes the requirements, in the tested design and in the
+        optimum
     """
 
     actuator: Actuator
@@ -286,7 +288,7 @@ def calibrate(
 
 
 def _with_values(before: Actuator, calibration: Calibration) -> tuple[Actuator, list[str]]:
-    """The actuator with the measured values, which are no longer variables; and warnings."""
+    """The actuator with the measured values, which are then fixed (no variables); and warnings."""
     design, values = before.design, calibration.values()
     variables = {path: x for path, x in design.variables.items() if path not in values}
     choices = {path: x for path, x in design.choices.items() if path not in values}
@@ -308,7 +310,7 @@ def _with_values(before: Actuator, calibration: Calibration) -> tuple[Actuator, 
     if seal_choices:
         doubts.append(
             "the friction was measured with the tested seals, but is also used for the "
-            f"other choices of {', '.join(seal_choices)}"
+            f"other seals that the choices allow: {', '.join(seal_choices)}"
         )
     return Actuator(after, before.source, before.plugins), doubts
 
@@ -319,7 +321,7 @@ def _require_use(
     reading: Mapping[str, object],
     settings: Mapping[str, Any],
 ) -> None:
-    """Reject settings that an identified record would ignore, and records of another actuator."""
+    """Reject settings without effect on an identified record, or a design other than its own."""
     unused = [*(name for name, argument in reading.items() if argument), *settings]
     if unused:
         message = f"{', '.join(unused)}: without effect, as the record is already identified"

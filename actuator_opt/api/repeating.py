@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 OPTIMISED, EVALUATED = ("optimise", "optimize", "sensitivity"), ("evaluate", "report")
 FRONTS = ("pareto",)
-"""Commands that can be repeated."""
+"""Commands whose reports can be repeated: optimisations, evaluations and Pareto fronts."""
 _VALUES = ("--algorithm", "--verify-dynamics", "--date")
 _FLAGS = ("--whole-plies", "--standard-sizes", "--certify")
 _LONGEST = 100_000

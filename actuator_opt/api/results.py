@@ -51,7 +51,7 @@ class ResultKind:
     record : records the run of (result, actuator=, command=, date=)
     data : gives plain data for JSON, SI
     remarks : gives lines that are printed to standard error after the text
-    writes : whether a report or CSV can be written; None: always
+    writes : returns whether a report or CSV can be written for a result; None: always
     """
 
     type: str
@@ -222,7 +222,7 @@ def kind_of(result: object) -> ResultKind:
 
 
 def piece(name: str, result: object) -> Callable[..., Any]:
-    """Import the function with a name as in `ResultKind`; the result becomes its first argument."""
+    """Import a function by its name (see `ResultKind`), with the result as its first argument."""
     module, _, function = name.rpartition(":")
     if not module:
         return getattr(result, name)  # type: ignore[no-any-return]

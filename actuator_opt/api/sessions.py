@@ -163,9 +163,9 @@ class OptimumCurve:
 class Session:
     """A design's optimum, prepared so that changed problems can be re-solved quickly.
 
-    Every call states its changes relative to the design as read; no call affects a later call. If
-    the objective is a weighted sum, each term is divided by its value in the design as read.
-    `solve` divides each term by its value in the changed design, as `optimise` does.
+    Every call states its changes relative to the design as read; no call affects a later call. A
+    weighted sum as objective divides each of its terms by the term's value in a design. For
+    `solve` (and `optimise`) this is the changed design, for other methods the design as read.
 
     Attributes
     ----------
@@ -339,8 +339,9 @@ class Session:
     ) -> OptimumCurve:
         """Compute the optima for several values of one number.
 
-        The values are solved outwards from the session's own value. On each side, the search stops
-        at the first value without a feasible design.
+        Values that cannot be solved together are solved one by one, beginning with those nearest to
+        the session's own value of the number. Above and below that value, this search stops at the
+        first value without a feasible design.
 
         Parameters
         ----------

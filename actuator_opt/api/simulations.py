@@ -37,7 +37,7 @@ _TABLES = (".csv", ".txt", ".tsv")
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """A scenario as read, with its records, and its design with the scenario's values."""
+    """A scenario as read, with its records, and its design with the values that it changes."""
 
     scenario: Scenario
     actuator: Actuator
@@ -181,7 +181,7 @@ def as_trial(
     if not isinstance(scenario, Trial):
         return read_scenario(scenario, set=set)
     if set:
-        message = "values are set, but the scenario is already read"
+        message = "cannot set values, because the scenario is already read"
         raise InputError(Diagnostic(message, "set them in read_scenario"))
     return scenario
 
@@ -311,18 +311,19 @@ def verify_dynamics(
 
 
 def fitting(trial: Trial, design: Actuator | Design | str | Path) -> Actuator:
-    """As `with_design`, for a scenario with a cylinder to verify.
+    """Do as `with_design`, but refuse a scenario in which another component replaces the cylinder.
 
     Raises
     ------
     InputError
-        the scenario does not fit this design, or has no cylinder to verify
+        the scenario does not fit this design, or has a motor or held ports in place of a
+        cylinder
     """
     scenario = trial.scenario
     for key in ("motor", "held_ports"):
         if getattr(scenario, key) is not None:
             fault = trial.loaded.diagnostic(key, "replaces the cylinder")
-            raise InputError(replace(fault, remedy="verify with a scenario that lacks this block"))
+            raise InputError(replace(fault, remedy="use a scenario without this block"))
     return with_design(trial, design)
 
 

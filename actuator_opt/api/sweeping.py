@@ -96,7 +96,7 @@ def sweep(
     files = [Path(file) for file in (store, csv, parquet) if file is not None]
     _require_distinct(files)
     if reduce and files:
-        message = "--reduce only keeps the best designs"
+        message = "--reduce keeps only the best designs, so there are no other rows to write"
         raise UsageError(Diagnostic(message, "omit --store, --csv and --parquet"))
     actuator = as_actuator(design, plugins)
     for file in files:

@@ -44,7 +44,8 @@ _METHODS = ("__setattr__", "__delattr__", "__getstate__", "__setstate__")
 
 
 FEW = 10
-"""Objects that a class makes before its ``__init__`` is compiled, which takes as long as 30."""
+"""Number of objects of a class after which its ``__init__`` is compiled; compiling takes as long as
+making 30 objects."""
 
 
 class _Options:
@@ -132,7 +133,7 @@ def _field(cls: Any, name: str, annotation: Any, kw_only: bool) -> Field[Any]:
 
 
 def _first_init(self: Any, *args: Any, **arguments: Any) -> None:
-    """Make the first objects; for more, or if an argument is wrong, compile ``__init__``."""
+    """Initialise the first `FEW` objects; for more, or a wrong argument, compile ``__init__``."""
     cls: Any = next(
         each for each in type(self).__mro__ if each.__dict__.get("__init__") is _first_init
     )

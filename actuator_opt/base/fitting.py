@@ -224,15 +224,15 @@ def relaxed(
     ----------
     misfit : function of trial numbers (one row for each problem) and the indices of these problems;
         returns their residuals (problems, residuals)
-    slopes : function of the same rows; returns the derivatives of the residuals (problems or 1,
-        residuals, searched)
-    rows : start of each problem (problems, searched)
+    slopes : function of the same rows; returns the derivatives of the residuals (problems,
+        residuals, searched numbers); the first axis may have length 1
+    rows : start of each problem (problems, searched numbers)
     search : names and limits of the searched numbers
     steps : largest number of steps
 
     Returns
     -------
-    optima (problems, searched), costs (problems,)
+    optima (problems, searched numbers), costs (problems,)
     """
     x = np.clip(rows, search.low, search.high)
     at = np.arange(x.shape[0])

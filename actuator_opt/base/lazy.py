@@ -12,7 +12,7 @@ def homes(public: Mapping[str, str]) -> dict[str, str]:
 
     Parameters
     ----------
-    public : names by their module, separated by spaces
+    public : for each module, its public names in one text, separated by spaces
 
     Examples
     --------

@@ -52,9 +52,10 @@ HIDDEN = {"optimize"}
 """Alternative spellings of commands, which the help does not list."""
 
 PATIENCE = 100_000
-"""New objects after which Python looks for unused circles of objects; by default 700.
+"""Number of new objects after which Python searches for unused reference cycles (default: 700).
 
-Imports make many objects that stay, and each search walks through them: a sixth of a short command.
+Imports make many lasting objects. With the default, searching them again and again takes a sixth of
+the time of a short command.
 """
 
 

@@ -84,7 +84,7 @@ PressureLag = Annotated[
     typer.Option(
         "--pressure-lag",
         metavar="T",
-        help='Delay of the pressure signals, e.g. "4 ms"; default: identified at the reversals.',
+        help='Delay of the pressure signals, e.g. "4 ms"; default: from the reversals of motion.',
     ),
 ]
 Bootstrap = Annotated[

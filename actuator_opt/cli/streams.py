@@ -54,7 +54,7 @@ def interrupted() -> bool:
 
 
 class Interrupted(KeyboardInterrupt):
-    """Raised on Ctrl-C, as a plain KeyboardInterrupt inside `exec` makes Python exit by signal."""
+    """Raised on Ctrl-C, because Python ends by signal after a KeyboardInterrupt inside `exec`."""
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:

@@ -62,7 +62,8 @@ Metrics = Annotated[
     typer.Option(
         "--metric",
         metavar="METRIC",
-        help="Metric to analyse besides all margins; default: the objective. Repeatable.",
+        help="Metric to analyse besides the margins of all limits; default: the objective. "
+        "Repeatable.",
     ),
 ]
 
@@ -131,7 +132,10 @@ Pressure = Annotated[
 ]
 Mapped = Annotated[
     bool,
-    typer.Option("--map", help="Also compute a map over speed and pressure (also as CSV)."),
+    typer.Option(
+        "--map",
+        help="Also compute the results over a grid of speeds and pressures; write a map and CSV.",
+    ),
 ]
 FiniteElements = Annotated[
     bool,

@@ -90,7 +90,7 @@ def choosable(path: str, tree: Any) -> Target:
     if target.entry is None or target.entry.shape == "list" or len(target.loc) == 1:
         raise ValueFault("is not a value of an actuator part", remedy)
     if isinstance(target.entry.kind, Text) and not isinstance(target.entry.kind, MaterialName):
-        raise ValueFault("is free text, which has no effect", remedy)
+        raise ValueFault("is free text, so choosing it has no effect", remedy)
     if target.path != path:
         raise ValueFault("is not the canonical PATH", f"write {target.path}")
     variables = tree.get("variables") if isinstance(tree, dict) else None

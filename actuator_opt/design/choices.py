@@ -123,7 +123,7 @@ Chamber: TypeAlias = Annotated[
 LineType: TypeAlias = Annotated[
     Literal["pipe", "hose"],
     Choice(
-        "item of the stiffness budget that contains the compliance of the line's wall (which "
+        "kind of line, under which the stiffness budget lists the compliance of its wall (which "
         "follows from the material); pipe: a rigid tube; hose: a flexible hose"
     ),
 ]

@@ -111,8 +111,9 @@ def _no_linkage(loc: Loc, instead: str) -> Fault:
 def linkage_load_cases(view: FileView) -> Iterator[Fault]:
     """Check the joint angle and joint speed of every load case.
 
-    Both require a linkage. The angle must lie within the joint's range and excludes a position; the
-    joint speed excludes a piston speed.
+    Both require a linkage. The angle must lie within the joint's range, and a load case that states
+    it must not state a piston position. A load case with a joint speed must not state a piston
+    speed.
     """
     for index, case in enumerate(view.items("load_cases")):
         if not isinstance(case, dict):
@@ -188,7 +189,7 @@ ENDS = get_args(get_args(choices.End)[0])
 
 
 def ports(view: FileView) -> Iterator[Fault]:
-    """Check that the component at the end of the lines has a block, and that no other has one."""
+    """Check that the component named in ports.end is described, and no other end component is."""
     end = view.text("ports", "end")
     if end not in ENDS:  # reported as a separate fault
         return

@@ -71,7 +71,9 @@ def read_notation(text: str, most: int = MOST_LAYERS) -> tuple[PlyGroup, ...]:
     [('90', True, 2), ('25', True, 4), ('90', True, 2)]
     """
     if len(text) > _LONGEST:
-        raise NotationFault(0, f"a lay-up of {len(text)} characters", f"write at most {_LONGEST}")
+        raise NotationFault(
+            0, f"a lay-up of {len(text)} characters is too long", f"write at most {_LONGEST}"
+        )
     tokens = [
         (str(m.lastgroup), m[str(m.lastgroup)], m.start(str(m.lastgroup)))
         for m in _TOKEN.finditer(text)
@@ -347,7 +349,7 @@ def _entries(item: Mapping[str, Any], layers: Sequence[PlyGroup]) -> Iterator[di
 
 
 def _places(document: Document, loc: Loc, layer_loc: Loc, layer: PlyGroup) -> dict[Loc, NodeSpan]:
-    """Where a layer's values are written; angle and thickness at its angle in the notation."""
+    """Where a layer's values are written; its thickness is placed where its angle is."""
     angle_span = _character(document, (*loc, "plies"), layer.offset)
     places = {layer_loc: angle_span} | {
         (*layer_loc, key): angle_span for key in ("angle", "thickness", "balanced")

@@ -543,8 +543,9 @@ def assess(
     law : function B(speed, values), safe under a complex step
     values : least-squares parameters by name, SI
     speed, damping, weights : the points
-    least : smallest scale of each parameter that may be near 0; a change by this scale must change
-        the curve visibly. The scale of any other parameter is its value
+    least : for parameters that may be near 0, the smallest value of their scale. A parameter is
+        undetermined if a change by its scale does not visibly change the curve; the scale is the
+        parameter's absolute value, but at least the value given here
     doubts : reasons for parameters that the search already left undetermined
 
     Returns

@@ -221,7 +221,11 @@ class _Reader:
         meta = self._meta(loc, spec, defaults)
         for key in _META:
             if key not in meta and key not in ("scatter",):
-                self.fault(loc, f"the {key} is missing", f"write {key}: here or in the entry")
+                self.fault(
+                    loc,
+                    f"the {key} is missing",
+                    f'write "{key}:" for this property or for the whole entry',
+                )
         argument: str | None = None
         points: tuple[tuple[float, float], ...] = ()
         if "points" in spec:

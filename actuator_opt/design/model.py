@@ -35,7 +35,7 @@ from .seals import Seals
 
 
 class Line(Section):
-    """A pipe or hose of chamber a (cap side) or b (rod side); the list starts at the port."""
+    """A pipe or hose of chamber a (cap side) or b (rod side); listed from the port outwards."""
 
     chamber: choices.Chamber
     type: choices.LineType = "pipe"
@@ -43,9 +43,11 @@ class Line(Section):
     inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
     outer_diameter: Annotated[float, Of("diameter", "outer diameter")]
     material: Annotated[str, MaterialName("isotropic")]
-    rigid: Annotated[bool, Boolean("rigid wall: only the oil is compliant")] = False
+    rigid: Annotated[
+        bool, Boolean("whether the wall counts as rigid, so that only the oil is compliant")
+    ] = False
     beyond_throttle: Annotated[
-        bool, Boolean("the throttle is between the actuator and this line")
+        bool, Boolean("whether the throttle is between the actuator and this line")
     ] = False
 
 
@@ -488,7 +490,9 @@ def _own_fields() -> dict[str, Any]:
         field.key: field for joint in JOINTS.values() for field in joint.fields if field.quantity
     }
     for key in joint_fields.keys() & _Retention.model_fields.keys():
-        raise ValueError(f"joint field {key}: shared by all joints, must not state a quantity")
+        raise ValueError(
+            f"joint field {key}: all joints share this key, so none may state its quantity"
+        )
     return {
         key: (Annotated[float | None, Of(field.quantity, field.help)], None)
         for key, field in joint_fields.items()

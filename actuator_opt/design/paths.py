@@ -269,8 +269,8 @@ def split_assignment(text: str) -> tuple[str, str]:
 def put(tree: dict[str, Any], target: Target, value: object) -> None:
     """Set a value in a tree of dicts and lists; missing blocks are added.
 
-    If the tree has a position as a fraction of the stroke, the number that replaces it is also such
-    a fraction. A new objective replaces the existing objective.
+    A number that replaces a position stated as a fraction of the stroke is itself such a fraction.
+    A new objective replaces the existing objective.
 
     Raises
     ------

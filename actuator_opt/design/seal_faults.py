@@ -264,7 +264,7 @@ def _at_loc(loc: Loc, size_faults: Iterable[SizeFault]) -> Iterator[Fault]:
 
 
 def profiles(view: FileView) -> Iterator[Fault]:
-    """Check contact profiles: rising pressures, positions from 0 up, a stress at every position."""
+    """Check contact profiles: rising pressures; positions from 0 up, with a stress for each."""
     for loc in elements(view):
         last = -1.0
         for index, _ in enumerate(view.items(*loc, "contact")):
@@ -292,7 +292,7 @@ def profiles(view: FileView) -> Iterator[Fault]:
                 yield Fault(
                     (*at, "stresses"),
                     f"{len(stresses)} stresses at {len(positions)} positions",
-                    "write one stress for every position",
+                    "give as many stresses as positions",
                 )
             numbers = [x for x in positions if isinstance(x, float)]
             pairs = pairwise(numbers)
@@ -326,7 +326,7 @@ def reach(view: FileView) -> Iterator[Fault]:
 
 
 def films(view: FileView) -> Iterator[Fault]:
-    """Check that seals in tandem have the same friction law, and an oil film at most two rings."""
+    """Check that tandem seals have the same friction law, and at most two rings share a film."""
     for name in ("piston", "rod"):
         both: list[Loc] = [("seals", name)]
         if view.has("seals", name, "secondary"):

@@ -72,7 +72,7 @@ class SealElement(Section):
     back_up_material: Annotated[str | None, MaterialName("isotropic")] = None
     back_up_thickness: Annotated[
         float | None,
-        Of("part_length", "axial thickness of a back-up ring, with its axial clearance"),
+        Of("part_length", "axial thickness of a back-up ring, including its axial clearance"),
     ] = None
     friction: choices.FrictionModel = coefficient.LAW.name
     friction_coefficient: Annotated[

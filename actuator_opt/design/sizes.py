@@ -154,9 +154,10 @@ def groups(
     Parameters
     ----------
     tree : a design, or its tree in SI
-    plies : whether to round layers that state their ply thickness to whole plies, and angles to
-        the allowed angles
-    standard : whether to round all variables with a standard series too
+    plies : whether layers that state their ply thickness take only whole plies, and angles only the
+        allowed angles
+    standard : whether every variable for which a standard series exists takes only sizes of that
+        series
 
     Returns
     -------
@@ -309,7 +310,7 @@ def _group(view: FileView, members: Sequence[_Rule]) -> VariableGroup:
 
 
 def _fixed(view: FileView, rule: _Rule, column: dict[str, int]) -> float | None:
-    """Value of the parent variable if the design fixes it; None if it varies or is missing."""
+    """Fixed value of the parent (on which the sizes depend); None if it varies or is missing."""
     if rule.parent is None or rule.parent in column:
         return None
     if child_at(view.tree, ("variables", rule.parent)) is None:

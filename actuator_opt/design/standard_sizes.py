@@ -391,7 +391,8 @@ class SizeSeries:
     name, label : name in the file and in reports
     suits, paths : variables to which it applies, in words and as a pattern of PATHs
     option : command-line option that selects the series ("file": only the file can select it)
-    needs_parent : whether its sizes exist only for a known size of the parent variable
+    needs_parent : whether its sizes exist only for a known size of the variable on which they
+        depend (the parent)
     """
 
     name: str
@@ -416,9 +417,9 @@ class SizeSeries:
     def values(
         self, view: FileView, path: str, parent: float | None, bounds: Bounds
     ) -> Sequence[float]:
-        """The sizes for a value of the parent.
+        """The sizes of a variable, which may depend on the value of a parent variable.
 
-        `parent` is None if there is no parent variable, or if it varies continuously.
+        `parent` is that value; None if there is no parent variable, or if it varies continuously.
         """
         raise NotImplementedError
 

@@ -68,7 +68,7 @@ def class_limits(name: str, size: float) -> tuple[float, float]:
 
 
 def _place(row: dict[str, Any]) -> int:
-    """Index of a row of the table, which gives its range of sizes."""
+    """Index of a row of the table; each row is for a range of nominal sizes."""
     return [step["to"] for step in _table()["rows"]].index(row["to"])
 
 

@@ -146,8 +146,8 @@ def _housing(ring: Ring) -> Iterator[str]:
         for housing in standard_housings[:2]
     )
     yield (
-        f"{ring.label}: the groove is {1e3 * depth:.3g} x {1e3 * length:.3g} mm, in "
-        f"{standard_housings[0].standard} it is {listed} mm"
+        f"{ring.label}: groove (depth x length) {1e3 * depth:.3g} x {1e3 * length:.3g} mm, in "
+        f"{standard_housings[0].standard} {listed} mm"
     )
 
 
@@ -421,7 +421,7 @@ def _against(check: Check) -> str:
 
 
 def _curve(run: ModelRun, v: Values, case: str | None) -> StrokeCurve:
-    """Calculate stiffness over the stroke in the governing load case."""
+    """Calculate the stiffness along the stroke in `case`, or else in the first load case."""
     stroke = float(np.squeeze(run.geometry.stroke))
     index = v.cases.index(case) if case in v.cases else 0
     weakest = of_case(run.weakest, index)

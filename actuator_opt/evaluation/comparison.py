@@ -117,10 +117,11 @@ class Comparison(Displayed):
 
     @property
     def unlike(self) -> Mapping[str, tuple[Sense | None, ...]]:
-        """Metrics whose smallest value governs in one design and whose largest governs in another.
+        """Metrics of which the smallest value governs in one design, and the largest in another.
 
-        This happens where designs limit or optimise a metric in opposite senses. The values are
-        the senses in each design.
+        A metric has several values in a design, one per load case and location. The designs differ
+        as above if they limit or optimise the metric in opposite senses. The result has the sense
+        in each design: "min" if the smallest value governs, "max" if the largest does.
         """
         names = dict.fromkeys(name for e in self.evaluations for name in e.metrics)
         by_metric = {name: _senses(name, self.evaluations) for name in names}

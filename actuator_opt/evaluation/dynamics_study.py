@@ -212,8 +212,8 @@ class DynamicsStudy:
     end: str
     """Connection at the end of the lines: closed, valve, constant_pressure, reducing_valve."""
     position: Array
-    """Positions along the stroke [m], from the cap end. The next three arrays have one entry for
-    each position."""
+    """Positions along the stroke [m], from the cap end. `closed_frequency`, `frequency` and
+    `damping_ratio` have one entry for each of them."""
     closed_frequency: Array
     """Natural frequency [Hz] with closed ports."""
     frequency: Array

@@ -31,8 +31,8 @@ POINTS = 6
 MOST_AXES = 2
 """Largest number of axes of a surrogate; each further axis needs `POINTS` times as many films."""
 SPEEDS, SPEED_ROOM = 3, 1.25
-"""Number of nodes of the speed axis if the speed is not varied, and factor by which it extends
-beyond the smallest and largest speed. The middle node is the speed of the load case. Every
+"""Number of nodes of the speed axis if the speed is not varied, and factor by which this axis
+extends beyond the smallest and largest speed. The middle node is the speed of the load case. Every
 surrogate has this axis, so that the derivative by speed varies with all other inputs."""
 CHECKS = 4
 """Number of samples at which a surrogate is compared with solved films. It is also compared at the

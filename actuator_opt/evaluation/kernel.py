@@ -367,7 +367,7 @@ def statics(
     if not g.rod_thicknesses:
         out.skip("geometry_rod_bore", "the rod has no layers")
     if not g.has_skirts:
-        out.skip("geometry_skirts", "the ends have no skirts")
+        out.skip("geometry_skirts", "cap and head have no skirts over the barrel")
     _manufacture(v, subject, out)
     out.put("barrel_length", g.barrel_length)
     out.put("closed_length", g.closed_length)
@@ -438,7 +438,7 @@ def _at_stops(
     parts: dict[str, Array],
     out: MetricArrays,
 ) -> None:
-    """Compute stiffness and frequency under the force and mass at each stop of a linkage."""
+    """Compute stiffness and frequency for each stop, if the linkage makes the load differ there."""
     s = basis.state
     differing = joint.open_cases(v, design, s.positions)
     if not differing.any():

@@ -276,7 +276,10 @@ def extremes(design: Design, numbers: Mapping[str, float]) -> tuple[float, float
 
 
 def fixed_when_prepared(path: str) -> bool:
-    """Whether the number at a PATH changes `allowances`, which a prepared design does not renew.
+    """Whether `allowances` depend on the number at a PATH.
+
+    They are computed when a design is prepared, and a later change of the number does not renew
+    them.
 
     >>> [fixed_when_prepared(path) for path in ("fluid.temperature", "cylinder.bore")]
     [True, False]

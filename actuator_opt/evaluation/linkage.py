@@ -230,7 +230,7 @@ def _dead_points(joint: DrivenJoint) -> dict[str, Array]:
 
 
 def warnings(design: Design, joint: DrivenJoint | None) -> Iterable[tuple[str, str]]:
-    """Warn if load cases use the joint's inertia as it acts at a single stroke position.
+    """Warn if load cases use the joint's inertia reflected to the rod at one stroke position only.
 
     The warnings are pairs (metric, sentence).
     """

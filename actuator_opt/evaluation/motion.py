@@ -348,8 +348,8 @@ def _loop(v: Values, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, s
     for case in stalled:
         yield (
             "bandwidth",
-            f"{case}: holding the force takes the whole supply pressure, which leaves the valve no "
-            "pressure to move the rod",
+            f'in load case "{case}", holding the force takes the whole supply pressure, which '
+            "leaves the valve no pressure to move the rod",
         )
     if least == 0:
         yield (

@@ -250,7 +250,8 @@ def worst(values: Array, axes: tuple[int, ...]) -> Array:
 def grouped(modes: Mapping[str, Array]) -> dict[str, Array]:
     """Merge failure modes that exclude each other, such as fibre tension and fibre compression.
 
-    They get the first word of their names, such as "fibre", and the larger utilisation.
+    The merged mode is named by the first word of their names, such as "fibre", and has the larger
+    utilisation.
     """
     groups: dict[str, Array] = {}
     for mode, utilisation in modes.items():

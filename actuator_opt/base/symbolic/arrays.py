@@ -28,24 +28,26 @@ class SymbolArray(np.ndarray):
             return _matmul(*inputs)
         function = _UFUNCS.get(ufunc)
         if function is None:
-            raise TypeError(f"numpy.{ufunc.__name__} of symbols is not recorded")
+            raise TypeError(f"cannot record numpy.{ufunc.__name__} of symbols")
         if method == "__call__":
             if options.get("out") is not None or options.get("where", True) is not True:
-                raise TypeError(f"numpy.{ufunc.__name__}: out and where are not recorded")
+                raise TypeError(
+                    f"cannot record numpy.{ufunc.__name__} with the arguments out or where"
+                )
             return wrapped(function(*plain))
         if method == "reduce":
             return _reduced(function, plain[0], **options)
         if method in ("accumulate", "outer"):
             options.pop("dtype", None)
             return wrapped(getattr(function, method)(*plain, **options))
-        raise TypeError(f"numpy.{ufunc.__name__}.{method} of symbols is not recorded")
+        raise TypeError(f"cannot record numpy.{ufunc.__name__}.{method} of symbols")
 
     def __array_function__(self, func: Any, types: Any, args: Any, kwargs: Any) -> Any:
         own = _FUNCTIONS.get(func)
         if own is not None:
             return own(*args, **kwargs)
         if func not in _STRUCTURAL:
-            raise TypeError(f"numpy.{func.__name__} of symbols is not recorded")
+            raise TypeError(f"cannot record numpy.{func.__name__} of symbols")
         kwargs = {name: _plain(value) for name, value in kwargs.items()}
         return wrapped(func(*(_plain(value) for value in args), **kwargs))
 
@@ -54,7 +56,7 @@ class SymbolArray(np.ndarray):
 
     def __getitem__(self, key: Any) -> Any:
         if isinstance(key, SymbolArray):
-            raise TypeError("an index that depends on symbols is not recorded")
+            raise TypeError("cannot record an array index that depends on symbols")
         value = self.view(np.ndarray)[key]
         return wrapped(value if isinstance(value, np.ndarray) else _boxed(value))
 
@@ -169,7 +171,7 @@ def _real(value: Any) -> Any:
 
 
 def _strip(value: Any) -> Any:
-    """Replace `real` of a symbol by the symbol; in a comparison, derivatives do not matter."""
+    """Replace a recorded `real(x)` by x itself, where derivatives do not matter (comparisons)."""
     return value.args[0] if isinstance(value, Symbol) and value.op == "real" else value
 
 
@@ -301,7 +303,7 @@ def _reduced(
 ) -> Any:
     options.pop("dtype", None)
     if options.get("out") is not None or options.get("where", True) is not True:
-        raise TypeError("reductions with out or where are not recorded")
+        raise TypeError("cannot record reductions with the arguments out or where")
     known = {"initial": options["initial"]} if "initial" in options else {}
     if known.get("initial", 0.0) is np._NoValue:
         known = {}
@@ -441,7 +443,7 @@ def _einsum(subscripts: str, *operands: Any, **_: Any) -> Any:
     inputs, output = subscripts.replace(" ", "").split("->")
     parts = inputs.split(",")
     if "." in subscripts:
-        raise TypeError(f"einsum {subscripts} is not recorded")
+        raise TypeError(f"cannot record einsum {subscripts}")
     letters = [*output, *sorted(set("".join(parts)) - set(output))]
     total: Any = None
     for part, operand in zip(parts, operands, strict=True):
@@ -509,7 +511,10 @@ def _symbolic(value: Any) -> bool:
 
 
 def _root_parts(coefficients: Sequence[Any]) -> tuple[Any, Any]:
-    """Parts of all roots of polynomials, lowest power first; their derivatives are not recorded."""
+    """Real and imaginary parts of all roots of polynomials; their derivatives are not recorded.
+
+    The coefficients are given with that of the lowest power first.
+    """
     rows = np.broadcast_arrays(*(_plain(asarray(c)) for c in coefficients))
     shape, degree = rows[0].shape, len(rows) - 1
     along, across = (np.empty((*shape, degree), dtype=object) for _ in range(2))
@@ -517,7 +522,9 @@ def _root_parts(coefficients: Sequence[Any]) -> tuple[Any, Any]:
         values = [_strip(row[at]) for row in rows]
         symbol = next((value for value in values if isinstance(value, Symbol)), None)
         if symbol is None:
-            raise TypeError("roots of a polynomial without symbols are not recorded")
+            raise TypeError(
+                "cannot record the roots of a polynomial whose coefficients are all plain numbers"
+            )
         node = symbol.graph.exact_node(
             "roots", *(v if isinstance(v, Symbol) else float(v) for v in values)
         )
@@ -588,7 +595,7 @@ class Recorder:
             return symbol
         for node in needed([symbol], self._known):
             if node.op not in NUMPY_OF:
-                raise TypeError("a branch that depends on the roots of a polynomial")
+                raise TypeError("cannot record a branch that depends on the roots of a polynomial")
             operands = [self._known[a] if isinstance(a, Symbol) else a for a in node.args]
             quick = _QUICK.get(node.op)
             self._known[node] = (

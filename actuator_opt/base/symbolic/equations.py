@@ -1,7 +1,7 @@
-"""Equations: expressions as functions of time, states and flags, at one point or at many samples.
+"""Equations: expressions as functions of time, states and flags (booleans), for one or many points.
 
-The machine computes them and their derivatives from one program. Without the machine, generated
-Python computes them.
+The virtual machine of `program` computes them and their derivatives from one program. If it was not
+built at installation, generated Python code computes them.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class Equations:
         ----------
         t : times (samples,)
         y : states (states, samples)
-        m : every flag, of all samples together or of each
+        m : for each flag, one truth value for all samples, or an array (samples,)
         """
         results = np.empty((len(self.outputs), len(t)))
         if self._program is None:

@@ -188,7 +188,7 @@ class Graph:
     tables: list[Callable[..., Any]] = field(default_factory=list)
     """Tabulated functions of time, such as measured inputs."""
     slopes: dict[int, int] = field(default_factory=dict)
-    """For each tabulated function, by its index in `tables`, the index of its slope there."""
+    """Indices in `tables`: that of each tabulated function, mapped to that of its slope."""
     labels: list[str] = field(default_factory=list)
     """Name of each function in `tables`."""
     truth: Callable[[Symbol], bool] | None = None
@@ -223,7 +223,7 @@ class Graph:
         return self.node("table", (number, time))
 
     def slope(self, number: int, time: Symbol) -> Any:
-        """Slope of a tabulated function; zero if none was given."""
+        """Slope of the function `tables[number]` at a time; 0 if it was added without a slope."""
         known = self.slopes.get(number)
         return 0.0 if known is None else self.node("table", (known, time))
 
@@ -623,7 +623,7 @@ def _scaled(factor: Any) -> Callable[..., Any]:
 def is_steep_at_zero(node: Symbol) -> bool:
     """Whether a node is a root whose derivative at zero counts as zero instead of infinite.
 
-    Nodes of exact graphs are not: their derivatives are those of NumPy.
+    It is False for nodes of exact graphs, whose derivatives are those of NumPy.
     """
     if node.graph.truth is not None:
         return False

@@ -103,17 +103,19 @@ class Program:
     def repeated(
         self, point: Array, states: int, columns: Sequence[int] | None = None
     ) -> Callable[[float, Array], Array]:
-        """A function of the first inputs, a time and states, that is cheap to call many times.
+        """A function of time and states that is cheap to call many times; other inputs stay fixed.
 
         Every call overwrites the result of the call before. The function raises
         `FloatingPointError` if a result is not finite.
 
         Parameters
         ----------
-        point : all inputs (inputs,); the function writes its arguments there and reads the others
+        point : all inputs (inputs,), first time and states; every call writes its time and states
+            there
         states : number of states
-        columns : without them, the result is the outputs (outputs,); with the numbers of some
-            inputs, all states, it is the derivatives (outputs, states), 0 for the other states
+        columns : None: the function returns the outputs (outputs,). Otherwise the indices of inputs
+            that are states: it returns the derivatives (outputs, states), 0 for states not among
+            them
         """
         places = np.array([] if columns is None else columns, dtype=np.int32)
         moving = np.isin(np.arange(self.inputs), places)
@@ -129,7 +131,8 @@ class Program:
     def for_page(self) -> dict[str, object]:
         """The program as JSON, for the machine of pages (`SCRIPT`); arrays are in base64.
 
-        A program with 40 000 instructions, as that of the knee, has 540 kB.
+        A program with 40 000 instructions, such as that of the example design of a knee, has 540
+        kB.
         """
 
         def packed(array: Array, kind: str) -> str:
@@ -147,9 +150,10 @@ class Program:
         }
 
     def along(self, moving: Array) -> tuple[Array, Array]:
-        """Return instructions that only differentiate by `moving` inputs; which outputs vary.
+        """Instructions that only compute derivatives by the `moving` inputs; which outputs vary.
 
-        An input moves if its change is not 0 in some direction.
+        The moving inputs are those whose change is not 0 in at least one direction of
+        differentiation. The others have no derivatives.
 
         Parameters
         ----------
@@ -262,7 +266,7 @@ class _Writer:
             return np.where(array < 0, self.count - 1 - array, array).astype(np.int32)
 
         if self.count + len(self.values) > MOST_SLOTS:
-            raise ValueError("its recorded program is too long")
+            raise ValueError("the recorded program needs too many slots")
         code = np.array(self.code, dtype=np.int32).reshape(-1, 5)
         code[:, 2:] = settled(code[:, 2:])
         return Program(

@@ -30,9 +30,9 @@ FOLDER: Final = "ACTUATOR_OPT_PROGRAMS"
 MOST_FILES: Final = 200
 """Largest number of files; the least recently used are deleted (our choice: some 30 MB)."""
 MOST_RECORDINGS: Final = 3
-"""Largest number of recordings of a function, at different branches."""
+"""Largest number of recordings of a function; each follows other branches."""
 _MOST_KNOWN: Final = 32
-"""Largest number of keys kept in memory."""
+"""Largest number of functions whose recordings are kept in memory."""
 _MOST_BYTES: Final = 4_000_000
 """Largest size of a file in bytes, and of each array in elements."""
 _SUFFIX: Final = ".program"
@@ -43,7 +43,10 @@ _KINDS: Final = {"code": "<u2", "extra": "<i4", "outputs": "<i4", "frozen": "<i4
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """A program whose last outputs are guards, with the answers for which it holds."""
+    """A program whose last outputs are guards: conditions on which the function branches.
+
+    `answers` are the truth values of the guards for which the program is correct.
+    """
 
     program: Program
     answers: Array
@@ -103,7 +106,7 @@ def key_of(structure: Any) -> str:
 
 
 def read(key: str) -> list[Recording]:
-    """All recordings stored for a key, each at other branches."""
+    """All recordings stored for a key; each follows other branches."""
     if key in _KNOWN:
         return list(_KNOWN[key])
     where, recordings = folder(), []

@@ -29,7 +29,7 @@ if the value is smaller)."""
 
 
 class RecordedFunction:
-    """A function of k points (inputs, k), real or complex, that returns results (rows, k).
+    """A function of k points (inputs, k), real or complex; it returns one row per result (rows, k).
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ class RecordedFunction:
         return rows
 
     def _complete(self, points: Array, rows: Array, holds: Array) -> None:
-        """Call the function at points outside the recorded branches; record again if many."""
+        """Call the function itself for points on unrecorded branches; if many, record it again."""
         self.points += len(holds)
         if holds.all():
             return
@@ -124,7 +124,7 @@ class RecordedFunction:
         self.recording = None
         self.points = self.outside = 0
         if self.recordings >= MOST_RECORDINGS:
-            self.reason = "its branches differ between designs"
+            self.reason = "the models take different branches for different designs"
             return
         self.recordings += 1
         points = np.stack([point, point * (1 + 1e-3)], axis=1)
@@ -169,7 +169,7 @@ class RecordedFunction:
 def _agrees(recording: Recording, points: Array, expected: Array) -> bool:
     """Whether a recording agrees with the results `expected` (rows, k) at points (inputs, k).
 
-    It must hold at the first of the points; the others count if it holds there.
+    The first point must take the recorded branches; further points that do not are left out.
     """
     if recording.program.inputs != len(points) or recording.rows != len(expected):
         return False

@@ -44,7 +44,7 @@ from .wall import (
 )
 
 FEW = 32
-"""Smallest number of designs for which dropping repeated designs saves time."""
+"""Smallest number of designs for which it saves time to compute repeated designs only once."""
 
 
 def distinct(arguments: Mapping[str, Any]) -> tuple[dict[str, Any], Callable[[Array], Array]]:
@@ -190,10 +190,10 @@ class _ResidualStress:
         return replace(self, path=replace(self.path, clamp=None), autofrettage=None)
 
     def of(self, rows: list[int]) -> Stress | None:
-        """Residual stress of the layers in `rows`, (faces, layers, climates, 1, designs).
+        """Residual stress of some layers, (faces, layers, climates, 1, designs).
 
-        The faces are the inner and outer face of each layer, the climates the coldest and hottest
-        service temperature.
+        `rows` are the indices of the layers. The faces are the inner and outer face of each layer,
+        the climates the coldest and hottest service temperature.
         """
         clamped = self.path.clamp is not None
         if not clamped and self.autofrettage is None and not self.cured():
@@ -216,7 +216,7 @@ def _autofrettage(
 ) -> Autofrettage | None:
     """Residual stress of autofrettage; None if not stated or not covered by the model.
 
-    The open barrel is overpressurised once, before it is machined.
+    The barrel is overpressurised once, without axial force, before it is machined.
     """
     if design.barrel.autofrettage_pressure is None or not layers[0].yields:
         return None
@@ -237,10 +237,11 @@ def _autofrettage(
 
 
 def _load(solution: WallSolution, rows: list[int], axial: Array) -> Stress:
-    """Stress per unit pressure in the layers `rows`, (faces, layers, 1, paths, designs).
+    """Stress per unit pressure in some layers, (faces, layers, 1, paths, designs).
 
-    The faces are the inner and outer face of each layer. `axial` is the axial force per unit
-    pressure on each load path (without and with axial force), (paths, designs).
+    `rows` are the indices of the layers. The faces are the inner and outer face of each layer.
+    `axial` is the axial force per unit pressure on each load path (without and with axial force),
+    (paths, designs).
     """
     parts = []
     for part in solution.stress:
@@ -382,7 +383,7 @@ def _ladder(
     """Compute burst pressures for each extreme service temperature and load path.
 
     The load paths are pressure without and with axial force. In a wall with a liner, also compute
-    first-ply failure with a liner that yields.
+    the pressure at which the first ply fails, allowing for yielding of the liner.
     """
     if wall.missing:
         return
