@@ -146,7 +146,7 @@ def extrusion_gap(*, clearance: Array, growth: Array) -> Array:
 
     Parameters
     ----------
-    clearance : radial [m]; pass twice this value where a side load pushes the piston over
+    clearance : radial [m]; pass twice this value where a side load pushes the piston to one side
     growth : radial bore growth at the seal [m]
 
     Returns

@@ -41,8 +41,8 @@ class TubeState:
     radius : of both faces of each layer, (2, layers, ...) [m]
     hoop_strain, radial_strain, shear_strain : at those faces [-]
     radial_stress : at those faces [Pa]
-    held : stresses z, t, r, s [Pa], thermal and frozen ones (see `tube_state`), which are
-        subtracted from the stresses that the strains cause; None if there are none
+    held : thermal and frozen stresses z, t, r, s [Pa] (`tube_state` explains "frozen"; s is shear).
+        They are subtracted from the stresses that the strains cause; None if there are none
     temperature_change : from the stress-free state [K]
     """
 

@@ -206,7 +206,7 @@ def _search(
     start: tuple[Array, Array, Array],
     spare: Array,
 ) -> tuple[Array, Array]:
-    """Thickness near the solution, and the slope of the bore strain by thickness there."""
+    """Thickness near the solution, and there the derivative of the bore strain by the thickness."""
     thickness, value, slope = start
     low, high = 0 * thickness, thickness
     for _ in range(_STEPS):

@@ -85,7 +85,7 @@ def lip_stiffness(
 
     Notes
     -----
-    Valid: t < r/3 and t < l/2; shear and the give of the body neglected (over-states).
+    Valid: t < r/3 and t < l/2; shear and the seal body's flexibility are neglected (k too high).
 
     References
     ----------
@@ -206,7 +206,7 @@ def line_load(
 
     Notes
     -----
-    Valid: as `lip_stiffness`; hoop relief of the pressure is neglected (over-states).
+    Valid: as `lip_stiffness`; that hoop stiffness carries part of the pressure is neglected.
 
     Oil pressure inside the contact is not subtracted: a film carries its part of this load.
 
@@ -274,7 +274,7 @@ def peak_pressure(
 
     Returns
     -------
-    peak pressure over the outer side [Pa]; 0 without interference
+    peak pressure, relative to the low-pressure side [Pa]; 0 without interference
 
     Notes
     -----

@@ -45,7 +45,7 @@ _UNIFORM = {
     ("fixed", "fixed"): (4.0, 5),
 }
 """For each pair of ends: P L^2/(pi^2 EI) of the uniform column, and the number of iteration steps
-for a stiffness ratio of 1000."""
+that suffices up to a stiffness ratio of 1000 between the segments."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ def _pair(weights: Pair, waves: Pair) -> Array:
 
 
 def _times(first: Pair, second: Pair) -> Pair:
-    """Products of the first and of the second elements."""
+    """Element-wise product of two pairs."""
     return first[0] * second[0], first[1] * second[1]
 
 
@@ -225,7 +225,7 @@ def stepped_column_load(
 
     Notes
     -----
-    Valid: elastic, straight, centrally loaded; stiffness ratios up to about 1000 to rounding.
+    Valid: elastic, straight, centrally loaded; exact for stiffness ratios up to about 1000.
 
     References
     ----------

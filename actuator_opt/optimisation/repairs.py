@@ -211,7 +211,7 @@ class RelaxedConstraint:
 
 @dataclass(frozen=True, slots=True)
 class Opening:
-    """A bound of a variable that prevents a smaller joint relaxation.
+    """A bound of a variable; if it were wider, the limits would need less relaxation in total.
 
     Parameters
     ----------
@@ -248,8 +248,8 @@ def by_limits(
     ----------
     problem : the infeasible problem
     groups : indices of the constraints in each group
-    named : first constraint of each group that is searched from every point
-    points : starting points; the first is that of the smallest joint relaxation
+    named : groups to be searched from every point, each given by its first constraint
+    points : starting points; the first is that of the least total relaxation
     """
     amounts: list[float | None] = []
     points_without = without_each(problem, groups, points[0])

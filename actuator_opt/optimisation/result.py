@@ -68,11 +68,11 @@ class Infeasibility:
     the safe side, so that the printed value is enough. If the requirement is a torque at a lever,
     limit and needed are torques.
 
-    An entry of `bounds` is a bound of a variable that is active at the joint relaxation. It
-    contains variable, parameter (PATH), quantity, bound (side), value, gain, needed (the bound that
-    is enough if it alone is moved; None if no value is enough), change and texts. The gain is the
-    decrease of `total` (see below) per relative change of the bound: moving the bound by 1 %
-    decreases `total` by 0.01 times the gain.
+    An entry of `bounds` is a bound of a variable that is active once the limits in `joint` are
+    relaxed. It contains variable, parameter (PATH), quantity, bound (side), value, gain, needed
+    (the bound that is enough if it alone is moved; None if no value is enough), change and texts.
+    The gain is the decrease of `total` (see below) per relative change of the bound: moving the
+    bound by 1 % decreases `total` by 0.01 times the gain.
 
     An entry of `cures` is a single change that is enough, the most advisable first. It contains
     kind (dimension, choice, bound, requirement, safety factor), parameter (PATH), now and needed
@@ -82,8 +82,8 @@ class Infeasibility:
     other inputs that must change at the same time. Each cure was confirmed by a feasible design.
     `untried` lists candidates that were not tried.
 
-    `laws` lists geometrical conditions that conflict. `total` is the sum of the joint relaxations.
-    `sentence` is the advice in one line, and `evidence` states what is proven.
+    `laws` lists geometrical conditions that conflict. `total` is the sum of the relaxations in
+    `joint`. `sentence` is the advice in one line, and `evidence` states what is proven.
     """
 
     joint: tuple[Mapping[str, Any], ...]
@@ -363,7 +363,7 @@ class Optimisation(Displayed):
 
     @property
     def tight(self) -> tuple[str, ...]:
-        """Limits that the design to build only just meets.
+        """Limits that the design to build (see `best`) meets with almost no margin.
 
         Empty if the search already ensured a requested yield (share of actuators that meet all
         limits).

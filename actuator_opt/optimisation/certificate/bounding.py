@@ -159,8 +159,8 @@ class Bound(NamedTuple):
     product_errors: Vector
     """For every product, the error of its bounds, weighted with the multipliers of its rows."""
     slopes: Vector
-    """Reduced cost of every column: slope of the objective as the column moves off the end of its
-    range at which it is best."""
+    """Reduced cost of every column: increase of the objective per unit by which the column's value
+    moves away from the end of its range at which the solution has it."""
 
 
 class Bounding:

@@ -459,7 +459,7 @@ class Layout:
 
     @cached_property
     def _linked(self) -> tuple[Tables, np.ndarray, Vector]:
-        """For every `Link`: its table, the number of its curve, and its `level`."""
+        """For every `Link`: its table, the number of its curve, the log of its constant factor."""
         number = np.array([self._of_curve[id(link.curve)] for link in self.links])
         kinds = [link.curve.kind for link in self.links]
         tables = Tables([kind for kind in kinds if isinstance(kind, SampledFunction)])

@@ -194,7 +194,7 @@ def normalised(
 
 
 def _sharpened(tracer: Tracer, x: Vector, units: Vector) -> Vector:
-    """The anchors (n, k), moved if other objectives improve while their own does not worsen."""
+    """The anchors (n, k), each moved if other objectives improve and its own does not worsen."""
     count = len(x.T)
     starts = []
     for k in range(count):

@@ -455,7 +455,8 @@ class FrontGap:
     ----------
     after : index of the design before the gap
     size : distance between the two designs
-    reach : upper limit on the length of a continuous front in the gap, from the levels tried
+    reach : greatest length that a continuous front could have in the gap, given the designs found
+        for the levels tried there
     jump : whether `reach` is at most the median gap, which means that the front jumps here
     """
 
@@ -524,7 +525,10 @@ def middle_designs(search: FrontSearch, count: int) -> list[int]:
 
 
 def lost_levels(search: FrontSearch, indices: Indices) -> int:
-    """Number of levels without a design nearby; for two objectives, in wide gaps without a jump."""
+    """Number of levels without a design nearby.
+
+    With two objectives, only levels in wide gaps count, and only if the front does not jump there.
+    """
     units = search.units[:, indices]
     if len(units) > 2:
         widest = nearest(units).max(initial=0.0)
@@ -553,7 +557,7 @@ def _section(search: FrontSearch, left: int, right: int) -> Indices:
 
 
 def _section_lengths(search: FrontSearch, left: int, right: int) -> Vector:
-    """Upper limits on the length of the front between neighbouring levels of a section."""
+    """Greatest possible lengths of the front between neighbouring designs of a `_section`."""
     section = _section(search, left, right)
     levels = np.array([search.designs[k].level[0] for k in section])
     return lengths(levels, search.units[:, section])

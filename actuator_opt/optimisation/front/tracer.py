@@ -289,7 +289,7 @@ class Tracer:
     def exchange(
         self, designs: list[FrontDesign], other_x: Vector, other_units: Vector
     ) -> list[FrontDesign]:
-        """Replace each design that another beats at its levels, by a descent from the better one.
+        """Replace each design that another beats at its levels: descend from that better design.
 
         Parameters
         ----------
@@ -607,7 +607,7 @@ class FrontSearch:
         return np.stack([design.unit for design in self.designs], axis=1)
 
     def front_indices(self) -> Indices:
-        """Indices of distinct non-dominated designs; those at their levels come first."""
+        """Indices of distinct non-dominated designs; of equal ones, one at its levels is kept."""
         order = sorted(range(len(self.designs)), key=lambda k: not self.designs[k].at_level)
         units = self.units
         indices = distinct(units, np.array(order, dtype=np.intp))
