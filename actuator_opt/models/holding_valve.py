@@ -130,7 +130,7 @@ def valve_slopes(
 
     Notes
     -----
-    Valid: spool near its centre, no overlap; laminar leakage damps twice as much.
+    Valid: spool near its centre, no overlap; laminar leakage would damp twice as much.
 
     References
     ----------

@@ -154,7 +154,7 @@ def _ordered(ends: Ends, *pairs: Pair) -> tuple[tuple[str, str], list[Pair]]:
     if key in _MIRRORED:
         return key[::-1], [(second, first) for first, second in pairs]
     if key not in _UNIFORM:
-        message = f"ends {ends[0]}-{ends[1]} leave a mechanism, or a name is unknown"
+        message = f"a column with the ends {ends[0]}-{ends[1]} is a mechanism, or a name is unknown"
         raise ValueError(message)
     return key, list(pairs)
 

@@ -80,7 +80,7 @@ class Objectives:
         return evaluator
 
     def checked(self) -> tuple[Evaluator, tuple[str, ...]]:
-        """An evaluator of the problem to minimise t, gradients checked; the warnings of the check."""
+        """An evaluator of the problem to minimise t, gradients checked; warnings of the check."""
         problem = self.problem
         start = (problem.lower + problem.upper) / 2 if problem.start is None else problem.start
         size = np.abs(self.values(start[:, None])[:, 0])
