@@ -330,7 +330,7 @@ def ply_stresses_at_faces(
     """Stresses of every ply in its own axes, at both faces of its layer.
 
     The stress is the ply's stiffness times the strains of the wall minus the free strains of the
-    ply. In a pair without torque both plies differ only in the sign of the shear.
+    ply. Without torque, the two plies of a pair differ only in the sign of their shear stress.
 
     Parameters
     ----------

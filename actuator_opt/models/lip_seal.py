@@ -19,8 +19,8 @@ from .contact_profile import lip_mean
 
 LYING_STEPS = 7
 """Number of Newton steps that find the free span s in `lip_free_span`. They start above the
-solution, at the smaller of two spans: those that the quartic and the linear term of the equation
-would give alone. The function is convex, so they never overshoot. After six steps, even the worst
+solution, at the smaller of two spans: that without the equation's linear term, and that without
+its quartic term. The function is convex, so they never overshoot. After six steps, even the worst
 case is exact to rounding."""
 
 

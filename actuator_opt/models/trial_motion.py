@@ -53,7 +53,7 @@ def least_energy_motion(
     oil_a, oil_b : c, compliance of the oil and the lines of either chamber [m^3/Pa]
     wall_a, wall_b : w, growth of either chamber's volume per unit pressure [m^3/Pa]
     stretch : s, volume that the pulling chamber gains per unit pressure by moving the end [m^3/Pa]
-    pulling : chamber whose pressure pulls an end
+    pulling : chamber whose pressure pulls on the cylinder end that moves
 
     Returns
     -------
@@ -110,7 +110,7 @@ def trial_motion_stiffness(
         axially [m^3/Pa]
     stretch : s, volume that the pulling chamber gains per unit pressure by moving the end, without
         radial growth of the wall [m^3/Pa]
-    pulling : chamber whose pressure pulls at an end
+    pulling : chamber whose pressure pulls on the cylinder end that moves
 
     Returns
     -------

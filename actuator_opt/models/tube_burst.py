@@ -121,8 +121,8 @@ class _Tube:
 
         Those at zero pressure come from tie rods that clamp the wall, from cooling and from yielded
         metals; they are None if there are none of these. One pass through the layers gives
-        both results: an additional axis, before the axes of the designs, holds the two loads, which
-        are unit pressure and all others.
+        both results: an additional axis, before the axes of the designs, holds the two loads: unit
+        pressure, and the loads at zero pressure.
         """
         xp = namespace(self.axial)
         mask = soft

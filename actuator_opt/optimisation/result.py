@@ -403,7 +403,7 @@ class Optimisation(Displayed):
         )
         if self.made is None:
             return (
-                "shows the continuous optimum, which is not the design to build, because "
+                "this is the continuous optimum, which is not the design to build, because "
                 f"{self.rounding.sentence}"
             )
         to_build = "the design to build" if self.rounding.met else "which misses a requirement"
@@ -411,7 +411,7 @@ class Optimisation(Displayed):
             names = ", ".join(self.rounding.unmade)
             to_build = f"which cannot be built yet, as {names} need whole plies or allowed angles"
         return (
-            f"shows the design with {name} ({quantity.label} {rounded_text}), {to_build}; "
+            f"this is the design with {name} ({quantity.label} {rounded_text}), {to_build}; "
             f"prices refer to the continuous optimum ({continuous_text})"
         )
 

@@ -109,7 +109,7 @@ class Builder:
         return self._composed(node)
 
     def _repeats(self, node: Symbol) -> bool:
-        """Whether both factors of a product are functions of one value, neither just a power of it.
+        """Whether a product's factors are both functions of one value, neither just a power of it.
 
         Such a product has tighter bounds as a sampled function of that value.
         """
@@ -134,7 +134,7 @@ class Builder:
         if op in ("sqrt", "pow"):
             sign, form = self.form(args[0])
             if sign < 0:
-                raise Unknown("a root of a negative number")
+                raise Unknown("the model contains a root of a negative number")
             return 1.0, form.scaled(0.5 if op == "sqrt" else args[1])
         if op == "where":
             return self._of_choice(node)

@@ -488,7 +488,7 @@ class Layout:
         )
 
     def arguments(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
-        """Ranges of the curves' arguments, computed from the ranges of the directions."""
+        """Ranges of the curves' arguments, from the ranges of the directions (log ratios)."""
         ends = (
             self.factor * low[self.direction] + self.constant,
             self.factor * high[self.direction] + self.constant,

@@ -69,7 +69,7 @@ class FrontEffort:
 class Anchors:
     """The best design of each objective (the anchors), and all feasible local optima.
 
-    Both are arrays of variables, with the shapes (n, objectives) and (n, k).
+    Both are arrays of the n variables: (n, objectives) and (n, number of optima).
     """
 
     x: Vector
@@ -166,7 +166,7 @@ def _optima(run_ends: Sequence[Point], converged: Sequence[Point | None]) -> lis
 def normalised(
     objectives: Objectives, checked: Evaluator, anchors: Anchors
 ) -> tuple[Tracer, Vector]:
-    """A `Tracer` with normalised objectives, and the anchors (n, k).
+    """A `Tracer` with normalised objectives, and the n variables of the k anchors (n, k).
 
     If no objectives conflict, there is a single anchor.
     """
@@ -320,7 +320,7 @@ class Front:
 
     Parameters
     ----------
-    x : variables (n, k)
+    x : the n variables of the k designs (n, k)
     values : objectives (objectives, k), to be minimised
     units : normalised objectives: 0 at the ideal, 1 at the worst value of the anchors
     residuals : residuals of the optimality conditions (k,)

@@ -191,7 +191,7 @@ def _nearest_places(search: FrontSearch, steps: int) -> list[Place]:
 def _flood(search: FrontSearch, first_places: Iterable[Place], steps: int, max_levels: int) -> int:
     """Try lattice points, then the neighbours of every point whose level a design reaches.
 
-    Returns the number of these points.
+    Returns the number of lattice points whose level was reached.
     """
     visited: set[Place] = set()
     queue, successes = list(first_places), 0
