@@ -1,4 +1,4 @@
-"""Buckling of a column of two segments, for every end fixity and for arrays.
+"""Buckling of a column of two segments, for every end fixity; inputs may be arrays.
 
 With phi and psi the solutions of w'' = -(P/EI) w that start with unit value and unit slope, the
 buckling loads are the zeros of the expressions below. They follow from
@@ -118,7 +118,7 @@ class _Waves:
 
     @classmethod
     def of(cls, form: _Form) -> _Waves:
-        """Weights of a form and of its derivatives, by the rules (sin)' = cos and (cos)' = -sin."""
+        """Weights of a `_Form` and of its derivatives, by the rules (sin)' = cos, (cos)' = -sin."""
         sign = 1 if form.sine else -1
         squares = _times(form.frequencies, form.frequencies)
         fall = (-squares[0], -squares[1])

@@ -80,7 +80,7 @@ def separate(problem: BoxProblem, groups: Sequence[Indices], room: Sequence[floa
 
 
 def _rows_once(problem: BoxProblem, points: Array) -> npt.NDArray[np.generic]:
-    """Rows of points (n, k); points that differ only in their slacks are evaluated once."""
+    """Objective and margins at points (n, k); points with only other slacks are evaluated once."""
     columns = np.ascontiguousarray(points.T)
     numbers: dict[bytes, int] = {}
     places = [numbers.setdefault(column.tobytes(), len(numbers)) for column in columns]
@@ -313,7 +313,7 @@ def without_each(
     x: Vector,
     granted: Sequence[float] | None = None,
 ) -> list[Vector | None]:
-    """For each group, a point that meets all rows of the other groups.
+    """For each group of constraints, a point that meets the constraints of all other groups.
 
     The violation of the group itself may be up to `granted`; None permits any violation. Where
     there is no such point, the result is None.
@@ -344,7 +344,7 @@ def near(problem: BoxProblem, x: Vector) -> Vector | None:
 
 
 def _without(problem: BoxProblem, group: Indices, points: Sequence[Vector]) -> Vector | None:
-    """A point that meets all rows except those of one group, or None."""
+    """A point that meets all constraints except those of one group, or None."""
     m = len(problem.constraint_names)
     remaining = np.setdiff1d(np.arange(m), group)
 

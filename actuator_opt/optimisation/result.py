@@ -389,7 +389,7 @@ class Optimisation(Displayed):
 
     @property
     def optimum(self) -> bool:
-        """Whether the design to build is optimal, if necessary among designs with listed sizes."""
+        """Whether the search ended at an optimum and the design to build meets all requirements."""
         return self.status == "optimal" and self.best_evaluation.met
 
     @property

@@ -419,7 +419,7 @@ class Relaxed:
     """By name: functions that read the unknown quantities' values from an evaluated design."""
 
     def atoms(self, actuator: ActuatorProblem, x: Vector) -> Vector:
-        """Logarithm of every atom's value at a design."""
+        """Logarithm of the value that every atom (elementary quantity) has at a design."""
         point = {path: np.array([value]) for path, value in zip(actuator.paths, x, strict=True)}
         with np.errstate(all="ignore"):
             run = compute(actuator.subject, actuator.subject.values(point))

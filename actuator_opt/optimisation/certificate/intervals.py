@@ -202,7 +202,7 @@ def branch(node: Symbol) -> Any:
 
 
 def extreme(node: Symbol) -> str | None:
-    """Whether a conditional takes the larger ("max") or the smaller ("min") branch; else None."""
+    """The word "max" or "min" if a conditional takes its larger or smaller branch; else None."""
     condition, yes, no = node.args
     if getattr(condition, "op", None) not in ("lt", "le"):
         return None

@@ -47,7 +47,8 @@ from .plane import (
 from .tracer import FrontDesign, FrontSearch, FrontStart, Tracer, knee, nondominated
 
 HOLD = 1e-10
-"""An anchor's own objective may worsen by this share of its range while the others improve."""
+"""In the best design of an objective, this objective may worsen by this share of its range while the
+other objectives improve."""
 GAINED = 1e-3
 """Normalised gain of the other objectives that justifies the loss `HOLD`."""
 CONFLICT = 1e-6
@@ -194,7 +195,7 @@ def normalised(
 
 
 def _sharpened(tracer: Tracer, x: Vector, units: Vector) -> Vector:
-    """The anchors (n, k), each moved if other objectives improve and its own does not worsen."""
+    """The best design of each objective (n, k), moved if that only improves other objectives."""
     count = len(x.T)
     starts = []
     for k in range(count):
@@ -328,7 +329,7 @@ class Front:
         bulges there; or None
     passed : values (objectives, p) of dominated designs that the search found
     checked, improved : number of checking searches, and how many of them improved a design
-    failed : number of levels at or near which the search found no design
+    failed : number of levels (upper limits of the objectives) without a design nearby
     wide : with two objectives, gaps wider than `plane.WIDEST` times the median gap, and whether the
         front jumps there
     """

@@ -26,7 +26,7 @@ LEVEL = "level of the objectives"
 """Name of the variable t."""
 
 LOWEST, HIGHEST = -1.0, 2.0
-"""Bounds of t; for designs between the anchors, t is between -1 and 1."""
+"""Bounds of t; between the designs that are best in one objective each, t is between -1 and 1."""
 
 
 @dataclass(frozen=True)

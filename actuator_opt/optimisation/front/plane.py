@@ -43,7 +43,7 @@ STEEPEST = 2.0
 
 
 def on_line(places: Vector) -> Vector:
-    """Levels (2, k) at positions u (k,) between the first and the second anchor."""
+    """Levels (upper limits of both objectives) at positions u (k,) between the anchors: (2, k)."""
     return np.stack([places, 1.0 - places])
 
 
@@ -107,7 +107,7 @@ def around(place: tuple[int, ...]) -> list[tuple[int, ...]]:
 
 
 def level(place: Sequence[int], steps: int) -> Vector:
-    """Levels (objectives,) at a lattice point."""
+    """Levels, that is upper limits of the objectives (objectives,), at a lattice point."""
     return 1.0 / len(place) + np.array(place, dtype=float) / steps
 
 
@@ -118,7 +118,7 @@ SURPLUS = 2.0
 """Number of designs computed per requested design; those farthest apart are selected."""
 
 COARSE = 4
-"""In the first lattice, the number of steps from the middle to the level of an anchor."""
+"""In the first lattice, the number of steps from the middle to the best design of an objective."""
 
 RESERVE = 12
 """Maximum number of levels tried on a lattice, per requested design."""
@@ -130,8 +130,8 @@ RESCALES = 3
 """Maximum number of times that the objectives are normalised again."""
 
 PRICED = 1e-6
-"""The level of an objective counts as active if its price (multiplier; all prices sum to 1) exceeds
-this."""
+"""The level (upper limit) of an objective counts as active if its price (multiplier; all prices sum
+to 1) exceeds this."""
 
 HOLD = 1e-9
 """Normalised amount by which a bounded objective may worsen while others improve."""
@@ -140,7 +140,8 @@ ROUNDS = 12
 """Maximum number of rounds that fill holes."""
 
 ELSEWHERE = 1e-3
-"""Two designs at one level differ if a variable differs by more than this."""
+"""Two designs for the same limits on the objectives differ if a variable differs by more than this.
+"""
 
 CLOSE = 2.0
 """A design from another valley (another local optimum) is retried if it is worse by at most this
@@ -525,7 +526,7 @@ def middle_designs(search: FrontSearch, count: int) -> list[int]:
 
 
 def lost_levels(search: FrontSearch, indices: Indices) -> int:
-    """Number of levels without a design nearby.
+    """Number of levels (upper limits of the objectives) without a design nearby.
 
     With two objectives, only levels in wide gaps count, and only if the front does not jump there.
     """

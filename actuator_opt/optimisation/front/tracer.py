@@ -127,7 +127,7 @@ BETTER = 1e-7
 """A normalised improvement of this size shows that a design belongs to another local optimum."""
 
 HELD = 1e-6
-"""An objective counts as equal to its level if it is below by no more than this (normalised)."""
+"""An objective counts as equal to its level (upper limit) if it is at most this much below."""
 
 ROUNDS = 4
 """Maximum number of rounds in which designs exchange results. The rounds end as soon as nothing
@@ -157,7 +157,7 @@ class FrontDesign:
 
     @property
     def at_level(self) -> bool:
-        """Whether every objective is at its level; if not, the front has an edge or jump there."""
+        """Whether every objective is at its upper limit; if not, the front ends or jumps there."""
         room = self.level + self.direction * self.point.objective - self.unit
         return bool((room <= HELD).all())
 
@@ -482,7 +482,7 @@ class FrontSearch:
     replaced: list[Vector] = field(default_factory=list)
     """Objectives of designs that a better design has replaced."""
     empty_levels: list[Vector] = field(default_factory=list)
-    """Levels that have no design."""
+    """Levels (upper limits of the objectives) for which no design was found."""
     _other_values: tuple[Vector, Vector] | None = None
     _residuals: dict[int, tuple[FrontDesign, float]] = field(default_factory=dict)
 
