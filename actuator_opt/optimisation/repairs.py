@@ -38,7 +38,7 @@ FINE = 1e-7
 
 
 EXACT = 1e-9
-"""The polishing Newton steps end once the measure of optimality is below this."""
+"""The Newton steps after a descent end once the measure of optimality is below this."""
 
 
 ROUGH = 1e-5
@@ -170,7 +170,7 @@ def go(evaluator: Evaluator, start: Point) -> Point:
 
 
 def finish(evaluator: Evaluator, point: Point) -> Point:
-    """Polish a descent to `EXACT`."""
+    """Refine the end point of a descent by Newton steps, to the accuracy `EXACT`."""
     return polish(evaluator, point, tolerance=EXACT)
 
 

@@ -344,7 +344,7 @@ class Bounding:
         return *self._proven_minimum(cost, dual, lower, upper), x, dual
 
     def _empty(self, lower: Vector, upper: Vector) -> bool:
-        """Whether multipliers prove that no point satisfies all lines."""
+        """Whether multipliers prove that no point satisfies all rows of the linear programme."""
         if self.solver.getModelStatus() != highspy.HighsModelStatus.kInfeasible:
             return False
         _, has_ray, ray = self.solver.getDualRay()

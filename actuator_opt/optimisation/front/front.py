@@ -47,7 +47,7 @@ from .plane import (
 from .tracer import FrontDesign, FrontSearch, FrontStart, Tracer, knee, nondominated
 
 HOLD = 1e-10
-"""In the best design of an objective, this objective may worsen by this share of its range while the
+"""In the best design of an objective, this objective may worsen by this share of its range while
 other objectives improve."""
 GAINED = 1e-3
 """Normalised gain of the other objectives that justifies the loss `HOLD`."""
