@@ -482,7 +482,7 @@ class FrontSearch:
     replaced: list[Vector] = field(default_factory=list)
     """Objectives of designs that a better design has replaced."""
     empty_levels: list[Vector] = field(default_factory=list)
-    """Levels (upper limits of the objectives) for which no design was found."""
+    """Levels (upper limits of the objectives) for which the search gave no design."""
     _other_values: tuple[Vector, Vector] | None = None
     _residuals: dict[int, tuple[FrontDesign, float]] = field(default_factory=dict)
 
