@@ -146,7 +146,7 @@ def extrusion_gap(*, clearance: Array, growth: Array) -> Array:
 
     Parameters
     ----------
-    clearance : radial [m]; pass twice this value where a side load pushes the piston over
+    clearance : radial [m]; pass twice this value where a side load pushes the piston to one side
     growth : radial bore growth at the seal [m]
 
     Returns
@@ -280,7 +280,7 @@ def volume_ratio(
 
     Notes
     -----
-    Valid: a_V constant over dT; groove and counterface of one linear expansion.
+    Valid: a_V constant over dT; groove and counterface have the same linear expansion.
 
     Swelling and shrinkage of the rubber in the fluid are left out.
 
@@ -342,7 +342,8 @@ def squeeze_extremes(
     """Loosest and tightest squeeze of a tolerance stack.
 
     Loosest 1 - (d + t_d + e)/(W - t_W), tightest 1 - (d - t_d - e)/(W + t_W), d = W (1 - C):
-    the thinnest ring in the deepest groove on the side the rod moves away from, and the reverse.
+    the thinnest ring in the deepest groove on the side that the rod moves away from; and the
+    thickest ring in the shallowest groove on the opposite side.
 
     Parameters
     ----------
@@ -523,8 +524,8 @@ def backed_gap_limit(
 
     References
     ----------
-    [SealAndDesignExtrusion] clearances up to each pressure without a back-up ring; [derived] a
-    limit beyond its last pressure is no statement
+    [SealAndDesignExtrusion] clearances up to each pressure without a back-up ring; [derived] no
+    limit is known beyond the last pressure of its data
 
     Examples
     --------

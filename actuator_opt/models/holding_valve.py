@@ -9,7 +9,7 @@ from .valve import edge_conductance, edge_flow
 
 LEAST = 1e-12
 """An edge counts as able to pass oil only if its flow per unit flow coefficient exceeds this value
-[sqrt(Pa)]. `valve.edge_flow`, which is linear near zero, gives it at a drop of 1e-10 Pa."""
+[sqrt(Pa)]. In `valve.edge_flow`, which is linear near zero, a drop of 1e-10 Pa causes this flow."""
 
 
 class FeedingEdges(NamedTuple):
@@ -121,7 +121,7 @@ def valve_slopes(
     signal : U_max, at which the edge has the rated coefficient [V]
     supply_pressure, return_pressure, pressure_a, pressure_b : gauge [Pa]
     extending : True for U > 0 (P to A, B to T) [-]
-    leakage_tank : K0 of A-T and B-T, if different [m^3/s/sqrt(Pa)]
+    leakage_tank : K0 of A-T and B-T, if it differs from that of P-A and P-B [m^3/s/sqrt(Pa)]
     piston_leakage : conductance from A to B [m^3/s/Pa]
 
     Returns
@@ -130,7 +130,7 @@ def valve_slopes(
 
     Notes
     -----
-    Valid: spool near its centre, no overlap; laminar leakage damps twice as much.
+    Valid: spool near its centre, no overlap; laminar leakage would damp twice as much.
 
     References
     ----------
@@ -158,7 +158,7 @@ def valve_slopes(
     past = piston_leakage * (pressure_a - pressure_b)
 
     def conductances(into: Array, out: Array, lost: Array) -> tuple[Array, Array]:
-        """Conductance of a chamber if its supply edge may open, and if its tank edge may open."""
+        """Two conductances of a chamber: its supply edge may open, or its tank edge may open."""
         edges = feeding_edges(
             rated_coefficient=rated_coefficient,
             leakage_supply=leakage_coefficient,

@@ -25,7 +25,7 @@ def least_bond_peak_ratio(
     length: Array,
     membrane_stiffness: Array,
 ) -> Array:
-    """Lower bound on the ratio of peak to mean shear in a bonded overlap, from one wall alone.
+    """Lower bound on the ratio of peak to mean shear in a bonded overlap, from one wall's data.
 
     (w/2) coth(w/2), w^2 = 2 G L^2/(t_a K). This is the exact ratio for two walls of equal
     stiffness K; if the second wall is stiffer or softer, the ratio is higher.
@@ -98,7 +98,7 @@ def bond_edge_shear(
 
     Notes
     -----
-    Valid: linear adhesive, thin walls against the radius, no peel.
+    Valid: linear adhesive, walls thin compared with the radius, no peel.
 
     A ductile adhesive levels the peak, so the result is conservative. Length beyond w of about 5
     does not lower the peak. For a plug or a thick sleeve take K = E A/(pi D), with D of the bond.

@@ -41,8 +41,8 @@ class TubeState:
     radius : of both faces of each layer, (2, layers, ...) [m]
     hoop_strain, radial_strain, shear_strain : at those faces [-]
     radial_stress : at those faces [Pa]
-    held : stresses z, t, r, s [Pa], thermal and frozen ones (see `tube_state`), which are
-        subtracted from the stresses that the strains cause; None if there are none
+    held : thermal and frozen stresses z, t, r, s [Pa] (`tube_state` explains "frozen"; s is shear).
+        They are subtracted from the stresses that the strains cause; None if there are none
     temperature_change : from the stress-free state [K]
     """
 
@@ -330,7 +330,7 @@ def ply_stresses_at_faces(
     """Stresses of every ply in its own axes, at both faces of its layer.
 
     The stress is the ply's stiffness times the strains of the wall minus the free strains of the
-    ply. In a pair without torque both plies differ only in the sign of the shear.
+    ply. Without torque, the two plies of a pair differ only in the sign of their shear stress.
 
     Parameters
     ----------

@@ -65,10 +65,11 @@ def liner_cycle(
 
     Notes
     -----
-    Valid: isotropic liner, elastic wrap, load in proportion; no creep.
+    Valid: isotropic liner, elastic wrap, all loads grow in proportion; no creep.
 
-    Residual stress does not change the range: it decides whether the first cycles yield. Shakedown
-    below 1 is necessary at each place; it suffices for a thin liner on an elastic wrap.
+    Residual stress does not change the range: it decides whether the first cycles yield. For the
+    liner to stop yielding, `shakedown` below 1 is necessary at each place; for a thin liner on an
+    elastic wrap, it also suffices.
 
     References
     ----------
@@ -206,7 +207,7 @@ def _search(
     start: tuple[Array, Array, Array],
     spare: Array,
 ) -> tuple[Array, Array]:
-    """Thickness near the solution, and the slope of the bore strain by thickness there."""
+    """Thickness near the solution, and there the derivative of the bore strain by the thickness."""
     thickness, value, slope = start
     low, high = 0 * thickness, thickness
     for _ in range(_STEPS):

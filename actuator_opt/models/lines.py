@@ -243,7 +243,7 @@ FRICTION = ("lossless", "steady", "distributed")
 
 
 _LEVELS = 28
-"""Levels of the continued fraction; fraction and series are then exact to 1e-10 of the value."""
+"""Depth of the continued fraction; it and the series below are then exact to 1e-10 of the value."""
 
 
 _NEAR = 20.0

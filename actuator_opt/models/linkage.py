@@ -1,6 +1,7 @@
 """An actuator between a fixed pivot and a crank pin on a joint: torque, motion, reflected inertia.
 
-Length and lever arm are those of `forces.crank`, at the angle theta + theta_0 between both radii.
+Length and lever arm are those of `forces.crank`, at the angle theta + theta_0 between the radii
+from the joint axis to the fixed pivot and to the crank pin.
 At the dead points, angle 0 and pi, the lever arm is zero: forces and reflected mass are infinite
 there, not NaN.
 """
@@ -37,7 +38,7 @@ def linkage(
     base_radius : joint axis to the fixed pivot, a [m]
     crank_radius : joint axis to the crank pin, r [m]
     joint_angle : theta [rad]
-    angle_offset : theta_0, angle between both radii at theta = 0 [rad]
+    angle_offset : theta_0, angle between the radii a and r at theta = 0 [rad]
 
     Returns
     -------

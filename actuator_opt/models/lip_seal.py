@@ -19,8 +19,8 @@ from .contact_profile import lip_mean
 
 LYING_STEPS = 7
 """Number of Newton steps that find the free span s in `lip_free_span`. They start above the
-solution, at the smaller of two spans: those that the quartic and the linear term of the equation
-would give alone. The function is convex, so they never overshoot. After six steps, even the worst
+solution, at the smaller of two spans: that without the equation's linear term, and that without
+its quartic term. The function is convex, so they never overshoot. After six steps, even the worst
 case is exact to rounding."""
 
 
@@ -85,7 +85,7 @@ def lip_stiffness(
 
     Notes
     -----
-    Valid: t < r/3 and t < l/2; shear and the give of the body neglected (over-states).
+    Valid: t < r/3 and t < l/2; shear and the seal body's flexibility are neglected (k too high).
 
     References
     ----------
@@ -206,7 +206,7 @@ def line_load(
 
     Notes
     -----
-    Valid: as `lip_stiffness`; hoop relief of the pressure is neglected (over-states).
+    Valid: as `lip_stiffness`; that hoop stiffness carries part of the pressure is neglected.
 
     Oil pressure inside the contact is not subtracted: a film carries its part of this load.
 
@@ -274,7 +274,7 @@ def peak_pressure(
 
     Returns
     -------
-    peak pressure over the outer side [Pa]; 0 without interference
+    peak pressure, relative to the low-pressure side [Pa]; 0 without interference
 
     Notes
     -----

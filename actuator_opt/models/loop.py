@@ -84,9 +84,9 @@ def poles(*, model: LinearActuator) -> np.ndarray:
 def load_mode(*, model: LinearActuator, near: Array) -> Mode:
     """Mode of the load on the oil: the pair of poles next to an expected frequency.
 
-    omega^2 = lambda_1 lambda_2, zeta = -(lambda_1 + lambda_2)/(2 omega); above 1 the mode does not
-    oscillate. If two real poles have unlike signs, the growing pole counts: zeta = -lambda/omega
-    with omega^2 = -lambda_1 lambda_2.
+    omega^2 = lambda_1 lambda_2, zeta = -(lambda_1 + lambda_2)/(2 omega); if zeta > 1, the mode does
+    not oscillate. If two real poles have unlike signs, the growing pole counts:
+    zeta = -lambda/omega with omega^2 = -lambda_1 lambda_2.
 
     Parameters
     ----------
@@ -270,7 +270,7 @@ def ultimate_gain(*, loop: PositionOpenLoop) -> UltimateGain:
 
     Notes
     -----
-    Valid: the actuator is stable without the loop and follows a slow signal; else 0.
+    Valid: the actuator is stable without the loop and follows a slow signal; else the gain is 0.
 
     References
     ----------

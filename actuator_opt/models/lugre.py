@@ -152,7 +152,7 @@ def lugre_tapered_damping(*, bristle_damping: Array, speed: Array, taper_speed: 
 
     Notes
     -----
-    Valid: v_d below about half of `lugre_passive_speed` at rest.
+    Valid: v_d below about half of the `lugre_passive_speed` that g and sigma1 at rest give.
 
     References
     ----------

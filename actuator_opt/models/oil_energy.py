@@ -41,7 +41,9 @@ def oil_energy_density(
 
     Notes
     -----
-    Valid: range of `chamber.density_ratio`; d(e V)/dt = q e + p (q - dV/dt).
+    Valid: range of `chamber.density_ratio`.
+
+    With the flow q into the volume V, d(e V)/dt = q e + p (q - dV/dt).
 
     References
     ----------

@@ -73,7 +73,7 @@ def density_thermal(
     ----------
     reference_density : at `reference_temperature` [kg/m^3]
     volume_expansion : volumetric expansion coefficient [1/K]
-    temperature, reference_temperature : [K]; oil data sheets state 15 degC
+    temperature, reference_temperature : [K]; the density on oil data sheets is that at 15 degC
 
     Returns
     -------
@@ -112,7 +112,7 @@ def thermal_pressure_slope(
     ----------
     volume_expansion : alpha_V of the oil [1/K]
     wall_expansion_axial, wall_expansion_hoop : alpha_z, alpha_theta of the wall [1/K]
-    bulk_modulus : tangent value with air [Pa]
+    bulk_modulus : tangent value of the oil with its air [Pa]
     wall_compliance_per_volume : (dV/dp)/V of the wall [1/Pa]
 
     Returns

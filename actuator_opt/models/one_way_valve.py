@@ -146,7 +146,7 @@ def one_way_pressure_drop(
     cracking_pressure: Array = CRACKING_PRESSURE,
     opening_span: Array = OPENING_SPAN,
 ) -> Array:
-    """Pressure drop of the valve at a flow: the needle's own law, or both paths together.
+    """Pressure drop of the valve at a flow, through the needle alone or through both paths.
 
     Outward flow passes only the needle. If inward flow opens the check valve, the drop lies
     between the cracking pressure and the larger of two pressures: that at which the check valve is
@@ -204,7 +204,7 @@ def one_way_pressure_drop(
 
 
 def _inward_drop(wanted: Array, valve: dict[str, Array]) -> Array:
-    """Pressure drop of inward flow with the check valve open, in real numbers."""
+    """Pressure drop of inward flow with the check valve open, without derivatives."""
     low = valve["cracking_pressure"]
     high = orifice_pressure_drop(
         area=valve["check_area"],

@@ -126,7 +126,7 @@ def orifice_flow(
     References
     ----------
     [AaltoThesis] eq. 9; [Merritt1967] laminar orifice flow; [derived] positive root of the
-    pressure balance of both in series
+    pressure balance with the laminar and the turbulent drop in series
 
     Examples
     --------
@@ -233,7 +233,7 @@ def orifice_pressure_drop(
 
     References
     ----------
-    [AaltoThesis] eq. 9; [Merritt1967] laminar orifice flow; [derived] both in series
+    [AaltoThesis] eq. 9; [Merritt1967] laminar orifice flow; [derived] sum of both drops
 
     Examples
     --------

@@ -266,7 +266,7 @@ def layered_section(
 
     Notes
     -----
-    Valid: layers of balanced pairs; about 1 % low, like sum E_z A against EA of the exact tube.
+    Valid: layers of balanced pairs; about 1 % low, as sum E_z A is 1 % below EA of the exact tube.
 
     References
     ----------

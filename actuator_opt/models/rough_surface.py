@@ -147,11 +147,11 @@ def asperity_stiffness(
 
     Notes
     -----
-    Valid: one body rigid; Gaussian summits of one radius, elastic, each by itself.
+    Valid: one body rigid; elastic Gaussian summits of one radius, independent of each other.
 
     References
     ----------
-    [Huang2017] eq. 9 (asperity density printed l), [GreenwoodWilliamson1966]
+    [Huang2017] eq. 9 (where the asperity density has the letter l), [GreenwoodWilliamson1966]
 
     Examples
     --------

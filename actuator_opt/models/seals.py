@@ -64,7 +64,7 @@ def width_as_published(*, section: Array, gland_height: Array) -> Array:
 
 
 class ContactFunction(Protocol):
-    """Function for one quantity of a contact law; it takes all four arguments, used or not."""
+    """Function for one quantity of a contact law; it accepts four arguments, but may use fewer."""
 
     def __call__(
         self, *, squeeze: Array, section: Array, youngs_modulus: Array, pressure: Array
@@ -84,8 +84,8 @@ class SealLaw:
     contact_width : width of the contact, m (limit it by `gland.limited_width`)
     peak_pressure : highest contact pressure, Pa gauge
     squeeze_limits : squeezes that a design may have with this law, -; outside, the contact is wider
-        than the free section, or the load is meaningless (compared with finite elements at 0.08 to
-        0.30)
+        than the free section, or the load is meaningless (judged by finite elements at squeezes of
+        0.08 to 0.30)
     squeeze_range : squeezes at which the law was compared with data, -
     pressure_range : pressure / Young's modulus at which the law was compared with data, -
     reference : source

@@ -36,7 +36,7 @@ def shell_modulus(
 
     Notes
     -----
-    Valid: thin wall, layers mixed evenly through it; long against sqrt(R t).
+    Valid: thin wall, layers mixed evenly through it; much longer than sqrt(R t).
 
     References
     ----------

@@ -64,7 +64,7 @@ def line_load(
     energiser_load : f_e(C, p) of the energiser's contact law [N/m]
     pressure : one-sided difference [Pa]
     wetted_back : a_b, see `wetted_back` [m]
-    wetted_front : a_f, relief of the running face on the pressure side of the land [m]
+    wetted_front : a_f, width of the relief of the running face on the pressure side of the land [m]
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Buckling of a column of two segments, for every end fixity and for arrays.
+"""Buckling of a column of two segments, for every end fixity; inputs may be arrays.
 
 With phi and psi the solutions of w'' = -(P/EI) w that start with unit value and unit slope, the
 buckling loads are the zeros of the expressions below. They follow from
@@ -45,7 +45,7 @@ _UNIFORM = {
     ("fixed", "fixed"): (4.0, 5),
 }
 """For each pair of ends: P L^2/(pi^2 EI) of the uniform column, and the number of iteration steps
-for a stiffness ratio of 1000."""
+that suffices up to a stiffness ratio of 1000 between the segments."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ def _pair(weights: Pair, waves: Pair) -> Array:
 
 
 def _times(first: Pair, second: Pair) -> Pair:
-    """Products of the first and of the second elements."""
+    """Element-wise product of two pairs."""
     return first[0] * second[0], first[1] * second[1]
 
 
@@ -118,7 +118,7 @@ class _Waves:
 
     @classmethod
     def of(cls, form: _Form) -> _Waves:
-        """Weights of a form and of its derivatives, by the rules (sin)' = cos and (cos)' = -sin."""
+        """Weights of a `_Form` and of its derivatives, by the rules (sin)' = cos, (cos)' = -sin."""
         sign = 1 if form.sine else -1
         squares = _times(form.frequencies, form.frequencies)
         fall = (-squares[0], -squares[1])
@@ -154,7 +154,7 @@ def _ordered(ends: Ends, *pairs: Pair) -> tuple[tuple[str, str], list[Pair]]:
     if key in _MIRRORED:
         return key[::-1], [(second, first) for first, second in pairs]
     if key not in _UNIFORM:
-        message = f"ends {ends[0]}-{ends[1]} leave a mechanism, or a name is unknown"
+        message = f"a column with the ends {ends[0]}-{ends[1]} is a mechanism, or a name is unknown"
         raise ValueError(message)
     return key, list(pairs)
 
@@ -225,7 +225,7 @@ def stepped_column_load(
 
     Notes
     -----
-    Valid: elastic, straight, centrally loaded; stiffness ratios up to about 1000 to rounding.
+    Valid: elastic, straight, centrally loaded; exact for stiffness ratios up to about 1000.
 
     References
     ----------

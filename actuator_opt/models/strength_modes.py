@@ -144,7 +144,7 @@ def _plane_modes(
     strength: PlyStrength,
     residual: tuple[Array | None, Array | None, Array | None],
 ) -> dict[str, Array]:
-    """Utilisations by sigma_1, sigma_2 and tau_12 (or modulus times strain), each on its own."""
+    """Utilisations by each of sigma_1, sigma_2 and tau_12 alone (or by modulus times strain)."""
     s = strength
     limits = (s.tension_1, s.compression_1), (s.tension_2, s.compression_2), (s.shear_12,) * 2
     along, across, slip = (

@@ -19,7 +19,7 @@ Chamber: TypeAlias = Literal["a", "b"]
 
 @dataclass(frozen=True, slots=True)
 class TrialMotion:
-    """Assumed (trial) motions of wall and cylinder end per unit piston motion.
+    """Assumed (trial) motions of the wall and of one cylinder end, per unit motion of the piston.
 
     `exchange` is a volume divided by the piston area B: the wall of one chamber widens by this
     volume, and the wall of the other chamber narrows by it. `pull` is the motion of the end that a
@@ -53,7 +53,7 @@ def least_energy_motion(
     oil_a, oil_b : c, compliance of the oil and the lines of either chamber [m^3/Pa]
     wall_a, wall_b : w, growth of either chamber's volume per unit pressure [m^3/Pa]
     stretch : s, volume that the pulling chamber gains per unit pressure by moving the end [m^3/Pa]
-    pulling : chamber whose pressure pulls an end
+    pulling : chamber whose pressure pulls on the cylinder end that moves
 
     Returns
     -------
@@ -106,11 +106,11 @@ def trial_motion_stiffness(
     motion : v (`exchange`) and h (`pull`) of any trial motion [-]
     area_a, area_b : piston areas [m^2]
     oil_a, oil_b : c, compliance of the oil and the lines of either chamber [m^3/Pa]
-    wall_a, wall_b : w, growth of either chamber's volume per unit pressure, if held axially
-        [m^3/Pa]
+    wall_a, wall_b : w, growth of either chamber's volume per unit pressure while its wall is held
+        axially [m^3/Pa]
     stretch : s, volume that the pulling chamber gains per unit pressure by moving the end, without
         radial growth of the wall [m^3/Pa]
-    pulling : chamber whose pressure pulls at an end
+    pulling : chamber whose pressure pulls on the cylinder end that moves
 
     Returns
     -------

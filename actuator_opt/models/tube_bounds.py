@@ -182,7 +182,7 @@ def greatest_pressure(
 
     Notes
     -----
-    Valid: C_tt >= C_rr; axial strain and warmth alone cause no hoop stress above S_k in any ply.
+    Valid: C_tt >= C_rr; axial and thermal strain alone cause no hoop stress above S_k in any ply.
 
     Each layer is in equilibrium. In a ply d(r sigma_r)/dr = sigma_t, and the mean of sigma_t
     through the ply is at most the larger of its values at the two faces. In a metal d sigma_r/dr =

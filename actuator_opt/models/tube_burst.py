@@ -82,8 +82,9 @@ def _recovery(xp: Any, tube: LayeredTube) -> Array:
 class _Tube:
     """Exact tube wall, stressed at both faces of each layer, for the burst calculation.
 
-    Yielded metals keep their mean stress deviator. `hold` has the stresses that would hold back the
-    thermal expansion, in tube axes z, t, r and in ply axes 1, 2, 3. `transfer`, `recovery` and
+    A metal layer that yields keeps its deviatoric stress, averaged over its two faces. `hold` has
+    the stresses that would hold back the thermal expansion, in tube axes z, t, r and in ply axes
+    1, 2, 3. `transfer`, `recovery` and
     `hold` have an axis for the states intact and failed before the axes of the designs: (..,
     layers, 2, ...).
     """
@@ -111,16 +112,17 @@ class _Tube:
         return self.order == tuple(range(len(self.order)))
 
     def _chosen(self, table: Array, mask: Array | None) -> Array:
-        """Values from `table`: for failed layers where `mask` is true (bore first), else intact."""
+        """Values of each layer from `table`: of its failed state if `mask` is true, else intact."""
         intact = table[:, :, :, 0, ...]
         return intact if mask is None else where(mask, table[:, :, :, 1, ...], intact)
 
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
-        """Stresses per unit pressure, and stresses from clamp, cooling and yielded metals.
+        """Stresses per unit pressure, and stresses at zero pressure.
 
-        The second result is None if there are no such stresses. One pass through the layers gives
-        both results: an additional axis, before the axes of the designs, holds the two loads, which
-        are unit pressure and all others.
+        Those at zero pressure come from tie rods that clamp the wall, from cooling and from yielded
+        metals; they are None if there are none of these. One pass through the layers gives
+        both results: an additional axis, before the axes of the designs, holds the two loads: unit
+        pressure, and the loads at zero pressure.
         """
         xp = namespace(self.axial)
         mask = soft

@@ -334,7 +334,7 @@ def margins(
 
 
 def _stacked(values: Sequence[Array], width: int) -> Array:
-    """The values as rows (values, width) of an array; faster than `stack` for NumPy's arrays."""
+    """The values as rows of an array (values, designs); faster than `stack` for NumPy's arrays."""
     xp = namespace(*values)
     if xp is not np:
         return xp.stack([xp.broadcast_to(xp.asarray(value), (width,)) for value in values])

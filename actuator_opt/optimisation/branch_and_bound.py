@@ -318,7 +318,7 @@ class _Run:
 
     @property
     def exhausted(self) -> bool:
-        """Whether a limit is reached."""
+        """Whether the limit of time or of re-optimisations is reached."""
         late = self.deadline is not None and time.perf_counter() > self.deadline
         return late or self.solves >= self.max_solves
 

@@ -39,7 +39,8 @@ NEAR = 0.05
 """A combination worse than the best by at most this relative amount is solved from many starts."""
 
 MOST_DOUBTFUL = 2
-"""Maximum number of combinations solved from many starts in vain, as these searches take long."""
+"""Once this number of combinations had no feasible design even from many starts, no further such
+combination is tried from many starts, as these searches take long."""
 
 MOST_SOLVED = 6
 """Maximum number of combinations solved from many starts."""
@@ -67,7 +68,10 @@ class ChoiceSettings:
     until: float | None
 
     def left(self, share: float = 1.0, began: float = 0.0) -> float | None:
-        """Seconds left of a share of the time from `began` to the limit; None without a limit."""
+        """Seconds left if only a `share` of the time from `began` to the limit may be used.
+
+        None without a limit.
+        """
         if self.until is None:
             return None
         return began + share * (self.until - began) - time.perf_counter()

@@ -1,7 +1,7 @@
 """Finds remedies for an infeasible actuator: one changed dimension or choice that is enough.
 
 A fixed dimension is made a variable that may move in the helpful direction. The search for its
-value starts from the design with the smallest joint relaxation of the limits. For a choice, each
+value starts from the design at which the limits must be relaxed least in total. For a choice, each
 alternative word replaces the word in the file. Each remedy is confirmed by a design that meets all
 limits and checks. The effort is limited by counts, not by time, so the same input gives the same
 remedies. Candidates that were not tried are listed.
@@ -134,7 +134,10 @@ def _gains(actuator: ActuatorProblem, conflict: Conflict) -> dict[str, float]:
 def _dimensions(
     actuator: ActuatorProblem, x: Vector, gains: Mapping[str, float]
 ) -> tuple[tuple[Cure, ...], tuple[Cure, ...], list[str]]:
-    """Dimensions that suffice alone (least change first), else together; PATHs not tried."""
+    """Dimensions that each suffice alone, least change first; PATHs not tried.
+
+    In between, the second result has dimensions that only suffice together, if none suffices alone.
+    """
     design = actuator.subject.design
     candidates = sorted(
         (

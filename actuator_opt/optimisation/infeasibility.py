@@ -1,10 +1,10 @@
-"""Explains why a problem is infeasible: joint relaxation, sufficient changes, binding bounds.
+"""Explains why a problem is infeasible: relaxed limits, sufficient changes, binding bounds.
 
-All amounts are margins, as fractions of the limits. The smallest joint relaxation is the set of
-relaxed limits that makes the problem feasible with the least sum of margins given up (an elastic
-programme [Chinneck2008]). The sum favours a large relaxation of few requirements over a small
-relaxation of many. Physical laws (geometry) are never relaxed. All searches are local and start
-from the given points. Their remedies are valid, but others may exist.
+All amounts are margins, as fractions of the limits. The least total relaxation makes the problem
+feasible with the least sum of margins given up (an elastic programme [Chinneck2008]). The sum
+favours a large relaxation of few requirements over a small relaxation of many. Physical laws
+(geometry) are never relaxed. All searches are local and start from the given points. Their remedies
+are valid, but others may exist.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .problem import BoxProblem, Vector
 from .repairs import NOTHING, Opening, RelaxedConstraint
 
 STARTS = 2
-"""Maximum number of starts in the search for the joint relaxation."""
+"""Maximum number of starts in the search for the least total relaxation of all limits."""
 
 ROOM = 1.001
 """A limit is relaxed by this multiple of the least sufficient relaxation."""
@@ -39,9 +39,9 @@ class Conflict:
     sole : for each conflicting requirement, the relaxation that is enough if only it is relaxed
     bounds : bounds of variables that are active at `x`, the most helpful first
     laws : constraints that cannot be relaxed but conflict with each other
-    x : the point of the joint relaxation
-    total : sum of the joint relaxation
-    residual : residual of the optimality conditions at the joint relaxation
+    x : the point that is feasible once the limits in `joint` are relaxed
+    total : sum of the relaxations in `joint`
+    residual : residual of the optimality conditions of the least total relaxation, at `x`
     multipliers : decrease of the total per unit by which each constraint is relaxed (m,)
     """
 
@@ -125,9 +125,9 @@ def _smaller_relaxation(
     sole: Sequence[RelaxedConstraint],
     point: Point,
 ) -> Point | None:
-    """A relaxation of one limit alone that is less than the joint total; None if not found.
+    """A relaxation of one limit alone, less than the total found for all limits; or None.
 
-    Such a relaxation exists only if the descent to the joint relaxation stalled.
+    Such a relaxation exists only if the descent to the least total relaxation stalled.
     """
     single = [(r.amount, group) for r, group in zip(sole, candidates, strict=True) if r.amount]
     amount, group = min(single, key=lambda entry: entry[0], default=(np.inf, groups[0]))
@@ -186,7 +186,7 @@ def _smallest(
 def _binding_bounds(
     problem: BoxProblem, evaluator: Evaluator, quality: kkt.KktResidual
 ) -> tuple[Opening, ...]:
-    """Bounds that prevent a smaller joint relaxation, the most helpful first."""
+    """Bounds which, if wider, would decrease the total relaxation; the most helpful first."""
     openings = []
     space = evaluator.space
     for k, j in enumerate(space.free):

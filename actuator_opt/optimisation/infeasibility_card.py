@@ -32,7 +32,7 @@ _ORIGINS = {"requirement": "requirement", "case": "load case", "check": "check l
 def explained(
     actuator: ActuatorProblem, solution: Solution
 ) -> tuple[Infeasibility | None, Solution]:
-    """Explain an infeasible result; return explanation and solution of the joint relaxation.
+    """Explain an infeasible result; also return the solution with the least total relaxation.
 
     A feasible result, or a search stopped by the evaluation or time limit, has no explanation.
     """
@@ -202,7 +202,7 @@ def _texts(
 
 
 def change_text(entry: Any) -> str:
-    """``PATH 250 N -> 283.1 N (+13.2 %)``; joint changes are joined with "and"."""
+    """``PATH 250 N -> 283.1 N (+13.2 %)``; changes needed together are joined by "and"."""
     if "together" in entry:
         return " and ".join(change_text(part) for part in entry["together"])
     name = entry.get("parameter") or entry["requirement"]
@@ -247,7 +247,7 @@ def _sentence(
     if len(joint) == 1:
         sentence = f"infeasible: the smallest change is {changes}"
     else:
-        sentence = f"infeasible: the smallest joint change, of {len(joint)} limits, is {changes}"
+        sentence = f"infeasible: the smallest total change relaxes {len(joint)} limits: {changes}"
     if unsafe:
         sentence += " (this weakens a safety factor: not advised)"
     if cure is not None and (unsafe or len(joint) > 1) and cure["advised"]:

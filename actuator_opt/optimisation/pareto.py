@@ -86,7 +86,7 @@ class ParetoFront(Displayed):
         design
     wide : with two objectives, gaps above three times the median, and whether the front jumps there
     checked, improved : number of checking searches between designs, and how many improved the front
-    failed : number of levels without a design nearby
+    failed : number of places of the front at which the search found no design
     infeasibility : reason why no design is feasible, if there is no front for that reason
     unsolved : the objective whose best design the search did not find, and the outcome of that
         search

@@ -828,7 +828,7 @@ def buys_most(
         if best is not None:
             direction = "more" if best.change > 0 else "less"
             name, value = short_name(best.row), _at(best.row, best.value)
-            parts.append(f"{group}, {PER_CENT} % {direction} {name} ({value}) {gain(best)}.")
+            parts.append(f"{group}, {PER_CENT} % {direction} {name} (to {value}) {gain(best)}.")
     if best_offers.no_design:
         infeasible = ", ".join(
             f"{short_name(row)} at {_at(row, row.limit * (1 + sign * CHANGE))}"

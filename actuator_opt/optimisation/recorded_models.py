@@ -2,7 +2,7 @@
 
 Designs with equal structure share a recording: the same keys, laws and limits, with other numbers,
 or with other materials that state the same properties. Inputs are therefore ordered by names in
-which a material is a number, in the order of its first use in the design.
+which a number replaces each material's name, counted in the order of first use in the design.
 """
 
 from __future__ import annotations

@@ -130,7 +130,7 @@ class Redesign:
         bounds = (
             ""
             if low is None or high is None
-            else f" ({quantity.text(low)} to {quantity.text(high)})"
+            else f" (uncertainty of the new value: {quantity.text(low)} to {quantity.text(high)})"
         )
         sign = "at least" if largest.after.sense == "min" else "at most"
         old = "-" if largest.before.value is None else quantity.text(largest.before.value)
@@ -223,7 +223,7 @@ def _bounds(
     middle: Evaluation,
     learned: Sequence[Mapping[str, tuple[float, float]]],
 ) -> dict[str, tuple[float | None, float | None]]:
-    """Range of the requirements' values while the measured values vary within their bounds."""
+    """By requirement, the range of its value while the measured values vary within their bounds."""
     values = {row.name: row.value for row in middle.requirements}
     reach = dict.fromkeys(values, (0.0, 0.0))
     for group in learned:

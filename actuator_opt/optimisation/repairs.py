@@ -38,7 +38,7 @@ FINE = 1e-7
 
 
 EXACT = 1e-9
-"""The polishing Newton steps end once the measure of optimality is below this."""
+"""The Newton steps after a descent end once the measure of optimality is below this."""
 
 
 ROUGH = 1e-5
@@ -80,7 +80,7 @@ def separate(problem: BoxProblem, groups: Sequence[Indices], room: Sequence[floa
 
 
 def _rows_once(problem: BoxProblem, points: Array) -> npt.NDArray[np.generic]:
-    """Rows of points (n, k); points that differ only in their slacks are evaluated once."""
+    """Objective and margins at points (n, k); points with only other slacks are evaluated once."""
     columns = np.ascontiguousarray(points.T)
     numbers: dict[bytes, int] = {}
     places = [numbers.setdefault(column.tobytes(), len(numbers)) for column in columns]
@@ -170,7 +170,7 @@ def go(evaluator: Evaluator, start: Point) -> Point:
 
 
 def finish(evaluator: Evaluator, point: Point) -> Point:
-    """Polish a descent to `EXACT`."""
+    """Refine the end point of a descent by Newton steps, to the accuracy `EXACT`."""
     return polish(evaluator, point, tolerance=EXACT)
 
 
@@ -211,7 +211,7 @@ class RelaxedConstraint:
 
 @dataclass(frozen=True, slots=True)
 class Opening:
-    """A bound of a variable that prevents a smaller joint relaxation.
+    """A bound of a variable; if it were wider, the limits would need less relaxation in total.
 
     Parameters
     ----------
@@ -248,8 +248,8 @@ def by_limits(
     ----------
     problem : the infeasible problem
     groups : indices of the constraints in each group
-    named : first constraint of each group that is searched from every point
-    points : starting points; the first is that of the smallest joint relaxation
+    named : groups to be searched from every point, each given by its first constraint
+    points : starting points; the first is that of the least total relaxation
     """
     amounts: list[float | None] = []
     points_without = without_each(problem, groups, points[0])
@@ -313,7 +313,7 @@ def without_each(
     x: Vector,
     granted: Sequence[float] | None = None,
 ) -> list[Vector | None]:
-    """For each group, a point that meets all rows of the other groups.
+    """For each group of constraints, a point that meets the constraints of all other groups.
 
     The violation of the group itself may be up to `granted`; None permits any violation. Where
     there is no such point, the result is None.
@@ -344,7 +344,7 @@ def near(problem: BoxProblem, x: Vector) -> Vector | None:
 
 
 def _without(problem: BoxProblem, group: Indices, points: Sequence[Vector]) -> Vector | None:
-    """A point that meets all rows except those of one group, or None."""
+    """A point that meets all constraints except those of one group, or None."""
     m = len(problem.constraint_names)
     remaining = np.setdiff1d(np.arange(m), group)
 

@@ -68,11 +68,11 @@ class Infeasibility:
     the safe side, so that the printed value is enough. If the requirement is a torque at a lever,
     limit and needed are torques.
 
-    An entry of `bounds` is a bound of a variable that is active at the joint relaxation. It
-    contains variable, parameter (PATH), quantity, bound (side), value, gain, needed (the bound that
-    is enough if it alone is moved; None if no value is enough), change and texts. The gain is the
-    decrease of `total` (see below) per relative change of the bound: moving the bound by 1 %
-    decreases `total` by 0.01 times the gain.
+    An entry of `bounds` is a bound of a variable that is active once the limits in `joint` are
+    relaxed. It contains variable, parameter (PATH), quantity, bound (side), value, gain, needed
+    (the bound that is enough if it alone is moved; None if no value is enough), change and texts.
+    The gain is the decrease of `total` (see below) per relative change of the bound: moving the
+    bound by 1 % decreases `total` by 0.01 times the gain.
 
     An entry of `cures` is a single change that is enough, the most advisable first. It contains
     kind (dimension, choice, bound, requirement, safety factor), parameter (PATH), now and needed
@@ -82,8 +82,8 @@ class Infeasibility:
     other inputs that must change at the same time. Each cure was confirmed by a feasible design.
     `untried` lists candidates that were not tried.
 
-    `laws` lists geometrical conditions that conflict. `total` is the sum of the joint relaxations.
-    `sentence` is the advice in one line, and `evidence` states what is proven.
+    `laws` lists geometrical conditions that conflict. `total` is the sum of the relaxations in
+    `joint`. `sentence` is the advice in one line, and `evidence` states what is proven.
     """
 
     joint: tuple[Mapping[str, Any], ...]
@@ -363,7 +363,7 @@ class Optimisation(Displayed):
 
     @property
     def tight(self) -> tuple[str, ...]:
-        """Limits that the design to build only just meets.
+        """Limits that the design to build (see `best`) meets with almost no margin.
 
         Empty if the search already ensured a requested yield (share of actuators that meet all
         limits).
@@ -389,7 +389,7 @@ class Optimisation(Displayed):
 
     @property
     def optimum(self) -> bool:
-        """Whether the design to build is optimal, if necessary among designs with listed sizes."""
+        """Whether the search ended at an optimum and the design to build meets all requirements."""
         return self.status == "optimal" and self.best_evaluation.met
 
     @property
@@ -403,7 +403,7 @@ class Optimisation(Displayed):
         )
         if self.made is None:
             return (
-                "shows the continuous optimum, which is not the design to build, because "
+                "this is the continuous optimum, which is not the design to build, because "
                 f"{self.rounding.sentence}"
             )
         to_build = "the design to build" if self.rounding.met else "which misses a requirement"
@@ -411,7 +411,7 @@ class Optimisation(Displayed):
             names = ", ".join(self.rounding.unmade)
             to_build = f"which cannot be built yet, as {names} need whole plies or allowed angles"
         return (
-            f"shows the design with {name} ({quantity.label} {rounded_text}), {to_build}; "
+            f"this is the design with {name} ({quantity.label} {rounded_text}), {to_build}; "
             f"prices refer to the continuous optimum ({continuous_text})"
         )
 

@@ -802,7 +802,7 @@ def build_infeasible() -> Optimisation:
             ),
             untried=("caps.material",),
             total=0.154,
-            sentence="infeasible: the smallest joint change, of 2 limits, is"
+            sentence="infeasible: the smallest total change relaxes 2 limits:"
             " requirements.friction_running.max 250 N -> 281 N (+12.4 %);"
             " requirements.stiffness_min.min 10 kN/mm -> 9.7 kN/mm (-3 %)",
             evidence="no feasible design was found from 6 starts: this is evidence, not proof",

@@ -161,7 +161,7 @@ def test_what_buys_the_most():
     assert lines == [
         "Relaxing stiffness_min by 10 % (to 9 kN/mm) saves 14.8 g (7.2 %), the most of any"
         " requirement.",
-        "Among the design's fixed values, 10 % less supply.pressure (189 bar) saves 7.90 g"
+        "Among the design's fixed values, 10 % less supply.pressure (to 189 bar) saves 7.90 g"
         " (3.8 %).",
         "The search found no feasible design with friction_running at 283.5 N.",
     ]

@@ -159,8 +159,8 @@ class Bound(NamedTuple):
     product_errors: Vector
     """For every product, the error of its bounds, weighted with the multipliers of its rows."""
     slopes: Vector
-    """Reduced cost of every column: slope of the objective as the column moves off the end of its
-    range at which it is best."""
+    """Reduced cost of every column: increase of the objective per unit by which the column's value
+    moves away from the end of its range at which the solution has it."""
 
 
 class Bounding:
@@ -344,7 +344,7 @@ class Bounding:
         return *self._proven_minimum(cost, dual, lower, upper), x, dual
 
     def _empty(self, lower: Vector, upper: Vector) -> bool:
-        """Whether multipliers prove that no point satisfies all lines."""
+        """Whether multipliers prove that no point satisfies all rows of the linear programme."""
         if self.solver.getModelStatus() != highspy.HighsModelStatus.kInfeasible:
             return False
         _, has_ray, ray = self.solver.getDualRay()

@@ -87,8 +87,8 @@ class Builder:
             number = float(value)
             if number == 0 or not math.isfinite(number):
                 raise Unknown(
-                    f"a factor or term in the model is always {number:g}, "
-                    "which has no finite logarithm, as the proof requires"
+                    f"a factor or term in the model is constant at {number:g}, "
+                    "but the proof needs its logarithm, which is not finite"
                 )
             return math.copysign(1.0, number), Form(math.log(abs(number)))
         if value.index not in self._forms:
@@ -109,7 +109,7 @@ class Builder:
         return self._composed(node)
 
     def _repeats(self, node: Symbol) -> bool:
-        """Whether both factors of a product are functions of one value, neither just a power of it.
+        """Whether a product's factors are both functions of one value, neither just a power of it.
 
         Such a product has tighter bounds as a sampled function of that value.
         """
@@ -134,7 +134,7 @@ class Builder:
         if op in ("sqrt", "pow"):
             sign, form = self.form(args[0])
             if sign < 0:
-                raise Unknown("a root of a negative number")
+                raise Unknown("the model contains a root of a negative number")
             return 1.0, form.scaled(0.5 if op == "sqrt" else args[1])
         if op == "where":
             return self._of_choice(node)
@@ -152,21 +152,21 @@ class Builder:
         """Sign and logarithm, by samples, of a value that is a function of a single other value."""
         lead = self._leads.of(node)
         if lead is node:
-            raise Unknown("the model has a function of several quantities")
+            raise Unknown("no bound is implemented for a function of several quantities")
         sign, argument = self.form(lead)
         if sign < 0:
-            raise Unknown("the model has a function with a negative argument")
+            raise Unknown("the model contains a function whose argument is negative")
         t = np.linspace(*self.relaxation.reach(argument), SAMPLES)
         if not 0 < t[-1] - t[0] < WIDEST:
-            raise Unknown("the model has a function whose argument is constant or unbounded")
+            raise Unknown("the model contains a function whose argument is constant or unbounded")
         values = function([node], lead)(t)[0]
         with np.errstate(all="ignore"):
             logs = np.log(np.abs(values))
         if not np.isfinite(logs).all():
-            raise Unknown("the model is not defined within all of the bounds")
+            raise Unknown("the model has no value for some designs within the bounds")
         table = SampledFunction.of(t, logs, CAUTION)
         if (values[0] > 0) != (values[-1] > 0) or values.min() * values.max() <= 0:
-            raise Unknown("the model has a function whose sign may change")
+            raise Unknown("the model contains a function that may be positive or negative")
         least, most = float(logs.min()) - table.room, float(logs.max()) + table.room
         return math.copysign(1.0, values[0]), self._curve(table, argument, least, most)
 
@@ -218,7 +218,7 @@ class Builder:
         if single is not None:
             return single
         if not parts.terms:
-            raise Unknown("the value is always zero")
+            raise Unknown("a value in the model is always zero, so it has no logarithm")
         plus, minus = parts.sides()
         low, high = (
             max(low, self._lower_bound(plus, minus)),
@@ -232,7 +232,7 @@ class Builder:
             return 1.0, self._difference(plus, minus, low, high)
         if high < 0:
             return -1.0, self._difference(minus, plus, -high, -low)
-        raise Unknown("the model has a difference whose sign may change")
+        raise Unknown("the model contains a subtraction whose result may be positive or negative")
 
     def _lower_bound(self, plus: Sequence[Form], minus: Sequence[Form]) -> float:
         """Lower bound on the difference of two sums of monomials."""
@@ -320,11 +320,11 @@ class Builder:
             return self.form(choice)
         kind = extreme(node)
         if kind is None:
-            raise Unknown("the model has a condition that may hold for only some of the designs")
+            raise Unknown("a condition in the model may hold for some designs but not for others")
         (s, a), (t, b) = self.form(node.args[1]), self.form(node.args[2])
         low, high = node.bounds
         if s != t:
-            raise Unknown("the model takes a minimum or maximum of values that may differ in sign")
+            raise Unknown("the model takes a minimum or maximum of values with opposite signs")
         ends = (low, high) if s > 0 else (-high, -low)
         is_larger = (kind == "max") == (s > 0)
         pick = max if is_larger else min
@@ -363,7 +363,7 @@ class Builder:
             low = max(low, math.log(least)) if least > 0 else low
         _, form = self.form(argument)
         if low <= 0 <= high:
-            raise Unknown("the model has a logarithm whose sign may change")
+            raise Unknown("the model contains a logarithm that may be positive or negative")
         sign = 1.0 if low > 0 else -1.0
         inner = form if sign > 0 else Form(0.0) - form
         ends = (low, high) if sign > 0 else (-high, -low)
@@ -620,7 +620,10 @@ class Envelopes:
 
     @staticmethod
     def joint(statics: Statics, out: MetricArrays) -> None:
-        """Replace a joint's retention factor, if it has one, by an unknown between estimates."""
+        """Replace the retention factor of the barrel ends' joint by an unknown between estimates.
+
+        Nothing changes if the joint has no such factor or no estimates.
+        """
         retention = statics.joint
         if retention is None or retention.joint.envelope is None:
             return

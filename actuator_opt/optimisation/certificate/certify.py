@@ -231,8 +231,8 @@ MIDDLE = 0.2
 WORTH = 1e-9
 """Least estimated gain in the bound that justifies a split."""
 FAR_OFF = 0.2
-"""Upper limit on a curve's `Bound.excess` when the gain of a split is estimated, since the first
-split gains most."""
+"""When the gain of a split is estimated, a curve's `Bound.excess` counts at most this much, since
+the first split gains most."""
 FLOOR = 0.003
 """Added to a curve's `Bound.price` in the estimated gain of a split. Among loose curves in a chain
 (each the argument of the next), some have a price of 0; without this addition, no gain would be
@@ -419,7 +419,7 @@ class Relaxed:
     """By name: functions that read the unknown quantities' values from an evaluated design."""
 
     def atoms(self, actuator: ActuatorProblem, x: Vector) -> Vector:
-        """Logarithm of every atom's value at a design."""
+        """Logarithm of the value that every atom (elementary quantity) has at a design."""
         point = {path: np.array([value]) for path, value in zip(actuator.paths, x, strict=True)}
         with np.errstate(all="ignore"):
             run = compute(actuator.subject, actuator.subject.values(point))

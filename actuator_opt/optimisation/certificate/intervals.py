@@ -202,7 +202,7 @@ def branch(node: Symbol) -> Any:
 
 
 def extreme(node: Symbol) -> str | None:
-    """Whether a conditional takes the larger ("max") or the smaller ("min") branch; else None."""
+    """The word "max" or "min" if a conditional takes its larger or smaller branch; else None."""
     condition, yes, no = node.args
     if getattr(condition, "op", None) not in ("lt", "le"):
         return None
@@ -459,7 +459,7 @@ class Layout:
 
     @cached_property
     def _linked(self) -> tuple[Tables, np.ndarray, Vector]:
-        """For every `Link`: its table, the number of its curve, and its `level`."""
+        """For every `Link`: its table, the number of its curve, the log of its constant factor."""
         number = np.array([self._of_curve[id(link.curve)] for link in self.links])
         kinds = [link.curve.kind for link in self.links]
         tables = Tables([kind for kind in kinds if isinstance(kind, SampledFunction)])
@@ -488,7 +488,7 @@ class Layout:
         )
 
     def arguments(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
-        """Ranges of the curves' arguments, computed from the ranges of the directions."""
+        """Ranges of the curves' arguments, from the ranges of the directions (log ratios)."""
         ends = (
             self.factor * low[self.direction] + self.constant,
             self.factor * high[self.direction] + self.constant,

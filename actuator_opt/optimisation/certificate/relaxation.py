@@ -285,11 +285,12 @@ class CurveFunctions:
 
 
 Powers: TypeAlias = tuple[tuple[int, float], ...]
-"""Pairs (atom number, exponent) in ascending order; an atom that is not listed has exponent 0."""
+"""Pairs (number of an atom, exponent) in ascending order; all other atoms have exponent 0. An atom
+is a positive unknown."""
 
 
 class Form(NamedTuple):
-    """Logarithm of a monomial: constant + sum of power * log(atom)."""
+    """Logarithm of a monomial of atoms (positive unknowns): constant + sum of power * log(atom)."""
 
     constant: float
     powers: Powers = ()
@@ -385,7 +386,7 @@ class Unknown(Exception):
 
 
 class AtomFunction(NamedTuple):
-    """A curve out = function(argument); both are affine in the logarithms of atoms."""
+    """A curve out = function(argument); `out` and `argument` are logarithms of monomials."""
 
     kind: Kind
     argument: Form
@@ -393,7 +394,7 @@ class AtomFunction(NamedTuple):
 
 
 class Link(NamedTuple):
-    """Relation out = e^level f(base) between the values of two atoms; f is a sampled function.
+    """Relation out = e^level f(base) of two atoms (positive unknowns); f is a sampled function.
 
     `out` and `base` are the numbers of the atoms; `level` is the logarithm of a constant factor.
     `curve` has the samples of f: log f as a function of the logarithm of its argument.
@@ -406,7 +407,7 @@ class Link(NamedTuple):
 
 
 class Product(NamedTuple):
-    """Relation out = e^level * first * second between the values of three atoms.
+    """Relation out = e^level * first * second between three atoms (positive unknowns).
 
     `out`, `first` and `second` are the numbers of the atoms; `level` is the logarithm of a constant
     factor.
@@ -419,7 +420,7 @@ class Product(NamedTuple):
 
 
 Maker: TypeAlias = Callable[[Sequence[float]], float]
-"""Computes the logarithm of an atom from the logarithms of earlier atoms."""
+"""Computes the logarithm of an atom (positive unknown) from the logarithms of earlier atoms."""
 
 
 class ConstraintRow(NamedTuple):

@@ -47,7 +47,8 @@ from .plane import (
 from .tracer import FrontDesign, FrontSearch, FrontStart, Tracer, knee, nondominated
 
 HOLD = 1e-10
-"""An anchor's own objective may worsen by this share of its range while the others improve."""
+"""In the best design of an objective, this objective may worsen by this share of its range while
+other objectives improve."""
 GAINED = 1e-3
 """Normalised gain of the other objectives that justifies the loss `HOLD`."""
 CONFLICT = 1e-6
@@ -69,7 +70,7 @@ class FrontEffort:
 class Anchors:
     """The best design of each objective (the anchors), and all feasible local optima.
 
-    Both are arrays of variables, with the shapes (n, objectives) and (n, k).
+    Both are arrays of the n variables: (n, objectives) and (n, number of optima).
     """
 
     x: Vector
@@ -166,7 +167,7 @@ def _optima(run_ends: Sequence[Point], converged: Sequence[Point | None]) -> lis
 def normalised(
     objectives: Objectives, checked: Evaluator, anchors: Anchors
 ) -> tuple[Tracer, Vector]:
-    """A `Tracer` with normalised objectives, and the anchors (n, k).
+    """A `Tracer` with normalised objectives, and the n variables of the k anchors (n, k).
 
     If no objectives conflict, there is a single anchor.
     """
@@ -194,7 +195,7 @@ def normalised(
 
 
 def _sharpened(tracer: Tracer, x: Vector, units: Vector) -> Vector:
-    """The anchors (n, k), moved if other objectives improve while their own does not worsen."""
+    """The best design of each objective (n, k), moved if that only improves other objectives."""
     count = len(x.T)
     starts = []
     for k in range(count):
@@ -320,7 +321,7 @@ class Front:
 
     Parameters
     ----------
-    x : variables (n, k)
+    x : the n variables of the k designs (n, k)
     values : objectives (objectives, k), to be minimised
     units : normalised objectives: 0 at the ideal, 1 at the worst value of the anchors
     residuals : residuals of the optimality conditions (k,)
@@ -328,7 +329,7 @@ class Front:
         bulges there; or None
     passed : values (objectives, p) of dominated designs that the search found
     checked, improved : number of checking searches, and how many of them improved a design
-    failed : number of levels at or near which the search found no design
+    failed : number of levels (upper limits of the objectives) without a design nearby
     wide : with two objectives, gaps wider than `plane.WIDEST` times the median gap, and whether the
         front jumps there
     """

@@ -26,7 +26,7 @@ LEVEL = "level of the objectives"
 """Name of the variable t."""
 
 LOWEST, HIGHEST = -1.0, 2.0
-"""Bounds of t; for designs between the anchors, t is between -1 and 1."""
+"""Bounds of t; between the designs that are best in one objective each, t is between -1 and 1."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,10 @@ class Objectives:
         return self.selection().at(np.array([index]))
 
     def evaluator_of(self, checked: Evaluator, index: int) -> Evaluator:
-        """An evaluator for one objective that reuses the gradient check of `scaled`."""
+        """An evaluator for one objective; it reuses the gradient check of `checked`.
+
+        `checked` is the evaluator that the method `checked` returns.
+        """
         evaluator, m = Evaluator(self.single_problem(index)), len(self.problem.constraint_names)
         rows = [
             1 + m + index,
@@ -77,7 +80,7 @@ class Objectives:
         return evaluator
 
     def checked(self) -> tuple[Evaluator, tuple[str, ...]]:
-        """An evaluator of `scaled` after its gradient check, and the warnings of that check."""
+        """An evaluator of the problem to minimise t, gradients checked; warnings of the check."""
         problem = self.problem
         start = (problem.lower + problem.upper) / 2 if problem.start is None else problem.start
         size = np.abs(self.values(start[:, None])[:, 0])

@@ -43,7 +43,7 @@ STEEPEST = 2.0
 
 
 def on_line(places: Vector) -> Vector:
-    """Levels (2, k) at positions u (k,) between the first and the second anchor."""
+    """Levels (upper limits of both objectives) at positions u (k,) between the anchors: (2, k)."""
     return np.stack([places, 1.0 - places])
 
 
@@ -107,7 +107,7 @@ def around(place: tuple[int, ...]) -> list[tuple[int, ...]]:
 
 
 def level(place: Sequence[int], steps: int) -> Vector:
-    """Levels (objectives,) at a lattice point."""
+    """Levels, that is upper limits of the objectives (objectives,), at a lattice point."""
     return 1.0 / len(place) + np.array(place, dtype=float) / steps
 
 
@@ -118,7 +118,7 @@ SURPLUS = 2.0
 """Number of designs computed per requested design; those farthest apart are selected."""
 
 COARSE = 4
-"""In the first lattice, the number of steps from the middle to the level of an anchor."""
+"""In the first lattice, the number of steps from the middle to the best design of an objective."""
 
 RESERVE = 12
 """Maximum number of levels tried on a lattice, per requested design."""
@@ -130,8 +130,8 @@ RESCALES = 3
 """Maximum number of times that the objectives are normalised again."""
 
 PRICED = 1e-6
-"""The level of an objective counts as active if its price (multiplier; all prices sum to 1) exceeds
-this."""
+"""The level (upper limit) of an objective counts as active if its price (multiplier; all prices sum
+to 1) exceeds this."""
 
 HOLD = 1e-9
 """Normalised amount by which a bounded objective may worsen while others improve."""
@@ -140,7 +140,8 @@ ROUNDS = 12
 """Maximum number of rounds that fill holes."""
 
 ELSEWHERE = 1e-3
-"""Two designs at one level differ if a variable differs by more than this."""
+"""Two designs for the same limits on the objectives differ if a variable differs by more than this.
+"""
 
 CLOSE = 2.0
 """A design from another valley (another local optimum) is retried if it is worse by at most this
@@ -191,7 +192,7 @@ def _nearest_places(search: FrontSearch, steps: int) -> list[Place]:
 def _flood(search: FrontSearch, first_places: Iterable[Place], steps: int, max_levels: int) -> int:
     """Try lattice points, then the neighbours of every point whose level a design reaches.
 
-    Returns the number of these points.
+    Returns the number of lattice points whose level was reached.
     """
     visited: set[Place] = set()
     queue, successes = list(first_places), 0
@@ -455,7 +456,8 @@ class FrontGap:
     ----------
     after : index of the design before the gap
     size : distance between the two designs
-    reach : upper limit on the length of a continuous front in the gap, from the levels tried
+    reach : greatest length that a continuous front could have in the gap, given the designs found
+        for the levels tried there
     jump : whether `reach` is at most the median gap, which means that the front jumps here
     """
 
@@ -524,7 +526,10 @@ def middle_designs(search: FrontSearch, count: int) -> list[int]:
 
 
 def lost_levels(search: FrontSearch, indices: Indices) -> int:
-    """Number of levels without a design nearby; for two objectives, in wide gaps without a jump."""
+    """Number of levels (upper limits of the objectives) without a design nearby.
+
+    With two objectives, only levels in wide gaps count, and only if the front does not jump there.
+    """
     units = search.units[:, indices]
     if len(units) > 2:
         widest = nearest(units).max(initial=0.0)
@@ -553,7 +558,7 @@ def _section(search: FrontSearch, left: int, right: int) -> Indices:
 
 
 def _section_lengths(search: FrontSearch, left: int, right: int) -> Vector:
-    """Upper limits on the length of the front between neighbouring levels of a section."""
+    """Greatest possible lengths of the front between neighbouring designs of a `_section`."""
     section = _section(search, left, right)
     levels = np.array([search.designs[k].level[0] for k in section])
     return lengths(levels, search.units[:, section])

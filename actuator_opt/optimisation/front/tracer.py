@@ -127,7 +127,7 @@ BETTER = 1e-7
 """A normalised improvement of this size shows that a design belongs to another local optimum."""
 
 HELD = 1e-6
-"""An objective counts as equal to its level if it is below by no more than this (normalised)."""
+"""An objective counts as equal to its level (upper limit) if it is at most this much below."""
 
 ROUNDS = 4
 """Maximum number of rounds in which designs exchange results. The rounds end as soon as nothing
@@ -157,7 +157,7 @@ class FrontDesign:
 
     @property
     def at_level(self) -> bool:
-        """Whether every objective is at its level; if not, the front has an edge or jump there."""
+        """Whether every objective is at its upper limit; if not, the front ends or jumps there."""
         room = self.level + self.direction * self.point.objective - self.unit
         return bool((room <= HELD).all())
 
@@ -289,7 +289,7 @@ class Tracer:
     def exchange(
         self, designs: list[FrontDesign], other_x: Vector, other_units: Vector
     ) -> list[FrontDesign]:
-        """Replace each design that another beats at its levels, by a descent from the better one.
+        """Replace each design that another beats at its levels: descend from that better design.
 
         Parameters
         ----------
@@ -482,7 +482,7 @@ class FrontSearch:
     replaced: list[Vector] = field(default_factory=list)
     """Objectives of designs that a better design has replaced."""
     empty_levels: list[Vector] = field(default_factory=list)
-    """Levels that have no design."""
+    """Levels (upper limits of the objectives) for which the search gave no design."""
     _other_values: tuple[Vector, Vector] | None = None
     _residuals: dict[int, tuple[FrontDesign, float]] = field(default_factory=dict)
 
@@ -607,7 +607,7 @@ class FrontSearch:
         return np.stack([design.unit for design in self.designs], axis=1)
 
     def front_indices(self) -> Indices:
-        """Indices of distinct non-dominated designs; those at their levels come first."""
+        """Indices of distinct non-dominated designs; of equal ones, one at its levels is kept."""
         order = sorted(range(len(self.designs)), key=lambda k: not self.designs[k].at_level)
         units = self.units
         indices = distinct(units, np.array(order, dtype=np.intp))

@@ -259,7 +259,7 @@ class Valley:
 
 
 def valley_at(evaluator: Evaluator, point: Point) -> Valley:
-    """The valley that belongs to a local optimum."""
+    """A local optimum with the data from which new descents start."""
     state = kkt.state_at(evaluator, point)
     price = margin_price(state.multipliers[: len(state.active.constraint)] / state.scale)
     hessian = kkt.convex_hessian(evaluator, state)
