@@ -253,8 +253,12 @@ def remarks(calibration: Calibration, redesign: Redesign) -> list[str]:
     """Sentences on changed values, on values that were not measured, and on doubts."""
     said = list(redesign.sentences)
     if count := _tight(redesign):
-        said.append(f"{count_words(count)} at the best design, which meets these limits only just")
-    said += [f"{key} keeps the value of the design: {why}" for key, why in calibration.left.items()]
+        words = "at the best design, which meets these limits with almost no margin"
+        said.append(f"{count_words(count)} {words}")
+    said += [
+        f"{key} keeps the value that the design states: {why}"
+        for key, why in calibration.left.items()
+    ]
     said += calibration.doubts
     return [sentence(text.pretty(words)) for words in dict.fromkeys(said)]
 

@@ -138,7 +138,7 @@ def series(simulation: Simulation) -> list[Series]:
 
 
 def _grid(simulation: Simulation) -> tuple[Array, Array]:
-    """Evenly spaced times [s], and indices of their samples (if two have one time, the later)."""
+    """Evenly spaced times [s], and indices of the samples there (at a jump, of the later one)."""
     time, duration = simulation.time, simulation.scenario.duration
     step = simulation.scenario.sample_time or duration / SAMPLES
     count = max(round(duration / step), 1)
@@ -312,7 +312,10 @@ def results(simulation: Simulation) -> list[ShownResult]:
 
 
 def reasons(simulation: Simulation) -> dict[str, list[str]]:
-    """By reason: the results that have no value because of it; expected reasons are left out."""
+    """Reasons for missing values, each with the results that it concerns.
+
+    Reasons that the scenario makes obvious are left out, unless the result has a requirement.
+    """
     missing: dict[str, list[str]] = {}
     limited = {requirement.metric for requirement in simulation.requirements}
     bench = simulation.scenario.held_ports is not None

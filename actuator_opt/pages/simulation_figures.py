@@ -85,7 +85,8 @@ MOVED = 0.02
 """Evaluation windows are drawn over position, not over time, if they cover more than this share of
 the stroke (our choice)."""
 MOST_WINDOWS = 40
-"""Most evaluation windows drawn as points with error bars; more are drawn as a line with a band."""
+"""Largest number of evaluation windows drawn as points with error bars. If there are more, they are
+drawn as a line with a band."""
 CYCLES = 3
 """Number of cycles drawn of the force-position loop."""
 Static = tuple[Array, Array]

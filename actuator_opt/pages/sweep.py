@@ -67,7 +67,7 @@ def _verdict(swept: Swept) -> Verdict:
         return Verdict("missed", words)
     tight = sum(best.margin < NO_RESERVE for best in swept.best)
     limit = f"least margin below {100 * NO_RESERVE:g} %"
-    cautions = [f"{tight} of the best designs without reserve: {limit}"] if tight else []
+    cautions = [f"{tight} of the best designs: no reserve ({limit})"] if tight else []
     return Verdict("checks" if tight else "met", "FEASIBLE", cautions=cautions)
 
 

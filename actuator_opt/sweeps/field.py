@@ -100,7 +100,7 @@ class Field:
         """Return curves with their points moved to zero margin.
 
         Points move along the grid edge between a node that meets the limit and a node that misses
-        it. They are not moved if a varied number needs a newly prepared design for every value.
+        it. They are not moved if a design must be built for every value of a varied number.
         """
         if self.study.designs.apart or not curves:
             return list(curves)

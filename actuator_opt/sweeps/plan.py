@@ -37,7 +37,7 @@ DESCRIPTIVE = frozenset({"name", "notes", "reproduces", "waivers", "objective"})
 class SweepAxis:
     """A varied PATH with its values: numbers (SI), or texts such as names of materials.
 
-    Each text needs its own design. A range has its two ends as `values`, and `count` points;
+    A design is built for each text. A range has its two ends as `values`, and `count` points;
     `count` is None if the sweep method chooses the points.
     """
 
@@ -242,7 +242,7 @@ class SweepPoints:
 class Plan:
     """Axes of a sweep, with method and number of its points.
 
-    Each text of a `named` axis needs its own design; the other axes vary numbers.
+    A design is built for each text of a `named` axis; the other axes vary numbers.
     """
 
     axes: tuple[SweepAxis, ...]

@@ -59,8 +59,8 @@ are small differences between two simulations."""
 
 STEPS: Final = (1e-3, 0.1)
 """Smallest and largest step of a parameter for a difference quotient, relative to its size (our
-choices: far above integration errors, yet local). Between them, the step is chosen so that the
-residuals change by as much as their noise."""
+choices: far above integration errors, yet local). Within these limits, the step is chosen so that
+the residuals change by as much as their noise."""
 
 
 FIRST: Final = 1e-2
