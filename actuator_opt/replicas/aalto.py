@@ -167,9 +167,9 @@ def _air_down(test: StaticTest) -> str:
     largest = test.assumptions[3].down
     share = largest.range[0] / PAPER.moved_down[0]
     if math.isnan(share):
-        return f"{words}; our model then cavitates at every position."
+        return f"{words}; our model then predicts cavitation at every position."
     if share > 1 - SAME:
-        return f"{words}; our model then moves at no position less than was measured."
+        return f"{words}; our model then moves at least as far as was measured, at every position."
     place = test.position[int(np.nanargmin(largest.displacement))] / test.position[-1]
     where = "near the cap end" if place < 1 / 3 else "in the middle"
     where = "near the rod end" if place > 2 / 3 else where
@@ -757,7 +757,7 @@ def peak_table(evaluation: Evaluation) -> list[Block]:
             "flow coefficient",
             "around 0.611",
             f"{text.trimmed(needle.flow_coefficient, 3)} at 20 mm/s; "
-            f"{text.trimmed(needle.flow_coefficient_slow, 3)} at the base velocity",
+            f"{text.trimmed(needle.flow_coefficient_slow, 3)} at the highest load-case speed",
         ),
         (
             "pressure drop, needle open, 20 mm/s",

@@ -428,7 +428,7 @@ def test_the_table_shows_numbers_and_reasons():
     assert [row[0].partition(" ")[2] for row in table.rows] == NAMES
     pressure = table.rows[NAMES.index("hydraulic pressure")]
     assert pressure[0].startswith("decrease")
-    assert all("disagrees: the pressure presses the ring on" in cell for cell in pressure[1:])
+    assert all("disagrees: the pressure loads the ring's contact" in cell for cell in pressure[1:])
     for words in (
         "prints Increase in this row",
         "an O-ring of nbr_70 with the same section and squeeze replaces",
