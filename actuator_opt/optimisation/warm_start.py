@@ -264,7 +264,7 @@ class WarmStart:
     def _stepped(
         self, evaluator: Evaluator, valleys: Sequence[Valley]
     ) -> tuple[Point | None, Vector | None]:
-        """Optimum reached from the known optima, and a feasible point (nf,); None if not found."""
+        """Optimum reached from the known optima, and a feasible point; each None if not found."""
         problem = evaluator.problem
         parametric = ParametricProblem(problem, (), np.zeros(0), lambda x, _: problem.evaluate(x))
         if not valleys or not applicable(parametric, evaluator):
@@ -286,7 +286,9 @@ class WarmStart:
         values: Sequence[float],
         rebuilt: Callable[[float], ActuatorProblem],
     ) -> bool:
-        """Whether the number acts only as a parameter; checked at its lowest and highest value.
+        """Whether changing the number in the model gives the same problem as building it again.
+
+        This is checked at the lowest and the highest value.
 
         Some numbers act not only as inputs of the models: temperatures, for example, also change
         the factors on material properties.

@@ -65,7 +65,7 @@ def page(calibration: Calibration, redesign: Redesign, bench: Bench) -> Page:
 
 
 def verdict(redesign: Redesign) -> Verdict:
-    """The badge: whether the design meets its requirements with the measured values."""
+    """Badge at the top: whether the design meets its requirements with the measured values."""
     total = len(redesign.evaluation.requirements)
     met = sum(row.met for row in redesign.evaluation.requirements)
     lines = [f"as tested: {met} of {total} requirements met"]
@@ -244,7 +244,7 @@ def _change(
 
 
 def _tight(redesign: Redesign) -> int:
-    """Number of limits without reserve in the best calibrated design; 0 without such a design."""
+    """Number of limits that the best calibrated design meets with almost no margin."""
     best = redesign.best_after
     return len(best.tight) if best is not None and solved(best) else 0
 

@@ -69,7 +69,7 @@ def page(comparison: Comparison) -> Page:
 
 
 def _verdict(comparison: Comparison) -> Verdict:
-    """The badge: how many designs meet their requirements."""
+    """Badge at the top: how many designs meet their requirements."""
     every = len(comparison.labels)
     met = sum(evaluation.met for evaluation in comparison.evaluations)
     words = f"{met} OF {every} MEET THEIR REQUIREMENTS"

@@ -97,7 +97,7 @@ def front_outcome(front: ParetoFront) -> dict[str, Any]:
 
 
 def verdict(front: ParetoFront) -> Verdict:
-    """The badge, with doubts about the design that was fully evaluated (the knee or the first)."""
+    """Badge at the top, with doubts about the design evaluated in full (the knee or the first)."""
     tight = len(front.evaluation.tight)
     plain, cautions = doubts(front.evaluation)
     if tight:

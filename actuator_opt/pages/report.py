@@ -228,7 +228,7 @@ def _sentence(subject: Evaluation | Optimisation) -> str:
 
 
 def verdict(subject: Evaluation | Optimisation) -> Verdict:
-    """The badge: state, words, numbers of requirements and checks met, and doubts.
+    """Badge at the top of the page: state, words, counts of met limits, and doubts.
 
     `cautions` are lines in amber: limits without reserve, unverified values, values outside a
     model's range.

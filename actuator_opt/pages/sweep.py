@@ -61,7 +61,7 @@ def counts(swept: Swept) -> str:
 
 
 def _verdict(swept: Swept) -> Verdict:
-    """Badge: whether any design is feasible, and how many of the best have almost no margin."""
+    """Badge at the top: whether any design is feasible, and how many of the best lack margin."""
     if not swept.best:
         words = "NO OBJECTIVE VALUE" if swept.feasible else "NO FEASIBLE DESIGN"
         return Verdict("missed", words)

@@ -78,7 +78,7 @@ def series(study: Uncertainty) -> list[Series]:
 
 
 def verdict(study: Uncertainty) -> Verdict:
-    """The badge: whether the nominal design meets its requirements, and the yield."""
+    """Badge at the top: whether the nominal design meets its requirements, and the yield."""
     known = [limit for limit in study.required if limit.margin is not None]
     met = sum(limit.margin >= -TOLERANCE for limit in known if limit.margin is not None)
     tight = sum(without_reserve(limit.margin, limit.limit) for limit in known)

@@ -330,7 +330,7 @@ Block: TypeAlias = Table | Drawing | Chart | TerminalFigure | Notes | Listing | 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """The badge: state, words in capitals, plain lines below, and cautions in amber."""
+    """Badge at the top of a page: state, words in capitals, plain lines, and cautions in amber."""
 
     state: State
     text: str
