@@ -337,7 +337,7 @@ def _margins(redesign: Redesign) -> Panel:
 
 
 def _span(shift: Shift) -> tuple[float, float, float, float]:
-    """Margin before, margin after, and lower and upper confidence bound of the latter [%]."""
+    """Margin before, margin after, and confidence bounds of the margin after [%]."""
     before, after = (100 * (row.margin or 0.0) for row in (shift.before, shift.after))
     if shift.lower is None or shift.upper is None or shift.after.limit == 0:
         return before, after, after, after

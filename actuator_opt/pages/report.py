@@ -140,7 +140,7 @@ def prices_page(optimisation: Optimisation) -> Page:
 def parts_of(subject: Evaluation | Optimisation) -> tuple[Evaluation, Optimisation | None]:
     """The evaluation to show and, if it results from an optimisation, that optimisation.
 
-    If sizes were requested and possible, the evaluation is that of the design with these sizes.
+    If rounding to available sizes was requested and possible, the rounded design is evaluated.
     """
     if isinstance(subject, Optimisation):
         return subject.best_evaluation, subject

@@ -398,7 +398,11 @@ def gain_margin(ratio: float) -> str:
 
 
 def sound(simulation: Simulation) -> bool:
-    """Whether the balances close, powers and energies agree, and both integrators agree."""
+    """Whether the run can be trusted.
+
+    For this, the balances of oil mass and energy must close, the sampled powers must agree with the
+    energies, and the second integrator (if any) with the first.
+    """
     balance, second = simulation.balance, simulation.second
     closed = max(balance.mass, balance.energy) < CLOSED and not doubts(simulation)
     return closed and (second is None or second.max_difference < AGREE)

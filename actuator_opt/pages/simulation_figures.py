@@ -114,7 +114,7 @@ class Strip(NamedTuple):
 
 
 def parts(simulation: Simulation, measured: Measured, static: Static | None) -> list[FigurePart]:
-    """The panels for the kind of run, drawn beside its signals over time; most important first."""
+    """Panels that suit the kind of run (such as a step response), the most important first."""
     made: list[FigurePart] = []
     if simulation.servo is not None:
         panel = step_panel(simulation, simulation.servo, measured)

@@ -444,7 +444,7 @@ def integrate(
     sample_time : interval between the samples of the result [s]; the method chooses its own
         internal steps
     method : "lsoda", "radau" or "cvodes" (extra ``fast``)
-    relative : relative tolerance of a step; None for that of the method
+    relative : relative tolerance of a step; None for the usual tolerance of the method
 
     Raises
     ------

@@ -165,8 +165,8 @@ class Designs:
     def alike(self, points: SweepPoints) -> Iterator[tuple[Array, int, dict[str, float]]]:
         """Group the points that share a prepared design.
 
-        Yield for each group the indices of its points, the number of its text combination, and the
-        values of its `apart` numbers by PATH.
+        Yield for each group the indices of its points, the number of its combination of texts, and
+        the values of its `apart` numbers by PATH.
         """
         paths = [axis.path for axis in self.plan.numeric]
         separate_axes = [k for k, path in enumerate(paths) if path in self.apart]

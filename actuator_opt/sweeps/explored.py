@@ -320,7 +320,7 @@ def _text_numbers(
     variants: tuple[dict[str, str], ...],
     path: Path,
 ) -> Array:
-    """Return the index of the text combination of each row, found from its database key."""
+    """Return, for each row, the index of its combination of texts, found by the row's key."""
     data = np.ascontiguousarray(numbers[:, : len(study.order)], dtype="<f8")
     heads = [key_head(texts) for texts in variants]
     text_numbers = np.empty(len(keys), dtype=np.int64)

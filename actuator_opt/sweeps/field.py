@@ -199,7 +199,7 @@ def require_grid(plan: Plan) -> None:
 
 
 def _cut_away(study: Study, margins: Array) -> Array:
-    """Return the nodes with a negative wall or clearance; delete the other margins there."""
+    """Return which nodes have a negative wall or clearance; set all other margins there to NaN."""
     shapes = np.array([limit.origin == "geometry" for limit in study.binding])
     cut_away: Array = (margins[shapes] < NOTHING).any(axis=0)
     for number in np.flatnonzero(~shapes):

@@ -1,4 +1,4 @@
-"""Results of a sweep; of the rows for figures, only a limited number is kept, evenly spread.
+"""Results of a sweep, with a limited number of evenly spread rows for its figures.
 
 The Pareto lines of the figures are exact, as they take all rows into account.
 """

@@ -124,7 +124,7 @@ def _directions(
         if (named := [name for name in metrics if ways[name] == way])
     ]
     if not all(exact for _, exact in lines.values()):
-        parts.append("Pareto lines only of the designs that were kept")
+        parts.append("Pareto lines include only the designs that were kept")
     words = "; ".join(parts)
     return words[:1].upper() + words[1:]
 

@@ -1,7 +1,7 @@
 """Fit parameters of a design to a measured record: least squares, with whole simulations.
 
 Residuals, and their derivatives by the parameters, come from simulations. The confidence intervals
-of the parameters follow from both.
+of the parameters follow from these residuals and derivatives.
 """
 
 from __future__ import annotations
