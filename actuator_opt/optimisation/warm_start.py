@@ -32,7 +32,7 @@ STARTS = 3
 """Number of starts in the search that follows if the steps fail."""
 
 SAMPLES = 1024
-"""Number of sweep points in the search that follows if the steps fail."""
+"""Number of designs sampled in the search that follows if the steps fail; it starts at the best."""
 
 AGREES = 1e-9
 """Largest difference of margins that counts as a rounding error. It serves to check that changing a
@@ -41,7 +41,7 @@ parameter of the model gives the same margins as building the problem again with
 
 @dataclass(frozen=True, slots=True)
 class SearchEffort:
-    """Settings of a search: number of starts, number of sweep points, and random seed."""
+    """Settings of a search: number of starts, number of designs sampled for them, random seed."""
 
     starts: int
     samples: int

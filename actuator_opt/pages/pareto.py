@@ -245,7 +245,7 @@ def remarks(front: ParetoFront) -> list[str]:
 
 
 def _wide(front: ParetoFront) -> Iterator[str]:
-    """Wide gaps and their reasons."""
+    """Sentences on wide gaps between neighbouring designs of the front, with the reasons."""
 
     def between(gaps: Sequence[FrontGap]) -> str:
         return ", ".join(f"{gap.after + 1} and {gap.after + 2}" for gap in gaps)

@@ -189,10 +189,10 @@ def _speed_panel(
 
 
 def _breakaways(study: SealStudy, curves: FilmMap) -> list[Points]:
-    """Breakaway friction at the pressure of every curve; for two rings, at the operating point only.
+    """Breakaway friction at the pressure of every curve; for two rings, only at one pressure.
 
-    Other pressures are left out for two rings, because the pressure between them follows from their
-    oil films, which do not exist at standstill.
+    This is the pressure of the operating point. At others, the pressure between the rings is not
+    known: it follows from their oil films, which do not exist at standstill.
     """
     point, rim = study.drive, 1e3 * float(curves.speeds[0])
     if len(point.rings) > 1:

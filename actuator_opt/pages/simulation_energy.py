@@ -178,7 +178,7 @@ def _load(simulation: Simulation) -> Array | None:
 def _at_unit(simulation: Simulation) -> str:
     """Name of the signal for the pressure at the pump or accumulator.
 
-    A pipe may separate them from the valve.
+    Between the pump or accumulator and the valve there may be a pipe.
     """
     return "pressure_unit" if "pressure_unit" in simulation.signals else "pressure_supply"
 

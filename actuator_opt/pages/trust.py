@@ -265,7 +265,7 @@ def convergence(optimisation: Optimisation) -> list[str]:
         )
         lines.append(f"Improvements (limits, at evaluation number): {path}.")
     if optimisation.kkt is not None and optimisation.kkt.active:
-        lines.append(f"Active at the optimum: {', '.join(optimisation.kkt.active)}.")
+        lines.append(f"Limits active at the optimum: {', '.join(optimisation.kkt.active)}.")
     return lines
 
 

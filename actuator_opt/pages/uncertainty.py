@@ -430,7 +430,7 @@ def tornado(uncertainty: Uncertainty, output: str, *, width: float = 180.0) -> I
 
 
 def _changes(swing: Swing, centre: float, factor: float) -> tuple[float | None, float | None]:
-    """Changes of the output at the upper and lower end of an input, in display units."""
+    """Changes of the output if an input is at its 95 % and its 5 % quantile, in display units."""
 
     def change(value: float | None) -> float | None:
         if value is None or not math.isfinite(value):

@@ -277,7 +277,7 @@ def _other_models(path: Path) -> InputError:
 def _thinned(
     reader: Reader, stored: StoredRows, study: Study, count: int, most: int
 ) -> tuple[list[bytes], Array, int]:
-    """Return keys and numbers of evenly spread rows and the best rows; count the valid rows."""
+    """Return keys and numbers of evenly spread and of the best rows; and the valid rows' count."""
     step = -(-count // most)
     keys: list[bytes] = []
     numbers: list[Array] = []
