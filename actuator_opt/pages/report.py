@@ -209,7 +209,7 @@ def sentences(optimisation: Optimisation) -> list[str]:
 
 
 def reserve_sentences(subject: Evaluation | Optimisation) -> list[str]:
-    """Sentences on limits without reserve, and on the yield.
+    """Sentences on limits that are met with almost no margin, and on the yield.
 
     The yield is the share of actuators that meet all limits in spite of scatter. The result is
     empty if a requirement is missed, or if the search already included scatter (robust search).

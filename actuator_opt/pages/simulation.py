@@ -583,7 +583,7 @@ def _bench(simulation: Simulation) -> list[Tile]:
 
 
 def _blocks(simulation: Simulation, more: Sequence[str]) -> Iterator[Block]:
-    """Results and controller side by side; on the terminal also step and energies; accuracy."""
+    """Results beside the controller; on the terminal step and energies; then the accuracy."""
     sentences = trust(simulation, more)
     notes = Notes("Basis of these results", [tied(words) for words in sentences])
     tables = [block for block in (_results(simulation), _controller(simulation)) if block]

@@ -43,8 +43,7 @@ LAND_SHARE = 0.5
 """Default ratio of land width to ring width (our choice)."""
 
 ROOM = 0.1
-"""Excess of the O-ring's width over the ring width that the groove permits, as a share of the ring
-width."""
+"""The O-ring may be wider than the step ring by up to this share of the step ring's width."""
 
 ENERGISER_ELEMENTS = 96
 """Number of elements around the O-ring. With 64, some load steps do not converge, and others give a
