@@ -305,7 +305,7 @@ def _metric(quantity: Quantity, value: float | None) -> str:
 
 
 def comparison_figure(comparison: Comparison) -> Ink:
-    """For every question, a bar to scale for each design; a part has the same fill in all.
+    """For every question, a bar to scale for each design; a part has one fill in every bar.
 
     The figure is drawn directly, because a `Chart` has no stacked bars with sums and a key of the
     parts.
