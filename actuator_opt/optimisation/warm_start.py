@@ -1,9 +1,9 @@
 """Re-solves problems near an optimum, and predicts how the optimum moves.
 
-The starts are the local optima of the original search, whose Hessians are computed once. Full steps
-follow, then restoration and descent (`resolve.ladder`). If these fail, a search from `STARTS`
-starts follows. If that finds no design, the original search is repeated. So every problem that the
-original search can solve is solved.
+A new search starts at the local optima of the original search, whose Hessians are computed once. It
+takes full SQP steps first, then tries restoration and descent (`resolve.ladder`). If these fail, a
+short search from `STARTS` starting points follows; if that finds no design, the original search is
+repeated. So every problem that the original search can solve is solved.
 """
 
 from __future__ import annotations
@@ -26,22 +26,22 @@ from .solution import MET, Outcome, Solution
 from .solver import solve
 
 Stop = Callable[[], bool]
-"""Called between steps; True stops the search."""
+"""Function that is called between steps; if it returns True, the search stops."""
 
 STARTS = 3
 """Number of starts in the search that follows if the steps fail."""
 
 SAMPLES = 1024
-"""Number of sweep points in the search that follows if the steps fail."""
+"""Number of designs sampled in the search that follows if the steps fail; it starts at the best."""
 
 AGREES = 1e-9
-"""Largest difference of margins, due to rounding errors, at which changing a parameter and building
-the problem anew count as the same."""
+"""Largest difference of margins that counts as a rounding error. It serves to check that changing a
+parameter of the model gives the same margins as building the problem again with the new value."""
 
 
 @dataclass(frozen=True, slots=True)
 class SearchEffort:
-    """Settings of a search: number of starts, number of sweep points, and random seed."""
+    """Settings of a search: number of starts, number of designs sampled for them, random seed."""
 
     starts: int
     samples: int
@@ -57,8 +57,8 @@ class LinearPath:
     below, above : slope of the objective if the parameter decreases and if it increases; infinite
         if no feasible design remains
     moves : change of each variable (n,) per unit of the parameter
-    low, high : on each side, change of the parameter at which the set of active limits first
-        changes, and a description of this event; None if the set does not change
+    low, high : if the parameter decreases (low) or increases (high): its change at which the set of
+        active limits first changes, and a description of that event; None if the set stays the same
     """
 
     below: float
@@ -169,12 +169,12 @@ class WarmStart:
         return optima
 
     def line(self, changes: Mapping[str, float], size: float = 1.0) -> LinearPath:
-        """The optimum as a linear function of a joint change of several numbers.
+        """The optimum as a linear function of one parameter that changes several numbers at once.
 
         Parameters
         ----------
-        changes : difference of each number by PATH
-        size : change of 100 %, as a multiple of this joint change
+        changes : change of each number, by PATH, per unit of the parameter
+        size : value of the parameter that counts as a change of 100 %
         """
         optimum = self.optimum
         derivatives = self._along(changes, size)
@@ -264,7 +264,7 @@ class WarmStart:
     def _stepped(
         self, evaluator: Evaluator, valleys: Sequence[Valley]
     ) -> tuple[Point | None, Vector | None]:
-        """Optimum reached from the known optima, and a feasible point (nf,); None if not found."""
+        """Optimum reached from the known optima, and a feasible point; each None if not found."""
         problem = evaluator.problem
         parametric = ParametricProblem(problem, (), np.zeros(0), lambda x, _: problem.evaluate(x))
         if not valleys or not applicable(parametric, evaluator):
@@ -286,7 +286,9 @@ class WarmStart:
         values: Sequence[float],
         rebuilt: Callable[[float], ActuatorProblem],
     ) -> bool:
-        """Whether the number acts only as a parameter; checked at its lowest and highest value.
+        """Whether changing the number in the model gives the same problem as building it again.
+
+        This is checked at the lowest and the highest value.
 
         Some numbers act not only as inputs of the models: temperatures, for example, also change
         the factors on material properties.

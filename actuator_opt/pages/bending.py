@@ -101,13 +101,13 @@ def _blocks(bending: BendingResult) -> Iterator[Block]:
 def _basis(bending: BendingResult) -> list[str]:
     """Sources of the confidence intervals, energy lost in the load cycle, and share of shear."""
     section = (
-        "the second moment of area causes the same error"
+        "a relative error of the second moment of area causes the same error"
         if bending.specimen.outer_diameter is None
-        else "the outer diameter at least four times the error"
+        else "a relative error of the outer diameter causes at least four times this error"
     )
     words = [
         "the 95 % bounds include only the noise of the record; a relative error of the span "
-        f"causes three times this error in the modulus, and an error of {section}"
+        f"causes three times this error in the modulus; {section}"
     ]
     if bending.hysteresis is not None:
         cycles = "the cycle loses" if bending.cycles == 1 else f"{bending.cycles} cycles lose"

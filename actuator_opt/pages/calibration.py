@@ -65,7 +65,7 @@ def page(calibration: Calibration, redesign: Redesign, bench: Bench) -> Page:
 
 
 def verdict(redesign: Redesign) -> Verdict:
-    """The badge: whether the design meets its requirements with the measured values."""
+    """Badge at the top: whether the design meets its requirements with the measured values."""
     total = len(redesign.evaluation.requirements)
     met = sum(row.met for row in redesign.evaluation.requirements)
     lines = [f"as tested: {met} of {total} requirements met"]
@@ -244,7 +244,7 @@ def _change(
 
 
 def _tight(redesign: Redesign) -> int:
-    """Number of limits without reserve in the best calibrated design; 0 without such a design."""
+    """Number of limits that the best calibrated design meets with almost no margin."""
     best = redesign.best_after
     return len(best.tight) if best is not None and solved(best) else 0
 
@@ -253,8 +253,12 @@ def remarks(calibration: Calibration, redesign: Redesign) -> list[str]:
     """Sentences on changed values, on values that were not measured, and on doubts."""
     said = list(redesign.sentences)
     if count := _tight(redesign):
-        said.append(f"{count_words(count)} at the best design, which meets these limits only just")
-    said += [f"{key} keeps the value of the design: {why}" for key, why in calibration.left.items()]
+        words = "at the best design, which meets these limits with almost no margin"
+        said.append(f"{count_words(count)} {words}")
+    said += [
+        f"{key} keeps the value that the design states: {why}"
+        for key, why in calibration.left.items()
+    ]
     said += calibration.doubts
     return [sentence(text.pretty(words)) for words in dict.fromkeys(said)]
 
@@ -333,7 +337,7 @@ def _margins(redesign: Redesign) -> Panel:
 
 
 def _span(shift: Shift) -> tuple[float, float, float, float]:
-    """Margin before, margin after, and lower and upper confidence bound of the latter [%]."""
+    """Margin before, margin after, and confidence bounds of the margin after [%]."""
     before, after = (100 * (row.margin or 0.0) for row in (shift.before, shift.after))
     if shift.lower is None or shift.upper is None or shift.after.limit == 0:
         return before, after, after, after

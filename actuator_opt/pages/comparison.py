@@ -69,7 +69,7 @@ def page(comparison: Comparison) -> Page:
 
 
 def _verdict(comparison: Comparison) -> Verdict:
-    """The badge: how many designs meet their requirements."""
+    """Badge at the top: how many designs meet their requirements."""
     every = len(comparison.labels)
     met = sum(evaluation.met for evaluation in comparison.evaluations)
     words = f"{met} OF {every} MEET THEIR REQUIREMENTS"
@@ -146,9 +146,9 @@ def sentences(comparison: Comparison) -> list[str]:
 
 
 def unlike(comparison: Comparison) -> list[str]:
-    """Sentences on metrics that cannot be compared.
+    """Sentences on metrics that cannot be compared between the designs.
 
-    For some designs the smallest value of such a metric is the worst value, for others the largest.
+    The worst value of such a metric is the smallest for some designs and the largest for others.
     """
     lines = []
     for metric, senses in comparison.unlike.items():
@@ -305,7 +305,7 @@ def _metric(quantity: Quantity, value: float | None) -> str:
 
 
 def comparison_figure(comparison: Comparison) -> Ink:
-    """For every question, a bar to scale for each design; equal parts have equal fills.
+    """For every question, a bar to scale for each design; a part has one fill in every bar.
 
     The figure is drawn directly, because a `Chart` has no stacked bars with sums and a key of the
     parts.

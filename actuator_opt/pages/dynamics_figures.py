@@ -65,7 +65,7 @@ def minimum(x: float, y: float) -> Points:
 
 
 def _frequency_panel(study: DynamicsStudy, requirements: Sequence[Requirement]) -> Panel:
-    """Natural frequency along the stroke: with closed ports, and with the design's lines."""
+    """Natural frequency along the stroke: with closed ports, and with the hydraulic lines."""
     xs = [1000.0 * float(x) for x in study.position]
     closed = [float(f) for f in study.closed_frequency]
     ended = [float(f) for f in study.frequency]

@@ -154,7 +154,7 @@ def _verdict(fitted: Fitted, *, missed: bool) -> str:
         return f"at its {fitted.at_bound} bound"
     if not fitted.parameter.identifiable:
         return fitted.parameter.verdict
-    return "identified only if the model is exact" if missed else "identified"
+    return "identified if the model is exact" if missed else "identified"
 
 
 def remarks(overlay: Overlay, fit: Fit | None) -> list[str]:

@@ -111,7 +111,7 @@ def best_values(optimisation: Optimisation, room: float) -> list[Block]:
 
 
 def heading(optimisation: Optimisation) -> str:
-    """Heading for the column of values: "optimum", "continuous", or the kind of sizes."""
+    """Heading for the column of values: "optimum", "continuous" (before rounding), or the sizes."""
     if optimisation.rounding is None:
         return "optimum"
     return "continuous" if optimisation.made is None else optimisation.made.name
@@ -287,7 +287,7 @@ def rounding_notes(optimisation: Optimisation) -> list[str]:
 
 
 def _sizes(optimisation: Optimisation, sizes: Mapping[str, float]) -> str:
-    """Sizes with their PATHs in words; endings of PATHs that follow from the value are omitted."""
+    """Sizes in words, each with its PATH but without a final ".thickness" or ".angle"."""
     words = []
     for path, value in sizes.items():
         quantity = quantity_of(path, optimisation.design)
@@ -404,7 +404,7 @@ def _bounds(card: Infeasibility) -> Block:
 
 
 def _closes(gain: float, total: float | None) -> str:
-    """Share of the gap that is closed if a bound is widened by 1 %."""
+    """Share by which the total relaxation needed falls if a bound is widened by 1 %."""
     return f"{text.number(min(gain / total, 100.0), 2)} %" if total else DASH
 
 

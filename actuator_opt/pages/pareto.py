@@ -97,7 +97,7 @@ def front_outcome(front: ParetoFront) -> dict[str, Any]:
 
 
 def verdict(front: ParetoFront) -> Verdict:
-    """The badge, with doubts about the design that was fully evaluated (the knee or the first)."""
+    """Badge at the top, with doubts about the design evaluated in full (the knee or the first)."""
     tight = len(front.evaluation.tight)
     plain, cautions = doubts(front.evaluation)
     if tight:
@@ -245,7 +245,7 @@ def remarks(front: ParetoFront) -> list[str]:
 
 
 def _wide(front: ParetoFront) -> Iterator[str]:
-    """Wide gaps and their reasons."""
+    """Sentences on wide gaps between neighbouring designs of the front, with the reasons."""
 
     def between(gaps: Sequence[FrontGap]) -> str:
         return ", ".join(f"{gap.after + 1} and {gap.after + 2}" for gap in gaps)

@@ -21,7 +21,7 @@ LEAST_MOVE = 1e-4
 LEAST_EFFECT = 1e-5
 """Smallest change of the objective that is drawn, as a share of the objective."""
 NO_DESIGN = "no design"
-"""Words beside a bar if no feasible design exists for its change."""
+"""Words beside a bar if no feasible design exists for the changed limit or parameter."""
 
 
 def price_blocks(optimisation: Optimisation, *, moving: bool = False) -> list[Block]:

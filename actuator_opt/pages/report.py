@@ -140,7 +140,7 @@ def prices_page(optimisation: Optimisation) -> Page:
 def parts_of(subject: Evaluation | Optimisation) -> tuple[Evaluation, Optimisation | None]:
     """The evaluation to show and, if it results from an optimisation, that optimisation.
 
-    If sizes were requested and possible, the evaluation is that of the design with these sizes.
+    If rounding to available sizes was requested and possible, the rounded design is evaluated.
     """
     if isinstance(subject, Optimisation):
         return subject.best_evaluation, subject
@@ -209,7 +209,7 @@ def sentences(optimisation: Optimisation) -> list[str]:
 
 
 def reserve_sentences(subject: Evaluation | Optimisation) -> list[str]:
-    """Sentences on limits without reserve, and on the yield.
+    """Sentences on limits that are met with almost no margin, and on the yield.
 
     The yield is the share of actuators that meet all limits in spite of scatter. The result is
     empty if a requirement is missed, or if the search already included scatter (robust search).
@@ -228,7 +228,7 @@ def _sentence(subject: Evaluation | Optimisation) -> str:
 
 
 def verdict(subject: Evaluation | Optimisation) -> Verdict:
-    """The badge: state, words, numbers of requirements and checks met, and doubts.
+    """Badge at the top of the page: state, words, counts of met limits, and doubts.
 
     `cautions` are lines in amber: limits without reserve, unverified values, values outside a
     model's range.

@@ -70,7 +70,7 @@ def blocks(study: SealStudy) -> list[Block]:
 
 
 def series(film_map: FilmMap) -> list[Series]:
-    """A map as columns, with a row per pressure and speed; cells without an oil film are empty."""
+    """A friction map as columns, a row per pressure and speed; cells without oil film are empty."""
     speeds, pressures = film_map.speeds.tolist(), film_map.pressures.tolist()
     return [
         Series("sealed pressure [bar]", [p / 1e5 for p in pressures for _ in speeds], 6),

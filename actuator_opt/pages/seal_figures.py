@@ -189,9 +189,10 @@ def _speed_panel(
 
 
 def _breakaways(study: SealStudy, curves: FilmMap) -> list[Points]:
-    """Breakaway friction at the pressures of the curves; for two rings, only the operating point.
+    """Breakaway friction at the pressure of every curve; for two rings, only at one pressure.
 
-    The oil films determine the pressure between two rings, and at standstill there is no film.
+    This is the pressure of the operating point. At others, the pressure between the rings is not
+    known: it follows from their oil films, which do not exist at standstill.
     """
     point, rim = study.drive, 1e3 * float(curves.speeds[0])
     if len(point.rings) > 1:

@@ -163,7 +163,7 @@ def _parts(ink: Ink, frame: _Frame, outlines: Sequence[Outline]) -> None:
 
 
 def _edges(outline: Outline, frame: _Frame) -> list[list[Point]]:
-    """Lines of an outline in both halves, except on the axis and where polygons of a part touch."""
+    """Lines of an outline above and below the axis, except where polygons of a part touch."""
     segments = []
     for index, polygon in enumerate(outline.polygons):
         for a, b in zip(polygon, [*polygon[1:], polygon[0]], strict=True):

@@ -138,7 +138,7 @@ def series(simulation: Simulation) -> list[Series]:
 
 
 def _grid(simulation: Simulation) -> tuple[Array, Array]:
-    """Evenly spaced times [s], and indices of their samples (if two have one time, the later)."""
+    """Evenly spaced times [s], and indices of the samples there (at a jump, of the later one)."""
     time, duration = simulation.time, simulation.scenario.duration
     step = simulation.scenario.sample_time or duration / SAMPLES
     count = max(round(duration / step), 1)
@@ -312,7 +312,10 @@ def results(simulation: Simulation) -> list[ShownResult]:
 
 
 def reasons(simulation: Simulation) -> dict[str, list[str]]:
-    """By reason: the results that have no value because of it; expected reasons are left out."""
+    """Reasons for missing values, each with the results that it concerns.
+
+    Reasons that the scenario makes obvious are left out, unless the result has a requirement.
+    """
     missing: dict[str, list[str]] = {}
     limited = {requirement.metric for requirement in simulation.requirements}
     bench = simulation.scenario.held_ports is not None
@@ -395,7 +398,11 @@ def gain_margin(ratio: float) -> str:
 
 
 def sound(simulation: Simulation) -> bool:
-    """Whether the balances close, powers and energies agree, and both integrators agree."""
+    """Whether the run can be trusted.
+
+    For this, the balances of oil mass and energy must close, the sampled powers must agree with the
+    energies, and the second integrator (if any) with the first.
+    """
     balance, second = simulation.balance, simulation.second
     closed = max(balance.mass, balance.energy) < CLOSED and not doubts(simulation)
     return closed and (second is None or second.max_difference < AGREE)
@@ -576,7 +583,7 @@ def _bench(simulation: Simulation) -> list[Tile]:
 
 
 def _blocks(simulation: Simulation, more: Sequence[str]) -> Iterator[Block]:
-    """Results and controller side by side; on the terminal also step and energies; accuracy."""
+    """Results beside the controller; on the terminal step and energies; then the accuracy."""
     sentences = trust(simulation, more)
     notes = Notes("Basis of these results", [tied(words) for words in sentences])
     tables = [block for block in (_results(simulation), _controller(simulation)) if block]

@@ -178,7 +178,7 @@ def _load(simulation: Simulation) -> Array | None:
 def _at_unit(simulation: Simulation) -> str:
     """Name of the signal for the pressure at the pump or accumulator.
 
-    A pipe may separate them from the valve.
+    Between the pump or accumulator and the valve there may be a pipe.
     """
     return "pressure_unit" if "pressure_unit" in simulation.signals else "pressure_supply"
 
@@ -208,9 +208,9 @@ POWERS: dict[str, Callable[[Simulation], Array | None]] = {
 
 
 def _summed(simulation: Simulation) -> tuple[dict[str, Array], dict[str, float]]:
-    """Energy over time [J] for every energy flow of known power, and its error at the end.
+    """For every energy flow of known power: energy over time [J], and its error at the end.
 
-    Energy that leaves the machine is positive, but energy of the supply is positive if it enters.
+    Energy that leaves the machine is positive; only for the supply, energy that enters is positive.
     The error is the difference from the energy that the simulation integrated, as a share of all
     energy.
     """
@@ -233,7 +233,7 @@ def _summed(simulation: Simulation) -> tuple[dict[str, Array], dict[str, float]]
 def over_time(simulation: Simulation) -> dict[str, Array]:
     """The largest energies over time [J].
 
-    Energy that leaves the machine is positive, but energy of the supply is positive if it enters.
+    Energy that leaves the machine is positive; only for the supply, energy that enters is positive.
     An energy flow is left out if the integral of its sampled power differs by more than `AGREES`
     from the energy that the simulation integrated.
     """

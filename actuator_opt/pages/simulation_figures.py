@@ -85,7 +85,8 @@ MOVED = 0.02
 """Evaluation windows are drawn over position, not over time, if they cover more than this share of
 the stroke (our choice)."""
 MOST_WINDOWS = 40
-"""Most evaluation windows drawn as points with error bars; more are drawn as a line with a band."""
+"""Largest number of evaluation windows drawn as points with error bars. If there are more, they are
+drawn as a line with a band."""
 CYCLES = 3
 """Number of cycles drawn of the force-position loop."""
 Static = tuple[Array, Array]
@@ -113,7 +114,7 @@ class Strip(NamedTuple):
 
 
 def parts(simulation: Simulation, measured: Measured, static: Static | None) -> list[FigurePart]:
-    """The panels for the kind of run, drawn beside its signals over time; most important first."""
+    """Panels that suit the kind of run (such as a step response), the most important first."""
     made: list[FigurePart] = []
     if simulation.servo is not None:
         panel = step_panel(simulation, simulation.servo, measured)

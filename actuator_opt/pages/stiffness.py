@@ -54,7 +54,7 @@ def stiffness_blocks(evaluation: Evaluation, *, curve_shown: bool = True) -> lis
 
 
 def _terminal_curve(curve: StrokeCurve, required: Requirement | None) -> TerminalFigure:
-    """A small curve with the required stiffness, the minimum, and the shares at the minimum."""
+    """A small curve with the required stiffness, its minimum, and each part's share there."""
     points = [
         (1000.0 * float(x), float(k) / 1e6)
         for x, k in zip(curve.position, curve.stiffness, strict=True)

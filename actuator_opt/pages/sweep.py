@@ -61,13 +61,13 @@ def counts(swept: Swept) -> str:
 
 
 def _verdict(swept: Swept) -> Verdict:
-    """Badge: whether any design is feasible, and how many of the best have almost no margin."""
+    """Badge at the top: whether any design is feasible, and how many of the best lack margin."""
     if not swept.best:
         words = "NO OBJECTIVE VALUE" if swept.feasible else "NO FEASIBLE DESIGN"
         return Verdict("missed", words)
     tight = sum(best.margin < NO_RESERVE for best in swept.best)
     limit = f"least margin below {100 * NO_RESERVE:g} %"
-    cautions = [f"{tight} of the best designs without reserve: {limit}"] if tight else []
+    cautions = [f"{tight} of the best designs: no reserve ({limit})"] if tight else []
     return Verdict("checks" if tight else "met", "FEASIBLE", cautions=cautions)
 
 

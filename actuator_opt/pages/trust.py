@@ -263,9 +263,9 @@ def convergence(optimisation: Optimisation) -> list[str]:
             f"{text.value_text(objective, value)} ({_missed(violation)} at {count})"
             for count, value, violation in picked
         )
-        lines.append(f"Improvements (limits, at evaluation number): {path}.")
+        lines.append(f"Improvements (limits met or missed, at evaluation number): {path}.")
     if optimisation.kkt is not None and optimisation.kkt.active:
-        lines.append(f"Active at the optimum: {', '.join(optimisation.kkt.active)}.")
+        lines.append(f"Limits active at the optimum: {', '.join(optimisation.kkt.active)}.")
     return lines
 
 

@@ -78,7 +78,7 @@ def series(study: Uncertainty) -> list[Series]:
 
 
 def verdict(study: Uncertainty) -> Verdict:
-    """The badge: whether the nominal design meets its requirements, and the yield."""
+    """Badge at the top: whether the nominal design meets its requirements, and the yield."""
     known = [limit for limit in study.required if limit.margin is not None]
     met = sum(limit.margin >= -TOLERANCE for limit in known if limit.margin is not None)
     tight = sum(without_reserve(limit.margin, limit.limit) for limit in known)
@@ -430,7 +430,7 @@ def tornado(uncertainty: Uncertainty, output: str, *, width: float = 180.0) -> I
 
 
 def _changes(swing: Swing, centre: float, factor: float) -> tuple[float | None, float | None]:
-    """Changes of the output at the upper and lower end of an input, in display units."""
+    """Changes of the output if an input is at its 95 % and its 5 % quantile, in display units."""
 
     def change(value: float | None) -> float | None:
         if value is None or not math.isfinite(value):

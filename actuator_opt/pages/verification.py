@@ -15,8 +15,9 @@ from .simulation import label, tied
 
 HEADS = ("requirement", "limit", "evaluation", "linear", "simulated", "difference", "holds")
 BESIDE = 0.02
-"""Least relative difference between two results of the linear model that is reported: the worst
-result, and the result at the position of the time simulation."""
+"""A requirement is marked "beside" if the worst linear result, and the linear result at the
+position and spool direction of the time simulation, differ by more than this share of the
+former."""
 MEANING = (
     "Evaluation: worst result of the linear models. Linear: result of the same models at the "
     "position of the experiment and with the valve spool open in the same direction; the "
@@ -148,7 +149,7 @@ def _name(row: VerifiedRequirement) -> str:
 
 
 def _beside(row: VerifiedRequirement) -> bool:
-    """Whether the linear result is clearly worse at a position where no simulation can start."""
+    """Whether the linear result is clearly worse at a point that the experiment cannot check."""
     if row.stated is None or row.linear is None:
         return False
     return abs(row.stated - row.linear) > BESIDE * abs(row.stated)

@@ -483,7 +483,7 @@ def _differences(evaluation: Evaluation, study: WallStudy) -> Block:
         note += " It does not include autofrettage."
     rows = [row(difference) for difference in study.differences]
     return Table(
-        "Barrel wall: exact tube against thin laminate", columns, rows, note=note, on="paper"
+        "Barrel wall: exact tube compared with thin laminate", columns, rows, note=note, on="paper"
     )
 
 

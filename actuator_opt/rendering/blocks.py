@@ -161,15 +161,15 @@ class Slot:
 
 
 FARTHEST = 0.3
-"""Relative change at which the bar of a `Reach` ends; its ticks are at a third of this."""
+"""Relative change at which the bar of a `Reach` has its full length; ticks mark a third of it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """Bar for the relative change of a value up to which a result (such as a price) holds.
+    """Bar that shows how far a value may change before a result (such as a price) no longer holds.
 
-    If `change` is None, the result holds over the whole tested range. `met` is False if the result
-    is inaccurate within this range.
+    `change` is this relative change; None if the result holds over the whole tested range. `met` is
+    False if tests within that range show that the result is inaccurate.
     """
 
     change: float | None
@@ -330,7 +330,7 @@ Block: TypeAlias = Table | Drawing | Chart | TerminalFigure | Notes | Listing | 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """The badge: state, words in capitals, plain lines below, and cautions in amber."""
+    """Badge at the top of a page: state, words in capitals, plain lines, and cautions in amber."""
 
     state: State
     text: str

@@ -204,7 +204,7 @@ def _area(axes: Axes, area: Area, y: Scale, x: Scale) -> None:
 
 
 def _band(axes: Axes, curve: Curve, y: Scale, x: Scale) -> None:
-    """Draw the band around a curve; on a log axis, bounds at or below zero go to its end."""
+    """Draw the band around a curve; a log axis shows bounds at or below zero at its lower end."""
     xs, low, high = x.at(curve.xs), y.at(curve.low), y.at(curve.high)
     low = np.where(np.asarray(curve.low) <= 0, np.fmax(low, axes.y_range[0]), low)
     inside = (xs >= axes.x_range[0]) & (xs <= axes.x_range[1])

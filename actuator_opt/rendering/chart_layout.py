@@ -67,7 +67,7 @@ GAP, ROW, BELOW = 6.0, 3.7, 2.2
 FOOT, APART = 8.4, 1.8
 """Height of ticks and label below a frame, and gap to the title of the next frame [mm]."""
 OVER = 2.8
-"""Height of a line of words directly above a frame; these words name a position on x [mm]."""
+"""Height of a text row directly above a frame, for the name of a marked position on x [mm]."""
 LEAST = 4.0
 """Least height of a frame [mm]."""
 RIGHT, NAMES = 26.0, 36.0
@@ -123,7 +123,7 @@ class Frame:
 
     @property
     def over(self) -> int:
-        """Number of lines of words above the frame that name positions on x."""
+        """Number of text rows above the frame, for the names of marked positions or ranges of x."""
         if self.why:
             return 0
         named = (part.words for part in self.panel.stretches if part.words)

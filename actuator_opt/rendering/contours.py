@@ -60,7 +60,7 @@ def shades(count: int) -> list[str]:
 def bands(
     axes: Axes, xs: Sequence[float], ys: Sequence[float], table: Any, bounds: Sequence[float]
 ) -> None:
-    """Draw bands between levels, with a thin line at every level.
+    """Shade the bands between the levels `bounds`, with a thin line at every level.
 
     Between grid points, the logarithm of the value is interpolated bilinearly.
     """

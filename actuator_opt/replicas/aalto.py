@@ -100,7 +100,7 @@ def stiffness_note(design: Design, figures: Sequence[Theory]) -> str:
         f"{other_cylinder(design)}{', '.join(parts)}{_moduli(design)} are assumed. The "
         "thesis prints no values of its curves, so only their form is compared. Why our "
         "values per chamber are lower: eq. 3 puts the totals of oil, barrel and hoses in "
-        "series, as if the stiff chamber's hose could help the other chamber's oil; and "
+        "series, as if the hose of one chamber could support the oil of the other; and "
         "eq. 23 uses the annulus area for the wall too (too stiff by A_A/A_B = "
         f"{text.trimmed(ratio, 3)}). Together, they make the printed form up to "
         f"{percent(excess[0])} (eq. 37) and {percent(excess[1])} (eq. 38) stiffer. The "
@@ -167,9 +167,9 @@ def _air_down(test: StaticTest) -> str:
     largest = test.assumptions[3].down
     share = largest.range[0] / PAPER.moved_down[0]
     if math.isnan(share):
-        return f"{words}; our model then cavitates at every position."
+        return f"{words}; our model then predicts cavitation at every position."
     if share > 1 - SAME:
-        return f"{words}; our model then moves at no position less than was measured."
+        return f"{words}; our model then moves at least as far as was measured, at every position."
     place = test.position[int(np.nanargmin(largest.displacement))] / test.position[-1]
     where = "near the cap end" if place < 1 / 3 else "in the middle"
     where = "near the rod end" if place > 2 / 3 else where
@@ -230,7 +230,7 @@ def _pressures(test: StaticTest) -> str:
         f"The pressures show which chamber is softer: at {text.trimmed(1e3 * test.place)} "
         f"mm the rod chamber's pressure changes {text.trimmed(measured[0], 2)} (load up) and "
         f"{text.trimmed(measured[1], 2)} (load down) times as much as the head chamber's; evenly "
-        "spread air gives "
+        "spread air would give "
     )
     if not all(map(math.isfinite, even)):
         return words + "cavitation."
@@ -480,7 +480,7 @@ def dynamic_note(design: Design, test: DynamicTest) -> str:
         f"a reducing valve of our parameters, not those of the thesis ({numbers}), "
         f"{_valve(test)} {_throttle(test)} {_neighbours(test)} Along the stroke, the "
         f"stiffness at 20 Hz is {text.trimmed(low, 2)} to {text.trimmed(high, 2)} times "
-        f"the static stiffness, most at {text.trimmed(place, 3)} mm. {end} The check "
+        f"the static stiffness, highest at {text.trimmed(place, 3)} mm. {end} The check "
         "valves, which open in every half cycle, are not included in a linear model, so "
         "it overstates the effect of the throttle."
     )
@@ -757,7 +757,7 @@ def peak_table(evaluation: Evaluation) -> list[Block]:
             "flow coefficient",
             "around 0.611",
             f"{text.trimmed(needle.flow_coefficient, 3)} at 20 mm/s; "
-            f"{text.trimmed(needle.flow_coefficient_slow, 3)} at the base velocity",
+            f"{text.trimmed(needle.flow_coefficient_slow, 3)} at the highest load-case speed",
         ),
         (
             "pressure drop, needle open, 20 mm/s",

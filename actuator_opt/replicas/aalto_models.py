@@ -450,7 +450,7 @@ THROTTLE = Throttle(
 
 EQUAL_ENERGY = 4 / (3 * pi)
 """Share of a sine's amplitude at which a quadratic pressure loss is linearised, so that the
-tangent\ndissipates as much energy as the sine."""
+tangent dissipates as much energy as the sine."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -465,7 +465,7 @@ class Needle:
     """Reynolds number with the design's oil."""
     flow_coefficient: float
     flow_coefficient_slow: float
-    """Flow coefficient at the base velocity only."""
+    """Flow coefficient at the highest speed of the design's load cases."""
     drop: float
     """Pressure drop of the head side, fully open."""
     area: float

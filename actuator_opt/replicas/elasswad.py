@@ -202,9 +202,9 @@ def force_table(evaluation: Evaluation) -> list[Block]:
         f"{in_mm2(second)}, {text.number(first / PAPER.area, 2)} and "
         f"{text.number(second / PAPER.area, 2)} times the {in_mm2(PAPER.area)} of the "
         "bore, so forces and pressure losses cannot both belong to this cylinder. Our "
-        "forces cannot check those of the paper: ours apply at the "
-        f"{in_mpa(evaluation.design.supply.pressure)} assumed in the design, running and "
-        "at breakaway, and this pressure acts on the rod's ring on the instroke only."
+        "friction forces cannot be compared with the paper's. They apply, both for sliding and "
+        f"for breakaway, at the {in_mpa(evaluation.design.supply.pressure)} that the design "
+        "assumes, and this pressure loads the rod seal on the instroke only."
     )
     return [text_table("El Asswad 2018: friction force", COLUMNS, rows, note)]
 

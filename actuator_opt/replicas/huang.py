@@ -229,14 +229,19 @@ def _between_rows(study: HuangStudy) -> list[tuple[str, ...]]:
     if not np.any(np.isfinite(share)):
         return []
     above = np.flatnonzero(beyond > 1)
-    words = "at 6 MPa never above it up to " + speed_text(float(study.fast.speeds[-1]))
+    words = "at 6 MPa never higher than this pressure up to " + speed_text(
+        float(study.fast.speeds[-1])
+    )
     if above.size:
-        words = f"at 6 MPa above it from {speed_text(float(study.fast.speeds[above[0]]))}"
+        words = (
+            "at 6 MPa higher than this pressure at "
+            f"{speed_text(float(study.fast.speeds[above[0]]))} or more"
+        )
     return [
         (
             *claim("huang", "pressure_between"),
             f"{text.trimmed(float(np.nanmin(share)), 2)} to "
-            f"{text.trimmed(float(np.nanmax(share)), 2)} times the sealed pressure up to "
+            f"{text.trimmed(float(np.nanmax(share)), 2)} times the sealed pressure at up to "
             f"10 mm/s; {words}",
             holds(bool(above.size or np.nanmax(share) > 1)),
         )

@@ -387,7 +387,7 @@ def _pressure(table_1: Trends) -> str:
     said = table_1.coefficient.verdict(_index("hydraulic pressure"))
     ours = {
         "agrees": "our friction falls here too",
-        "disagrees": "our friction rises, as it must for a ring that is pressed on by the pressure",
+        "disagrees": "our friction rises, as it must for a ring whose contact the pressure loads",
     }.get(said, "our friction does not depend on pressure here")
     return (
         f"One row of the thesis is reversed: less {listed(odd)} cannot press a ring "

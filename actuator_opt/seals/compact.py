@@ -20,7 +20,7 @@ from .seal_type import (
 
 
 def contact(seal: SealSizes) -> SealContact:
-    """Contact of the face of a squeezed block."""
+    """Contact of a squeezed rubber block, on its face, with the counterface."""
     load = compact_seal.line_load(
         squeeze=seal["squeeze_left"],
         face_width=seal["land"],
@@ -42,7 +42,7 @@ def groove(sizes: Mapping[str, Array]) -> SealGroove:
 
 
 def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
-    """Outline of a block with the land as its face; a wider body tapers towards the land."""
+    """Outline of a block whose face has the width `land`; a wider body tapers towards the face."""
     width, depth, middle = sizes["width"], room.depth, room.middle
     land = min(sizes["land"], width)
     a, b = middle - width / 2, middle + width / 2

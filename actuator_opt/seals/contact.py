@@ -113,14 +113,15 @@ class SealContact:
     ----------
     line_load : normal force per length of circumference [N/m]
     width : contact width [m]
-    peak : highest contact pressure above the outer pressure [Pa], that on the side away from the
-        sealed pressure
+    peak : highest contact pressure [Pa], relative to the outer pressure, which is the pressure on
+        the side away from the sealed pressure
     profile : function that returns the static contact pressure above the outer pressure [Pa] at t =
         x/b; x is the distance from the sealed side, b the width
     excess : excess of the contact pressure over the oil pressure [Pa]; if it is not positive, the
         sealed pressure opens the contact, and the profile is that of a contact that just touches
-    profile_width : width of the profile [m]: the contact width; for an O-ring less, if a profile of
-        this width with this peak would carry more than the line load
+    profile_width : width of the profile [m]. It equals the contact width; for an O-ring it is
+        smaller if a profile as wide as the contact, with this peak, would carry more than the line
+        load
     """
 
     line_load: Array

@@ -43,7 +43,7 @@ LAND_SHARE = 0.5
 """Default ratio of land width to ring width (our choice)."""
 
 ROOM = 0.1
-"""Share of the ring width by which the O-ring, and so the groove, may be wider than the ring."""
+"""The O-ring may be wider than the step ring by up to this share of the step ring's width."""
 
 ENERGISER_ELEMENTS = 96
 """Number of elements around the O-ring. With 64, some load steps do not converge, and others give a
@@ -115,7 +115,7 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
 
 
 def faults(sizes: Mapping[str, float]) -> Iterable[SizeFault]:
-    """Faults if the O-ring, or land and relief together, are wider than the step ring."""
+    """Faults if the O-ring, or land and relief together, are too wide for the step ring."""
     width, section = sizes.get("width"), sizes.get("section")
     if width is None or section is None:
         return

@@ -36,7 +36,7 @@ _text = INPUTS["length"].text
 
 
 def contact(seal: SealSizes) -> SealContact:
-    """Contact of the rim of a lip."""
+    """Contact of a lip, at its rim, with the counterface."""
     pressure, thickness = seal["pressure"], seal["thickness"]
     side = 1.0 if seal.on_rod else -1.0
     lip = {

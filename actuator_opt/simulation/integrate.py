@@ -444,7 +444,7 @@ def integrate(
     sample_time : interval between the samples of the result [s]; the method chooses its own
         internal steps
     method : "lsoda", "radau" or "cvodes" (extra ``fast``)
-    relative : relative tolerance of a step; None for that of the method
+    relative : relative tolerance of a step; None for the usual tolerance of the method
 
     Raises
     ------
@@ -487,8 +487,8 @@ def integrate(
 def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> tuple[bool, ...]:
     """On/off flags of the equations after a restart of the integration.
 
-    There are two kinds of flags. An instant's flag is true after its time. A switch keeps its flag;
-    only at the very start, the flag follows from the sign of the switch's guard expression.
+    The flag of an instant (a given time) is true from that time on. The flag of a switch keeps its
+    value; only at the very start, it follows from the sign of the switch's guard expression.
     """
     instants = tuple(t + APART >= instant for instant in compiled.instants)
     if before:
@@ -499,9 +499,9 @@ def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> 
 
 
 def _margins(run: _Run, t: Array, states: Array, m: tuple[bool, ...]) -> tuple[Array, Array]:
-    """Guard expression of every switch, and its rate; arrays (switches, samples).
+    """Guard expression of every switch, and its time derivative; arrays (switches, samples).
 
-    Both have the sign for which the guard is positive until the switch changes next.
+    If a switch is off, both are negated, so the guard is positive until the switch changes.
     """
     signs = np.where(m[len(run.compiled.instants) :], 1.0, -1.0)[:, None]
     margin, slope = np.split(run.compiled.switches.at_samples(t, states.T, m), 2)

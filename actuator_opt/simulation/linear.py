@@ -611,7 +611,7 @@ def step_metrics(
 
     Samples are joined by straight lines. The settling band lies about the target, not about the
     final value. A response that comes to rest elsewhere thus has a steady-state error but no
-    settling time. A response also has none if it is in the band for less than the last tenth of the
+    settling time. It also has none if it enters the band for good only within the last tenth of the
     record. Band and overshoot are shares of the step.
 
     Parameters
@@ -683,7 +683,7 @@ def _crossing(t: np.ndarray, values: np.ndarray, at: int, level: float) -> float
 
 
 def _settling_time(t: np.ndarray, error: np.ndarray, band: float) -> float | None:
-    """Time after which the error stays in the band; None if only in less than the last tenth."""
+    """Time after which the error stays in the band; None if that time is in the last tenth."""
     beyond = np.flatnonzero(np.abs(error) > band)
     if not beyond.size:
         return 0.0

@@ -30,7 +30,8 @@ def drives(place: Place) -> Stroke:
     """Return the direction in which the counterface moves past a seal if oil drives the actuator.
 
     A piston that oil drives moves away from the sealed pressure. Relative to its seal, the bore
-    thus moves into the sealed chamber. If a load overruns the actuator, it moves out.
+    thus moves into the sealed chamber. (If a load overruns the actuator, the bore moves out of this
+    chamber.) A rod that oil drives moves out of the sealed chamber.
     """
     return "in" if place == "piston" else "out"
 

@@ -257,7 +257,7 @@ _NOT_WALLS = (*OIL, "pipes", "hoses")
 
 
 def _extra(done: ModelRun) -> float:
-    """Return the barrel length minus stroke and the lengths of piston and head [m]."""
+    """Return the barrel length minus stroke, minus piston length, minus head length [m]."""
     g = done.geometry
     return first_case(g.barrel_length - g.piston_length - g.head_length - g.stroke)
 

@@ -258,7 +258,7 @@ class Study:
         return self._quantities[metric]
 
     def place(self, name: str) -> int:
-        """Return the number of the column with this name (a PATH, a metric or a verdict)."""
+        """Return the number of the column with this name: a PATH, a metric or, e.g., `MARGIN`."""
         return next(k for k, column in enumerate(self.columns) if column.name == name)
 
     @property

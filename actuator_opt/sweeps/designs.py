@@ -1,4 +1,4 @@
-"""Prepare the designs of a sweep: most numbers vary as arrays, others need a new design each."""
+"""Prepare the designs of a sweep; most numbers vary as arrays, the others in separate designs."""
 
 from __future__ import annotations
 
@@ -52,9 +52,9 @@ class _Variation(NamedTuple):
 class Designs:
     """The designs of a sweep plan, each prepared when it is needed.
 
-    `apart` are the PATHs of numbers that need a new design for each value, such as temperatures
-    that change strengths. `InputError` is raised for a number that no model reads in any
-    combination of texts (choices such as materials).
+    `apart` are the PATHs of numbers that cannot vary as an array, so that a design is built for
+    each value; an example are temperatures that change strengths. `InputError` is raised for a
+    number that no model reads in any combination of texts (choices such as materials).
     """
 
     design: Design
@@ -112,7 +112,7 @@ class Designs:
 
     @property
     def apart_count(self) -> float:
-        """Return how many designs the `apart` numbers require; infinite if one has a range."""
+        """Return how many designs must be built for the `apart` numbers; infinite for a range."""
         count = 1.0
         for axis in self.plan.numeric:
             if axis.path in self.apart:
@@ -139,7 +139,7 @@ class Designs:
         return varies
 
     def _varies_in(self, axis: SweepAxis, texts: Mapping[str, str]) -> _Variation:
-        """Whether one array of all `_test_values` gives the same results as a design for each."""
+        """Whether an array of all test values gives the same results as separate designs."""
         separate: dict[float, Many] = {}
         for value, mandatory in _test_values(axis):
             if len(separate) >= 2 and not mandatory:
@@ -165,8 +165,8 @@ class Designs:
     def alike(self, points: SweepPoints) -> Iterator[tuple[Array, int, dict[str, float]]]:
         """Group the points that share a prepared design.
 
-        Yield for each group the indices of its points, the number of its text combination, and the
-        values of its `apart` numbers by PATH.
+        Yield for each group the indices of its points, the number of its combination of texts, and
+        the values of its `apart` numbers by PATH.
         """
         paths = [axis.path for axis in self.plan.numeric]
         separate_axes = [k for k, path in enumerate(paths) if path in self.apart]

@@ -277,7 +277,7 @@ def _other_models(path: Path) -> InputError:
 def _thinned(
     reader: Reader, stored: StoredRows, study: Study, count: int, most: int
 ) -> tuple[list[bytes], Array, int]:
-    """Return keys and numbers of evenly spread rows and the best rows; count the valid rows."""
+    """Return keys and numbers of evenly spread and of the best rows; and the valid rows' count."""
     step = -(-count // most)
     keys: list[bytes] = []
     numbers: list[Array] = []
@@ -320,7 +320,7 @@ def _text_numbers(
     variants: tuple[dict[str, str], ...],
     path: Path,
 ) -> Array:
-    """Return the index of the text combination of each row, found from its database key."""
+    """Return, for each row, the index of its combination of texts, found by the row's key."""
     data = np.ascontiguousarray(numbers[:, : len(study.order)], dtype="<f8")
     heads = [key_head(texts) for texts in variants]
     text_numbers = np.empty(len(keys), dtype=np.int64)

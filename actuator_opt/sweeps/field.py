@@ -100,7 +100,7 @@ class Field:
         """Return curves with their points moved to zero margin.
 
         Points move along the grid edge between a node that meets the limit and a node that misses
-        it. They are not moved if a varied number needs a newly prepared design for every value.
+        it. They are not moved if a design must be built for every value of a varied number.
         """
         if self.study.designs.apart or not curves:
             return list(curves)
@@ -199,7 +199,7 @@ def require_grid(plan: Plan) -> None:
 
 
 def _cut_away(study: Study, margins: Array) -> Array:
-    """Return the nodes with a negative wall or clearance; delete the other margins there."""
+    """Return which nodes have a negative wall or clearance; set all other margins there to NaN."""
     shapes = np.array([limit.origin == "geometry" for limit in study.binding])
     cut_away: Array = (margins[shapes] < NOTHING).any(axis=0)
     for number in np.flatnonzero(~shapes):

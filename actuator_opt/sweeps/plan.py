@@ -37,7 +37,7 @@ DESCRIPTIVE = frozenset({"name", "notes", "reproduces", "waivers", "objective"})
 class SweepAxis:
     """A varied PATH with its values: numbers (SI), or texts such as names of materials.
 
-    Each text needs its own design. A range has its two ends as `values`, and `count` points;
+    A design is built for each text. A range has its two ends as `values`, and `count` points;
     `count` is None if the sweep method chooses the points.
     """
 
@@ -124,7 +124,9 @@ def _steps(text: str, count: str | None) -> int | None:
     steps = units.whole(count)
     if steps is None or steps < 2:
         raise UsageError(
-            Diagnostic(f"--vary {shown(text)}: {shown(count) or 'nothing'} steps", "give 2 or more")
+            Diagnostic(
+                f"--vary {shown(text)}: {shown(count) or 'no number of'} steps", "give 2 or more"
+            )
         )
     return steps
 
@@ -228,7 +230,10 @@ ROUNDS = 6
 
 @dataclass(frozen=True)
 class SweepPoints:
-    """Points of a sweep: index of the text combination of each point, and numbers (axes, n)."""
+    """Points of a sweep: for each point, the index of its combination of texts, and its numbers.
+
+    Texts are choices such as materials. The numbers are an array (axes, n), a column per point.
+    """
 
     variant: Array
     numbers: Array
@@ -242,7 +247,7 @@ class SweepPoints:
 class Plan:
     """Axes of a sweep, with method and number of its points.
 
-    Each text of a `named` axis needs its own design; the other axes vary numbers.
+    A design is built for each text of a `named` axis; the other axes vary numbers.
     """
 
     axes: tuple[SweepAxis, ...]
@@ -262,7 +267,7 @@ class Plan:
 
     @property
     def variants(self) -> int:
-        """Return the number of text combinations."""
+        """Return the number of combinations of texts (such as names of materials)."""
         return math.prod(axis.size for axis in self.named)
 
     def texts(self, variant: int) -> dict[str, str]:

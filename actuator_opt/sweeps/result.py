@@ -1,4 +1,4 @@
-"""Results of a sweep; of the rows for figures, only a limited number is kept, evenly spread.
+"""Results of a sweep, with a limited number of evenly spread rows for its figures.
 
 The Pareto lines of the figures are exact, as they take all rows into account.
 """
@@ -75,7 +75,7 @@ class Pool:
     rows: Array = field(default_factory=lambda: np.empty((0, 0)))
 
     def add(self, variants: Array, rows: Array) -> None:
-        """Add rows with the indices of their text combinations."""
+        """Add rows, each with the index of its combination of texts (such as materials)."""
         at = np.arange((-self.seen) % self.step, len(rows), self.step)
         self.seen += len(rows)
         if not len(at):
@@ -87,7 +87,7 @@ class Pool:
             self.variants, self.rows = self.variants[::2], self.rows[::2]
 
     def thinned(self, most: int) -> tuple[Array, Array, int]:
-        """Return at most `most` evenly spread rows, their text combinations, and the step k."""
+        """Return at most `most` evenly spread rows, the indices added with them, and the step k."""
         step = max(1, -(-len(self.rows) // most))
         return self.variants[::step], self.rows[::step], self.step * step
 

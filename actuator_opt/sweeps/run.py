@@ -146,8 +146,8 @@ SECTIONS = 16
 no design is feasible."""
 
 SMALL_CHUNK = 8
-"""Number of points in a chunk if each needs a new design, for which oil-film tables may have to be
-calculated."""
+"""Number of points in a chunk if a design is built for nearly every point, as this may include the
+calculation of oil-film tables."""
 
 LOCAL_SECONDS = 0.5
 """Remaining computing time [s] below which starting more processes does not save time."""
@@ -222,7 +222,7 @@ def sweep(
 
 
 def _chunk_size(study: Study) -> int:
-    """Return the number of points of a chunk; it is small if most points need a new design."""
+    """Return the number of points of a chunk; small if a design is built for nearly every point."""
     if study.designs.apart_count > CACHED:
         return SMALL_CHUNK
     return CHUNK if study.full else REDUCED

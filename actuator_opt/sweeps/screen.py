@@ -118,7 +118,9 @@ class Limits:
 
 @dataclass(frozen=True)
 class Screen:
-    """Compiled objective and limits of designs that differ in numbers (axes, n).
+    """Compiled objective and limits for n designs that differ only in their varied numbers.
+
+    These numbers are arrays (axes, n), with one row per varied number.
 
     `stages` are groups of limits. Each stage checks only the designs that passed the stages before
     it. The stages are compiled for arrays of `library`.

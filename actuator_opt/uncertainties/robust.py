@@ -134,7 +134,7 @@ def _prepared(design: Design, subject: PreparedDesign) -> PreparedDesign:
 
 
 class _FailureLevel:
-    """Failure probability allowed for each limit, adjusted to the share of draws that miss any."""
+    """Failure probability allowed for each limit, adjusted until a share `aim` of draws fails."""
 
     def __init__(self, aim: float) -> None:
         self.aim = self.value = aim

@@ -260,7 +260,7 @@ def _indices(
 
 
 def _swings(model: UncertainModel, outputs: Sequence[str]) -> tuple[Swing, ...]:
-    """Vary one input at a time to its `ENDS`, the others nominal; return the outputs."""
+    """Return the outputs with one input at a time at its quantiles `ENDS`, all others nominal."""
     if not model.inputs:
         return ()
     values = np.repeat(

@@ -339,7 +339,7 @@ def test_the_best_of_a_sweep_say_that_they_have_no_reserve(optimum):
     swept = ao.sweep(optimum.best, ["fluid.air_content=0.5 %,0.6 %"], workers=1)
     assert len(swept.best) == 1  # more air is less stiff
     shown = renderer.text(sweep.page(swept), colour=True)
-    assert "\x1b[33m1 of the best designs without reserve: least margin below 0.1 %" in shown
+    assert "\x1b[33m1 of the best designs: no reserve (least margin below 0.1 %)" in shown
     with_room = replace(swept.best[0], row=(*swept.best[0].row[:-3], 0.02, *swept.best[0].row[-2:]))
     swept.best[:] = [with_room]
     assert "without reserve" not in renderer.text(sweep.page(swept))

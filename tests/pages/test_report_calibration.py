@@ -91,7 +91,7 @@ def test_one_speed_lists_what_was_left():
     found = calibrated("one speed")
     said = " ".join(document.remarks(found.calibration, found.redesign))
     for key in ("breakaway_ratio", "stribeck_speed", "viscous_friction"):
-        assert f"{key} keeps the value of the design: one speed, 50 mm/s" in said
+        assert f"{key} keeps the value that the design states: one speed, 50 mm/s" in said
 
 
 def test_levels_of_pressure_are_drawn_apart():

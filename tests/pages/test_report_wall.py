@@ -57,7 +57,7 @@ def test_all_of_the_wall_is_on_the_page():
         "strength used through the wall",
         "strength ratios by every criterion",
         "from working pressure to burst",
-        "exact tube against thin laminate",
+        "exact tube compared with thin laminate",
         "thickness for another bore growth",
         "metal barrels for the same duty",
     ]

@@ -100,7 +100,7 @@ def test_axes_as_written():
         ("cylinder.bore=", "no values"),
         ("cylinder.bore=18..40 mm:x", "x steps"),
         ("cylinder.bore=18..40 mm:1", "1 steps"),
-        ("cylinder.bore=18..40 mm:", "nothing steps"),
+        ("cylinder.bore=18..40 mm:", "no number of steps"),
         ("cylinder.bore=20 mm..20 mm:3", "both ends of the range are equal"),
         ("cylinder.bore=20 mm,,30 mm", "one of the values is empty"),
         ("cylinder.bore=20 mm,20 mm", "a value is given twice"),

@@ -81,7 +81,7 @@ class _Labels:
 
 
 def _beside(lines: Sequence[Sequence[Point]], aside: float) -> Iterator[tuple[float, Point]]:
-    """Positions on lines and, with a penalty, to their right and left."""
+    """Candidate positions for words: on lines and, with a penalty, to their right and left."""
     for share, (x, y) in _candidates(lines):
         yield share, (x, y)
         yield share + 0.4, (x + aside, y)

@@ -124,7 +124,7 @@ def _directions(
         if (named := [name for name in metrics if ways[name] == way])
     ]
     if not all(exact for _, exact in lines.values()):
-        parts.append("Pareto lines only of the designs that were kept")
+        parts.append("Pareto lines include only the designs that were kept")
     words = "; ".join(parts)
     return words[:1].upper() + words[1:]
 
@@ -201,7 +201,7 @@ def _limits(drawn: SweepFigureData, axes: Axes, metric: str, *, upright: bool) -
 def _line(
     drawn: SweepFigureData, axes: Axes, pair: tuple[str, str], values: Array, exact: bool
 ) -> None:
-    """Draw the Pareto line as a staircase; for any point on its worse side, a design is better."""
+    """Draw the Pareto line as a staircase; no design lies on its better side."""
     if not values.shape[1]:
         return
     xs, ys = (

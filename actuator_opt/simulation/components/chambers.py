@@ -27,9 +27,9 @@ from . import valve
 from .circuit import Circuit
 
 DEEPEST = -12.0
-"""Limit of the travel into an end stop, counted from where half the dead volume is used up, and
-divided by half the length of the dead volume (our choice). At this limit, a share of 6e-6 of that
-half is still filled with oil."""
+"""Limit of the piston's travel into an end stop, in units of half the length of the dead volume,
+from the position at which half of this volume is left (our choice). At the limit, the oil left is
+e^-12 = 6e-6 times that half."""
 FLOOR = 1e-6
 """Lower limit of the absolute pressure in the formulas for oil and air [Pa], to guard against
 rounding."""
@@ -509,7 +509,7 @@ def _far(
 ) -> None:
     """Add the oil volume at the far end of the line, or behind the throttle.
 
-    If a line runs on beyond the throttle, each of these two places gets half of its volume.
+    If a line continues beyond the throttle, half of its far volume is placed at each of the two.
     """
     data = circuit.plant.lines[port.name]
     share = 0.5 if port.outer is not None and port.line is not None else 1.0

@@ -1,7 +1,7 @@
 """Fit parameters of a design to a measured record: least squares, with whole simulations.
 
 Residuals, and their derivatives by the parameters, come from simulations. The confidence intervals
-of the parameters follow from both.
+of the parameters follow from these residuals and derivatives.
 """
 
 from __future__ import annotations
@@ -59,8 +59,8 @@ are small differences between two simulations."""
 
 STEPS: Final = (1e-3, 0.1)
 """Smallest and largest step of a parameter for a difference quotient, relative to its size (our
-choices: far above integration errors, yet local). Between them, the step is chosen so that the
-residuals change by as much as their noise."""
+choices: far above integration errors, yet local). Within these limits, the step is chosen so that
+the residuals change by as much as their noise."""
 
 
 FIRST: Final = 1e-2
@@ -463,7 +463,7 @@ def bounds(problem: RecordFitProblem, x: Array) -> FittedParameters:
 
 
 def _larger(first: Array, second: Array) -> Array:
-    """A covariance at least as large as both: the first, plus what the second has in excess."""
+    """A covariance at least as large as both: the first plus what the second exceeds it by."""
     values, axes = np.linalg.eigh(second - first)
     covariance: Array = first + (axes * np.maximum(values, 0.0)) @ axes.T
     return covariance
@@ -491,7 +491,7 @@ def _bandwidth(moments: Array) -> float:
 
 
 def _summed(moments: Array, width: float) -> Array:
-    """Sum of products of two samples; the weight falls to zero at a time lag of one bandwidth."""
+    """Sum of products of pairs of samples; their weight falls to zero at a time lag `width`."""
     total: Array = moments.T @ moments
     for k in range(1, min(int(np.ceil(width)), moments.shape[0])):
         product = moments[:-k].T @ moments[k:]

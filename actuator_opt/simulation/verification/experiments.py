@@ -319,7 +319,8 @@ class Stand:
 STROKE_SHARE = 0.05
 """Amplitude of a sinusoidal reference, relative to the stroke (our choice: small)."""
 SIGNAL_SHARE = 0.5
-"""Largest share of the valve's full signal that a sine may use (our choice: it never saturates)."""
+"""Largest share of the valve's full signal that a sine may use (our choice: the signal never
+saturates)."""
 FORCE_SHARE = 0.05
 """Size of a force step or force oscillation, relative to supply pressure times area (our choice:
 small)."""
