@@ -122,9 +122,10 @@ def _o_ring(ring: Ring) -> Iterator[str]:
         return
     for deviation in deviations:
         scale, unit = (1e3, "mm") if deviation.quantity == "groove width" else (100, "%")
+        low, high = (f"{scale * end:.3g}" for end in (deviation.lower, deviation.upper))
         yield (
             f"{ring.label}: {deviation.quantity} {scale * deviation.value:.3g} {unit}, standard "
-            f"{scale * deviation.lower:.3g} to {scale * deviation.upper:.3g} {unit}"
+            f"{low if low == high else f'{low} to {high}'} {unit}"
         )
 
 

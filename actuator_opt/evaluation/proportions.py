@@ -203,8 +203,8 @@ TABLE: tuple[Proportion, ...] = (
         lambda v, design, g: v["supply.proof_ratio"],
     ),
     Proportion(
-        "piston.clearance", _BORE, 5e-5, 0.01, "our choice; a fit H8/f7 of 25 mm has 0.0008 to "
-                                               "0.0015",
+        "piston.clearance", _BORE, 5e-5, 0.01, "our choice; the radial clearance of a fit "
+                                               "H8/f7 of 25 mm is 0.0004 to 0.0015 times the bore",
         lambda v, design, g: g.piston_clearance / g.bore,
     ),
     Proportion(

@@ -625,7 +625,7 @@ def _any_exponent(fit: LuGreFit, reversals: Windows, fixed: Mapping[str, float])
 def _consistent_with_points(
     fit: LuGreFit, stribeck: StribeckFit, points: Sequence[FrictionPoint]
 ) -> LuGreFit:
-    """Remove the confidence limits of parameters that the points of steady sliding contradict."""
+    """Remove the limits of a fitted parameter that contradicts the points of steady sliding."""
     level, speed = stribeck.parameters["coulomb"], fit.parameters.get("stribeck_speed")
     doubts = list(fit.doubts)
     parameters = dict(fit.parameters)

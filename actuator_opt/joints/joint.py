@@ -375,7 +375,7 @@ def nothing(*_: object) -> Iterator[Any]:
 
 
 def check(joints: Iterable[Joint]) -> None:
-    """Refuse two joints that declare the same key or metric, or models for the same location.
+    """Refuse two joints that declare the same key or metric, or two models of one place.
 
     Raises
     ------

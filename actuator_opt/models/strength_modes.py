@@ -266,7 +266,7 @@ def max_strain_modes(
     shear, 2.125
     """
     if elastic is None:
-        raise ValueError("maximum strain needs the elastic ratios of the ply")
+        raise ValueError("maximum strain needs the ratios of the ply's elastic constants")
     held = (None,) * 3 if residual is None else _strains(residual, elastic)
     return _plane_modes(_strains(stress, elastic), strength, held)
 

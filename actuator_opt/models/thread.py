@@ -248,7 +248,7 @@ def flank_area(*, diameter: Array, pitch: Array, engagement: Array, crest_diamet
 
     Notes
     -----
-    Valid: ISO 60 degree threads, basic sizes, all turns alike.
+    Valid: ISO 60 degree threads, basic sizes, all turns equally loaded.
 
     References
     ----------
@@ -322,7 +322,7 @@ def spread_stress(*, force: Array, thickness: Array, engagement: Array) -> Array
 
     Notes
     -----
-    Valid: thin ring, no friction on the flanks (which would help), all turns alike.
+    Valid: thin ring, no friction on the flanks (which would help), all turns equally loaded.
 
     References
     ----------

@@ -31,6 +31,7 @@ from ..evaluation.limits import (
     UNLIMITED,
     LimitRow,
     MetricArrays,
+    MetricLimit,
     all_limits,
     fixed_when_prepared,
     margin,
@@ -400,7 +401,6 @@ def build(
         and not float(row.margin[0]) - subject.reserves.get(row.limit_of.name, 0.0) >= -1e-6
     ]
     rows += tuple(missed)
-    place = {id(limit): k for k, limit in enumerate(limits)}
     holder: list[ActuatorProblem] = []
     problem = BoxProblem(
         names=paths,
@@ -410,7 +410,7 @@ def build(
         constraint_names=tuple(row.label for row in rows),
         start=start,
         relaxable=tuple(row.limit_of.origin != "geometry" for row in rows),
-        groups=tuple(place[id(row.limit_of)] for row in rows),
+        groups=_groups(limits, rows),
     )
     metrics = frozenset({row.limit_of.metric for row in rows} | set(goal.weights))
     plugin_names = {plugin.name for plugin in subject.plugins}
@@ -423,6 +423,12 @@ def build(
         actuator = _recording(actuator, numbers.read)
     holder.append(actuator)
     return holder[0]
+
+
+def _groups(limits: Sequence[MetricLimit], rows: Sequence[LimitRow]) -> tuple[int, ...]:
+    """Index of the limit of every row."""
+    place = {id(limit): k for k, limit in enumerate(limits)}
+    return tuple(place[id(row.limit_of)] for row in rows)
 
 
 def _recording(actuator: ActuatorProblem, read: Collection[str]) -> ActuatorProblem:

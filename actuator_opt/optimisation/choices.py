@@ -559,7 +559,7 @@ def _searched(
 
 
 def _runners_up(winner: Sized, searched: Sequence[Sized]) -> None:
-    """Evaluate the best designs with sizes among the next best combinations."""
+    """Compute the objective of the next best combinations with the sizes of the best."""
     assert winner.size_search.assignment is not None
     candidates = [sized for sized in searched if sized.look.sizing == "none better"]
     for sized in candidates[:RUNNERS_UP]:

@@ -189,7 +189,8 @@ def least_changes(
 ) -> list[Cure]:
     """The least changes of fixed variables with which all limits are met; empty if impossible.
 
-    New values are rounded away from the present values. A feasible design confirms them.
+    New values are rounded away from the present values. A change is kept only if a search with it
+    found a feasible design.
 
     Parameters
     ----------

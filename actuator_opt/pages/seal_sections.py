@@ -455,7 +455,7 @@ MOST_BANDS = 12
 
 
 def stress_levels(study: SealStudy) -> list[float]:
-    """Round stress levels from zero up to at least the highest stress of all sections [Pa]."""
+    """Stress levels [Pa] at round numbers, from zero to the highest stress or beyond."""
     top = max(float(np.max(contact.field.von_mises)) for contact in study.elements) / 1e6
     step = ticks(0.0, top, MOST_BANDS - 1)[1]
     return [1e6 * k * step for k in range(math.ceil(top / step - 1e-9) + 1)]

@@ -427,7 +427,7 @@ def _balance(simulation: Simulation) -> str:
     """Sentence on the errors of the oil mass and energy balances."""
     balance = simulation.balance
     mass, energy = share_words(balance.mass), share_words(balance.energy)
-    volumes = "" if balance.mass == 0 else f"oil mass {mass} of a volume's content, "
+    volumes = "" if balance.mass == 0 else f"oil mass {mass} of the oil in any chamber or line, "
     return f"Errors of the balances: {volumes}energy {energy} of the energy converted."
 
 

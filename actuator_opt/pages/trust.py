@@ -142,7 +142,7 @@ def _bound(optimisation: Optimisation) -> float | None:
 def scale(optimisation: Optimisation) -> Ink:
     """The bound, the optimum and other designs on a common scale.
 
-    Drawn, not a chart: every value has its name above the scale.
+    Drawn directly, without `Chart`, because every value has its name above the scale.
     """
     quantity, bound = _quantity(optimisation), _bound(optimisation)
     names = [(quantity.to_display(optimisation.objective_value), "optimum found", True)]

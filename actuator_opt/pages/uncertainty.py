@@ -329,7 +329,8 @@ def margins_figure(uncertainty: Uncertainty, *, width: float = 180.0) -> Ink:
     """Margins of every requirement as a strip.
 
     The line extends from the 1 % to the 99 % point of the draws, the box from 5 to 95 %. Marks show
-    the median and the nominal design. Drawn, not a chart: the probability is beside each strip.
+    the median and the nominal design. Drawn directly, without `Chart`, because the
+    probability is beside each strip.
     """
     lines = shown(uncertainty)
     top = 9.0

@@ -141,8 +141,8 @@ def _curve(words: str, study: WallStudy, values: Array, style: int) -> Curve:
 def ladder_figure(rungs: Sequence[Rung], working: float, *, width: float = 180.0) -> Ink:
     """Bars of the pressures at which parts of the wall fail, up to burst.
 
-    A red tick marks a required pressure. Drawn, not a chart: each bar has its numbers and a remark
-    beside it.
+    A red tick marks a required pressure. Drawn directly, without `Chart`, because each bar has
+    its numbers and a remark beside it.
     """
     step, top = 4.8, 5.0
     ink = Ink(width, top + step * len(rungs) + 1.5)

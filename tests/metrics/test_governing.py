@@ -237,7 +237,7 @@ def test_the_knee_of_a_front_shows_what_is_wanted():
     front = ParetoFront(many.subject.design, "", wished, (), None, many.subject.design, evaluation)
     again = from_plain(ParetoFront, json.loads(json.dumps(to_plain(front)))).evaluation
     assert again.metrics["end_stop_pressure"].value == min(known)
-    values = many.evaluate(np.array([start]).T)
+    values = many.actuator.trade(np.array([start]).T)
     assert values.objective[1] == pytest.approx(-min(known), rel=1e-12)
 
 

@@ -129,7 +129,7 @@ class Program:
         return prepared
 
     def for_page(self) -> dict[str, object]:
-        """The program as JSON, for the machine of pages (`SCRIPT`); arrays are in base64.
+        """The program as JSON for the JavaScript virtual machine (`SCRIPT`); arrays are in base64.
 
         A program with 40 000 instructions, such as that of the example design of a knee, has 540
         kB.
@@ -266,7 +266,7 @@ class _Writer:
             return np.where(array < 0, self.count - 1 - array, array).astype(np.int32)
 
         if self.count + len(self.values) > MOST_SLOTS:
-            raise ValueError("the recorded program needs too many slots")
+            raise ValueError("the recorded models need too many intermediate values at once")
         code = np.array(self.code, dtype=np.int32).reshape(-1, 5)
         code[:, 2:] = settled(code[:, 2:])
         return Program(

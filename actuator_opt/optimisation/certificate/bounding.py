@@ -576,7 +576,7 @@ class _PlainAtoms:
         return high - low
 
     def atom(self, powers: Powers) -> int:
-        """Number of the atom for a monomial's value (not its logarithm), scaled to at most 1."""
+        """Index of the unknown for the value of a monomial, not its logarithm; at most 1."""
         if powers not in self.known:
             relaxation, form = self.relaxation, Form(0.0, powers)
             low, high = relaxation.reach(form)

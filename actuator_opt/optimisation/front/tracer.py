@@ -331,7 +331,7 @@ class Tracer:
     def spread(
         self, designs: list[FrontDesign], changed: Sequence[FrontDesign]
     ) -> list[FrontDesign]:
-        """Replace each design that a descent from one of the `changed` designs improves."""
+        """Descend from the `changed` designs; a better end replaces the present design."""
         improved = list(changed)
         while improved:
             levels = np.stack([descended.level for descended in improved], axis=1)

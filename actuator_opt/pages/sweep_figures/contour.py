@@ -120,7 +120,7 @@ def contour_figure(
 ) -> Ink:
     """Contours of a metric, and lines on which limits are just met; the missed side is hatched.
 
-    Drawn, not a chart: lines carry their names, and areas are hatched.
+    Drawn directly, without `Chart`, because lines carry their names, and areas are hatched.
 
     Raises
     ------

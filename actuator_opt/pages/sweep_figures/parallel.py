@@ -32,7 +32,7 @@ _LEFT, _RIGHT, _GAP, _TALL, _SIZE = 16.0, 14.0, 25.0, 82.0, 6.3
 def parallel_figure(drawn: SweepFigureData, metrics: Sequence[str]) -> Ink:
     """Parallel axes for inputs, objective and metrics; each design is a line, the best is bold.
 
-    Drawn, not a chart: every vertical axis has a separate scale.
+    Drawn directly, without `Chart`, because every vertical axis has a separate scale.
 
     Raises
     ------

@@ -32,8 +32,8 @@ LIMIT: dict[str, Any] = {"stroke": BLACK, "pen": 0.2, "dash": (1.6, 0.9)}
 def scatter_figure(drawn: SweepFigureData, metrics: Sequence[str]) -> Ink:
     """A panel for every pair of metrics.
 
-    Drawn, not a chart: frames share their axes along rows and columns of a triangle, and
-    thousands of designs of the same colour are drawn as a single path.
+    Drawn directly, without `Chart`, because frames share their axes along rows and
+    columns of a triangle, and thousands of designs of the same colour are drawn as a single path.
 
     Raises
     ------
