@@ -190,6 +190,7 @@ def _prepare() -> None:
     for name in ("NO_COLOR", "SOURCE_DATE_EPOCH", "ACTUATOR_OPT_NO_RECORD", "ACTUATOR_OPT_DEBUG"):
         os.environ.pop(name, None)
     os.environ["ACTUATOR_OPT_RUNS"] = "runs"
+    os.environ["ACTUATOR_OPT_PROGRAMS"] = "0"
     ticks = itertools.count()
     time.perf_counter = lambda: 1e-6 * next(ticks)
     import actuator_opt.version

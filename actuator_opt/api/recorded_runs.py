@@ -476,7 +476,7 @@ def record(
     ------
     InputError : the record cannot be written
     """
-    from ..optimisation.recorded import to_plain
+    from ..optimisation.stored_results import to_plain
 
     head = {
         "status": result.status,
@@ -525,7 +525,7 @@ def record_front(
     folder: str | Path | None = None,
 ) -> Run | None:
     """Record a Pareto front, to show and report it later; parameters as for `record`."""
-    from ..optimisation.recorded import to_plain
+    from ..optimisation.stored_results import to_plain
 
     objectives, knee = front.objectives, None
     if front.knee is not None:

@@ -87,8 +87,8 @@ def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
 def _solved(run: Run, plugins: tuple[Plugin, ...]) -> tuple[Optimisation | ParetoFront, Evaluation]:
     """The recorded optimisation or Pareto front, and the evaluation to compare with the record."""
     from ..optimisation.pareto import ParetoFront
-    from ..optimisation.recorded import from_plain
     from ..optimisation.result import Optimisation
+    from ..optimisation.stored_results import from_plain
 
     if run.head["kind"] == "pareto":
         front = from_plain(ParetoFront, run.body["state"], plugins)

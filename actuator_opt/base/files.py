@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from io import FileIO
 from math import isfinite
 from pathlib import Path
-from typing import BinaryIO, TextIO
+from typing import BinaryIO, Literal, TextIO
 
 from .errors import Diagnostic, InputError, closest
 
@@ -56,6 +56,26 @@ def data_folder(name: str, *, package: Path = _PACKAGE) -> Path:
         return checkout / name
     message = f'the data folder "{name}" is missing from this installation'
     raise InputError(Diagnostic(message, "install the package again", str(packaged)))
+
+
+def user_folder(kind: Literal["data", "cache"]) -> Path:
+    """Folder of this program for data or caches of the user, as the operating system expects it.
+
+    Raises
+    ------
+    RuntimeError : the home folder is unknown
+    """
+    name = "actuator-opt"
+    if sys.platform == "win32":
+        local = os.environ.get("LOCALAPPDATA", "")
+        return (Path(local) if local else Path.home() / "AppData" / "Local") / name
+    if sys.platform == "darwin":
+        library = {"data": "Application Support", "cache": "Caches"}[kind]
+        return Path.home() / "Library" / library / name
+    stated = os.environ.get(f"XDG_{kind.upper()}_HOME", "")
+    if Path(stated).is_absolute():  # the standard requires relative paths to be ignored
+        return Path(stated) / name
+    return Path.home() / {"data": ".local/share", "cache": ".cache"}[kind] / name
 
 
 def read_bytes(source: str | Path, *, most: int, kinds: tuple[str, ...], what: str) -> bytes:

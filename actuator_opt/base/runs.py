@@ -11,14 +11,13 @@ from __future__ import annotations
 import contextlib
 import os
 import re
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from .dataclass import dataclass
 from .errors import Diagnostic, InputError, shown
-from .files import private_part, read_json
+from .files import private_part, read_json, user_folder
 
 FOLDER, SWITCH = "ACTUATOR_OPT_RUNS", "ACTUATOR_OPT_NO_RECORD"
 """Environment variables: the folder of the records, and a switch that disables recording if it is
@@ -61,25 +60,12 @@ def folder() -> Path | None:
         return None
     stated = os.environ.get(FOLDER, "")
     try:
-        return Path(stated).expanduser() if stated else _data() / "actuator-opt" / "runs"
+        return Path(stated).expanduser() if stated else user_folder("data") / "runs"
     except RuntimeError:  # unknown user, or a user without a home folder
         message = f"{FOLDER}: {shown(stated) or 'unset'}, and the home folder is unknown"
         raise InputError(
             Diagnostic(message, f"set {FOLDER} to the full path of a folder")
         ) from None
-
-
-def _data() -> Path:
-    """Data folder of the user, by the conventions of the operating system."""
-    if sys.platform == "win32":
-        local = os.environ.get("LOCALAPPDATA", "")
-        return Path(local) if local else Path.home() / "AppData" / "Local"
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Application Support"
-    stated = os.environ.get("XDG_DATA_HOME", "")
-    if Path(stated).is_absolute():  # the standard requires relative paths to be ignored
-        return Path(stated)
-    return Path.home() / ".local" / "share"
 
 
 def write(place: Path, started: str, head: Mapping[str, Any], body: Mapping[str, Any]) -> Path:

@@ -391,16 +391,7 @@ def build(
     goal.value(run.computed, subject.cases)
     all_rows = [row for limit in limits for row in rows_of(limit, run.computed, numbers)]
     _check_read(numbers, paths, fault)
-    rows = tuple(row for row in all_rows if np.size(row.margin) > 1)
-    fixed = tuple(row for row in all_rows if np.size(row.margin) == 1)
-    # a missed check that no variable affects is reported, but does not constrain the search
-    missed = [
-        row
-        for row in fixed
-        if row.limit_of.origin != "check"
-        and not float(row.margin[0]) - subject.reserves.get(row.limit_of.name, 0.0) >= -1e-6
-    ]
-    rows += tuple(missed)
+    rows, fixed = _rows_of_search(all_rows, subject.reserves)
     holder: list[ActuatorProblem] = []
     problem = BoxProblem(
         names=paths,
@@ -423,6 +414,25 @@ def build(
         actuator = _recording(actuator, numbers.read)
     holder.append(actuator)
     return holder[0]
+
+
+def _rows_of_search(
+    rows: Sequence[LimitRow], reserves: Mapping[str, float]
+) -> tuple[tuple[LimitRow, ...], tuple[LimitRow, ...]]:
+    """Rows that constrain the search, and all rows that no variable affects.
+
+    A missed row that no variable affects makes the search infeasible, unless it is a check, which
+    is only reported.
+    """
+    movable = [row for row in rows if np.size(row.margin) > 1]
+    fixed = tuple(row for row in rows if np.size(row.margin) == 1)
+    missed = [
+        row
+        for row in fixed
+        if row.limit_of.origin != "check"
+        and not float(row.margin[0]) - reserves.get(row.limit_of.name, 0.0) >= -1e-6
+    ]
+    return (*movable, *missed), fixed
 
 
 def _groups(limits: Sequence[MetricLimit], rows: Sequence[LimitRow]) -> tuple[int, ...]:

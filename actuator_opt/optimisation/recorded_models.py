@@ -46,11 +46,11 @@ def recorded_models(
     """
     neutral = _Neutral(subject)
     numbers = sorted(
-        (path for path in read if path not in paths and subject.numbers.get(path)), key=neutral
+        (path for path in read if path not in paths and subject.numbers.get(path)), key=neutral.path
     )
     factors = sorted(
         (key for key, value in subject.factors.items() if value),
-        key=lambda key: (neutral(key[0]), *key[1:]),
+        key=lambda key: (neutral.number[key[0]], *key[1:]),
     )
     tables = {
         (name, key): [entry.value, *chain.from_iterable(entry.points)]
@@ -81,10 +81,10 @@ def recorded_models(
         known += values
     present = np.array(known)
     places = [
-        (x.limit_of.name, x.limit_of.metric, x.limit_of.sense, neutral(x.place), x.case_index)
+        (x.limit_of.name, x.limit_of.metric, x.limit_of.sense, neutral.text(x.place), x.case_index)
         for x in limits
     ]
-    structure = [*_structure(subject, read, neutral), list(map(neutral, paths)), places, goals]
+    structure = [*_structure(subject, read, neutral), list(map(neutral.path, paths)), places, goals]
     return RecordedFunction(rows, names, present, structure)
 
 
@@ -107,27 +107,32 @@ def _with_tables(
 
 
 class _Neutral:
-    """Texts in which the name or label of a material is replaced by its number in the design."""
+    """Texts and PATHs in which a material's number in the design replaces its name or label."""
 
     def __init__(self, subject: PreparedDesign) -> None:
-        self.replaced: dict[str, str] = {}
-        for number, (name, material) in enumerate(subject.materials.items()):
-            for text in (name, material.label):
-                if text:
-                    self.replaced.setdefault(text, f"material {number}")
-        self.texts = sorted(self.replaced, key=len, reverse=True)
+        self.number = {name: number for number, name in enumerate(subject.materials)}
+        names = [(x.label, number) for number, x in enumerate(subject.materials.values())]
+        names += self.number.items()
+        self._names = sorted(names, key=lambda pair: len(pair[0]), reverse=True)
 
-    def __call__(self, text: str) -> str:
-        for known in self.texts:
-            if known in text:
-                text = text.replace(known, self.replaced[known])
+    def path(self, path: str) -> str:
+        """A PATH; those of different numbers stay different."""
+        block, _, rest = path.partition(".")
+        name, _, key = rest.rpartition(".")
+        return f"materials.{self.number[name]}.{key}" if block == "materials" else path
+
+    def text(self, text: str) -> str:
+        """A text that may contain names or labels."""
+        for name, number in self._names:
+            if name and name in text:
+                text = text.replace(name, f"material {number}")
         return text
 
 
 def _structure(subject: PreparedDesign, read: Collection[str], neutral: _Neutral) -> list[Any]:
     """Data that determine the operations of the models, which read the numbers at PATHs `read`."""
     words = [
-        (loc, neutral(str(value)) if number_of(value) is None else type(value).__name__)
+        (loc, neutral.text(str(value)) if number_of(value) is None else type(value).__name__)
         for loc, _, value in leaves(subject.design)
         if loc[0] not in ("name", "notes", "reproduces")
     ]
@@ -137,6 +142,10 @@ def _structure(subject: PreparedDesign, read: Collection[str], neutral: _Neutral
         for key, entry in sorted(material.properties.items())
         if f"materials.{material.name}.{key}" in read
     ]
-    zero = sorted(neutral(path) for path in read if subject.numbers.get(path) == 0)
-    none = [(neutral(key[0]), *key[1:]) for key, value in subject.factors.items() if not value]
-    return [words, materials, zero, sorted(none), dict(subject.reserves)]
+    zero = sorted(neutral.path(path) for path in read if subject.numbers.get(path) == 0)
+    none = [(neutral.number[key[0]], *key[1:]) for key, x in subject.factors.items() if not x]
+    structure = [words, materials, zero, sorted(none), dict(subject.reserves)]
+    if subject.films:  # a table of oil films contains numbers, and is solved between the bounds
+        bounds = {path: (x.lower, x.upper) for path, x in subject.design.variables.items()}
+        structure += [dict(subject.numbers), list(subject.materials), bounds]
+    return structure

@@ -23,8 +23,8 @@ from actuator_opt.metrics.table import METRICS, ROWS
 from actuator_opt.optimisation import pareto
 from actuator_opt.optimisation.actuator import build, goal_of
 from actuator_opt.optimisation.pareto import ParetoFront
-from actuator_opt.optimisation.recorded import from_plain, to_plain
 from actuator_opt.optimisation.rounding import design_at
+from actuator_opt.optimisation.stored_results import from_plain, to_plain
 from actuator_opt.pages import report as page
 from actuator_opt.rendering import paper, terminal, text
 from actuator_opt.rendering.blocks import short

@@ -10,7 +10,7 @@ import pytest
 
 import actuator_opt as ao
 from actuator_opt.base.numeric import STEP
-from actuator_opt.base.symbolic import program as programs
+from actuator_opt.base.symbolic import program as programs, program_store
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.run import optimise
 
@@ -167,3 +167,25 @@ def test_designs_with_other_materials_share_a_recording(old, one, other):
     assert second.recorded.recording is first.recorded.recording
     np.testing.assert_allclose(mine, theirs, rtol=1e-11, atol=1e-11, equal_nan=True)
     assert not np.allclose(theirs, others, equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "equal"),
+    [
+        ("knee", "max: 290 N", "max: 280 N", True),
+        ("knee", "upper: 4 mm", "upper: 5 mm", True),
+        ("knee", "  seals: sliding", "  seals: sticking", False),
+        ("huang_110_80_560", "upper: 700 mm", "upper: 690 mm", False),
+    ],
+)
+def test_which_designs_share_a_recording(name, old, new, equal):
+    """Limits and bounds are no part of the structure; oil films are solved between the bounds."""
+    text = text_of(name)
+    if old not in text:
+        text += "\nstiffness:\n  seals: sliding\n"
+    assert text.replace(old, new) != text
+    keys = [
+        program_store.key_of(build(ao.read(t).subject()).recorded.structure)
+        for t in (text, text.replace(old, new))
+    ]
+    assert (keys[0] == keys[1]) is equal

@@ -23,8 +23,8 @@ from actuator_opt import api as verbs
 from actuator_opt.evaluation import prepare
 from actuator_opt.evaluation.result import Check, Unverified, YieldEstimate, without_reserve
 from actuator_opt.optimisation.problem import Robust
-from actuator_opt.optimisation.recorded import from_plain, to_plain
 from actuator_opt.optimisation.result import Optimisation
+from actuator_opt.optimisation.stored_results import from_plain, to_plain
 from actuator_opt.pages import calibration, comparison, pareto, report as page, runs, sweep
 from actuator_opt.rendering import paper, paper_plain as fallback, terminal as renderer
 from actuator_opt.rendering.terminal import blocks_text

@@ -11,7 +11,6 @@ import contextlib
 import hashlib
 import json
 import os
-import sys
 import zlib
 from functools import cache
 from pathlib import Path
@@ -21,7 +20,7 @@ import numpy as np
 
 from ...version import VERSION
 from ..dataclass import dataclass
-from ..files import private_part
+from ..files import private_part, user_folder
 from ..numeric import Array
 from .program import MOST_SLOTS, OPERATIONS, Program
 
@@ -67,19 +66,8 @@ def folder() -> Path | None:
     if stated == "0":
         return None
     with contextlib.suppress(RuntimeError):
-        return Path(stated).expanduser() if stated else _caches() / "actuator-opt" / "programs"
+        return Path(stated).expanduser() if stated else user_folder("cache") / "programs"
     return None
-
-
-def _caches() -> Path:
-    """Cache folder of the user, by the conventions of the operating system."""
-    if sys.platform == "win32":
-        local = os.environ.get("LOCALAPPDATA", "")
-        return Path(local) if local else Path.home() / "AppData" / "Local"
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches"
-    stated = os.environ.get("XDG_CACHE_HOME", "")
-    return Path(stated) if Path(stated).is_absolute() else Path.home() / ".cache"
 
 
 @cache

@@ -130,11 +130,7 @@ class RecordedFunction:
         points = np.stack([point, point * (1 + 1e-3)], axis=1)
         with np.errstate(all="ignore"):
             expected = self.function(points)
-        key = (
-            ""
-            if self.structure is None
-            else program_store.key_of([len(self.names), self.structure])
-        )
+        key = "" if self.structure is None else program_store.key_of(self.structure)
         for stored in program_store.read(key) if key else ():
             if _agrees(stored, points, expected):
                 self.recording = stored
