@@ -15,7 +15,7 @@ from cli_runner import KNEE, PLIES, bench, command, run, surroundings
 
 import actuator_opt as ao
 from actuator_opt.base import runs as run_store
-from actuator_opt.optimisation import recorded
+from actuator_opt.optimisation import stored_results
 from actuator_opt.optimisation.result import Optimisation
 from actuator_opt.optimisation.run import optimise as solver_entry
 from actuator_opt.pages.trust import convergence_figure
@@ -135,16 +135,18 @@ def test_own_metrics_come_back_where_their_file_is_named(folder, design, tmp_pat
 def test_an_optimisation_goes_through_json_and_back():
     """Every field is the same after the way through text, infinite numbers too."""
     found = ao.optimise(ao.read(SMALL), standard_sizes=True)
-    text = json.dumps(recorded.to_plain(found), allow_nan=False)
-    back = recorded.from_plain(Optimisation, json.loads(text))
+    text = json.dumps(stored_results.to_plain(found), allow_nan=False)
+    back = stored_results.from_plain(Optimisation, json.loads(text))
     for name in found.__dataclass_fields__:
         if name not in ("evaluation", "start", "rounding"):
             assert getattr(back, name) == getattr(found, name), name
     assert back.to_dict() == found.to_dict()
     worse = ao.Run("x", Path("x"), {}, {})
     assert worse.to_dict() == {"id": "x", "path": "x"}
-    odd = recorded.to_plain(found.__class__(**_fields(found) | {"objective_value": inf}))
-    assert recorded.from_plain(Optimisation, json.loads(json.dumps(odd))).objective_value == inf
+    odd = stored_results.to_plain(found.__class__(**_fields(found) | {"objective_value": inf}))
+    assert (
+        stored_results.from_plain(Optimisation, json.loads(json.dumps(odd))).objective_value == inf
+    )
 
 
 def _fields(found):

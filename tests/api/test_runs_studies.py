@@ -18,7 +18,7 @@ from cli_runner import BENCH, command, run, spawn, surroundings
 import actuator_opt as ao
 from actuator_opt.api import recorded_runs
 from actuator_opt.base import runs as run_store
-from actuator_opt.optimisation import recorded
+from actuator_opt.optimisation import stored_results
 from actuator_opt.optimisation.pareto import ParetoFront
 from actuator_opt.sweeps.chunk import Study
 
@@ -446,8 +446,8 @@ def test_a_process_of_its_own_prints_no_word_of_it(folder, design):
 def test_any_front_goes_through_json(design):
     """Infinite limits of quantities and own metrics too."""
     found = ao.pareto(design, ["mass:min", "slenderness:max"], n=3, checks=0, plugins=[_own()])
-    text = json.dumps(recorded.to_plain(found), allow_nan=False)
-    back = recorded.from_plain(ParetoFront, json.loads(text), tuple(_plugins()))
+    text = json.dumps(stored_results.to_plain(found), allow_nan=False)
+    back = stored_results.from_plain(ParetoFront, json.loads(text), tuple(_plugins()))
     assert back.to_dict() == found.to_dict()
     assert back.objectives == found.objectives
 
