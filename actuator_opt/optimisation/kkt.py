@@ -94,13 +94,16 @@ class KktResidual:
         return self.rank == self.count
 
 
-def nnls(matrix: Vector, vector: Vector, previous: Vector | None = None) -> Vector:
+def nnls(
+    matrix: Vector, vector: Vector, previous: Vector | None = None, *, independent: bool = True
+) -> Vector:
     """Non-negative least squares: minimise |matrix @ result - vector| with result >= 0.
 
     First, plain least squares ignores the sign, which is enough at a regular optimum. If a result
-    is negative, the active-set method of Lawson and Hanson follows; it ends with independent
-    columns. It starts from the columns that are positive in `previous`, the result of a similar
-    problem.
+    is negative, the active-set method of Lawson and Hanson follows. It starts from the columns that
+    are positive in `previous`, the result of a similar problem.
+
+    The positive results belong to independent columns; without `independent`, perhaps not.
     """
     size = np.sqrt((matrix**2).sum(axis=0))
     used = np.flatnonzero(size > 1e-14 * size.max(initial=0.0))
@@ -108,9 +111,9 @@ def nnls(matrix: Vector, vector: Vector, previous: Vector | None = None) -> Vect
     if len(used) == 0:
         return result
     scaled = matrix[:, used] / size[used]
-    if len(used) <= matrix.shape[0]:
+    if len(used) <= matrix.shape[0] or not independent:
         guess, _, rank, _ = np.linalg.lstsq(scaled, vector, rcond=1e-10)
-        if rank == len(used) and (guess >= 0).all():
+        if (rank == len(used) or not independent) and (guess >= 0).all():
             result[used] = guess / size[used]
             return result
     passive = np.zeros(len(used), dtype=bool) if previous is None else previous[used] > 0
@@ -194,12 +197,18 @@ def active_set(evaluator: Evaluator, point: Point, width: float = ACTIVE) -> Act
 
 
 def multipliers(
-    slope: Vector, active: Active, equalities: Vector, damping: float = 0.0
+    slope: Vector,
+    active: Active,
+    equalities: Vector,
+    damping: float = 0.0,
+    *,
+    independent: bool = True,
 ) -> tuple[Vector, Vector]:
     """Multipliers (a,) >= 0 of the active limits, and multipliers (e,) of the equalities.
 
     A `damping` above 0 penalises multipliers of limits with a positive margin. This identifies the
-    active limits of an optimum from a point near it.
+    active limits of an optimum from a point near it. Positive multipliers belong to limits with
+    independent gradients; without `independent`, which is faster, perhaps not.
     """
     matrix, vector = active.gradients.T, slope
     if len(equalities):
@@ -211,7 +220,7 @@ def multipliers(
         extra = np.diag(damping * np.maximum(active.margins, 0.0) * size)
         matrix = np.concatenate([matrix, extra])
         vector = np.concatenate([vector, np.zeros(active.count)])
-    inequality = nnls(matrix, vector)
+    inequality = nnls(matrix, vector, independent=independent)
     equality_multipliers = np.zeros(len(equalities))
     if len(equalities):
         remainder = slope - active.gradients.T @ inequality
@@ -232,13 +241,15 @@ def slope_scale(evaluator: Evaluator, point: Point, objective_scale: float = 0.0
 
 
 def _priced(
-    evaluator: Evaluator, point: Point, objective_scale: float
+    evaluator: Evaluator, point: Point, objective_scale: float, *, independent: bool = True
 ) -> tuple[Active, Vector, Vector, float]:
     """Active limits at a point, multipliers of these and of the equalities, and the residual."""
     jacobian = evaluator.jacobian(point)
     active = active_set(evaluator, point)
     equalities = jacobian[1 + evaluator.constraint_count :]
-    inequality, equality_multipliers = multipliers(jacobian[0], active, equalities)
+    inequality, equality_multipliers = multipliers(
+        jacobian[0], active, equalities, independent=independent
+    )
     gradient = jacobian[0] - active.gradients.T @ inequality - equalities.T @ equality_multipliers
     size = slope_scale(evaluator, point, objective_scale)
     return active, inequality, equality_multipliers, float(np.linalg.norm(gradient)) / size
@@ -246,7 +257,7 @@ def _priced(
 
 def residual(evaluator: Evaluator, point: Point) -> float:
     """Relative norm of the Lagrangian's gradient at a point, computed as in `check`."""
-    return _priced(evaluator, point, 0.0)[-1]
+    return _priced(evaluator, point, 0.0, independent=False)[-1]
 
 
 def check(

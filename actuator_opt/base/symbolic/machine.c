@@ -143,49 +143,113 @@ static int sized(Py_buffer *view, Py_ssize_t item, Py_ssize_t *count) {
     return view->len % item == 0 && ((uintptr_t)view->buf) % item == 0;
 }
 
+/* ---- a program that was checked once; nothing can change it afterwards ---- */
+
+typedef struct {
+    PyObject_HEAD
+    Program p;
+    int32_t *varies; /* whether each output has derivatives */
+    char *block;     /* memory of all arrays */
+} Checked;
+static PyTypeObject *checked_type = NULL;
+
+static void checked_end(PyObject *self) {
+    PyTypeObject *type = Py_TYPE(self);
+    free(((Checked *)self)->block);
+    ((freefunc)PyType_GetSlot(type, Py_tp_free))(self);
+    Py_DECREF(type);
+}
+
+static PyType_Slot CHECKED_SLOTS[] = {{Py_tp_dealloc, checked_end}, {0, NULL}};
+static PyType_Spec CHECKED_SPEC = {
+    "_machine.Checked", sizeof(Checked), 0,
+    Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION, CHECKED_SLOTS};
+
+/* Copy the buffers into one block; 0 if there is no memory. */
+static int copied(Checked *own, const Py_buffer *view) {
+    static const int order[5] = {4, 1, 2, 3, 0}; /* widest numbers first: all stay aligned */
+    char *part[5], *at;
+    Py_ssize_t total = 1;
+    for (int k = 0; k < 5; k++) total += view[k].len;
+    if ((at = own->block = malloc(total)) == NULL) return 0;
+    for (int k = 0; k < 5; k++) {
+        part[order[k]] = at;
+        memcpy(at, view[order[k]].buf, view[order[k]].len);
+        at += view[order[k]].len;
+    }
+    own->p.code = (uint16_t *)part[0], own->p.extra = (int32_t *)part[1];
+    own->p.outputs = (int32_t *)part[2], own->varies = (int32_t *)part[3];
+    own->p.constants = (double *)part[4];
+    return 1;
+}
+
+PyDoc_STRVAR(checked_doc,
+    "checked(code, extra, outputs, varies, constants, slots, inputs)\n\n"
+    "A copy of a program that can be run; refused if it would use memory outside its slots.");
+
+static PyObject *checked(PyObject *self, PyObject *args) {
+    static const Py_ssize_t item[5] = {2, 4, 4, 4, 8};
+    Py_buffer view[5];
+    Py_ssize_t size[5], slots, inputs;
+    (void)self;
+    if (!PyArg_ParseTuple(args, "y*y*y*y*y*nn", &view[0], &view[1], &view[2], &view[3], &view[4],
+                          &slots, &inputs))
+        return NULL;
+    Checked *own = (Checked *)PyType_GenericAlloc(checked_type, 0);
+    int valid = 1, memory = own != NULL;
+    for (int k = 0; k < 5; k++) valid &= sized(&view[k], item[k], &size[k]);
+    if (memory && valid) {
+        Program *p = &own->p;
+        p->slots = slots, p->inputs = inputs, p->count = size[0] / WORDS;
+        p->extras = size[1], p->results = size[2], p->constant_count = size[4];
+        memory = copied(own, view);
+        valid = memory && size[0] % WORDS == 0 && size[3] == size[2] && slots >= 0
+             && slots <= 65536 && inputs > 0 && !refused(p);
+        for (Py_ssize_t k = 0; valid && k < p->results; k++)
+            valid = !own->varies[k] || p->outputs[k] < slots;
+    }
+    for (int k = 0; k < 5; k++) PyBuffer_Release(&view[k]);
+    if (memory && valid) return (PyObject *)own;
+    if (own != NULL) Py_DECREF(own);
+    return memory ? (PyErr_SetString(PyExc_ValueError, "not a valid program"), NULL)
+                  : PyErr_NoMemory();
+}
+
 PyDoc_STRVAR(run_doc,
-    "run(code, extra, outputs, varies, constants, slots, inputs, values, seeds, width, results)\n\n"
-    "Run a program for points (points, inputs). Without seeds, `results` is (points, outputs).\n"
-    "With seeds (points, inputs, width), it is (points, outputs, 1 + width); width is 4, 8 or 16.");
+    "run(program, values, seeds, width, results)\n\n"
+    "Run a checked program for points (points, inputs). Without seeds (width 0), `results` is\n"
+    "(points, outputs). With seeds (points, inputs, width), it is (points, outputs, 1 + width);\n"
+    "width is 4, 8 or 16.");
 
 static PyObject *run(PyObject *self, PyObject *args) {
-    Py_buffer view[8];
+    Py_buffer view[3];
     int width;
-    Program p;
-    Py_ssize_t size[8], points = 0;
-    static const Py_ssize_t item[8] = {2, 4, 4, 4, 8, 8, 8, 8};
+    Py_ssize_t size[3], points = 0;
+    Checked *program;
     (void)self;
-    memset(view, 0, sizeof view);
-    if (!PyArg_ParseTuple(args, "y*y*y*y*y*nny*y*iw*", &view[0], &view[1], &view[2], &view[3],
-                          &view[4], &p.slots, &p.inputs, &view[5], &view[6], &width, &view[7]))
+    if (!PyArg_ParseTuple(args, "O!y*y*iw*", checked_type, &program, &view[0], &view[1], &width,
+                          &view[2]))
         return NULL;
+    const Program *p = &program->p;
     int valid = 1, failed = 0;
-    for (int k = 0; k < 8; k++) valid &= sized(&view[k], item[k], &size[k]);
-    p.code = view[0].buf, p.extra = view[1].buf, p.outputs = view[2].buf;
-    p.constants = view[4].buf;
-    p.count = size[0] / WORDS, p.extras = size[1], p.results = size[2];
-    p.constant_count = size[4];
-    valid = valid && size[0] % WORDS == 0 && size[3] == size[2] && p.slots >= 0
-         && p.slots <= 65536 && p.inputs > 0 && size[5] % p.inputs == 0 && !refused(&p);
+    for (int k = 0; k < 3; k++) valid &= sized(&view[k], 8, &size[k]);
+    valid = valid && size[0] % p->inputs == 0;
     if (valid) {
-        points = size[5] / p.inputs;
-        const int32_t *varies = view[3].buf;
-        if (width == 0) valid = size[7] == points * p.results;
+        points = size[0] / p->inputs;
+        if (width == 0) valid = size[2] == points * p->results;
         else valid = (width == 4 || width == 8 || width == 16)
-                  && size[6] == points * p.inputs * width
-                  && size[7] == points * p.results * (1 + width);
-        for (Py_ssize_t k = 0; k < p.results; k++)
-            if (varies[k] && p.outputs[k] >= p.slots) valid = 0;
+                  && size[1] == points * p->inputs * width
+                  && size[2] == points * p->results * (1 + width);
     }
     if (valid) {
         Py_BEGIN_ALLOW_THREADS
         failed = width == 0
-            ? run_values(&p, view[5].buf, points, view[7].buf)
-            : run_slopes(&p, view[5].buf, view[6].buf, points, width, view[3].buf, view[7].buf);
+            ? run_values(p, view[0].buf, points, view[2].buf)
+            : run_slopes(p, view[0].buf, view[1].buf, points, width, program->varies, view[2].buf);
         Py_END_ALLOW_THREADS
     }
-    for (int k = 0; k < 8; k++) PyBuffer_Release(&view[k]);
-    if (!valid) return PyErr_SetString(PyExc_ValueError, "not a valid program"), NULL;
+    for (int k = 0; k < 3; k++) PyBuffer_Release(&view[k]);
+    if (!valid) return PyErr_SetString(PyExc_ValueError, "not the points of the program"), NULL;
     if (failed) return PyErr_NoMemory();
     Py_RETURN_NONE;
 }
@@ -220,17 +284,17 @@ static PyObject *follow_slots(PyObject *self, PyObject *args) {
 typedef struct {
     PyObject_HEAD
     PyObject *returned;       /* array of the results, which every call overwrites */
-    Py_buffer view[8];
-    Program p;
+    Checked *program;
+    Py_buffer view[3];        /* columns, point, results */
     double *V, *D, *point, *results;
-    const int32_t *varies, *columns;
+    const int32_t *columns;
     Py_ssize_t states, width; /* inputs 1 to `states` are given in a call; columns of derivatives */
     int slopes;               /* whether the results are derivatives */
 } Prepared;
 
 /* Columns of derivatives, up to 16 at a time: one direction for each input that has derivatives. */
 static void prepared_slopes(Prepared *own) {
-    const Program *p = &own->p;
+    const Program *p = &own->program->p;
     for (Py_ssize_t first = 0; first < own->width; first += 16) {
         const Py_ssize_t left = own->width - first, used = left < 16 ? left : 16;
         const int T = used <= 4 ? 4 : used <= 8 ? 8 : 16;
@@ -239,7 +303,7 @@ static void prepared_slopes(Prepared *own) {
         (T == 4 ? run_dual_4 : T == 8 ? run_dual_8 : run_dual_16)(
             p->code, p->count, p->extra, own->V, own->D);
         for (Py_ssize_t k = 0; k < p->results; k++) {
-            if (!own->varies[k]) continue;
+            if (!own->program->varies[k]) continue;
             const double *row = own->D + (size_t)p->outputs[k] * T;
             for (Py_ssize_t t = 0; t < used; t++)
                 own->results[k * own->states + own->columns[first + t] - 1] = row[t];
@@ -249,7 +313,7 @@ static void prepared_slopes(Prepared *own) {
 
 static PyObject *prepared_call(PyObject *self, PyObject *args, PyObject *names) {
     Prepared *own = (Prepared *)self;
-    const Program *p = &own->p;
+    const Program *p = &own->program->p;
     PyObject *states;
     Py_buffer y;
     (void)names;
@@ -268,7 +332,7 @@ static PyObject *prepared_call(PyObject *self, PyObject *args, PyObject *names) 
         for (Py_ssize_t k = 0; k < p->results; k++) own->results[k] = own->V[p->outputs[k]];
     }
     double rest = 0.0; /* becomes NaN if any result is not finite */
-    for (Py_ssize_t k = own->view[7].len / (Py_ssize_t)sizeof(double) - 1; k >= 0; k--)
+    for (Py_ssize_t k = own->view[2].len / (Py_ssize_t)sizeof(double) - 1; k >= 0; k--)
         rest += 0.0 * own->results[k];
     if (rest != 0.0)
         return PyErr_SetString(PyExc_FloatingPointError, "a value is not finite"), NULL;
@@ -278,8 +342,9 @@ static PyObject *prepared_call(PyObject *self, PyObject *args, PyObject *names) 
 static void prepared_end(PyObject *self) {
     Prepared *own = (Prepared *)self;
     PyTypeObject *type = Py_TYPE(self);
-    for (int k = 0; k < 8; k++) PyBuffer_Release(&own->view[k]);
+    for (int k = 0; k < 3; k++) PyBuffer_Release(&own->view[k]);
     Py_XDECREF(own->returned);
+    Py_XDECREF((PyObject *)own->program);
     free(own->V), free(own->D);
     ((freefunc)PyType_GetSlot(type, Py_tp_free))(self);
     Py_DECREF(type);
@@ -293,46 +358,39 @@ static PyType_Spec PREPARED_SPEC = {
 static PyObject *prepared_type = NULL;
 
 PyDoc_STRVAR(prepare_doc,
-    "prepare(code, extra, outputs, varies, constants, slots, inputs, states, columns, point,\n"
-    "        results, slopes)\n\n"
-    "Function of time and states (states,), the first inputs. `point` (inputs,) holds the others\n"
+    "prepare(program, states, columns, point, results, slopes)\n\n"
+    "A checked program as a function of time and states (states,), the first inputs. `point` (inputs,) holds the others\n"
     "and, after a call, the time and states of that call. The function returns `results`, which\n"
     "every call overwrites: the outputs (outputs,), or with slopes their derivatives by the states\n"
     "of some columns, which are numbers of inputs: (outputs, states), elsewhere as it was.");
 
 static PyObject *prepare(PyObject *self, PyObject *args) {
-    static const Py_ssize_t item[8] = {2, 4, 4, 4, 8, 4, 8, 8};
-    Py_ssize_t size[8];
+    static const Py_ssize_t item[3] = {4, 8, 8};
+    Py_ssize_t size[3];
+    Checked *program;
     PyObject *returned;
     Prepared *own = (Prepared *)PyType_GenericAlloc((PyTypeObject *)prepared_type, 0);
     (void)self;
     if (own == NULL) return NULL;
-    Program *p = &own->p;
     Py_buffer *view = own->view;
-    if (!PyArg_ParseTuple(args, "y*y*y*y*y*nnny*w*Oi", &view[0], &view[1], &view[2], &view[3],
-                          &view[4], &p->slots, &p->inputs, &own->states, &view[5], &view[6],
-                          &returned, &own->slopes)
-        || PyObject_GetBuffer(returned, &view[7], PyBUF_CONTIG) < 0)
+    if (!PyArg_ParseTuple(args, "O!ny*w*Oi", checked_type, &program, &own->states, &view[0],
+                          &view[1], &returned, &own->slopes)
+        || PyObject_GetBuffer(returned, &view[2], PyBUF_CONTIG) < 0)
         return Py_DECREF(own), NULL;
     own->returned = Py_NewRef(returned);
+    own->program = (Checked *)Py_NewRef((PyObject *)program);
+    const Program *p = &program->p;
     int valid = 1;
-    for (int k = 0; k < 8; k++) valid &= sized(&view[k], item[k], &size[k]);
-    p->code = view[0].buf, p->extra = view[1].buf, p->outputs = view[2].buf;
-    own->varies = view[3].buf, p->constants = view[4].buf, own->columns = view[5].buf;
-    own->point = view[6].buf, own->results = view[7].buf;
-    p->count = size[0] / WORDS, p->extras = size[1], p->results = size[2];
-    p->constant_count = size[4], own->width = size[5];
-    valid = valid && size[0] % WORDS == 0 && size[3] == size[2] && p->slots >= 0
-         && p->slots <= 65536 && own->states >= 0 && own->states < p->inputs
-         && size[6] == p->inputs && size[7] == p->results * (own->slopes ? own->states : 1)
-         && !refused(p);
+    for (int k = 0; k < 3; k++) valid &= sized(&view[k], item[k], &size[k]);
+    own->columns = view[0].buf, own->point = view[1].buf, own->results = view[2].buf;
+    own->width = size[0];
+    valid = valid && own->states >= 0 && own->states < p->inputs && size[1] == p->inputs
+         && size[2] == p->results * (own->slopes ? own->states : 1);
     for (Py_ssize_t k = 0; valid && k < own->width; k++)
         valid = own->columns[k] > 0 && own->columns[k] <= own->states;
-    for (Py_ssize_t k = 0; valid && k < p->results; k++)
-        valid = !own->varies[k] || p->outputs[k] < p->slots;
     if (!valid) {
         Py_DECREF(own);
-        return PyErr_SetString(PyExc_ValueError, "not a valid program"), NULL;
+        return PyErr_SetString(PyExc_ValueError, "not the states of the program"), NULL;
     }
     own->V = calloc(p->slots + p->constant_count, sizeof(double));
     own->D = calloc(own->width ? p->slots * 16 : 1, sizeof(double));
@@ -345,6 +403,7 @@ static PyObject *prepare(PyObject *self, PyObject *args) {
 }
 
 static PyMethodDef METHODS[] = {
+    {"checked", checked, METH_VARARGS, checked_doc},
     {"run", run, METH_VARARGS, run_doc},
     {"follow", follow_slots, METH_VARARGS, follow_doc},
     {"prepare", prepare, METH_VARARGS, prepare_doc},
@@ -362,6 +421,7 @@ PyMODINIT_FUNC PyInit__machine(void) {
         PyTuple_SetItem(names, k, PyUnicode_FromString(NAMES[k]));
     if (PyModule_AddObjectRef(module, "OPERATIONS", names) < 0) return NULL;
     Py_DECREF(names);
+    checked_type = (PyTypeObject *)PyType_FromSpec(&CHECKED_SPEC);
     prepared_type = PyType_FromSpec(&PREPARED_SPEC);
-    return prepared_type == NULL ? NULL : module;
+    return checked_type == NULL || prepared_type == NULL ? NULL : module;
 }

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Callable, Sequence
-from dataclasses import field
+from dataclasses import field, fields
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Final
@@ -69,12 +69,20 @@ class Program:
     constants: Array
     slots: int
     inputs: int
-    _followed: dict[bytes, tuple[Array, Array]] = field(default_factory=dict)
+    _checked: dict[bytes, Any] = field(default_factory=dict)
+    """Programs for the virtual machine, by the inputs that change (see `along`)."""
+
+    def __getstate__(self) -> tuple[Any, ...]:
+        return tuple(getattr(self, part.name) for part in fields(self)[:-1])
+
+    def __setstate__(self, parts: tuple[Any, ...]) -> None:
+        self.__init__(*parts)  # type: ignore[misc]
 
     def values(self, points: Array) -> Array:
         """Outputs (points, outputs) at points (points, inputs)."""
         results = np.empty((len(points), len(self.outputs)))
-        self._run(self.code, self.frozen, points, np.empty(0), 0, results)
+        points = np.ascontiguousarray(points, dtype=float)
+        _MACHINE.run(self._runnable(None), points, np.empty(0), 0, results)
         return results
 
     def slopes(self, points: Array, seeds: Array) -> tuple[Array, Array]:
@@ -85,7 +93,8 @@ class Program:
         points : inputs of every point, (points, inputs)
         seeds : change of every input in every direction, (points, inputs, directions)
         """
-        code, varies = self.along(seeds.any(axis=(0, 2)))
+        runnable = self._runnable(seeds.any(axis=(0, 2)))
+        points = np.ascontiguousarray(points, dtype=float)
         count, inputs, directions = seeds.shape
         parts, values = [], np.empty(0)
         for first in range(0, max(directions, 1), WIDTHS[-1]):
@@ -95,7 +104,7 @@ class Program:
             padded = np.zeros((count, inputs, width))
             padded[:, :, :used] = part
             results = np.empty((count, len(self.outputs), 1 + width))
-            self._run(code, varies, points, padded, width, results)
+            _MACHINE.run(runnable, points, padded, width, results)
             values = results[:, :, 0]
             parts.append(results[:, :, 1 : 1 + used])
         return values, parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
@@ -119,13 +128,11 @@ class Program:
         """
         places = np.array([] if columns is None else columns, dtype=np.int32)
         moving = np.isin(np.arange(self.inputs), places)
-        code, varies = self.along(moving)
         count = len(self.outputs)
         results = np.zeros(count if columns is None else (count, states))
         prepared: Callable[[float, Array], Array] = _MACHINE.prepare(
-            code, self.extra, self.outputs, varies, self.constants, self.slots, self.inputs,
-            states, places, point, results, columns is not None,
-        )  # fmt: skip
+            self._runnable(moving), states, places, point, results, columns is not None
+        )
         return prepared
 
     def for_page(self) -> dict[str, object]:
@@ -159,21 +166,25 @@ class Program:
         ----------
         moving : whether each input changes, (inputs,)
         """
-        key = moving.tobytes()
-        if key not in self._followed:
-            code, active = self.code.copy(), np.zeros(self.slots, dtype=np.uint8)
-            active[: self.inputs] = moving
-            _MACHINE.follow(code, active, self.slots)
-            ends = np.append(active, np.zeros(len(self.constants), dtype=np.uint8))[self.outputs]
-            self._followed[key] = code, np.where(self.frozen, 0, ends).astype(np.int32)
-        return self._followed[key]
+        code, active = self.code.copy(), np.zeros(self.slots, dtype=np.uint8)
+        active[: self.inputs] = moving
+        _MACHINE.follow(code, active, self.slots)
+        ends = np.append(active, np.zeros(len(self.constants), dtype=np.uint8))[self.outputs]
+        return code, np.where(self.frozen, 0, ends).astype(np.int32)
 
-    def _run(
-        self, code: Array, varies: Array, points: Array, seeds: Array, width: int, results: Array
-    ) -> None:
-        points = np.ascontiguousarray(points, dtype=float)
-        _MACHINE.run(code, self.extra, self.outputs, varies, self.constants,
-            self.slots, self.inputs, points, seeds, width, results)  # fmt: skip
+    def _runnable(self, moving: Array | None) -> Any:
+        """The program for the virtual machine, without derivatives (None) or along some inputs.
+
+        The virtual machine checks a program once, here, and copies it. Raises `ValueError` for a
+        damaged program.
+        """
+        key = b"" if moving is None else moving.tobytes()
+        if key not in self._checked:
+            code, varies = (self.code, self.frozen) if moving is None else self.along(moving)
+            self._checked[key] = _MACHINE.checked(
+                code, self.extra, self.outputs, varies, self.constants, self.slots, self.inputs
+            )
+        return self._checked[key]
 
 
 def program(inputs: Sequence[Symbol], outputs: Sequence[Any]) -> Program:

@@ -92,20 +92,20 @@ class RecordedFunction:
     def _slopes(self, points: Array) -> Array:
         """Results with their complex steps; points with equal real parts are evaluated together."""
         assert self.recording is not None
-        real, steps = points.real, points.imag / STEP
-        new = np.append(True, (real[:, 1:] != real[:, :-1]).any(axis=0))
+        new = np.append(True, (points.real[:, 1:] != points.real[:, :-1]).any(axis=0))
         firsts = np.flatnonzero(new)
-        sizes = np.diff(np.append(firsts, len(new)))
-        widest = int(sizes.max())
-        seeds = np.zeros((len(firsts), len(real), widest))
-        group = np.cumsum(new) - 1
-        place = np.arange(len(new)) - firsts[group]
-        seeds[group, :, place] = steps.T
-        values, slopes = self.recording.program.slopes(real[:, firsts].T, seeds)
+        count, width = len(firsts), len(new) // len(firsts)
+        if len(new) % count or not new[::width].all():  # groups of different sizes
+            parts = np.split(points, firsts[1:], axis=1)
+            return np.concatenate([self._slopes(part) for part in parts], axis=1)
+        steps = points.imag.reshape(-1, count, width).transpose(1, 0, 2) / STEP
+        values, slopes = self.recording.program.slopes(points.real[:, firsts].T, steps)
         holds = self.recording.holds(values)
-        count = self.recording.rows
-        rows = values[group, :count].T + 1j * STEP * slopes[group, :count, place].T
-        self._complete(points, rows, holds[group])
+        rows = np.empty((self.recording.rows, count, width), dtype=complex)
+        rows.real = values[:, : len(rows)].T[:, :, None]
+        rows.imag = STEP * slopes[:, : len(rows)].transpose(1, 0, 2)
+        rows = rows.reshape(len(rows), -1)
+        self._complete(points, rows, np.repeat(holds, width))
         return rows
 
     def _complete(self, points: Array, rows: Array, holds: Array) -> None:

@@ -240,30 +240,36 @@ class Valley:
     hessian : Hessian of the Lagrangian divided by `scale`, made positive definite (nf, nf)
     scale : norm of the objective's gradient
     rows : number of constraints
-    price : penalty per unit of violation, larger than every multiplier
+    prices : multipliers of constraints, lower and upper bounds (rows + 2 nf,), divided by `scale`
     """
 
     point: Point
     hessian: Vector
     scale: float
     rows: int
-    price: float
+    prices: Vector
 
     def full(self) -> Descent:
-        """A new descent by full steps, with the Hessian of this optimum."""
-        return Descent(self.hessian, self.scale, self.rows, 1.0, radius=kkt.RADIUS)
+        """A new descent by full steps, with the Hessian and multipliers of this optimum."""
+        return Descent(
+            self.hessian, self.scale, self.rows, 1.0, radius=kkt.RADIUS, prices=self.prices
+        )
 
     def trusted(self) -> Descent:
-        """A new descent within a trust region, with the Hessian of this optimum."""
-        return Descent(self.hessian, self.scale, self.rows, self.price)
+        """A new descent within a trust region, with the Hessian and multipliers of this optimum."""
+        price = margin_price(self.prices[: self.rows])
+        return Descent(self.hessian, self.scale, self.rows, price, prices=self.prices)
 
 
 def valley_at(evaluator: Evaluator, point: Point) -> Valley:
     """A local optimum with the data from which new descents start."""
     state = kkt.state_at(evaluator, point)
-    price = margin_price(state.multipliers[: len(state.active.constraint)] / state.scale)
+    active, rows, size = state.active, evaluator.constraint_count, evaluator.space.size
+    prices = np.zeros(rows + 2 * size)
+    places = [active.constraint, rows + active.lower, rows + size + active.upper]
+    prices[np.concatenate(places)] = state.multipliers / state.scale
     hessian = kkt.convex_hessian(evaluator, state)
-    return Valley(point, hessian, state.scale, evaluator.constraint_count, price)
+    return Valley(point, hessian, state.scale, rows, prices)
 
 
 def is_optimum(evaluator: Evaluator, point: Point) -> bool:
