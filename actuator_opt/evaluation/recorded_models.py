@@ -137,9 +137,11 @@ class RecordedMany:
                 limits=(),
                 goals=["many", self.names],
             )
-            self._recorded.present[: len(points)] = points[:, 0]
+            computable = np.isfinite(expected).sum(axis=0)
+            self._recorded.present[: len(points)] = points[:, np.argmax(computable)]
             self._recorded(points)
-            size = np.nanmax(np.abs(expected), axis=1, keepdims=True, where=np.isfinite(expected), initial=0)
+            finite = np.where(np.isfinite(expected), np.abs(expected), 0.0)
+            size = finite.max(axis=1, keepdims=True)
             size[-2:] = 1.0  # margins are relative
             self._recorded.confirmed(points, expected, size)
 
