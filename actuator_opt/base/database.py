@@ -111,9 +111,16 @@ class Database:
     ) -> None:
         self.connection, self.number, self.path = connection, number, path
         self.width, self.checksums = width, Checksums(study, width)
+        self._empty_at = None if self._has_rows() else self._data_version()
 
     def missing(self, keys: Sequence[bytes]) -> tuple[list[int], int]:
-        """Indices of the keys without an intact row, and how many of them have a damaged row."""
+        """Indices of the keys without an intact row, and how many of them have a damaged row.
+
+        Rows of a study that was empty when it was opened are not looked up until another process
+        writes: the caller asks for every key only once.
+        """
+        if self._empty_at == self._data_version():
+            return list(range(len(keys))), 0
         known = self._known(keys)
         sound = [key for key, row in known.items() if row is not None]
         lacking = set(keys).difference(sound)
@@ -132,8 +139,7 @@ class Database:
 
     def _known(self, keys: Sequence[bytes]) -> dict[bytes, tuple[bytes | None, str | None] | None]:
         """Numbers and failure reason of every stored row by key; None for damaged rows."""
-        probe = "SELECT 1 FROM rows WHERE study = ? LIMIT 1"
-        if self.connection.execute(probe, (self.number,)).fetchone() is None:
+        if not self._has_rows():
             return {}
         stored: dict[bytes, tuple[bytes | None, str | None] | None] = {}
         for first in range(0, len(keys), KEYS_PER_QUERY):
@@ -147,13 +153,24 @@ class Database:
                 stored[row[0]] = row[1:3] if self.checksums.fits(*row) else None
         return stored
 
+    def _has_rows(self) -> bool:
+        probe = "SELECT 1 FROM rows WHERE study = ? LIMIT 1"
+        return self.connection.execute(probe, (self.number,)).fetchone() is not None
+
+    def _data_version(self) -> int:
+        """A number that changes when another connection has written to the file."""
+        return int(self.connection.execute("PRAGMA data_version").fetchone()[0])
+
     def put(self, keys: Sequence[bytes], rows: StoredNumbers) -> None:
-        """Store a chunk completely or not at all; damaged rows are replaced."""
+        """Store a chunk completely or not at all; damaged rows are replaced.
+
+        Rows are written in the order of their keys, so that the index is changed page by page.
+        """
         width = 8 * self.width
         data = np.ascontiguousarray(rows.numbers, dtype="<f8").tobytes()
         failures = rows.failures
         records = []
-        for k, key in enumerate(keys):
+        for key, k in sorted(zip(keys, range(len(keys)), strict=True)):
             failure = failures.get(k)
             numbers = data[k * width : (k + 1) * width] if failure is None else None
             checksum = self.checksums.of(key, numbers, failure)
@@ -260,6 +277,7 @@ def _prepare(connection: sqlite3.Connection, path: Path, version: str) -> None:
     connection.execute(
         "PRAGMA cache_size = -65536"
     )  # KiB: holds the index of keys, which arrive in random order
+    connection.execute("PRAGMA wal_autocheckpoint = 16384")  # pages: the same 64 MiB
     with connection:
         connection.execute("BEGIN IMMEDIATE")  # create all tables or none
         for statement in _TABLES.split(";"):

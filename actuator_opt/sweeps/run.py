@@ -135,8 +135,15 @@ def stored_rows(base: Database, study: Study, first: int, count: int) -> tuple[S
 
 
 CHUNK = 4096
-"""Number of points in a chunk, which is stored in one transaction and sent between processes as one
-message."""
+"""Least number of points in a chunk, which is stored in one transaction and sent between processes
+as one message."""
+
+MOST_CHUNK = 16_384
+"""Largest number of points in a chunk. Every transaction changes nearly all pages of the index, so
+fewer transactions write less."""
+
+CHUNKS = 32
+"""Number of chunks from which on a sweep has larger chunks instead of more (our choice)."""
 
 REDUCED = 65_536
 """Number of points in a chunk if only the best designs are kept."""
@@ -225,7 +232,9 @@ def _chunk_size(study: Study) -> int:
     """Return the number of points of a chunk; small if a design is built for nearly every point."""
     if study.designs.apart_count > CACHED:
         return SMALL_CHUNK
-    return CHUNK if study.full else REDUCED
+    if not study.full:
+        return REDUCED
+    return max(CHUNK, min(study.plan.count // CHUNKS, MOST_CHUNK))
 
 
 def _explain(swept: Swept) -> None:
