@@ -211,6 +211,8 @@ def spec_hash(subject: PreparedDesign) -> str:
     design = subject.design.model_dump(mode="json")
     if not design["uncertainty"]:  # unset fields are left out: hashes of older designs stay valid
         del design["uncertainty"]
+    if design["retention"] is not None and design["retention"]["cap"] is None:
+        del design["retention"]["cap"], design["retention"]["head"]
     content = {
         "design": design,
         "materials": {k: v for k, v in subject.numbers.items() if k.startswith("materials.")},

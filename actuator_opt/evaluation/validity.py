@@ -83,8 +83,9 @@ def model_of(
     if row is None:  # a user metric
         return None
     name = row.by_wall.get(wall) or row.model  # type: ignore[call-overload]
+    local = "" if place is None else place.removeprefix("cap: ").removeprefix("head: ")
     for pattern, other in row.at.items():
-        if place is not None and fnmatchcase(place, pattern):
+        if place is not None and fnmatchcase(local, pattern):
             name = other
     if name == CRITERION:
         return describe(cast(Callable[..., object], CRITERIA[criterion].modes))
