@@ -360,10 +360,12 @@ def _candidate_choices(
             if seal.seal_type.o_ring_gland:
                 for compound in SUBSTITUTES["seal"]:
                     yield f"{section}.compound", compound, {}
-    if design.retention is not None and matters("retention."):
-        for joint in JOINTS.names:
-            yield "retention.type", joint, {}
-    parts = ["rod", "piston", "head", "caps", "retention", "clevis"]
+    blocks = [] if design.retention is None else list(design.retention.ends)
+    ends = [f"retention.{name}" if name else "retention" for name in blocks]
+    for end in ends:
+        if matters(f"{end}."):
+            yield from ((f"{end}.type", joint, {}) for joint in JOINTS.names)
+    parts = ["rod", "piston", "head", "caps", *ends, "clevis"]
     parts += [f"barrel.layup[{i}]" for i in range(len(design.barrel.layup))]
     parts += [f"rod.layup[{i}]" for i in range(len(design.rod.layup))]
     for part in parts:

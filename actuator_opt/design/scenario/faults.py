@@ -9,10 +9,17 @@ from typing import Any
 
 from ...base import quantities
 from ...base.errors import Fault
-from ..build import how_to_add
 from ..kinds import Section, position_at
 from ..model import Design
-from ..structure import FileView, Loc, child_at, entries, length_text, without_effect
+from ..structure import (
+    FileView,
+    Loc,
+    child_at,
+    entries,
+    how_to_add,
+    length_text,
+    without_effect,
+)
 from .kinds import FRICTIONS, LAWS, SHAPES, SUPPLIES, ControlLaw
 from .model import (
     FEWEST_SAMPLES,
