@@ -134,9 +134,10 @@ def _gains(actuator: ActuatorProblem, conflict: Conflict) -> dict[str, float]:
 def _dimensions(
     actuator: ActuatorProblem, x: Vector, gains: Mapping[str, float]
 ) -> tuple[tuple[Cure, ...], tuple[Cure, ...], list[str]]:
-    """Dimensions that each suffice alone, least change first; PATHs not tried.
+    """Find dimensions whose change suffices.
 
-    In between, the second result has dimensions that only suffice together, if none suffices alone.
+    Returns dimensions that each suffice alone, least change first; if there are none, dimensions
+    that only suffice together; and the PATHs that were not tried.
     """
     design = actuator.subject.design
     candidates = sorted(

@@ -61,7 +61,7 @@ def part_lists(
 
 
 def _parts(view: FileView) -> Iterator[tuple[Loc, str, type[Section]]]:
-    """Location, shape and class of every signal part that has a known shape."""
+    """Location, name of the waveform and class of every signal part whose waveform is known."""
     for place, section in part_lists().items():
         for index in range(len(view.items(*place))):
             shape = view.text(*place, index, "shape")
