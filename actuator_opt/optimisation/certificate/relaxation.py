@@ -172,7 +172,7 @@ class Tables:
     def secant_errors(
         self, low: Vector, high: Vector, slope: Vector, indices: Any
     ) -> tuple[Vector, Vector]:
-        """Least and largest distance of some of the curves from lines through their values at `low`.
+        """Least and largest distance of some curves from lines through their values at `low`.
 
         Parameters
         ----------
