@@ -125,7 +125,7 @@ def test_one_end_with_several_types_to_choose_from():
     own = BONDED + "    thread: {pitch: 1 mm}\n"
     text = apart(STEEL, own, SCREWED) + "\nchoices:\n  retention.cap.type: [bond, thread]\n"
     result = ao.optimise(ao.read(text), prices=False)
-    rows = {row.values["retention.cap.type"]: row for row in result.choices.rows}
+    rows = {row.values["retention.cap.type"]: row for row in result.choices.combinations}
     assert set(rows) == {"bond", "thread"}
     assert rows["thread"].objective < rows["bond"].objective
 
