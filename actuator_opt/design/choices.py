@@ -116,6 +116,27 @@ SealState: TypeAlias = Annotated[
         "sticking: a spring parallel to the oil, until breakaway"
     ),
 ]
+COMPONENTS = {
+    "ports": "ports and fittings",
+    "static_seals": "static seals of the ends",
+    "piston_fastening": "fastening of the piston to the rod",
+    "bearings": "spherical bearings of the eyes",
+    "sensor": "position sensor",
+    "manifold": "valve and manifold",
+    "hoses": "hoses and pipes",
+}
+"""Components of an actuator that no model weighs: kind, and words for it."""
+Component: TypeAlias = Annotated[
+    Literal[
+        "ports", "static_seals", "piston_fastening", "bearings", "sensor", "manifold", "hoses",
+        "other",
+    ],
+    Choice("kind of component"),
+]  # fmt: skip
+Carrier: TypeAlias = Annotated[
+    Literal["barrel", "cap", "head", "piston", "rod"],
+    Choice("part that carries it; what piston or rod carry moves with them"),
+]
 Chamber: TypeAlias = Annotated[
     Literal["a", "b"], Choice("chamber that the line feeds; a: cap side; b: rod side")
 ]

@@ -51,6 +51,14 @@ class Line(Section):
     ] = False
 
 
+class ExtraMass(Section):
+    """A component of the actuator whose mass is stated, because no model computes it."""
+
+    kind: choices.Component
+    mass: Annotated[float, Of("component_mass", "mass of the component")]
+    place: choices.Carrier
+
+
 class Valve(Section):
     """A proportional or servo valve with four control edges that open linearly with the signal."""
 
@@ -672,6 +680,7 @@ class Design(Section):
     retention: Retention | None = None
     clevis: Clevis | None = None
     seals: Seals
+    extra_masses: Annotated[tuple[ExtraMass, ...], Field(max_length=24)] = ()
     lines: Annotated[tuple[Line, ...], Field(max_length=24)] = ()
     stiffness: Stiffness = Stiffness.model_construct()
     valve: Valve | None = None

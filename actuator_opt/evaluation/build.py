@@ -27,7 +27,7 @@ from ..design.model import Design
 from ..metrics import METRICS, MetricRow
 from ..metrics.table import CHECKS
 from ..version import VERSION
-from . import dynamics_study as dynamics, outline, validity as doubts
+from . import dynamics_study as dynamics, outline, validity as doubts, weight
 from .film import floats
 from .kernel import ModelRun, PreparedDesign, compute, governing
 from .limits import (
@@ -209,8 +209,9 @@ def prepare(
 def spec_hash(subject: PreparedDesign) -> str:
     """Hash of all inputs that determine the result: design, material data and program version."""
     design = subject.design.model_dump(mode="json")
-    if not design["uncertainty"]:  # unset fields are left out: hashes of older designs stay valid
-        del design["uncertainty"]
+    for key in ("uncertainty", "extra_masses"):
+        if not design[key]:  # unset fields are left out: hashes of older designs stay valid
+            del design[key]
     if design["retention"] is not None and design["retention"]["cap"] is None:
         del design["retention"]["cap"], design["retention"]["head"]
     content = {
@@ -254,6 +255,7 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
         unverified=tuple(doubts.unverified(subject, v)),
         models=tuple(doubts.models(metrics, subject, run.rings, outside, [t for _, t in warnings])),
         mass_parts={name: float(np.squeeze(m)) for name, m in run.mass_parts.items()},
+        mass_leaves_out=weight.left_out(design),
         curve=_curve(run, v, metrics["stiffness_min"].case),
         outlines=outline.outlines(design, subject.materials, run.geometry),
         lengths=outline.lengths(design, run.geometry),

@@ -358,7 +358,7 @@ def statics(
     loaded_joints = strength.joints_under_load(v, design, stock, g, barrel)
     strength.compute(v, design, stock, g, case_state, barrel, rod, beam, loaded_joints, out)
     stop = joint.at_stop(case_state.demands, case_state.push)
-    stop = replace(stop, mass=_moving(stop.mass, parts))
+    stop = replace(stop, mass=weight.moving(parts, stop.mass))
     duty.compute(v, design, stock, g, case_state, barrel, rod, loaded_joints, stop, net, out)
     thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
     for name, value in geometry_module.lands(g, thread / 2).items():
@@ -379,7 +379,7 @@ def statics(
         breakaway=friction.breakaway,
         branches=branches,
         springs=budget,
-        moving=_moving(case_state.demands[joint.WORST].mass, parts),
+        moving=weight.moving(parts, case_state.demands[joint.WORST].mass),
         beam=beam,
         damping=damping,
         leakage=leakage,
@@ -424,11 +424,6 @@ def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = 
     )
 
 
-def _moving(load: Array, parts: dict[str, Array]) -> Array:
-    """Mass that moves with the rod, including the load."""
-    return load + parts["rod"] + parts["piston"] + parts["fastening"]
-
-
 def _at_stops(
     v: Values,
     design: Design,
@@ -450,7 +445,7 @@ def _at_stops(
             v, design, basis.geometry, stop_state, basis.wall, rod, breakaway, branches
         )
         stop_metrics = MetricArrays()
-        springs.compute(budget, _moving(s.demands[end].mass, parts), stop_metrics)
+        springs.compute(budget, weight.moving(parts, s.demands[end].mass), stop_metrics)
         for name in AT_STOPS:
             out.metrics[name][f"loaded as {end}"] = stop_metrics.metrics[name][""]
             out.applies_at[name, f"loaded as {end}"] = differing

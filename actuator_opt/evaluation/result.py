@@ -300,6 +300,8 @@ class Evaluation(Displayed):
     models: tuple[ModelUse, ...]
     mass_parts: Mapping[str, float]
     """Dry mass per part [kg] in assembly order; the sum is `mass`. Oil: `metrics["mass_oil"]`."""
+    mass_leaves_out: tuple[str, ...]
+    """Components that `mass` leaves out: no model weighs them, and the design states no mass."""
     curve: StrokeCurve
     outlines: tuple[Outline, ...]
     lengths: Mapping[str, float]
@@ -417,6 +419,8 @@ class Evaluation(Displayed):
                 "why": self.yield_estimate.why,
             },
             "counts": self.counts,
+            "mass_parts": dict(self.mass_parts),
+            "mass_leaves_out": list(self.mass_leaves_out),
             "warnings": list(self.warnings),
             "unverified": [asdict(value) for value in self.unverified],
             "wall": None if self.wall is None else self.wall.to_dict(),

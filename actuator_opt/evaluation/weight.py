@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from ..base.numeric import Array
+from ..design.choices import COMPONENTS
 from ..design.model import Design
 from ..joints.joint import EndDimensions
 from ..models import mass
@@ -12,7 +15,11 @@ from .rods import RodSection, fitting_hole
 from .values import Values
 
 PARTS = ("barrel", "rod", "piston", "caps", "glands", "seals", "fastening", "clevises")
-"""Parts of the mass breakdown, in assembly order."""
+"""Parts of the mass breakdown, in assembly order. Components with a stated mass follow them."""
+STATED, STATED_MOVING = "components", "moving components"
+"""Parts of the breakdown: components with a stated mass, fixed or moving with the rod."""
+MOVING = ("rod", "piston", "fastening", STATED_MOVING)
+"""Parts that move with the rod."""
 
 
 def _barrel(v: Values, design: Design, g: Geometry) -> Array:
@@ -130,7 +137,30 @@ def parts(
             else:
                 masses[part] = masses[part] + end_joint.count * addition
     masses["caps"] = masses.pop("cap") + masses.pop("head")
-    return {part: masses[part] for part in PARTS}
+    stated: dict[str, Array] = {}
+    for index, component in enumerate(design.extra_masses):
+        part = STATED_MOVING if component.place in ("piston", "rod") else STATED
+        stated[part] = stated.get(part, 0.0) + v[f"extra_masses[{index}].mass"]
+    return {part: masses[part] for part in PARTS} | stated
+
+
+def moving(parts: Mapping[str, Array], load: Array = 0.0) -> Array:
+    """Mass of the parts that move with the rod, and of the load on it [kg]."""
+    return sum((parts[part] for part in MOVING if part in parts), load)
+
+
+def left_out(design: Design) -> tuple[str, ...]:
+    """Components that the mass leaves out: no model weighs them, and the design states no mass.
+
+    A bonded end needs no static seal, since the adhesive seals it.
+    """
+    stated = {component.kind for component in design.extra_masses}
+    joints = joints_of(design)
+    if joints and all("adhesive" in end.joint.kinds for end in joints):
+        stated.add("static_seals")
+    if design.clevis is None:
+        stated.add("bearings")
+    return tuple(words for kind, words in COMPONENTS.items() if kind not in stated)
 
 
 def oil(v: Values, design: Design, geometry: Geometry, position: Array = 0.0) -> Array:
