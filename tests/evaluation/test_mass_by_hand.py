@@ -29,8 +29,8 @@ import pytest
 
 import actuator_opt as ao
 from actuator_opt import api as verbs
-from actuator_opt.pages.report import masses
 from actuator_opt.design.materials import load_library
+from actuator_opt.pages.report import masses
 
 DESIGNS = Path(__file__).parents[2] / "designs"
 DIMENSIONS = {
