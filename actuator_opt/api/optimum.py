@@ -16,7 +16,7 @@ from ..design import Design
 from ..evaluation import Evaluation, PreparedDesign, evaluate as evaluate_subject, prepare
 from ..evaluation.plugin import Plugin
 from ..evaluation.result import YieldEstimate
-from .actuator import Actuator, Plugins, as_actuator, checked_design, fault_of, located
+from .actuator import Actuator, Plugins, as_actuator, checked_design, fault_of, located, workers_for
 from .reports import ReportArguments, page_of, report_files
 
 if TYPE_CHECKING:
@@ -179,6 +179,7 @@ def pareto(
     seed: int = 0,
     checks: int = 3,
     plugins: Plugins = (),
+    scheduler: str | None = None,
 ) -> ParetoFront:
     """Search for evenly spread designs on the Pareto front, and for its knee.
 
@@ -191,12 +192,17 @@ def pareto(
     checks : number of additional independent searches, which reveal designs that are only locally
         best
     plugins : the user's metrics and constraints
+    scheduler : address of a Dask scheduler, used instead of this process for the designs between
+        the ends of the front and for the checks (extra `cluster`)
     """
     from ..optimisation.pareto import pareto as run
 
     actuator, subject = checked_design(design, plugins)
-    with located(actuator):
-        return run(subject, objectives, count=n, seed=seed, checks=checks, fault=fault_of(actuator))
+    fault = fault_of(actuator)
+    with located(actuator), workers_for(actuator, scheduler) as cluster:
+        return run(
+            subject, objectives, count=n, seed=seed, checks=checks, fault=fault, cluster=cluster
+        )
 
 
 def write_front_csv(front: ParetoFront, path: str | Path) -> ReportFile:

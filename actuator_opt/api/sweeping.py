@@ -13,7 +13,7 @@ from ..base.files import require_apart, writing as cannot_write
 from ..base.tables import Displayed
 from ..design import Design
 from ..evaluation import PreparedDesign, compute
-from .actuator import Actuator, Plugins, as_actuator, requirement_faults
+from .actuator import Actuator, Plugins, as_actuator, requirement_faults, workers_for
 from .recorded_runs import Run
 from .reports import ReportArguments, file_name, report_files
 
@@ -107,18 +107,18 @@ def sweep(
         remedy = "confirm with --yes, or keep only the best with --reduce best:K"
         raise UsageError(Diagnostic(message, remedy))
     study = study_of(actuator, points, full=not reduce, show=show, engine=engine)
-    if actuator.plugins and scheduler is not None:
-        message = "custom metrics cannot be sent to other machines"
-        raise UsageError(Diagnostic(message, "omit --scheduler or --plugin"))
     watched = _watched(study, figures, show)
-    with writing(study, csv, parquet) as write_rows:
+    with (
+        workers_for(actuator, scheduler) as cluster,
+        writing(study, csv, parquet) as write_rows,
+    ):
         swept = run(
             study,
             each=write_rows,
             store=None if store is None else Path(store),
             keep=keep,
             workers=1 if actuator.plugins or engine != "numpy" else workers,
-            scheduler=scheduler,
+            cluster=cluster,
             watch=watched,
         )
     if figures and out is not None:

@@ -24,6 +24,7 @@ from .options import (
     PluginFile,
     Quiet,
     Report,
+    Scheduler,
     Seed,
     Set,
     StandardSizes,
@@ -166,6 +167,7 @@ def pareto(
             help="Number of additional full searches that look for better optima.",
         ),
     ] = 3,
+    scheduler: Scheduler = None,
     csv: Annotated[
         Path | None, typer.Option("--csv", metavar="FILE", help="Save the designs of the front.")
     ] = None,
@@ -190,5 +192,8 @@ def pareto(
         as_json=as_json, quiet=quiet, record=not no_record,
     )  # fmt: skip
     return job.deliver(
-        job.run(verbs.pareto, objectives=objectives or [], n=n, seed=seed, checks=checks)
-    )
+        job.run(
+            verbs.pareto, objectives=objectives or [], n=n, seed=seed, checks=checks,
+            scheduler=scheduler,
+        )
+    )  # fmt: skip

@@ -14,7 +14,7 @@ from ..base.errors import ActuatorError, Diagnostic, ExitCode, UsageError, shown
 from ..base.units import whole
 from . import streams
 from .job import Job
-from .options import REPORTS, DesignFile, Json, NoRecord, PluginFile, Quiet, Seed, Set
+from .options import REPORTS, DesignFile, Json, NoRecord, PluginFile, Quiet, Scheduler, Seed, Set
 
 if TYPE_CHECKING:
     from ..sweeps import Swept
@@ -58,10 +58,6 @@ Reduce = Annotated[
 Workers = Annotated[
     int | None,
     typer.Option("--workers", metavar="N", help="Number of processes; default: all cores."),
-]
-Scheduler = Annotated[
-    str | None,
-    typer.Option("--scheduler", metavar="ADDRESS", help="Run on this Dask cluster instead."),
 ]
 Figures = Annotated[
     list[str] | None,

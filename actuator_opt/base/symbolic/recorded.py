@@ -101,7 +101,7 @@ class RecordedFunction:
         steps = points.imag.reshape(-1, count, width).transpose(1, 0, 2) / STEP
         values, slopes = self.recording.program.slopes(points.real[:, firsts].T, steps)
         holds = self.recording.holds(values)
-        rows = np.empty((self.recording.rows, count, width), dtype=complex)
+        rows: Array = np.empty((self.recording.rows, count, width), dtype=complex)
         rows.real = values[:, : len(rows)].T[:, :, None]
         rows.imag = STEP * slopes[:, : len(rows)].transpose(1, 0, 2)
         rows = rows.reshape(len(rows), -1)
