@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..base.dataclass import dataclass
+from ..base.errors import Diagnostic, UsageError
 from ..base.tables import Displayed
 from ..design import Design
 from ..evaluation import Evaluation, PreparedDesign, evaluate as evaluate_subject, prepare
@@ -79,16 +80,23 @@ def optimise(
     standard_sizes: bool = False,
     certify: bool = False,
     yield_target: float | None = None,
+    scheduler: str | None = None,
 ) -> Optimisation:
     """Find the best design; parameters as for `optimisation.run.optimise`.
 
     With a `yield_target`, the optimum meets all limits with that probability under the design's
     uncertain inputs (`uncertainties.robust`); the result's `robust` has the details. Without a
     target, `best_evaluation` contains a quick estimate of the yield.
+
+    `scheduler` is the address of a Dask scheduler, used instead of this process for combinations of
+    choices (extra `cluster`); a design without choices is refused with `UsageError`.
     """
     from ..optimisation.run import optimise as run
 
     actuator, subject = checked_design(design, plugins)
+    if scheduler is not None and not actuator.design.choices:
+        message = "--scheduler only speeds up designs with choices, and this design has none"
+        raise UsageError(Diagnostic(message, "omit --scheduler"))
 
     def search(subject: PreparedDesign, last: bool) -> Optimisation:
         return run(
@@ -104,9 +112,10 @@ def optimise(
             certify=certify and last,
             explain=last,
             keep_interrupted=keep_interrupted,
+            cluster=cluster,
         )
 
-    with located(actuator):
+    with located(actuator), workers_for(actuator, scheduler) as cluster:
         if yield_target is None:
             return estimated(search(subject, True), actuator.plugins)
         from ..uncertainties.robust import robust

@@ -50,6 +50,7 @@ def optimise(
     certify: Certify = False,
     target: Yield = None,
     verify: VerifyDynamics = None,
+    scheduler: Scheduler = None,
     write: Write = None,
     out: Out = REPORTS,
     report: Annotated[
@@ -83,6 +84,7 @@ def optimise(
         standard_sizes=standard_sizes,
         certify=certify,
         yield_target=target,
+        scheduler=scheduler,
     )
     fault = None if write is None else _unsaved(result, write)
     if write is not None and fault is None:

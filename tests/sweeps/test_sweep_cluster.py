@@ -22,7 +22,7 @@ VARY = ["cylinder.bore=18..26 mm", "rod.outer_diameter=9..13 mm"]
 def cluster():
     """Two workers, each a process of its own; a nanny starts a lost one again."""
     with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0", silence_logs=50
     ) as found:
         yield found
 
