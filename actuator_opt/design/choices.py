@@ -68,9 +68,8 @@ WallModel: TypeAlias = Annotated[
 Criterion: TypeAlias = Annotated[
     str, choice_of("failure criterion for the plies of barrel and rod", CRITERIA)
 ]
-RetentionType: TypeAlias = Annotated[
-    str, choice_of("how cap and head are joined to the barrel", JOINTS)
-]
+JOINT_TYPE = choice_of("how cap and head are joined to the barrel", JOINTS)
+RetentionType: TypeAlias = Annotated[str, JOINT_TYPE]
 SealType: TypeAlias = Annotated[
     str,
     choice_of("kind of seal", SEAL_TYPES),

@@ -162,8 +162,9 @@ def names_of_materials(design: Design) -> list[str]:
         names += [design.rod.fitting.material or design.rod.material, design.rod.fitting.adhesive]
     names += [part.bearing for part in (design.piston, design.head) if part.bearing is not None]
     names.append(design.caps.material)
-    if design.retention is not None and design.retention.material is not None:
-        names.append(design.retention.material)
+    if design.retention is not None:
+        joints = design.retention.ends.values()
+        names += [joint.material for joint in joints if joint.material is not None]
     if design.clevis is not None:
         names.append(design.clevis.material)
     for seal in (design.seals.piston, design.seals.rod):
@@ -210,6 +211,8 @@ def spec_hash(subject: PreparedDesign) -> str:
     design = subject.design.model_dump(mode="json")
     if not design["uncertainty"]:  # unset fields are left out: hashes of older designs stay valid
         del design["uncertainty"]
+    if design["retention"] is not None and design["retention"]["cap"] is None:
+        del design["retention"]["cap"], design["retention"]["head"]
     content = {
         "design": design,
         "materials": {k: v for k, v in subject.numbers.items() if k.startswith("materials.")},

@@ -361,7 +361,7 @@ class Evaluation(Displayed):
         total, met = len(self.requirements), sum(row.met for row in self.requirements)
         missed = [check.name for check in self.checks if check.status == "missed"]
         more = f" and {len(missed) - 1} more" if len(missed) > 1 else ""
-        exception = f", but missed: {missed[0]}{more}" if missed and met == total else ""
+        exception = f"; checks missed: {missed[0]}{more}" if missed and met == total else ""
         return f"{met} of {total} requirements met{exception}"
 
     def __str__(self) -> str:

@@ -404,7 +404,7 @@ def _bounds(card: Infeasibility) -> Block:
 
 
 def _closes(gain: float, total: float | None) -> str:
-    """Share by which the total relaxation needed falls if a bound is widened by 1 %."""
+    """Share by which the total relaxation needed becomes smaller if a bound is widened by 1 %."""
     return f"{text.number(min(gain / total, 100.0), 2)} %" if total else DASH
 
 

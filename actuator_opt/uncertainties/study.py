@@ -34,7 +34,7 @@ def _notes(subject: PreparedDesign, uncertain_inputs: Sequence[Input]) -> Iterat
         )
     yield (
         "strengths do not scatter in this study: they stay at their allowables, with all "
-        "knock-downs, so the yield is conservative for material strength"
+        "knock-downs, so the estimated share of good parts is conservative"
         if not strengths
         else (
             "these strengths scatter, so the knock-down for their statistical basis, which "

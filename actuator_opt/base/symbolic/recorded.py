@@ -104,9 +104,9 @@ class RecordedFunction:
         rows: Array = np.empty((self.recording.rows, count, width), dtype=complex)
         rows.real = values[:, : len(rows)].T[:, :, None]
         rows.imag = STEP * slopes[:, : len(rows)].transpose(1, 0, 2)
-        rows = rows.reshape(len(rows), -1)
-        self._complete(points, rows, np.repeat(holds, width))
-        return rows
+        joined: Array = rows.reshape(len(rows), -1)
+        self._complete(points, joined, np.repeat(holds, width))
+        return joined
 
     def _complete(self, points: Array, rows: Array, holds: Array) -> None:
         """Call the function itself for points on unrecorded branches; if many, record it again."""

@@ -398,7 +398,7 @@ def placed(stand: Stand) -> Stand:
 
 
 def held_place(stand: Stand) -> Stand:
-    """The stand, at least 2 % of the stroke away from both stroke ends, as the piston may creep."""
+    """A copy whose piston is at least 2 % of the stroke from both ends, because it may creep."""
     return _inset(stand, 0.02 * stand.plant.stroke)
 
 
