@@ -14,7 +14,7 @@ from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
-from itertools import chain
+from itertools import chain, islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -221,6 +221,8 @@ def _computed(
     count = min(count, chunks)  # all workers start at once, even without work
     if workers is None or count == 1:
         yield from _local_chunks(study, chunks, remaining, patient=count == 1)
+    elif study.recorded:  # the processes inherit what the first chunk has recorded
+        yield from (_chunk(study, task) for task in islice(remaining, 1))
     first_task = next(remaining, None)
     if first_task is None:
         return
