@@ -71,8 +71,10 @@ def sweep(
     reduce : whether to skip designs that cannot be among the best, and so evaluate fewer
     workers : number of processes; default: one per core
     scheduler : address of a Dask scheduler, used instead of local processes (extra `cluster`)
-    engine : array library with which `reduce` rules out designs, "numpy" or "jax" (extra `gpu`);
-        NumPy is used if JAX is missing
+    engine : "gpu" runs the recorded models of a full sweep on a CUDA GPU (extra `gpu`); its rows
+        agree with those of the processor to rounding; not yet measured on a GPU. "jax" (extra
+        `jax`) compiles the expressions with which `reduce` rules out designs; NumPy is used if JAX
+        is missing
     yes : whether a full sweep of more than a million points is confirmed
     plugins : the user's metrics and constraints
     figures : figures to draw as PNG and SVG: "parallel", "scatter", "contour", "ucurves"
@@ -106,6 +108,8 @@ def sweep(
         message = f"all {points.count:,} points would be evaluated in full".replace(",", " ")
         remedy = "confirm with --yes, or keep only the best with --reduce best:K"
         raise UsageError(Diagnostic(message, remedy))
+    if engine == "gpu":
+        _require_gpu(actuator, scheduler)
     study = study_of(actuator, points, full=not reduce, show=show, engine=engine)
     watched = _watched(study, figures, show)
     with (
@@ -124,6 +128,17 @@ def sweep(
     if figures and out is not None:
         draw_sweep(swept, figures, show=show, out=out)
     return swept
+
+
+def _require_gpu(actuator: Actuator, scheduler: str | None) -> None:
+    """Reject custom metrics, and a computer without a GPU unless a cluster computes the sweep."""
+    from ..base.symbolic import gpu
+
+    if actuator.plugins:
+        message = "custom metrics cannot run on a GPU"
+        raise UsageError(Diagnostic(message, "omit --engine or --plugin"))
+    if scheduler is None:
+        gpu.require()
 
 
 @contextmanager

@@ -79,7 +79,10 @@ Show = Annotated[
 Yes = Annotated[bool, typer.Option("--yes", help="Allow more than a million full evaluations.")]
 Screening = Annotated[
     str,
-    typer.Option("--engine", help="Array library for --reduce: numpy, or jax (extra gpu)."),
+    typer.Option(
+        "--engine",
+        help="numpy; gpu: all designs on a CUDA GPU (extra gpu); jax: --reduce by JAX (extra jax).",
+    ),
 ]
 Folder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the figures.")]
 
@@ -127,7 +130,7 @@ def sweep(
             **output,
         )  # fmt: skip
     if swept.study.engine != engine and not quiet:
-        streams.err("JAX not installed (pip install 'actuator-opt[gpu]'); used NumPy")
+        streams.err("JAX not installed (pip install 'actuator-opt[jax]'); used NumPy")
     if not no_record:
         job.keep(swept, **output)
     files, faults = _drawn(swept, figures, show, out)

@@ -68,7 +68,8 @@ CHUNK = 4096
 message."""
 
 REDUCED = 65_536
-"""Number of points in a chunk if only the best designs are kept."""
+"""Number of points in a chunk if only the best designs are kept, or for a GPU, which needs this
+many designs at once to be busy."""
 
 SECTIONS = 16
 """Number of places in a sweep at which designs are evaluated to find the limits that they miss, if
@@ -154,7 +155,7 @@ def _chunk_size(study: Study) -> int:
     """Return the number of points of a chunk; small if a design is built for nearly every point."""
     if study.designs.apart_count > CACHED:
         return SMALL_CHUNK
-    return CHUNK if study.full else REDUCED
+    return CHUNK if study.full and study.engine != "gpu" else REDUCED
 
 
 def _explain(swept: Swept) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import cupy_on_host
 import numpy as np
 import pytest
-from cli_runner import DESIGNS
+from cli_runner import DESIGNS, KNEE, run
 from hypothesis import given, settings, strategies as st
 from test_recording import BINARY, SIZED, STEPS, UNARY, VALUES, grown, recorded
 
@@ -18,6 +18,7 @@ from actuator_opt.base.errors import UsageError
 from actuator_opt.base.polynomial import root_parts
 from actuator_opt.base.symbolic import gpu, program as programs
 from actuator_opt.optimisation.actuator import build
+from actuator_opt.sweeps import chunk
 
 pytestmark = [
     pytest.mark.skipif(not programs.AVAILABLE, reason="the machine was not built"),
@@ -91,7 +92,7 @@ def test_roots(folder, lists, degree):
 
 def test_a_shipped_design_in_batches(folder, monkeypatch):
     """The knee at 300 points of its box; the device has memory for some 128 designs at once."""
-    actuator = build(ao.read(DESIGNS / "knee.yaml").subject())
+    actuator = build(ao.read(KNEE).subject())
     problem, function = actuator.problem, actuator.recorded
     with np.errstate(all="ignore"):
         function(function.present[:, None])
@@ -103,6 +104,32 @@ def test_a_shipped_design_in_batches(folder, monkeypatch):
     points[:, : shares.shape[1]] = problem.lower + (problem.upper - problem.lower) * shares
     agree(made, points)
     assert gpu.values(made, points[:0]).shape == (0, len(made.outputs))
+
+
+@pytest.mark.parametrize("design", ["knee.yaml", "steel_baseline.yaml"])
+def test_a_sweep_has_the_same_rows_and_store(design, device, tmp_path, monkeypatch):
+    """All numbers of the CSV agree to 1e-12; the processor reads the GPU's rows from the store."""
+    monkeypatch.setattr(chunk, "RECORDED_FROM", 1)
+    monkeypatch.setattr(chunk, "LEAST_RECORDED", 1)
+    calls = []
+    monkeypatch.setattr(gpu, "values", lambda *x, on=gpu.values: calls.append(len(x[1])) or on(*x))
+
+    def swept(name, **options):
+        file, vary = tmp_path / name, ["cylinder.bore=18..26 mm", "rod.outer_diameter=9..13 mm"]
+        result = ao.sweep(DESIGNS / design, vary, method="lhs", n=400, csv=file, **options)
+        return result, file.read_text(encoding="utf-8")
+
+    _, expected = swept("processor.csv")
+    assert not calls
+    store = {"store": tmp_path / "rows.db"}
+    result, table = swept("gpu.csv", engine="gpu", **store)
+    assert result.to_dict()["engine"] == "gpu"
+    assert max(calls) == 400
+    for row, other in zip(table.splitlines(), expected.splitlines(), strict=True):
+        for value, wanted in zip(row.split(","), other.split(","), strict=True):
+            assert value == wanted or float(value) == pytest.approx(float(wanted), rel=1e-12)
+    again, stored = swept("stored.csv", **store)
+    assert (again.computed, stored) == (0, table)
 
 
 def test_without_cupy_or_a_device_one_line_says_so(folder, monkeypatch):
@@ -121,6 +148,10 @@ def test_without_cupy_or_a_device_one_line_says_so(folder, monkeypatch):
     with pytest.raises(UsageError, match="no usable CUDA device") as caught:
         gpu.require()
     assert len(str(caught.value).splitlines()) == 1
+    done = run("sweep", KNEE, "--vary", "cylinder.bore=20..22 mm:3", "--engine", "gpu")
+    assert done.code == 2
+    assert len(done.err.splitlines()) == 1
+    assert "no usable CUDA device" in done.err
 
 
 def test_a_damaged_program_is_refused(device):

@@ -43,6 +43,7 @@ class RecordedFunction:
     Attributes
     ----------
     reason : why the function is not run by the machine, if it is not
+    run : computes the outputs of a program at points (points, inputs): the machine, or a GPU
     """
 
     def __init__(
@@ -57,6 +58,7 @@ class RecordedFunction:
         self.present = present
         self.structure = structure
         self.reason = "" if programs.AVAILABLE else programs.NOT_BUILT
+        self.run: Callable[[Program, Array], Array] = Program.values
         self.recording: Recording | None = None
         self._fixed: tuple[Recording, Program] | None = None
         self.recordings = 0
@@ -99,7 +101,7 @@ class RecordedFunction:
                 program = program.with_fixed(self.present[len(points) :])
                 self._fixed = self.recording, program
             program = self._fixed[1]
-        results = program.values(points.T)
+        results = self.run(program, points.T)
         holds = self.recording.holds(results)
         rows = results[:, : self.recording.rows].T
         rows = rows if fewer else np.ascontiguousarray(rows)
