@@ -73,7 +73,7 @@ class Cluster:
 
 
 HERE = Cluster()
-"""This process alone."""
+"""Every task in this process."""
 
 
 @contextmanager

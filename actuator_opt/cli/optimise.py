@@ -50,7 +50,14 @@ def optimise(
     certify: Certify = False,
     target: Yield = None,
     verify: VerifyDynamics = None,
-    scheduler: Scheduler = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            "--scheduler",
+            metavar="ADDRESS",
+            help="Solve combinations of choices on this Dask cluster.",
+        ),
+    ] = None,
     write: Write = None,
     out: Out = REPORTS,
     report: Annotated[
