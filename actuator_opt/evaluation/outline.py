@@ -148,7 +148,7 @@ def _turned_down(
     for fit, face, inwards in ((fits[1], x1, -1), (fits[0], x0, 1)):
         radius, step = float(fit.radius), face + inwards * float(fit.length)
         end = [(face, radius), (step, radius), (step, r1)] if radius < outer else [(face, r1)]
-        corners += end[::inwards] if inwards < 0 else end[::-1]
+        corners += end if inwards < 0 else end[::-1]
     return tuple(corners)
 
 

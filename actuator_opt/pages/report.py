@@ -278,7 +278,7 @@ def verdict(subject: Evaluation | Optimisation) -> Verdict:
 
 
 def doubts(evaluation: Evaluation) -> tuple[list[str], list[str]]:
-    """Plain lines and cautions for the badge, on unverified values and extrapolated results."""
+    """Plain lines and cautions for the verdict, on unverified values and extrapolated results."""
     counts = evaluation.counts
     results, models = counts["extrapolated"], counts["extrapolated_models"]
     words = f"{results} result{'' if results == 1 else 's'}"

@@ -1,8 +1,9 @@
 """Programs of recorded functions in a folder of the user, so that later runs need not record again.
 
 A file has a line of JSON with sizes and a checksum, and then the compressed arrays. Files are data
-from elsewhere: their sizes are checked here, their slots by the machine, and their results by
-`recorded`. A file that cannot be read or written only costs a new recording.
+from elsewhere: this module checks their sizes, the machine the slots of every instruction, and
+`recorded` compares results with the models. A file that cannot be read or written only costs a new
+recording.
 """
 
 from __future__ import annotations

@@ -102,7 +102,7 @@ class Builder:
         return entry
 
     def _tightest(self, node: Symbol) -> tuple[float, Form]:
-        """Sign and logarithm of a value; from samples if these give tighter bounds."""
+        """Sign and logarithm of a value; a fit to samples is used if its bounds are tighter."""
         if node.op not in _MONOMIAL or self._repeats(node):
             with suppress(Unknown):
                 return self._sampled(node)
