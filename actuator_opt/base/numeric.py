@@ -143,6 +143,17 @@ def together(values: Sequence[Array], axis: int = 0) -> Array:
     return xp.stack(values, axis=axis)
 
 
+def finished(active: Array) -> bool:
+    """Whether a loop may end because none of its elements is active.
+
+    Further rounds must not change elements that are not active: then a recording of more rounds is
+    also correct for points that need fewer.
+    """
+    xp = namespace(active)
+    recorded: bool = xp.finished(active) if hasattr(xp, "finished") else not bool(xp.any(active))
+    return recorded
+
+
 def stacked(rows: Sequence[Sequence[Array]]) -> list[Array]:
     """Stack each list of values (one per layer) into an array (layers, ...).
 

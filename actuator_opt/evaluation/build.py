@@ -18,7 +18,7 @@ import numpy as np
 from ..base import quantities
 from ..base.dataclass import dataclass
 from ..base.errors import InputError
-from ..base.numeric import Array, sorted_unique
+from ..base.numeric import Array, namespace, sorted_unique, where
 from ..design import paths, standard_sizes as standards
 from ..design.housings import gland_deviations, housings, housings_for
 from ..design.material import Material
@@ -446,19 +446,25 @@ def _curve(run: ModelRun, v: Values, case: str | None) -> StrokeCurve:
 
 @dataclass(frozen=True, slots=True)
 class Many:
-    """Results of many designs, arrays (designs,).
+    """Results of many designs.
 
-    `metrics` are the governing values, NaN if missing. `margin` is the smallest margin of all
-    limits, including those of the check list. `missed` is the index in `limits` of the limit with
-    this margin. `read` are the PATHs (such as `cylinder.bore`) of the inputs that models and limits
-    have used.
+    `names` are the metrics and `values` (metrics, designs) their governing values, NaN if missing.
+    `margin` (designs,) is the smallest margin of all limits, including those of the check list.
+    `missed` (designs,) is the index in `limits` of the limit with this margin. `read` are the PATHs
+    (such as `cylinder.bore`) of the inputs that models and limits have used.
     """
 
-    metrics: dict[str, Array]
+    names: tuple[str, ...]
+    values: Array
     margin: Array
     missed: Array
     limits: tuple[MetricLimit, ...]
     read: frozenset[str]
+
+    @property
+    def metrics(self) -> dict[str, Array]:
+        """Governing values (designs,) by metric."""
+        return dict(zip(self.names, self.values, strict=True))
 
     @property
     def feasible(self) -> Array:
@@ -483,20 +489,40 @@ def evaluate_many(
     count : number of designs
     wanted : metrics to compute; default: all
     """
-    v = subject.values(varied)
+    v, names = subject.values(varied), names_of_metrics(subject, wanted)
+    return many(subject, names, rows_of_many(subject, v, names, count), v.read)
+
+
+def many(subject: PreparedDesign, names: tuple[str, ...], rows: Array, read: Iterable[str]) -> Many:
+    """Results of many designs from the rows of `rows_of_many` (metrics + 2, designs)."""
+    missed = rows[-1].astype(np.int32)
+    return Many(names, rows[:-2], rows[-2], missed, limits_of(subject), frozenset(read))
+
+
+def names_of_metrics(
+    subject: PreparedDesign, wanted: Container[str] | None = None
+) -> tuple[str, ...]:
+    """Metrics of a design; with `wanted`, only those that it contains."""
+    return tuple(name for name in subject.quantities if wanted is None or name in wanted)
+
+
+def rows_of_many(subject: PreparedDesign, v: Values, names: Iterable[str], count: int) -> Array:
+    """Governing values of metrics, least margin and the number of its limit (metrics + 2, designs).
+
+    A value that is not finite becomes NaN, an unknown margin minus infinity. The numbers in `v` may
+    be symbols.
+    """
     computed = compute(subject, v).computed
-    metrics = {
-        name: _governing(name, computed, v, subject, count)
-        for name in subject.quantities
-        if wanted is None or name in wanted
-    }
-    limits = limits_of(subject)
-    margin, missed = np.full(count, np.inf), np.zeros(count, dtype=np.int32)
-    for number, value in _margins(limits, computed, v, count):
-        worse = ~(value >= margin)  # NaN counts as the smallest margin
-        margin = np.where(worse, np.where(np.isnan(value), -np.inf, value), margin)
-        missed[worse] = number
-    return Many(metrics, margin, missed, limits, frozenset(v.read))
+    values = [governing(name, computed, v, subject) for name in names]
+    rows = [where(np.isfinite(value), value, np.nan) for value in values]
+    margin, missed = np.full(count, np.inf), np.zeros(count)
+    for number, value in _margins(limits_of(subject), computed, v, count):
+        worse = np.logical_not(value >= margin)  # NaN counts as the smallest margin
+        margin = where(worse, where(np.isnan(value), -np.inf, value), margin)
+        missed = where(worse, float(number), missed)
+    rows += [margin, missed]
+    xp = namespace(*rows)
+    return xp.stack([xp.broadcast_to(row, (count,)) for row in rows])
 
 
 @np.errstate(all="ignore")
@@ -542,11 +568,3 @@ def limits_of(subject: PreparedDesign) -> tuple[MetricLimit, ...]:
     """All limits that a feasible design must meet: requirements, checks and geometry."""
     limits = all_limits(subject.design, subject.plugins)
     return tuple(limit for limit in limits if limit.origin != "advice")
-
-
-def _governing(
-    name: str, computed: MetricArrays, v: Values, subject: PreparedDesign, count: int
-) -> Array:
-    """Governing value of a metric for every design (count,); NaN where it is infinite."""
-    value = governing(name, computed, v, subject)
-    return np.broadcast_to(np.where(np.isfinite(value), value, np.nan), (count,))

@@ -20,7 +20,17 @@ from math import inf, pi
 from typing import Any, Protocol
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, absolute, geometry, maximum, namespace, real, together, where
+from ..base.numeric import (
+    Array,
+    absolute,
+    finished,
+    geometry,
+    maximum,
+    namespace,
+    real,
+    together,
+    where,
+)
 from .ply import ply_stiffness
 from .strength import yield_utilisation
 from .strength_modes import PlyStrength, Stress, load_multiplier
@@ -341,7 +351,7 @@ def climb(xp: Any, mechanics: Mechanics, layers: Sequence[WallLayer], shape: Arr
         first = where(plied & untouched, highest, first)
         untouched = untouched & ~plied
         climbing = counted & xp.any(event, axis=0)
-        if not bool(xp.any(climbing)):
+        if finished(climbing):
             break
         soft = fresh if soft is None else soft | fresh
     return BurstLadder(first, highest, liner_yield, tuple(record), mechanics.order, intact, faces)

@@ -37,10 +37,10 @@ from ..evaluation.limits import (
     margin,
     rows_of,
 )
+from ..evaluation.recorded_models import recorded_models
 from ..evaluation.values import Values as Numbers
 from .evaluator import Evaluator, Point
 from .problem import BoxProblem, ParametricProblem, PointValues, Vector
-from .recorded_models import recorded_models
 
 Fault = Callable[[str, str, str], Diagnostic]
 """Function that builds the Diagnostic for a faulty variable, with the variable's line in the file.

@@ -8,6 +8,12 @@ If variables take listed sizes, the sizes of each combination are searched, star
 combination. The continuous optimum bounds the result with sizes, so a combination is skipped if
 this bound does not beat the best design with sizes. The bounds are local optima, mostly of a quick
 look, so this skipping is no proof.
+
+On a cluster, the combinations that are next by the present ranking are solved side by side. Which
+of them count is then decided in order, as in one process; if a result changes the start of another
+combination, this combination is solved again. Combinations without variables are evaluated side by
+side. Quick looks, and searches of sizes, need the results of earlier combinations: they run in one
+process.
 """
 
 from __future__ import annotations
@@ -16,9 +22,12 @@ import math
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import field, replace
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
+from ..base.cluster import HERE, Cluster
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..design import Design
@@ -29,10 +38,11 @@ from ..evaluation.limits import LimitRow, all_limits, rows_of
 from .actuator import ActuatorProblem, Goal, build, goal_of, variant
 from .branch_and_bound import Memory, SizeSearch, at, search
 from .identical_problems import Evidence
+from .problem import BoxProblem, Vector
 from .quick_look import DOUBTFUL, Look, LookStart, hessian_of, look_quickly
 from .result import Choices, Combination, How
 from .rounding import RUNNERS_UP, ListedSizes, Wanted, sizes_of
-from .solution import MET
+from .solution import MET, Solution
 from .solver import solve
 
 NEAR = 0.05
@@ -163,7 +173,10 @@ def _require_one(looks: Sequence[Look]) -> None:
 
 @np.errstate(all="ignore")  # designs without finite values come last
 def search_choices(
-    subject: PreparedDesign, settings: ChoiceSettings, max_solved: int = MOST_SOLVED
+    subject: PreparedDesign,
+    settings: ChoiceSettings,
+    max_solved: int = MOST_SOLVED,
+    cluster: Cluster = HERE,
 ) -> ChoiceSearch:
     """Look at every combination of the choices, and solve the best ones from many starts.
 
@@ -172,6 +185,7 @@ def search_choices(
     subject : the design with its choices
     settings : settings of the full searches
     max_solved : maximum number of combinations solved from many starts
+    cluster : workers for independent combinations
 
     Raises
     ------
@@ -179,22 +193,22 @@ def search_choices(
         every combination is impossible
     """
     choice_search = ChoiceSearch(goal_of(subject), possible(subject))
-    has_variables = bool(subject.design.variables)
+    if not subject.design.variables:
+        work = partial(_evaluated, choice_search.goal)
+        choice_search.looks = list(cluster.map(work, choice_search.looks))
+        _require_one(choice_search.looks)
+        return choice_search
     for look in choice_search.looks:
         if look.subject is None:
             continue
         try:
-            if has_variables:
-                look.actuator = _with_goal(build(look.subject), choice_search.goal)
-                look.checks = _missed_checks(look.actuator.fixed)
-            else:
-                _evaluate(look, choice_search.goal)
+            look.actuator = _with_goal(build(look.subject), choice_search.goal)
+            look.checks = _missed_checks(look.actuator.fixed)
         except InputError as error:
             _give_up(look, error)
     _require_one(choice_search.looks)
-    if has_variables:
-        _look_at_all(choice_search, settings)
-        _solve_best(choice_search, settings, max_solved)
+    _look_at_all(choice_search, settings)
+    _solve_best(choice_search, settings, max_solved, cluster)
     return choice_search
 
 
@@ -212,10 +226,18 @@ def _missed_checks(rows: Sequence[LimitRow]) -> frozenset[str]:
     )
 
 
-def _evaluate(look: Look, goal: Goal) -> None:
-    """Evaluate a combination that has no free variables."""
-    subject = look.subject
-    assert subject is not None
+@np.errstate(all="ignore")
+def _evaluated(goal: Goal, look: Look) -> Look:
+    """Evaluate a combination that has no free variables; return it."""
+    if look.subject is not None:
+        try:
+            _evaluate(look, look.subject, goal)
+        except InputError as error:
+            _give_up(look, error)
+    return look
+
+
+def _evaluate(look: Look, subject: PreparedDesign, goal: Goal) -> None:
     values = subject.values()
     computed = compute(subject, values).computed
     limits = all_limits(subject.design, subject.plugins)
@@ -289,16 +311,22 @@ def _starts(choice_search: ChoiceSearch, look: Look) -> list[LookStart]:
     return starts or ([] if start is None else [LookStart(start, descend=True)])
 
 
-def _solve_best(choice_search: ChoiceSearch, settings: ChoiceSettings, max_solved: int) -> None:
+def _solve_best(
+    choice_search: ChoiceSearch, settings: ChoiceSettings, max_solved: int, cluster: Cluster
+) -> None:
     """Solve the best combination from many starts, and those that are nearly as good."""
     first_gain = True
-    for _ in range(max_solved):
+    ahead: dict[int, _SolvedTask] = {}
+    for number in range(max_solved):
         look = _promising(choice_search)
         seconds = settings.left()
         if look is None or (seconds is not None and seconds <= 0):
             break
         previous = look.objective if look.feasible else math.inf
-        many_starts(look, settings)
+        if cluster and (look.order not in ahead or ahead[look.order].start is not look.x):
+            looks = [look, *(other for other in _close(choice_search) if other is not look)]
+            ahead = _solved_ahead(looks[: max_solved - number], settings, cluster)
+        many_starts(look, settings, ahead.get(look.order))
         gained = look.feasible and look.objective < previous - BETTER * abs(look.objective)
         if first_gain and gained and look.x is not None:
             first_gain = False
@@ -314,10 +342,14 @@ def _solve_best(choice_search: ChoiceSearch, settings: ChoiceSettings, max_solve
 
 def _promising(choice_search: ChoiceSearch) -> Look | None:
     """The next combination to solve from many starts; None if all others are clearly worse."""
+    ranked = choice_search.ranked()
+    return ranked[0] if ranked[0].solution is None else next(iter(_close(choice_search)), None)
+
+
+def _close(choice_search: ChoiceSearch) -> list[Look]:
+    """Combinations that are not solved from many starts and nearly as good as the best."""
     ranked, mendable = choice_search.ranked(), choice_search.mendable()
-    best = ranked[0]
-    if best.solution is None:
-        return best
+    best, looks = ranked[0], []
     solved = sum(look.solution is not None and not look.feasible for look in ranked)
     for look in ranked[1:]:
         if look.solution is not None or look.how != "quick":
@@ -325,31 +357,71 @@ def _promising(choice_search: ChoiceSearch) -> Look | None:
         gap = look.objective - best.objective
         close = gap <= NEAR * abs(best.objective)
         as_good = len(look.checks & mendable) <= len(best.checks & mendable)
-        if best.feasible and look.feasible and close and as_good:
-            return look
         doubtful = not look.feasible and look.violation <= best.violation + DOUBTFUL
-        if doubtful and solved < MOST_DOUBTFUL:
-            return look
-    return None
+        promising = best.feasible and look.feasible and close and as_good
+        if promising or (doubtful and solved < MOST_DOUBTFUL):
+            looks.append(look)
+    return looks
 
 
-def many_starts(look: Look, settings: ChoiceSettings) -> None:
-    """Solve a combination from many starts and from its best known point."""
+class _SolveTask(NamedTuple):
+    """A combination to solve from many starts: its problem, known point and time limit."""
+
+    problem: BoxProblem
+    start: Vector | None
+    seconds: float | None
+
+
+class _SolvedTask(NamedTuple):
+    start: Vector | None
+    solution: Solution
+
+
+def _task(look: Look, settings: ChoiceSettings) -> _SolveTask:
     assert look.actuator is not None
     seconds = settings.left()
-    starts = [] if look.x is None else [look.x]
-    solution = solve(
-        look.actuator.problem,
+    seconds = None if seconds is None else max(seconds, LEAST_SECONDS)
+    return _SolveTask(look.actuator.problem, look.x, seconds)
+
+
+@np.errstate(all="ignore")
+def _solution(settings: ChoiceSettings, task: _SolveTask) -> Solution:
+    return solve(
+        task.problem,
         algorithm=settings.algorithm,
         starts=settings.starts,
         samples=settings.samples,
         seed=settings.seed,
-        max_seconds=None if seconds is None else max(seconds, LEAST_SECONDS),
-        more_starts=starts,
+        max_seconds=task.seconds,
+        more_starts=[] if task.start is None else [task.start],
     )
+
+
+def _solved_ahead(
+    looks: Sequence[Look], settings: ChoiceSettings, cluster: Cluster
+) -> dict[int, _SolvedTask]:
+    """Solve combinations on a cluster; the results by the place of the combination in the file."""
+    tasks = [_task(look, settings) for look in looks]
+    solutions = cluster.map(partial(_solution, settings), tasks)
+    return {
+        look.order: _SolvedTask(task.start, solution)
+        for look, task, solution in zip(looks, tasks, solutions, strict=True)
+    }
+
+
+def many_starts(look: Look, settings: ChoiceSettings, ahead: _SolvedTask | None = None) -> None:
+    """Solve a combination from many starts and from its best known point.
+
+    A solution `ahead` is used if it started from this point.
+    """
+    if ahead is not None and ahead.start is look.x:
+        solution = ahead.solution
+    else:
+        solution = _solution(settings, _task(look, settings))
     look.how, look.solution = "multistart", solution
     look.x, look.objective, look.violation = solution.x, solution.objective, solution.violation
     if len(solution.constraints):
+        assert look.actuator is not None
         worst = int(np.argmin(solution.constraints))
         look.missed = look.actuator.problem.constraint_names[worst]
 

@@ -16,11 +16,15 @@ from ..base.dataclass import dataclass
 from ..base.errors import InputError
 from ..base.numeric import Array
 from ..base.quantities import Quantity
+from ..base.symbolic import gpu
+from ..base.symbolic.program import Program
 from ..design import Design
 from ..design.paths import quantity_of
 from ..design.writer import to_yaml
+from ..evaluation import PreparedDesign
 from ..evaluation.build import Many, evaluate_many, limits_of, spec_hash
 from ..evaluation.plugin import Plugin
+from ..evaluation.recorded_models import RecordedMany
 from ..optimisation.actuator import Goal, goal_of
 from .designs import CACHED, Designs, first_fault
 from .plan import Plan, SweepPoints
@@ -28,6 +32,16 @@ from .screen import Engine, Scores, rounded_up, screen
 
 BATCH = 1024
 """Number of designs that are evaluated at once if only the best of a chunk are wanted."""
+
+RECORDED_FROM = 16_384
+"""Smallest number of points for which recording the models saves time (our choice: it takes as long
+as 5000 to 15 000 points of the models themselves)."""
+
+LEAST_RECORDED = 4096
+"""Smallest number of points of a prepared design that is recorded (our choice)."""
+
+SAMPLE = 16
+"""Number of points of every prepared design at which its recording is compared with the models."""
 
 LEAST_SCREENED = 2048
 """Smallest number of designs for which a screen (see `sweeps.screen`) saves time; building one
@@ -82,10 +96,12 @@ class Study:
     """Metrics to compute in addition to those that rank designs."""
     engine: Engine = "numpy"
     """Array library for the screen, the function that excludes designs that cannot be among the
-    best."""
+    best; or "gpu", which runs the recorded models of a full sweep on a GPU."""
     goal: Goal = field(init=False)
     designs: Designs = field(init=False)
     _screens: dict[tuple[object, ...], Scores | None] = field(default_factory=dict, repr=False)
+    _recorded: dict[int, RecordedMany] = field(default_factory=dict, repr=False)
+    """Recorded models of prepared designs, by `id`."""
 
     def __post_init__(self) -> None:
         self.designs = Designs(self.design, self.plan, self.plugins)
@@ -114,7 +130,7 @@ class Study:
         )
 
     def __getstate__(self) -> dict[str, object]:
-        return self.__dict__ | {"_screens": {}}
+        return self.__dict__ | {"_screens": {}, "_recorded": {}}
 
     def chunk(self, first: int, count: int, places: Array | None = None) -> Chunk:
         """Return the rows of consecutive points, or only of the points at the indices `places`."""
@@ -131,13 +147,14 @@ class Study:
         rows = np.full((n, len(self.columns)), np.nan)
         rows[:, : len(points.numbers)] = points.numbers[self.order].T
         failures: dict[int, str] = {}
+        mass = self.metrics.index("mass")
         for places, subject, varied in self.designs.groups(points):
             if isinstance(subject, str):
                 failures |= dict.fromkeys(map(int, places), subject)
                 continue
-            many = evaluate_many(subject, varied, len(places), self.wanted)
+            many = self._many(subject, varied, len(places))
             self._fill(rows, places, many)
-            failed = places[np.isnan(many.metrics["mass"])]
+            failed = places[np.isnan(many.values[mass])]
             failures |= dict.fromkeys(map(int, failed), NO_ANSWER)
         rows[list(failures), len(points.numbers) :] = np.nan
         chunk = self.judged(first, StoredNumbers(rows, failures), n)
@@ -146,6 +163,36 @@ class Study:
         failures |= self._contradictions(chunk, points, keep_best)
         rows[list(failures), len(points.numbers) :] = np.nan
         return self.judged(first, StoredNumbers(rows, failures), n)
+
+    @property
+    def recorded(self) -> bool:
+        """Whether the models are recorded: only if there are enough points, and no custom metrics.
+
+        It depends on the plan and the engine alone, so that every run of a sweep gives the same
+        rows. A GPU runs recorded models only.
+        """
+        enough = self.plan.count >= RECORDED_FROM and self._group_size >= LEAST_RECORDED
+        return not self.plugins and (enough or self.engine == "gpu")
+
+    @property
+    def _group_size(self) -> float:
+        """Mean number of points of a prepared design."""
+        return self.plan.count / self.plan.variants / self.designs.apart_count
+
+    def _many(self, subject: PreparedDesign, varied: dict[str, Array], count: int) -> Many:
+        """Results of designs that differ in numbers, by recorded models if these save time."""
+        if not self.recorded or not varied.keys() <= subject.numbers.keys():
+            return evaluate_many(subject, varied, count, self.wanted)
+        if id(subject) not in self._recorded:
+            if len(self._recorded) >= CACHED:
+                self._recorded.pop(next(iter(self._recorded)))
+            paths = [axis.path for axis in self.plan.numeric]
+            places = np.linspace(0, self.plan.count - 1, SAMPLE).astype(int)
+            sample = np.concatenate([self.plan.points(k, 1).numbers for k in places], axis=1)
+            run = gpu.values if self.engine == "gpu" else Program.values
+            points = {path: sample[k] for k, path in enumerate(paths) if path in varied}
+            self._recorded[id(subject)] = RecordedMany(subject, points, self.wanted, run)
+        return self._recorded[id(subject)](varied)
 
     def reduced(self, first: int, count: int, limit: float, keep: int) -> Chunk:
         """Return the rows that may be among the `keep` best, with an objective below `limit`.
@@ -202,8 +249,7 @@ class Study:
         expressions.
         """
         axes = [axis for axis in self.plan.numeric if axis.path not in self.designs.apart]
-        group_size = self.plan.count / self.plan.variants / self.designs.apart_count
-        if not axes or self.plugins or group_size < LEAST_SCREENED:
+        if not axes or self.plugins or self._group_size < LEAST_SCREENED:
             return None
         key = (variant, *fixed.values())
         if key not in self._screens:
@@ -248,10 +294,13 @@ class Study:
 
     def _fill(self, rows: Array, places: Array, many: Many) -> None:
         start = len(self.plan.numeric)
-        for k, name in enumerate(self.metrics):
-            rows[places, start + k] = many.metrics[name]
-        margin = np.where(np.isfinite(many.margin), many.margin, np.nan)
-        rows[places, -3:] = np.stack([margin, many.missed, many.feasible], axis=1)
+        whole = len(places) == len(rows)
+        block = rows if whole else np.empty((len(places), rows.shape[1]))
+        block[:, start:-3] = many.values.T
+        block[:, -3] = np.where(np.isfinite(many.margin), many.margin, np.nan)
+        block[:, -2], block[:, -1] = many.missed, many.feasible
+        if not whole:
+            rows[places, start:] = block[:, start:]
 
     def quantity(self, metric: str) -> Quantity:
         """Return the quantity of a metric."""

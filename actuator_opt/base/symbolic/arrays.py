@@ -534,12 +534,22 @@ def _root_parts(coefficients: Sequence[Any]) -> tuple[Any, Any]:
     return along.view(SymbolArray), across.view(SymbolArray)
 
 
+def _finished(active: Any) -> bool:
+    """Whether no element is active; see `numeric.finished`."""
+    (active_at_all,) = elements(asarray(np.any(active)))
+    if not isinstance(active_at_all, Symbol):
+        return not active_at_all
+    assert active_at_all.graph.truth is not None
+    return not active_at_all.graph.truth(active_at_all, one_sided=True)
+
+
 NAMESPACE: Any = SimpleNamespace(
     **{name: getattr(np, name) for name in dir(np) if not name.startswith("_")}
 )
 NAMESPACE.asarray = asarray
 NAMESPACE.array = asarray
 NAMESPACE.root_parts = _root_parts
+NAMESPACE.finished = _finished
 
 
 def elements(values: Any) -> list[Any]:
@@ -603,9 +613,13 @@ class Recorder:
             )
         return self._known[symbol]
 
-    def decide(self, symbol: Symbol) -> bool:
-        """Record a condition on which the model branches; return its truth at the point."""
+    def decide(self, symbol: Symbol, *, one_sided: bool = False) -> bool:
+        """Record a condition on which the model branches; return its truth at the point.
+
+        A `one_sided` condition that is true is no guard: the branch is correct for all points.
+        """
         symbol = _strip(symbol)
         answer = bool(self.value(symbol))
-        self.guards[symbol] = answer
+        if not (answer and one_sided):
+            self.guards[symbol] = answer
         return answer

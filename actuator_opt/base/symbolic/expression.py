@@ -191,7 +191,7 @@ class Graph:
     """Indices in `tables`: that of each tabulated function, mapped to that of its slope."""
     labels: list[str] = field(default_factory=list)
     """Name of each function in `tables`."""
-    truth: Callable[[Symbol], bool] | None = None
+    truth: Callable[..., bool] | None = None
     """Function that decides a condition on which a model branches. Only exact graphs have it; their
     operations are those of NumPy (NaN and rounding included) and are never simplified."""
 

@@ -85,6 +85,27 @@ class Program:
         _MACHINE.run(self._runnable(None), points, np.empty(0), 0, results)
         return results
 
+    def require_valid(self) -> None:
+        """Raise `ValueError` if the program would use memory outside its slots."""
+        self._runnable(None)
+
+    def with_fixed(self, values: Array) -> Program:
+        """The same program of fewer inputs: the last inputs become constants with these values."""
+        count = self.inputs - len(values)
+        places = np.arange(self.slots + len(self.constants))  # new slot of every old slot
+        places[self.inputs :] -= len(values)
+        places[count : self.inputs] = self.slots - len(values) + len(self.constants)
+        places[count : self.inputs] += np.arange(len(values))
+        code = self.code.copy()
+        code[:, 1] = places[code[:, 1]]
+        plain = code[:, 0] & 255 != OPERATIONS.index("roots")
+        code[plain, 2:] = places[code[plain, 2:]]
+        constants = np.append(self.constants, values)
+        return Program(
+            code, places[self.extra].astype(np.int32), places[self.outputs].astype(np.int32),
+            self.frozen, constants, self.slots - len(values), count,
+        )  # fmt: skip
+
     def slopes(self, points: Array, seeds: Array) -> tuple[Array, Array]:
         """Outputs (points, outputs) and their slopes (points, outputs, directions).
 

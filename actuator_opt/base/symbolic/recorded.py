@@ -17,6 +17,7 @@ import numpy as np
 from ..numeric import STEP, Array
 from . import program as programs, program_store
 from .arrays import Recorder, elements
+from .program import Program
 from .program_store import MOST_RECORDINGS, Recording
 
 FEW = 20
@@ -42,6 +43,7 @@ class RecordedFunction:
     Attributes
     ----------
     reason : why the function is not run by the machine, if it is not
+    run : computes the outputs of a program at points (points, inputs): the machine, or a GPU
     """
 
     def __init__(
@@ -56,38 +58,64 @@ class RecordedFunction:
         self.present = present
         self.structure = structure
         self.reason = "" if programs.AVAILABLE else programs.NOT_BUILT
+        self.run: Callable[[Program, Array], Array] = Program.values
         self.recording: Recording | None = None
+        self._fixed: tuple[Recording, Program] | None = None
         self.recordings = 0
         self.points = 0
         self.outside = 0
 
     def __call__(self, points: Array) -> Array:
-        """Results (rows, k) at points (inputs, k), by the machine if it can be recorded."""
-        if self.reason:
-            return self.function(points)
-        if self.recording is None:
+        """Results (rows, k) at points (inputs, k), by the machine if it can be recorded.
+
+        Points may have only the first inputs; the others then have their present values.
+        """
+        if not self.reason and self.recording is None:
             self._record(self.present)
-            if self.recording is None:
-                return self.function(points)
+        if self.recording is None:
+            return self.function(self._whole(points))
         return self._slopes(points) if np.iscomplexobj(points) else self._values(points)
 
-    def confirmed(self, points: Array) -> bool:
+    def confirmed(
+        self, points: Array, expected: Array | None = None, floor: float | Array = 1.0
+    ) -> bool:
         """Whether the machine and the function agree at points (inputs, k).
 
-        If they do not, the function is used from then on.
+        If they do not, the function is used from then on. `expected` are the results of the
+        function, if they are known; `floor` is that of `same`.
         """
-        if self.recording is None or same(self._values(points), self.function(points)):
+        if self.recording is None:
+            return True
+        if expected is None:
+            expected = self.function(points)
+        if same(self._values(points), expected, floor):
             return True
         self.recording, self.reason = None, "the recording differs from the models"
         return False
 
     def _values(self, points: Array) -> Array:
         assert self.recording is not None
-        results = self.recording.program.values(points.T)
+        program, fewer = self.recording.program, len(points) < len(self.names)
+        if fewer:
+            if self._fixed is None or self._fixed[0] is not self.recording:
+                program = program.with_fixed(self.present[len(points) :])
+                self._fixed = self.recording, program
+            program = self._fixed[1]
+        results = self.run(program, points.T)
         holds = self.recording.holds(results)
-        rows = np.ascontiguousarray(results[:, : self.recording.rows].T)
+        rows = results[:, : self.recording.rows].T
+        rows = rows if fewer else np.ascontiguousarray(rows)
         self._complete(points, rows, holds)
         return rows
+
+    def _whole(self, points: Array) -> Array:
+        """The points with the present values of all inputs that they lack, (inputs, k)."""
+        if len(points) == len(self.names):
+            return points
+        others = np.broadcast_to(
+            self.present[len(points) :, None], (len(self.present) - len(points), points.shape[1])
+        )
+        return np.concatenate([points, others])
 
     def _slopes(self, points: Array) -> Array:
         """Results with their complex steps; points with equal real parts are evaluated together."""
@@ -101,7 +129,7 @@ class RecordedFunction:
         steps = points.imag.reshape(-1, count, width).transpose(1, 0, 2) / STEP
         values, slopes = self.recording.program.slopes(points.real[:, firsts].T, steps)
         holds = self.recording.holds(values)
-        rows = np.empty((self.recording.rows, count, width), dtype=complex)
+        rows: Array = np.empty((self.recording.rows, count, width), dtype=complex)
         rows.real = values[:, : len(rows)].T[:, :, None]
         rows.imag = STEP * slopes[:, : len(rows)].transpose(1, 0, 2)
         joined: Array = rows.reshape(len(rows), -1)
@@ -114,10 +142,10 @@ class RecordedFunction:
         if holds.all():
             return
         missing = ~holds
-        rows[:, missing] = self.function(points[:, missing])
+        rows[:, missing] = self.function(self._whole(points[:, missing]))
         self.outside += int(missing.sum())
         if self.outside > FEW and self.outside > OFTEN * self.points:
-            self._record(points[:, np.flatnonzero(missing)[0]].real)
+            self._record(self._whole(points)[:, np.flatnonzero(missing)[0]].real)
 
     def _record(self, point: Array) -> None:
         """Record the function at a point (inputs,), and check it there and nearby."""
@@ -178,12 +206,16 @@ def _agrees(recording: Recording, points: Array, expected: Array) -> bool:
     return bool(holds[0]) and same(rows, expected[:, holds])
 
 
-def same(first: Array, second: Array) -> bool:
-    """Whether results agree: NaN and infinity in the same places, values to rounding."""
+def same(first: Array, second: Array, floor: float | Array = 1.0) -> bool:
+    """Whether results agree: NaN and infinity in the same places, values to rounding.
+
+    `floor` is the size of values, or of each row (rows, 1), below which the difference counts as a
+    share of it.
+    """
     finite = np.isfinite(second)
     if not np.array_equal(finite, np.isfinite(first)):
         return False
     if not np.array_equal(first[~finite], second[~finite], equal_nan=True):
         return False
-    room = AGREEMENT * np.maximum(np.abs(second[finite]), 1.0)
+    room = AGREEMENT * np.maximum(np.abs(second), floor)[finite]
     return bool((np.abs(first[finite] - second[finite]) <= room).all())

@@ -7,7 +7,7 @@ which a number replaces each material's name, counted in the order of first use 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain
 from typing import Any
@@ -15,10 +15,12 @@ from typing import Any
 import numpy as np
 
 from ..base.numeric import Array, namespace
+from ..base.symbolic.program import Program
 from ..base.symbolic.recorded import RecordedFunction
 from ..design.structure import leaves, number_of
-from ..evaluation import PreparedDesign
-from ..evaluation.limits import LimitRow
+from .build import Many, many, names_of_metrics, rows_of_many
+from .kernel import PreparedDesign
+from .limits import LimitRow
 
 
 def recorded_models(
@@ -104,6 +106,60 @@ def _with_tables(
         )
         materials[name] = replace(material, properties={**material.properties, key: entry})
     return replace(subject, materials=materials)
+
+
+class RecordedMany:
+    """Results of many designs that differ in the same numbers, as `evaluate_many` gives them.
+
+    Parameters
+    ----------
+    subject : the prepared design, without custom metrics
+    varied : arrays (designs,) by PATH of some designs, with which the recording is checked
+    wanted : metrics to compute; default: all
+    run : computes the outputs of a program, see `RecordedFunction`
+    """
+
+    def __init__(
+        self,
+        subject: PreparedDesign,
+        varied: Mapping[str, Array],
+        wanted: Container[str] | None = None,
+        run: Callable[[Program, Array], Array] = Program.values,
+    ) -> None:
+        self.subject, self.paths = subject, tuple(varied)
+        self.names = names_of_metrics(subject, wanted)
+        self.read: set[str] = set()
+        points = np.array([*varied.values()])
+        with np.errstate(all="ignore"):
+            expected = self._rows(subject, points, {})
+            self._recorded = recorded_models(
+                lambda *arguments: ((), self._rows(*arguments)),
+                subject=subject,
+                paths=self.paths,
+                read=self.read,
+                limits=(),
+                goals=["many", self.names],
+            )
+            self._recorded.run = run
+            computable = np.isfinite(expected).sum(axis=0)
+            self._recorded.present[: len(points)] = points[:, np.argmax(computable)]
+            self._recorded(points)
+            finite = np.where(np.isfinite(expected), np.abs(expected), 0.0)
+            size = finite.max(axis=1, keepdims=True)
+            size[-2:] = 1.0  # margins are relative
+            self._recorded.confirmed(points, expected, size)
+
+    def __call__(self, varied: Mapping[str, Array]) -> Many:
+        """Results for arrays (designs,) by PATH, SI."""
+        points = np.array([varied[path] for path in self.paths])
+        with np.errstate(all="ignore"):
+            return many(self.subject, self.names, self._recorded(points), self.read)
+
+    def _rows(self, subject: PreparedDesign, points: Array, numbers: Mapping[str, Array]) -> Array:
+        v = subject.values(dict(zip(self.paths, points, strict=True)) | dict(numbers))
+        rows = rows_of_many(subject, v, self.names, points.shape[1])
+        self.read |= v.read
+        return rows
 
 
 class _Neutral:
