@@ -41,20 +41,26 @@ _KINDS: Final = {"code": "<u2", "extra": "<i4", "outputs": "<i4", "frozen": "<i4
 """Type of the elements of every array, in the order of the file."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Recording:
     """A program whose last outputs are guards: conditions on which the function branches.
 
-    `answers` are the truth values of the guards for which the program is correct.
+    `answers` are the truth values of the guards for which the program is correct. `checked` says
+    whether this process has compared the program with its function.
     """
 
     program: Program
     answers: Array
+    checked: bool = False
 
     @property
     def rows(self) -> int:
         """Number of results, without the guards."""
         return len(self.program.outputs) - len(self.answers)
+
+    def covers(self, point: Array) -> bool:
+        """Whether a point (inputs,) takes the recorded branches."""
+        return bool(self.holds(self.program.values(point[None]))[0])
 
     def holds(self, results: Array) -> Array:
         """Whether each point (points, outputs) takes the recorded branches."""

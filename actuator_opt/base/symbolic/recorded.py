@@ -90,6 +90,7 @@ class RecordedFunction:
             expected = self.function(points)
         if same(self._values(points), expected, floor):
             return True
+        self.recording.checked = False
         self.recording, self.reason = None, "the recording differs from the models"
         return False
 
@@ -155,11 +156,16 @@ class RecordedFunction:
             self.reason = "the models take different branches for different designs"
             return
         self.recordings += 1
+        key = "" if self.structure is None else program_store.key_of(self.structure)
+        known = program_store.read(key) if key else []
+        for stored in known:
+            if stored.checked and stored.covers(point):
+                self.recording = stored
+                return
         points = np.stack([point, point * (1 + 1e-3)], axis=1)
         with np.errstate(all="ignore"):
             expected = self.function(points)
-        key = "" if self.structure is None else program_store.key_of(self.structure)
-        for stored in program_store.read(key) if key else ():
+        for stored in known:
             if _agrees(stored, points, expected):
                 self.recording = stored
                 return
@@ -203,7 +209,8 @@ def _agrees(recording: Recording, points: Array, expected: Array) -> bool:
     except ValueError:  # damaged
         return False
     rows = results[:, : recording.rows].T[:, (holds := recording.holds(results))]
-    return bool(holds[0]) and same(rows, expected[:, holds])
+    recording.checked = bool(holds[0]) and same(rows, expected[:, holds])
+    return recording.checked
 
 
 def same(first: Array, second: Array, floor: float | Array = 1.0) -> bool:
