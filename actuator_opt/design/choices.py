@@ -126,16 +126,17 @@ COMPONENTS = {
     "hoses": "hoses and pipes",
 }
 """Components of an actuator that no model weighs: kind, and words for it."""
+_KINDS = COMPONENTS | {"other": "any other component"}
 Component: TypeAlias = Annotated[
-    Literal[
-        "ports", "static_seals", "piston_fastening", "bearings", "sensor", "manifold", "hoses",
-        "other",
-    ],
-    Choice("kind of component"),
-]  # fmt: skip
+    str,
+    Choice("; ".join(["kind of the component", *map(": ".join, _KINDS.items())]), tuple(_KINDS)),
+]
 Carrier: TypeAlias = Annotated[
     Literal["barrel", "cap", "head", "piston", "rod"],
-    Choice("part that carries it; what piston or rod carry moves with them"),
+    Choice(
+        "part that carries the component; barrel: does not move; cap: does not move, at the cap "
+        "end; head: does not move, at the rod end; piston: moves; rod: moves, outside the piston"
+    ),
 ]
 Chamber: TypeAlias = Annotated[
     Literal["a", "b"], Choice("chamber that the line feeds; a: cap side; b: rod side")

@@ -564,6 +564,7 @@ def build_evaluation(name: str = "robot knee", **changes: Any) -> Evaluation:
                 False,
             ),
         ),
+        mass_leaves_out=("ports and fittings",),
         mass_parts={
             "barrel": 0.0431,
             "rod": 0.0812,
