@@ -17,8 +17,7 @@ from ..design.material import compatible
 from ..design.model import PLAIN_CAP
 from ..design.paths import quantity_of
 from ..metrics import METRICS
-from ..metrics.metric import CRITERION
-from ..metrics.table import OWN, ROWS, WALL_FED
+from ..metrics.table import CRITERION, OWN, ROWS, WALL_FED
 from ..models import contact_profile, gland, laminate, rough_surface, seals
 from ..models.strength import CRITERIA
 from . import linkage as joint, motion, proportions, springs, state

@@ -30,8 +30,7 @@ from .equilibrium import (
 )
 from .material import Floats, MooneyRivlin
 from .mesh import SlideRing, disc, slide_ring
-from .result import MountedContact, SealSolution
-from .section import Assembly, MeshedBody
+from .section import Assembly, MeshedBody, MountedContact, SealSolution
 
 COARSE = 0.12
 """Largest element size of the slide ring, relative to the section of the rubber ring."""

@@ -7,7 +7,8 @@ starts. The record of each combination states how it was searched.
 If variables take listed sizes, the sizes of each combination are searched, starting with the best
 combination. The continuous optimum bounds the result with sizes, so a combination is skipped if
 this bound does not beat the best design with sizes. The bounds are local optima, mostly of a quick
-look, so this skipping is no proof.
+look, so this skipping is no proof. A search of sizes that would repeat an earlier one is skipped
+too (see `Evidence`).
 
 On a cluster, the combinations that are next by the present ranking are solved side by side. Which
 of them count is then decided in order, as in one process; if a result changes the start of another
@@ -37,15 +38,70 @@ from ..evaluation import PreparedDesign, compute
 from ..evaluation.limits import LimitRow, all_limits, rows_of
 from .actuator import ActuatorProblem, Goal, build, goal_of, variant
 from .branch_and_bound import Memory, SizeSearch, at, search
-from .identical_problems import Evidence
+from .evaluator import Evaluator, Point
 from .problem import BoxProblem, Vector
 from .quick_look import DOUBTFUL, Look, LookStart, hessian_of, look_quickly
+from .resolve.boxes import NEAR
 from .result import Choices, Combination, How
 from .rounding import RUNNERS_UP, ListedSizes, Wanted, sizes_of
 from .solution import MET, Solution
 from .solver import solve
 
-NEAR = 0.05
+SAME_OPTIMUM = 1e-6
+"""Continuous optima count as equal up to this relative difference, the accuracy of quick looks."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Results of all boxes (parts of the space) of a search, and the continuous `optimum`.
+
+    Combinations often differ only in numbers that enter inactive limits, such as the viscosity of
+    oils with the same bulk modulus. The search of listed sizes depends on the result of each box:
+    its optimum or its least infeasible point. If values and slopes of two problems agree at these
+    points, both searches give the same results. A limit may differ between the problems if all
+    these points are farther from it than their accuracy.
+    """
+
+    problem: BoxProblem
+    optimum: float
+    ends: Sequence[tuple[Evaluator, Point]]
+
+    def holds_for(self, other: BoxProblem, optimum: float) -> bool:
+        """Whether a search of another problem would give the same result."""
+        problem = self.problem
+        if not self.ends or abs(optimum - self.optimum) > SAME_OPTIMUM * abs(self.optimum):
+            return False
+        if problem.names != other.names or not problem.same_rows_and_box(other):
+            return False
+        exact = all(evaluator.exact for evaluator, _ in self.ends)
+        if not exact or problem.equality_names or other.equality_names:
+            return False
+        parts = [evaluator.columns(end.z[:, None]) for evaluator, end in self.ends]
+        rows = np.split(
+            other.rows(np.concatenate(parts, axis=1)),
+            np.cumsum([part.shape[1] for part in parts])[:-1],
+            axis=1,
+        )
+        comparisons = [
+            (end, evaluator.jacobian(end), *evaluator.values_and_slopes(part))
+            for (evaluator, end), part in zip(self.ends, rows, strict=True)
+        ]
+        differing = np.zeros(problem.row_count, dtype=bool)
+        for end, slopes, values, other_slopes in comparisons:
+            differing |= (values[:, 0] != end.rows) | (slopes != other_slopes).any(axis=1)
+        return not differing[0] and all(
+            (_distance(end.rows, slopes)[differing] > NEAR.step).all()
+            and (_distance(values[:, 0], other_slopes)[differing] > NEAR.step).all()
+            for end, slopes, values, other_slopes in comparisons
+        )
+
+
+def _distance(rows: Vector, slopes: Vector) -> Vector:
+    """Distance to each limit in solver coordinates, estimated from margin and slope."""
+    return np.asarray(rows / np.maximum(np.sqrt((slopes**2).sum(axis=1)), 1e-300))
+
+
+CLOSE = 0.05
 """A combination worse than the best by at most this relative amount is solved from many starts."""
 
 MOST_DOUBTFUL = 2
@@ -355,7 +411,7 @@ def _close(choice_search: ChoiceSearch) -> list[Look]:
         if look.solution is not None or look.how != "quick":
             continue
         gap = look.objective - best.objective
-        close = gap <= NEAR * abs(best.objective)
+        close = gap <= CLOSE * abs(best.objective)
         as_good = len(look.checks & mendable) <= len(best.checks & mendable)
         doubtful = not look.feasible and look.violation <= best.violation + DOUBTFUL
         promising = best.feasible and look.feasible and close and as_good

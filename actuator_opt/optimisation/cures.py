@@ -31,8 +31,8 @@ from ..joints.kinds import JOINTS
 from . import repairs
 from .actuator import ActuatorProblem, build, variant
 from .evaluator import Evaluator
-from .infeasibility import Conflict
 from .problem import BoxProblem, PointValues, Vector
+from .repairs import Conflict
 
 DIMENSIONS = (
     "bore", "wall_thickness", "winding_angle", "rod_diameter", "rod_inner_diameter", "part_length",

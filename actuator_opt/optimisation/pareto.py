@@ -25,7 +25,7 @@ from .actuator import ActuatorProblem, Fault, Goal, build, idle_metrics
 from .front.front import Front, FrontSettings, NoAnchor, front
 from .front.objectives import Objectives
 from .front.plane import FrontGap
-from .infeasibility_card import explained
+from .infeasibility import explained
 from .problem import Vector
 from .result import Infeasibility
 from .rounding import design_at

@@ -22,7 +22,7 @@ from .choices import (
     record,
     search_choices,
 )
-from .infeasibility_card import explained
+from .infeasibility import explained
 from .prices import Sensitivity, sensitivities
 from .result import Certificate, Choices, Infeasibility, Kkt, Optimisation, Rounding, VariableResult
 from .rounding import Wanted, design_at, rounded, sizes_of

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..base.quantities import Quantity
 from ..design import choice_list, quantity_of
-from ..optimisation.infeasibility_card import percent as change_percent
+from ..optimisation.infeasibility import percent as change_percent
 from ..optimisation.result import (
     Choices,
     Combination,

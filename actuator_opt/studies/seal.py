@@ -30,7 +30,7 @@ from ..version import VERSION
 from .film_walk import FilmMap, Stroke, drives, dry_friction, film_map, sealing
 
 if TYPE_CHECKING:
-    from ..finite_elements.result import MountedContact
+    from ..finite_elements.section import MountedContact
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,8 +28,7 @@ from actuator_opt.optimisation.prices import Sensitivity
 from actuator_opt.optimisation.result import Infeasibility, Kkt, Optimisation, VariableResult
 from actuator_opt.pages import report
 from actuator_opt.rendering import paper, terminal
-from actuator_opt.rendering.blocks import Table
-from actuator_opt.rendering.origin import Origin
+from actuator_opt.rendering.blocks import Origin, Table
 from actuator_opt.replicas import published
 
 SOURCE = """name: robot knee

@@ -11,7 +11,7 @@ from cli_runner import DESIGNS, KNEE, bench, run
 from actuator_opt.api import read
 from actuator_opt.design.materials import load_library
 from actuator_opt.optimisation.cures import SUBSTITUTES
-from actuator_opt.optimisation.infeasibility_card import KINDS
+from actuator_opt.optimisation.infeasibility import KINDS
 from actuator_opt.optimisation.run import optimise
 from actuator_opt.pages.report import verdict
 
