@@ -108,7 +108,7 @@ SCENARIO = KNEE.parent / "scenarios" / "aalto_closed_ports.yaml"
         (("--help",), 1.3),
         (("evaluate", str(KNEE), "--json"), 4.0),
         (("simulate", str(SCENARIO), "--json"), 8.5),
-        (("optimise", str(KNEE), "--json", "--no-record"), 21.0),
+        (("optimise", str(KNEE), "--json", "--no-record"), 18.0),
     ],
     ids=lambda x: x[0] if isinstance(x, tuple) else None,
 )
@@ -132,7 +132,7 @@ def test_optimise_with_report(benchmark, tmp_path):
     print(f"\noptimise with report: {took:.3f} s of processor time (budget 2 s)")
 
 
-@pytest.mark.parametrize(("name", "budget"), [("knee", 15), ("servo_knee", 8)])
+@pytest.mark.parametrize(("name", "budget"), [("knee", 20), ("servo_knee", 12)])
 def test_recorded_models_against_numpy(benchmark, name, budget):
     """Value and all gradients: NumPy takes at least `budget` times as long; measured in pairs."""
     problem = build(prepare(read_design(KNEE.with_stem(name)).design))
@@ -306,5 +306,6 @@ def test_layered_rate(benchmark):
         return state.bore_displacement, tsai_wu_modes(stress=stress, strength=strength)
 
     benchmark(tubes)
-    rate = 8192 / benchmark.stats["min"]
-    print(f"\n{rate / 1e6:.2f} million tubes/s on one core")
+    if benchmark.stats:
+        rate = 8192 / benchmark.stats["min"]
+        print(f"\n{rate / 1e6:.2f} million tubes/s on one core")

@@ -13,8 +13,9 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
+from ..base.cluster import Cluster, connected
 from ..base.dataclass import dataclass
-from ..base.errors import Diagnostic, InputError
+from ..base.errors import Diagnostic, InputError, UsageError
 from ..design import Design, FileSource, LoadedDesign, read_design, with_values
 from ..design.reader import TEXT
 from ..evaluation import PreparedDesign, compute, prepare
@@ -163,6 +164,21 @@ def checked_design(
     if faults:
         raise InputError(faults)
     return actuator, subject
+
+
+@contextmanager
+def workers_for(actuator: Actuator, scheduler: str | None) -> Iterator[Cluster]:
+    """Connect to the Dask scheduler at an address; None: this process computes everything.
+
+    Raises
+    ------
+    UsageError : the design has custom metrics, or no cluster answers
+    """
+    if actuator.plugins and scheduler is not None:
+        message = "custom metrics cannot be sent to other machines"
+        raise UsageError(Diagnostic(message, "omit --scheduler or --plugin"))
+    with connected(scheduler) as cluster:
+        yield cluster
 
 
 def requirement_faults(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:

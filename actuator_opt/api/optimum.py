@@ -11,12 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..base.dataclass import dataclass
+from ..base.errors import Diagnostic, UsageError
 from ..base.tables import Displayed
 from ..design import Design
 from ..evaluation import Evaluation, PreparedDesign, evaluate as evaluate_subject, prepare
 from ..evaluation.plugin import Plugin
 from ..evaluation.result import YieldEstimate
-from .actuator import Actuator, Plugins, as_actuator, checked_design, fault_of, located
+from .actuator import Actuator, Plugins, as_actuator, checked_design, fault_of, located, workers_for
 from .reports import ReportArguments, page_of, report_files
 
 if TYPE_CHECKING:
@@ -79,16 +80,23 @@ def optimise(
     standard_sizes: bool = False,
     certify: bool = False,
     yield_target: float | None = None,
+    scheduler: str | None = None,
 ) -> Optimisation:
     """Find the best design; parameters as for `optimisation.run.optimise`.
 
     With a `yield_target`, the optimum meets all limits with that probability under the design's
     uncertain inputs (`uncertainties.robust`); the result's `robust` has the details. Without a
     target, `best_evaluation` contains a quick estimate of the yield.
+
+    `scheduler` is the address of a Dask scheduler, used instead of this process for combinations of
+    choices (extra `cluster`); a design without choices is refused with `UsageError`.
     """
     from ..optimisation.run import optimise as run
 
     actuator, subject = checked_design(design, plugins)
+    if scheduler is not None and not actuator.design.choices:
+        message = "--scheduler only speeds up designs with choices, and this design has none"
+        raise UsageError(Diagnostic(message, "omit --scheduler"))
 
     def search(subject: PreparedDesign, last: bool) -> Optimisation:
         return run(
@@ -104,9 +112,10 @@ def optimise(
             certify=certify and last,
             explain=last,
             keep_interrupted=keep_interrupted,
+            cluster=cluster,
         )
 
-    with located(actuator):
+    with located(actuator), workers_for(actuator, scheduler) as cluster:
         if yield_target is None:
             return estimated(search(subject, True), actuator.plugins)
         from ..uncertainties.robust import robust
@@ -179,6 +188,7 @@ def pareto(
     seed: int = 0,
     checks: int = 3,
     plugins: Plugins = (),
+    scheduler: str | None = None,
 ) -> ParetoFront:
     """Search for evenly spread designs on the Pareto front, and for its knee.
 
@@ -191,12 +201,17 @@ def pareto(
     checks : number of additional independent searches, which reveal designs that are only locally
         best
     plugins : the user's metrics and constraints
+    scheduler : address of a Dask scheduler, used instead of this process for the designs between
+        the ends of the front and for the checks (extra `cluster`)
     """
     from ..optimisation.pareto import pareto as run
 
     actuator, subject = checked_design(design, plugins)
-    with located(actuator):
-        return run(subject, objectives, count=n, seed=seed, checks=checks, fault=fault_of(actuator))
+    fault = fault_of(actuator)
+    with located(actuator), workers_for(actuator, scheduler) as cluster:
+        return run(
+            subject, objectives, count=n, seed=seed, checks=checks, fault=fault, cluster=cluster
+        )
 
 
 def write_front_csv(front: ParetoFront, path: str | Path) -> ReportFile:

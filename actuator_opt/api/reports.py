@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from ..evaluation.rings import Place
     from ..optimisation.result import Optimisation
     from ..pages import ReportFile, Table
-    from ..rendering.blocks import Block
-    from ..rendering.origin import Origin
+    from ..rendering.blocks import Block, Origin
     from ..simulation.verification import Verification
     from ..studies.seal import SealStudy
 
@@ -187,7 +186,7 @@ def origin(
     """The origin stated on a page: the file as read, or else the design's text."""
     from ..design.writer import to_yaml
     from ..evaluation.build import spec_hash
-    from ..rendering.origin import Origin
+    from ..rendering.blocks import Origin
 
     return Origin(
         source_text=source.text if source is not None else to_yaml(design),

@@ -246,6 +246,8 @@ class Session:
         actuator, _ = self._changed(changes)
         subject, problem = self._built(actuator)
         solution = self._warm.solve(problem.problem, stop)
+        if not problem.confirmed(solution.x):
+            solution = self._warm.solve(problem.problem, stop)
         optimisation = result_of(
             subject,
             problem,

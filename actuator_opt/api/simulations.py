@@ -21,8 +21,7 @@ from .reports import ReportArguments, ReportPlace, page_of
 if TYPE_CHECKING:
     from ..design.scenario import LoadedScenario, Scenario
     from ..pages import ReportFile
-    from ..rendering.blocks import Block
-    from ..rendering.origin import Origin
+    from ..rendering.blocks import Block, Origin
     from ..simulation import Simulation
     from ..simulation.integrate import Method
     from ..simulation.measured import Overlay

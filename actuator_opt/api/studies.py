@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Unpack
 
 from ..base.errors import Diagnostic, UsageError
 from ..design import Design
-from .actuator import Actuator, Plugins, as_actuator, checked_design, located
+from .actuator import Actuator, Plugins, as_actuator, checked_design, located, workers_for
 from .reports import ReportArguments, page_of
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ def uncertainty(
     rows: int = 1024,
     metrics: Sequence[str] = (),
     plugins: Plugins = (),
+    scheduler: str | None = None,
 ) -> Uncertainty:
     """Compute yield, sensitivity indices and tornado chart of a design with uncertain inputs.
 
@@ -49,9 +50,13 @@ def uncertainty(
         evaluations; 0 to omit the indices
     metrics : metrics to analyse besides the margins of all limits; default: those of the objective
     plugins : the user's own metrics and constraints
+    scheduler : address of a Dask scheduler, used instead of this process for the draws and the
+        indices (extra `cluster`)
 
     Raises
     ------
+    UsageError
+        the number of draws is not permitted, or no cluster answers
     InputError
         a distribution does not fit its value, or belongs to a number that no model reads
     """
@@ -62,9 +67,15 @@ def uncertainty(
         remedy = "10000 draws suffice to estimate a yield of 99 % within 0.2 %"
         raise UsageError(Diagnostic(message, remedy))
     actuator, subject = checked_design(design, plugins)
-    with located(actuator):
+    with located(actuator), workers_for(actuator, scheduler) as cluster:
         return run(
-            subject, count=count, seed=seed, quasi_random=quasi_random, rows=rows, metrics=metrics
+            subject,
+            count=count,
+            seed=seed,
+            quasi_random=quasi_random,
+            rows=rows,
+            metrics=metrics,
+            cluster=cluster,
         )
 
 

@@ -13,7 +13,7 @@ from ..base.files import require_apart, writing as cannot_write
 from ..base.tables import Displayed
 from ..design import Design
 from ..evaluation import PreparedDesign, compute
-from .actuator import Actuator, Plugins, as_actuator, requirement_faults
+from .actuator import Actuator, Plugins, as_actuator, requirement_faults, workers_for
 from .recorded_runs import Run
 from .reports import ReportArguments, file_name, report_files
 
@@ -71,8 +71,10 @@ def sweep(
     reduce : whether to skip designs that cannot be among the best, and so evaluate fewer
     workers : number of processes; default: one per core
     scheduler : address of a Dask scheduler, used instead of local processes (extra `cluster`)
-    engine : array library with which `reduce` rules out designs, "numpy" or "jax" (extra `gpu`);
-        NumPy is used if JAX is missing
+    engine : "gpu" runs the recorded models of a full sweep on a CUDA GPU (extra `gpu`); its rows
+        agree with those of the processor to rounding; not yet measured on a GPU. "jax" (extra
+        `jax`) compiles the expressions with which `reduce` rules out designs; NumPy is used if JAX
+        is missing
     yes : whether a full sweep of more than a million points is confirmed
     plugins : the user's metrics and constraints
     figures : figures to draw as PNG and SVG: "parallel", "scatter", "contour", "ucurves"
@@ -106,24 +108,37 @@ def sweep(
         message = f"all {points.count:,} points would be evaluated in full".replace(",", " ")
         remedy = "confirm with --yes, or keep only the best with --reduce best:K"
         raise UsageError(Diagnostic(message, remedy))
+    if engine == "gpu":
+        _require_gpu(actuator, scheduler)
     study = study_of(actuator, points, full=not reduce, show=show, engine=engine)
-    if actuator.plugins and scheduler is not None:
-        message = "custom metrics cannot be sent to other machines"
-        raise UsageError(Diagnostic(message, "omit --scheduler or --plugin"))
     watched = _watched(study, figures, show)
-    with writing(study, csv, parquet) as write_rows:
+    with (
+        workers_for(actuator, scheduler) as cluster,
+        writing(study, csv, parquet) as write_rows,
+    ):
         swept = run(
             study,
             each=write_rows,
             store=None if store is None else Path(store),
             keep=keep,
             workers=1 if actuator.plugins or engine != "numpy" else workers,
-            scheduler=scheduler,
+            cluster=cluster,
             watch=watched,
         )
     if figures and out is not None:
         draw_sweep(swept, figures, show=show, out=out)
     return swept
+
+
+def _require_gpu(actuator: Actuator, scheduler: str | None) -> None:
+    """Reject custom metrics, and a computer without a GPU unless a cluster computes the sweep."""
+    from ..base.symbolic import gpu
+
+    if actuator.plugins:
+        message = "custom metrics cannot run on a GPU"
+        raise UsageError(Diagnostic(message, "omit --engine or --plugin"))
+    if scheduler is None:
+        gpu.require()
 
 
 @contextmanager

@@ -249,7 +249,7 @@ def geometry(function: Callable[P, T]) -> Callable[P, T]:
 
 
 def _possible(value: Any) -> bool:
-    """Whether no element of a size is negative; False also for types that this quick test omits."""
+    """Whether no element of a size is negative; False also for types that it cannot handle."""
     if isinstance(value, float):
         return not value < 0
     if type(value) is np.ndarray and value.dtype.kind in "fc":

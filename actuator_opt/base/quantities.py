@@ -113,6 +113,7 @@ INPUTS = _table("""
  joint_speed          | omega  | angular_speed | rad/s | 0   | 1000  | joint speed
  load_inertia         | J      | inertia     | kg*m^2 | 0   | 1e6   | moment of inertia about the joint
  speed                | v      | speed       | m/s  | 0     | 20    | piston speed
+ component_mass       | m      | mass        | g    | 0     | 1e6   | mass of a component
  load_mass            | m      | mass        | kg   | 0     | 1e6   | load mass reflected to the rod
  position             | x      | length      | mm   | 0     | 10000 | piston position from the cap end
  fraction             | x/s    | ratio       | %    | 0     | 100   | position as a fraction of the stroke

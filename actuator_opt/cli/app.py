@@ -42,7 +42,7 @@ COMMANDS = {
     "rerun": "runs",
     "export": "design",
     "schema": "design",
-    "doctor": "doctor",
+    "doctor": "runs",
     "materials": "materials",
     "runs": "runs",
 }

@@ -194,8 +194,8 @@ class Job:
             streams.err(str(fault))
 
 
-_TARGETS = ("--out", "--write", "--csv", "--parquet", "--format")
-"""Options of output files and folders."""
+_TARGETS = ("--out", "--write", "--csv", "--parquet", "--format", "--scheduler")
+"""Options with a value that do not affect the result: where it is written or computed."""
 
 _SILENT = ("--json", "--report", "--all-pages", "--quiet", "-q", "--no-record", "--debug")
 """Flags that do not affect the result."""

@@ -24,6 +24,7 @@ from .options import (
     PluginFile,
     Quiet,
     Report,
+    Scheduler,
     Seed,
     Set,
     StandardSizes,
@@ -49,6 +50,14 @@ def optimise(
     certify: Certify = False,
     target: Yield = None,
     verify: VerifyDynamics = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            "--scheduler",
+            metavar="ADDRESS",
+            help="Solve combinations of choices on this Dask cluster.",
+        ),
+    ] = None,
     write: Write = None,
     out: Out = REPORTS,
     report: Annotated[
@@ -82,6 +91,7 @@ def optimise(
         standard_sizes=standard_sizes,
         certify=certify,
         yield_target=target,
+        scheduler=scheduler,
     )
     fault = None if write is None else _unsaved(result, write)
     if write is not None and fault is None:
@@ -166,6 +176,7 @@ def pareto(
             help="Number of additional full searches that look for better optima.",
         ),
     ] = 3,
+    scheduler: Scheduler = None,
     csv: Annotated[
         Path | None, typer.Option("--csv", metavar="FILE", help="Save the designs of the front.")
     ] = None,
@@ -190,5 +201,8 @@ def pareto(
         as_json=as_json, quiet=quiet, record=not no_record,
     )  # fmt: skip
     return job.deliver(
-        job.run(verbs.pareto, objectives=objectives or [], n=n, seed=seed, checks=checks)
-    )
+        job.run(
+            verbs.pareto, objectives=objectives or [], n=n, seed=seed, checks=checks,
+            scheduler=scheduler,
+        )
+    )  # fmt: skip

@@ -41,6 +41,10 @@ PluginFile = Annotated[
         "--plugin", metavar="FILE.py", help="Python file with your own metrics. Repeatable."
     ),
 ]
+Scheduler = Annotated[
+    str | None,
+    typer.Option("--scheduler", metavar="ADDRESS", help="Run on this Dask cluster instead."),
+]
 Date = Annotated[
     str | None,
     typer.Option(

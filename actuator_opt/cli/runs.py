@@ -1,7 +1,8 @@
-"""Commands for recorded runs: those of `runs`, and `rerun` of a report."""
+"""Commands for recorded runs and for the installation: `runs`, `rerun` of a report, `doctor`."""
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -11,7 +12,7 @@ from ..base import files as store, runs as run_store
 from ..base.errors import Diagnostic, ExitCode, UsageError
 from . import streams
 from .job import Job
-from .options import REPORTS, AllPages, Format, Json, NoRecord, PluginFile, Quiet
+from .options import REPORTS, AllPages, Format, Json, NoRecord, Out, PluginFile, Quiet
 
 runs = typer.Typer(
     help="List, show, delete or prune recorded runs. Each optimise, pareto and sweep is recorded.",
@@ -147,3 +148,25 @@ def rerun(
     if out is not None:
         store.require_apart(out / f"{Path(report).stem}.pdf", report)
     return job.deliver(job.run(verbs.rerun, report, plugins=plugin or []))
+
+
+def _terminal() -> str:
+    """Capabilities of standard output, in words."""
+    style, stream = streams.style(), sys.stdout
+    encoding = "none" if stream is None else stream.encoding or "ascii"
+    parts = [
+        f"encoding {encoding}",
+        "Unicode signs" if style["unicode"] else "plain ASCII signs",
+        "colour" if style["colour"] else "no colour",
+        f"{style['width']} columns",
+        "a terminal" if stream is not None and stream.isatty() else "not a terminal",
+    ]
+    return ", ".join(parts)
+
+
+def doctor(out: Out = REPORTS, as_json: Json = False, quiet: Quiet = False) -> ExitCode:
+    """Check the installation and its optional libraries."""
+    from .. import api as verbs
+
+    installation = verbs.doctor(out=out, runs=run_store.folder(), terminal=_terminal())
+    return Job(as_json=as_json, quiet=quiet).deliver(installation)

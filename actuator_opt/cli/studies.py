@@ -22,6 +22,7 @@ from .options import (
     PluginFile,
     Quiet,
     Report,
+    Scheduler,
     Seed,
     Set,
     Units,
@@ -74,6 +75,7 @@ def uncertainty(
     quasi: Quasi = False,
     rows: Rows = 1024,
     metric: Metrics = None,
+    scheduler: Scheduler = None,
     csv: Annotated[
         Path | None,
         typer.Option(
@@ -106,6 +108,7 @@ def uncertainty(
         quasi_random=quasi,
         rows=rows,
         metrics=metric or [],
+        scheduler=scheduler,
     )
     return job.deliver(study)
 

@@ -14,7 +14,7 @@ from ..base.errors import ActuatorError, Diagnostic, ExitCode, UsageError, shown
 from ..base.units import whole
 from . import streams
 from .job import Job
-from .options import REPORTS, DesignFile, Json, NoRecord, PluginFile, Quiet, Seed, Set
+from .options import REPORTS, DesignFile, Json, NoRecord, PluginFile, Quiet, Scheduler, Seed, Set
 
 if TYPE_CHECKING:
     from ..sweeps import Swept
@@ -59,10 +59,6 @@ Workers = Annotated[
     int | None,
     typer.Option("--workers", metavar="N", help="Number of processes; default: all cores."),
 ]
-Scheduler = Annotated[
-    str | None,
-    typer.Option("--scheduler", metavar="ADDRESS", help="Run on this Dask cluster instead."),
-]
 Figures = Annotated[
     list[str] | None,
     typer.Option(
@@ -83,7 +79,10 @@ Show = Annotated[
 Yes = Annotated[bool, typer.Option("--yes", help="Allow more than a million full evaluations.")]
 Screening = Annotated[
     str,
-    typer.Option("--engine", help="Array library for --reduce: numpy, or jax (extra gpu)."),
+    typer.Option(
+        "--engine",
+        help="numpy; gpu: all designs on a CUDA GPU (extra gpu); jax: --reduce by JAX (extra jax).",
+    ),
 ]
 Folder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the figures.")]
 
@@ -131,7 +130,7 @@ def sweep(
             **output,
         )  # fmt: skip
     if swept.study.engine != engine and not quiet:
-        streams.err("JAX not installed (pip install 'actuator-opt[gpu]'); used NumPy")
+        streams.err("JAX not installed (pip install 'actuator-opt[jax]'); used NumPy")
     if not no_record:
         job.keep(swept, **output)
     files, faults = _drawn(swept, figures, show, out)

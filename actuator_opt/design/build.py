@@ -14,10 +14,10 @@ from ..base.quantities import Quantity
 from ..metrics import METRICS
 from . import choice_list, requirements
 from .faults import cross_field, material_faults
-from .kinds import Fraction, Of, Section, ValueFault, example, shape_in_words
+from .kinds import Fraction, Section, ValueFault, shape_in_words
 from .model import Design, Ply
 from .paths import put, resolve, spell
-from .structure import KeyEntry, Loc, MaterialLookup, child_at, entries, leaves
+from .structure import KeyEntry, Loc, MaterialLookup, child_at, entries, how_to_add, leaves
 
 MOST_FAULTS = 100
 
@@ -219,22 +219,6 @@ def _unknown_key(loc: Loc, root: type[Section]) -> Fault:
         names = list(entries(section)) if section else []
         names += ["plies"] if section is Ply else []
     return Fault(loc, "unknown key", errors.remedy(str(loc[-1]), names), at_key=True)
-
-
-def how_to_add(name: str, entry: KeyEntry | None) -> str:
-    """Line of YAML that adds a missing key."""
-    if entry is None:
-        return f'add "{name}: …"'
-    if isinstance(entry.kind, Of):
-        return f'add e.g. "{name}: {example(entry.kind.quantity)}"'
-    if entry.choices:
-        return f'add "{name}: {entry.choices[0]}" (or {", ".join(entry.choices[1:])})'
-    if entry.section is not None:
-        required = [key for key, below in entries(entry.section).items() if below.required]
-        dash = "- " if entry.shape == "list" else ""
-        return f'add a block "{name}:" with {dash}{", ".join(required)}'
-    sample = entry.kind.example if entry.kind is not None else "…"
-    return f'add e.g. "{name}: {sample}"'
 
 
 def to_tree(section: Section) -> dict[str, Any]:

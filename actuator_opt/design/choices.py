@@ -68,9 +68,8 @@ WallModel: TypeAlias = Annotated[
 Criterion: TypeAlias = Annotated[
     str, choice_of("failure criterion for the plies of barrel and rod", CRITERIA)
 ]
-RetentionType: TypeAlias = Annotated[
-    str, choice_of("how cap and head are joined to the barrel", JOINTS)
-]
+JOINT_TYPE = choice_of("how cap and head are joined to the barrel", JOINTS)
+RetentionType: TypeAlias = Annotated[str, JOINT_TYPE]
 SealType: TypeAlias = Annotated[
     str,
     choice_of("kind of seal", SEAL_TYPES),
@@ -115,6 +114,28 @@ SealState: TypeAlias = Annotated[
     Choice(
         "stiffness contribution of the seals; sliding: none; "
         "sticking: a spring parallel to the oil, until breakaway"
+    ),
+]
+COMPONENTS = {
+    "ports": "ports and fittings",
+    "static_seals": "static seals of the ends",
+    "piston_fastening": "fastening of the piston to the rod",
+    "bearings": "spherical bearings of the eyes",
+    "sensor": "position sensor",
+    "manifold": "valve and manifold",
+    "hoses": "hoses and pipes",
+}
+"""Components of an actuator that no model weighs: kind, and words for it."""
+_KINDS = COMPONENTS | {"other": "any other component"}
+Component: TypeAlias = Annotated[
+    str,
+    Choice("; ".join(["kind of the component", *map(": ".join, _KINDS.items())]), tuple(_KINDS)),
+]
+Carrier: TypeAlias = Annotated[
+    Literal["barrel", "cap", "head", "piston", "rod"],
+    Choice(
+        "part that carries the component; barrel: does not move; cap: does not move, at the cap "
+        "end; head: does not move, at the rod end; piston: moves; rod: moves, outside the piston"
     ),
 ]
 Chamber: TypeAlias = Annotated[

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple, get_args
 
 from ..base import errors, quantities
 from ..base.errors import Fault, article
+from ..joints.joint import Joint
 from ..models import linkage as crank
 from . import choices, material, seal_faults, wall_faults
 from .kinds import MaterialName
@@ -321,11 +322,11 @@ def rod(view: FileView) -> Iterator[Fault]:
             f"{length_text(thread)}: larger than the rod ({length_text(diameter)})",
             f"write at most {length_text(diameter)}",
         )
-    for owner in ("rod", "retention"):
+    for owner in (("rod",), *(end.at for end in wall_faults.ends(view))):
         yield from _smaller(
             view,
-            (owner, "thread", "pitch"),
-            (owner, "thread", "diameter"),
+            (*owner, "thread", "pitch"),
+            (*owner, "thread", "diameter"),
             factor=0.5,
             why=", or no core of the thread remains",
         )
@@ -475,12 +476,13 @@ def material_faults(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
 
 def _material_names(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     """Yield faults for unknown materials, and for materials of a kind that their key refuses."""
-    joint = wall_faults.joint_of(FileView(tree))
+    ends = wall_faults.ends(FileView(tree))
+    joints: dict[Loc, Joint | None] = {(*end.at, "material"): end.joint for end in ends}
     for loc, entry, name in leaves(tree):
         if not isinstance(entry.kind, MaterialName) or not isinstance(name, str):
             continue
         suitable = ROLES[entry.kind.role]
-        if loc == ("retention", "material") and joint is not None:
+        if (joint := joints.get(loc)) is not None:
             suitable = joint.kinds or suitable
         elif loc == ("rod", "fitting", "adhesive"):
             suitable = ("adhesive",)

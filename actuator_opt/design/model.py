@@ -51,6 +51,14 @@ class Line(Section):
     ] = False
 
 
+class ExtraMass(Section):
+    """A component of the actuator whose mass is stated, because no model computes it."""
+
+    kind: choices.Component
+    mass: Annotated[float, Of("component_mass", "mass of the component")]
+    place: choices.Carrier
+
+
 class Valve(Section):
     """A proportional or servo valve with four control edges that open linearly with the signal."""
 
@@ -460,21 +468,17 @@ class Caps(Section):
     thickness: Annotated[float, Of("wall_thickness", "thickness of both end plates")]
 
 
-class _Retention(Section):
-    """Joint of caps and head to the barrel: skirts over the barrel (bond, thread), or tie rods.
+_OVERLAP = Of(
+    "part_length",
+    "length over which skirt and barrel overlap, or thread engagement of the tie rods",
+)
 
-    `length` is the overlap of skirt and barrel, `wall` the thickness of the skirt, `material` the
-    adhesive or the tie-rod metal. A thread is cut into the metal of barrel and caps.
-    """
+
+class _EndRetention(Section):
+    """Joint of one end of the barrel, of the cap or of the head; keys as in `retention`."""
 
     type: choices.RetentionType
-    length: Annotated[
-        float,
-        Of(
-            "part_length",
-            "length over which skirt and barrel overlap, or thread engagement of the tie rods",
-        ),
-    ]
+    length: Annotated[float, _OVERLAP]
     wall: Annotated[float, Of("wall_thickness", "thickness of the skirt")] = 1.5e-3
     material: Annotated[str | None, MaterialName("fastening")] = None
     count: Annotated[float, Of("bolt_count", "number of tie rods")] = 4.0
@@ -484,31 +488,51 @@ class _Retention(Section):
     ] = None
 
 
-def _own_fields() -> dict[str, Any]:
+def _own_keys() -> dict[str, Any]:
     """Keys of `retention` that only some joints have, each with its quantity."""
-    joint_fields = {
-        field.key: field for joint in JOINTS.values() for field in joint.fields if field.quantity
-    }
-    for key in joint_fields.keys() & _Retention.model_fields.keys():
+    fields = [field for joint in JOINTS.values() for field in joint.fields]
+    own = {field.key: field for field in fields if field.quantity}
+    for key in own.keys() & _EndRetention.model_fields.keys():
         raise ValueError(
             f"joint field {key}: all joints share this key, so none may state its quantity"
         )
     return {
         key: (Annotated[float | None, Of(field.quantity, field.help)], None)
-        for key, field in joint_fields.items()
+        for key, field in own.items()
     }
 
 
 if TYPE_CHECKING:
-    Retention: TypeAlias = _Retention
+    EndRetention: TypeAlias = _EndRetention
 else:  # with the keys that only some joints have
-    Retention = create_model(
-        "Retention",
-        __base__=_Retention,
-        __doc__=_Retention.__doc__,
+    EndRetention = create_model(
+        "EndRetention",
+        __base__=_EndRetention,
+        __doc__=_EndRetention.__doc__,
         __module__=__name__,
-        **_own_fields(),
+        **_own_keys(),
     )
+
+
+class Retention(EndRetention):
+    """Joint of caps and head to the barrel: skirts over the barrel (bond, thread), or tie rods.
+
+    `length` is the overlap of skirt and barrel, `wall` the thickness of the skirt, `material` the
+    adhesive or the tie-rod metal. A thread is cut into the metal of barrel and caps. The joint
+    holds for both ends; the blocks `cap` and `head`, stated instead, hold for one end each.
+    """
+
+    type: Annotated[str | None, choices.JOINT_TYPE] = None  # type: ignore[assignment]
+    length: Annotated[float | None, _OVERLAP] = None  # type: ignore[assignment]
+    cap: EndRetention | None = None
+    head: EndRetention | None = None
+
+    @property
+    def ends(self) -> dict[str, EndRetention]:
+        """The joint of each end, `cap` and `head`; or the joint of both ends, with the name ""."""
+        if self.cap is not None and self.head is not None:
+            return {"cap": self.cap, "head": self.head}
+        return {"": self}
 
 
 class Clevis(Section):
@@ -656,6 +680,7 @@ class Design(Section):
     retention: Retention | None = None
     clevis: Clevis | None = None
     seals: Seals
+    extra_masses: Annotated[tuple[ExtraMass, ...], Field(max_length=24)] = ()
     lines: Annotated[tuple[Line, ...], Field(max_length=24)] = ()
     stiffness: Stiffness = Stiffness.model_construct()
     valve: Valve | None = None

@@ -15,7 +15,7 @@ from ..base import quantities
 from ..base.dataclass import dataclass
 from ..base.errors import Fault
 from ..base.quantities import Quantity
-from .kinds import Choice, Fraction, Of, PositionKind, Section, ValueKind
+from .kinds import Choice, Fraction, Of, PositionKind, Section, ValueKind, example
 from .model import Design
 
 Loc: TypeAlias = tuple[str | int, ...]
@@ -176,6 +176,22 @@ def value_at(tree: Any, loc: Loc, section: type[Section] = Design) -> Any:
         default = entry.default
         section = entry.section or section
     return default if node is None else node
+
+
+def how_to_add(name: str, entry: KeyEntry | None) -> str:
+    """Line of YAML that adds a missing key."""
+    if entry is None:
+        return f'add "{name}: …"'
+    if isinstance(entry.kind, Of):
+        return f'add e.g. "{name}: {example(entry.kind.quantity)}"'
+    if entry.choices:
+        return f'add "{name}: {entry.choices[0]}" (or {", ".join(entry.choices[1:])})'
+    if entry.section is not None:
+        required = [key for key, below in entries(entry.section).items() if below.required]
+        dash = "- " if entry.shape == "list" else ""
+        return f'add a block "{name}:" with {dash}{", ".join(required)}'
+    sample = entry.kind.example if entry.kind is not None else "…"
+    return f'add e.g. "{name}: {sample}"'
 
 
 class MaterialLookup(Protocol):

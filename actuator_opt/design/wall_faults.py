@@ -7,6 +7,7 @@ Each joint of caps and head has a module in `joints`. That module declares the k
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 from ..base import quantities
@@ -14,7 +15,7 @@ from ..base.errors import Fault, InputError
 from ..joints.joint import Joint
 from ..joints.kinds import JOINTS
 from .material import PLY_CONSTANTS, PLY_REQUIRED, compliance_determinant, ply_constants
-from .model import Ply, Retention
+from .model import EndRetention, Ply
 from .paths import spell
 from .structure import (
     FileView,
@@ -24,6 +25,7 @@ from .structure import (
     child,
     child_at,
     entries,
+    how_to_add,
     length_text,
     lists_of,
     number_of,
@@ -242,36 +244,114 @@ def _stiffness(view: FileView, properties: _StatedProperties) -> Iterator[Fault]
             )
 
 
-_TYPE = ("retention", "type")
+_BLOCK = "retention"
 
 
-def joint_of(view: FileView) -> Joint | None:
-    """The joint of caps and head that the file names; None if unknown."""
-    return JOINTS.get(view.text(*_TYPE) or "")
+class EndView(FileView):
+    """Reads a file in which `retention` is the block of one end, such as `retention.cap`.
+
+    The module of a joint thus finds all its keys under `retention`, and PATHs in `variables` and
+    `choices` too. `at` is the location of the block.
+    """
+
+    def __init__(self, view: FileView, *at: str) -> None:
+        super().__init__(view.tree, view.root)
+        self.at = at
+
+    def value(self, *loc: str | int) -> Any:
+        """Value at a location; if not stated, its default."""
+        return super().value(*self._placed(loc))
+
+    def has(self, *loc: str | int) -> bool:
+        """Whether the file states a value at this location."""
+        return super().has(*self._placed(loc))
+
+    def _placed(self, loc: Loc) -> Loc:
+        if loc[0] == _BLOCK:
+            return (*self.at, *loc[1:])
+        if loc[0] in ("choices", "variables"):
+            return (loc[0], *(self._text(str(key)) for key in loc[1:]))
+        return loc
+
+    def _text(self, text: str) -> str:
+        return text.replace(f"{_BLOCK}.", f"{'.'.join(self.at)}.")
+
+    def located(self, fault: Fault) -> Fault:
+        """A fault with location and texts that name the block of this end."""
+        return replace(
+            fault,
+            loc=self._placed(fault.loc),
+            message=self._text(fault.message),
+            remedy=self._text(fault.remedy),
+        )
+
+    @property
+    def joint(self) -> Joint | None:
+        """The joint that the file names; None if unknown."""
+        return JOINTS.get(self.text(_BLOCK, "type") or "")
+
+
+def ends(view: FileView) -> tuple[EndView, ...]:
+    """The view of each end, or one view if both ends have the same joint."""
+    names = [name for name in ("cap", "head") if view.has(_BLOCK, name)]
+    if not names:
+        return (EndView(view, _BLOCK),)
+    return tuple(EndView(view, _BLOCK, name) for name in names)
 
 
 def keys(view: FileView) -> Iterator[Fault]:
     """Check that `retention` states all input keys that its joint needs, and no others."""
-    joint = joint_of(view)
-    if joint is None:
+    if not view.has(_BLOCK):
         return
-    yield from _unused(view, joint)
+    yield from _both_or_each(view)
+    for end in ends(view):
+        if (joint := end.joint) is not None:
+            yield from map(end.located, _keys_of_end(end, joint))
+
+
+def _both_or_each(view: FileView) -> Iterator[Fault]:
+    """Check that a file states one joint for both ends, or one joint for each end."""
+    views, own = ends(view), entries(EndRetention)
+    if views[0].at == (_BLOCK,):
+        for name, entry in own.items():
+            if entry.required and not view.has(_BLOCK, name):
+                yield Fault((_BLOCK, name), "missing", how_to_add(name, entry))
+        return
+    if len(views) == 1:
+        stated = views[0].at[-1]
+        other = "head" if stated == "cap" else "cap"
+        message = f"missing: {stated} has a joint of its own, so {other} needs one too"
+        yield Fault((_BLOCK, other), message, f'add a block "{other}:" with its type and length')
+    for name, entry in own.items():
+        value = view.value(_BLOCK, name)
+        if value is not None and value != entry.default:
+            remedy = "move the line into cap: or head:"
+            yield Fault((_BLOCK, name), "without effect beside cap and head", remedy, at_key=True)
+    for end in views:
+        if (joint := end.joint) is not None and joint.stiffness is not None:
+            message = f"{joint.noun} clamp both ends, so they cannot hold one end alone"
+            remedy = f"write type: {joint.name} under retention, without cap and head"
+            yield Fault((*end.at, "type"), message, remedy)
+
+
+def _keys_of_end(end: EndView, joint: Joint) -> Iterator[Fault]:
+    yield from _unused(end, joint)
     for field in joint.fields:
-        loc = ("retention", *field.key.split("."))
-        needed = field.missing and all(view.has(*loc[:end]) for end in range(1, len(loc)))
-        if needed and not view.has(*loc):
+        loc = (_BLOCK, *field.key.split("."))
+        needed = field.missing and all(end.has(*loc[:stop]) for stop in range(1, len(loc)))
+        if needed and not end.has(*loc):
             yield Fault(loc, field.missing, field.remedy)
 
 
-def _unused(view: FileView, joint: Joint) -> Iterator[Fault]:
+def _unused(end: EndView, joint: Joint) -> Iterator[Fault]:
     """Yield a fault for each stated key that the joint does not use.
 
     Keys that an alternative joint in `choices` uses are allowed, as are default values.
     """
-    alternatives = [JOINTS.get(name) for name in view.items("choices", ".".join(_TYPE))]
+    alternatives = [JOINTS.get(name) for name in end.items("choices", f"{_BLOCK}.type")]
     used = _keys(candidate for candidate in (joint, *alternatives) if candidate is not None)
-    for name, entry in entries(Retention).items():
-        value = view.value("retention", name)
+    for name, entry in entries(EndRetention).items():
+        value = end.value(_BLOCK, name)
         if entry.required or name in used or value is None or value == entry.default:
             continue
         users = [candidate for candidate in JOINTS.values() if name in _keys([candidate])]
@@ -280,7 +360,7 @@ def _unused(view: FileView, joint: Joint) -> Iterator[Fault]:
             f"only {' and '.join(user.noun for user in users)} {_have(users)}",
             f"remove the line, or write type: {' or '.join(user.name for user in users)}",
         )
-        yield Fault(("retention", name), message, remedy, at_key=True)
+        yield Fault((_BLOCK, name), message, remedy, at_key=True)
 
 
 def _keys(joints: Iterable[Joint]) -> set[str]:
@@ -294,28 +374,32 @@ def _have(joints: list[Joint]) -> str:
 
 def skirts(view: FileView) -> Iterator[Fault]:
     """Check that the skirts of cap and head, which overlap the barrel, do not meet on it."""
-    joint = joint_of(view)
-    if joint is None or not joint.skirts:
-        return
-    overlap, length = view.number("retention", "length"), view.number("barrel", "length")
+    with_skirts = [end for end in ends(view) if end.joint is not None and end.joint.skirts]
+    overlaps = [end.number(_BLOCK, "length") for end in with_skirts]
+    length = view.number("barrel", "length")
     parts = [("cylinder", "stroke"), ("piston", "length"), ("head", "length")]
     lengths = [number for number in (view.number(*part) for part in parts) if number is not None]
     if length is None and len(lengths) == len(parts):
         length = sum(lengths)
-    if overlap is not None and length is not None and 2 * overlap > length * (1 + 1e-9):
+    known = [overlap for overlap in overlaps if overlap is not None]
+    if not known or len(known) < len(overlaps) or length is None:
+        return
+    both = view.has(_BLOCK, "cap")
+    if (sum(known) if both else 2 * known[0]) > length * (1 + 1e-9):
+        rest = length - sum(known[:-1]) if both else length / 2
         yield Fault(
-            ("retention", "length"),
-            f"{length_text(overlap)}: the skirts of both ends meet on the barrel, which is "
+            (*with_skirts[-1].at, "length"),
+            f"{length_text(known[-1])}: the skirts of both ends meet on the barrel, which is "
             f"{length_text(length)} long",
-            f"write at most {length_text(length / 2)}",
+            f"write at most {length_text(rest)}",
         )
 
 
 def values(view: FileView) -> Iterator[Fault]:
-    """Yield the faults that the module of the joint finds in the file's values."""
-    joint = joint_of(view)
-    if joint is not None:
-        yield from joint.faults(view)
+    """Yield the faults that the modules of the joints find in the file's values."""
+    for end in ends(view):
+        if (joint := end.joint) is not None:
+            yield from map(end.located, joint.faults(end))
 
 
 class _EndMaterials:
@@ -338,6 +422,7 @@ class _EndMaterials:
 def of_end_materials(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     """Yield the faults of the joint that depend on the material library."""
     view = FileView(tree)
-    joint = joint_of(view)
-    if joint is not None:
-        yield from joint.material_faults(view, _EndMaterials(view, materials))
+    for end in ends(view):
+        if (joint := end.joint) is not None:
+            faults = joint.material_faults(end, _EndMaterials(view, materials))
+            yield from map(end.located, faults)

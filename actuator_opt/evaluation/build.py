@@ -27,7 +27,7 @@ from ..design.model import Design
 from ..metrics import METRICS, MetricRow
 from ..metrics.table import CHECKS
 from ..version import VERSION
-from . import dynamics_study as dynamics, outline, validity as doubts
+from . import dynamics_study as dynamics, outline, validity as doubts, weight
 from .film import floats
 from .kernel import ModelRun, PreparedDesign, compute, governing
 from .limits import (
@@ -162,8 +162,9 @@ def names_of_materials(design: Design) -> list[str]:
         names += [design.rod.fitting.material or design.rod.material, design.rod.fitting.adhesive]
     names += [part.bearing for part in (design.piston, design.head) if part.bearing is not None]
     names.append(design.caps.material)
-    if design.retention is not None and design.retention.material is not None:
-        names.append(design.retention.material)
+    if design.retention is not None:
+        joints = design.retention.ends.values()
+        names += [joint.material for joint in joints if joint.material is not None]
     if design.clevis is not None:
         names.append(design.clevis.material)
     for seal in (design.seals.piston, design.seals.rod):
@@ -208,8 +209,11 @@ def prepare(
 def spec_hash(subject: PreparedDesign) -> str:
     """Hash of all inputs that determine the result: design, material data and program version."""
     design = subject.design.model_dump(mode="json")
-    if not design["uncertainty"]:  # unset fields are left out: hashes of older designs stay valid
-        del design["uncertainty"]
+    for key in ("uncertainty", "extra_masses"):
+        if not design[key]:  # unset fields are left out: hashes of older designs stay valid
+            del design[key]
+    if design["retention"] is not None and design["retention"]["cap"] is None:
+        del design["retention"]["cap"], design["retention"]["head"]
     content = {
         "design": design,
         "materials": {k: v for k, v in subject.numbers.items() if k.startswith("materials.")},
@@ -251,6 +255,7 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
         unverified=tuple(doubts.unverified(subject, v)),
         models=tuple(doubts.models(metrics, subject, run.rings, outside, [t for _, t in warnings])),
         mass_parts={name: float(np.squeeze(m)) for name, m in run.mass_parts.items()},
+        mass_leaves_out=weight.left_out(design),
         curve=_curve(run, v, metrics["stiffness_min"].case),
         outlines=outline.outlines(design, subject.materials, run.geometry),
         lengths=outline.lengths(design, run.geometry),
@@ -488,9 +493,7 @@ def evaluate_many(
     return many(subject, names, rows_of_many(subject, v, names, count), v.read)
 
 
-def many(
-    subject: PreparedDesign, names: tuple[str, ...], rows: Array, read: Iterable[str]
-) -> Many:
+def many(subject: PreparedDesign, names: tuple[str, ...], rows: Array, read: Iterable[str]) -> Many:
     """Results of many designs from the rows of `rows_of_many` (metrics + 2, designs)."""
     missed = rows[-1].astype(np.int32)
     return Many(names, rows[:-2], rows[-2], missed, limits_of(subject), frozenset(read))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ..base.numeric import Array, maximum, where
 from ..design.model import Design
-from ..joints.joint import Fatigue
+from ..joints.joint import Life
 from ..models import end_stop, endurance, oil_laws, rod
 from . import rod_strength
 from .barrel import Wall
@@ -28,7 +30,7 @@ def compute(
     state: LoadState,
     wall: Wall,
     section: RodSection,
-    loaded_joint: LoadedJoint | None,
+    loaded_joints: Sequence[LoadedJoint],
     stop: Demand,
     net: Array,
     out: MetricArrays,
@@ -40,7 +42,7 @@ def compute(
     """
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
-    _endurance(v, stock, design, wall, section, loaded_joint, supply, push, pull, out)
+    _endurance(v, stock, design, wall, section, loaded_joints, supply, push, pull, out)
     _end_stop(v, design, g, state, supply, stop, net, out)
     _trapped(v, stock, design, g, state, wall, supply, out)
     _layers(stock, wall, out)
@@ -55,7 +57,7 @@ def _endurance(
     design: Design,
     wall: Wall,
     section: RodSection,
-    loaded_joint: LoadedJoint | None,
+    loaded_joints: Sequence[LoadedJoint],
     supply: Array,
     push: Array,
     pull: Array,
@@ -69,10 +71,11 @@ def _endurance(
             force=pull, diameter=v["rod.thread.diameter"], pitch=v["rod.thread.pitch"]
         )
         loads.append(("rod thread", section.end_material, stress, stress / 2))
-    joint_fatigue = (
-        Fatigue() if loaded_joint is None else loaded_joint.joint.fatigue(loaded_joint.loaded)
-    )
-    loads.extend(joint_fatigue.pulsed)
+    lives: dict[str, Life] = {}
+    for end in loaded_joints:
+        fatigue = end.joint.fatigue(end.loaded)
+        loads += [(end.end_joint.placed(place), *load) for place, *load in fatigue.pulsed]
+        lives |= end.placed(fatigue.lives)
     life, factor, unknown = {}, {}, []
     for place, name, span, mean in loads:
         ultimate = stock.allowable(name, "ultimate_strength")
@@ -96,7 +99,7 @@ def _endurance(
             amplitude_strength=limit,
             stress_ratio=ratio,
         )
-    for place, known in joint_fatigue.lives.items():
+    for place, known in lives.items():
         life[place], factor[place] = known
     for metric, values in (("cycle_life", life), ("fatigue_factor", factor)):
         if values:

@@ -2,8 +2,8 @@
 
 Axial layout, from the outer face of the cap plate: cap plate, barrel, head plate, exposed rod, eye.
 The barrel contains the piston (retracted against the cap plate), the stroke and the head plug.
-Every seal element, wiper and guide has its groove in piston or head. Both end plates are held by
-the same type of joint (see `joints`), so a single `End` describes both ends.
+Every seal element, wiper and guide has its groove in piston or head. Each end plate is held by a
+joint (see `joints`); the design states one joint for both ends, or one for each.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, maximum
 from ..design.material import Material
-from ..design.model import Design, Ply, Retention, closed_length
+from ..design.model import Design, EndRetention, Ply, closed_length
 from ..design.seals import Seal, SealElement
 from ..joints.joint import BarrelLayer, End, EndDimensions, Joint, JointSizes
 from ..joints.kinds import JOINTS
@@ -23,26 +23,29 @@ from .values import Values
 
 
 class Numbers:
-    """Values of the block `retention` by key, in an evaluation, where they may be arrays."""
+    """Values of the block of a joint by key, in an evaluation, where they may be arrays.
 
-    def __init__(self, v: Values) -> None:
-        self._v = v
+    `path` is the PATH of the block: `retention`, or `retention.cap` for example.
+    """
+
+    def __init__(self, v: Values, path: str) -> None:
+        self._v, self._path = v, path
 
     def __contains__(self, key: object) -> bool:
-        return f"retention.{key}" in self._v
+        return f"{self._path}.{key}" in self._v
 
     def __getitem__(self, key: str) -> Array:
-        return self._v[f"retention.{key}"]
+        return self._v[f"{self._path}.{key}"]
 
     def get(self, key: str, default: Array) -> Array:
         """The number of a key, or `default` if the design does not state it."""
-        return self._v.get(f"retention.{key}", default)
+        return self._v.get(f"{self._path}.{key}", default)
 
 
 class RetentionNumbers:
-    """Values of the block `retention` by key, as stated in the design file."""
+    """Values of the block of a joint by key, as stated in the design file."""
 
-    def __init__(self, section: Retention) -> None:
+    def __init__(self, section: EndRetention) -> None:
         self._section = section
 
     def get(self, key: str, default: Array) -> Array:
@@ -59,19 +62,50 @@ class RetentionNumbers:
         return self.get(key, None)
 
 
-def joint_of(design: Design) -> Joint | None:
-    """The joint of a design; None if it has no block `retention`."""
-    return None if design.retention is None else JOINTS[design.retention.type]
+@dataclass(frozen=True, slots=True)
+class EndJoint:
+    """The joint of one end of the barrel, "cap" or "head", or of both ends, with the name "".
+
+    `path` is the PATH of the joint's block in the design file, and `section` its values there.
+    """
+
+    name: str
+    path: str
+    joint: Joint
+    section: EndRetention
+
+    @property
+    def count(self) -> int:
+        """Number of ends with this joint."""
+        return 1 if self.name else 2
+
+    def placed(self, place: str) -> str:
+        """A location at this end, with the name of the end if the two ends differ.
+
+        >>> EndJoint("cap", "retention.cap", None, None).placed("thread of the skirt")
+        'cap: thread of the skirt'
+        """
+        return ": ".join(part for part in (self.name, place) if part)
+
+
+def joints_of(design: Design) -> tuple[EndJoint, ...]:
+    """The joints of the ends: one for both ends, or those of cap and head; none without them."""
+    if design.retention is None:
+        return ()
+    return tuple(
+        EndJoint(name, f"retention.{name}" if name else "retention", JOINTS[end.type], end)
+        for name, end in design.retention.ends.items()
+    )
 
 
 def clamped(design: Design) -> bool:
     """Whether the joint clamps the barrel between both ends."""
-    joint = joint_of(design)
-    return joint is not None and joint.stiffness is not None
+    return any(end.joint.stiffness is not None for end in joints_of(design))
 
 
 def end_of(
     design: Design,
+    end_joint: EndJoint,
     sizes: JointSizes,
     *,
     inner_radius: Array,
@@ -84,7 +118,7 @@ def end_of(
     layers = zip(design.barrel.layup, thicknesses, strict=True)
     return End(
         sizes=sizes,
-        material=None if design.retention is None else design.retention.material,
+        material=end_joint.section.material,
         cap=design.caps.material,
         layers=tuple(BarrelLayer(ply.material, thickness) for ply, thickness in layers),
         inner_radius=inner_radius,
@@ -230,8 +264,9 @@ class Geometry:
     head_length: Array
     head_clearance: Array
     plate: Array
-    fit: EndDimensions
-    """Dimensions of cap and head that follow from the joint; they are the same at both ends."""
+    fits: tuple[EndDimensions, ...]
+    """Dimensions of cap and head that follow from their joints; one entry if the joints are the
+    same."""
     has_skirts: bool
     barrel_length: Array
     eye_offset: Array
@@ -240,6 +275,16 @@ class Geometry:
     piston_grooves: tuple[Groove, ...]
     rod_grooves: tuple[Groove, ...]
     bearing_span: Array
+
+    @property
+    def cap_fit(self) -> EndDimensions:
+        """Dimensions of the cap that follow from its joint."""
+        return self.fits[0]
+
+    @property
+    def head_fit(self) -> EndDimensions:
+        """Dimensions of the head that follow from its joint."""
+        return self.fits[-1]
 
 
 def _thicknesses(v: Values, part: str, layup: tuple[Ply, ...]) -> tuple[Array, ...]:
@@ -260,19 +305,21 @@ def derive(v: Values, design: Design) -> Geometry:
     barrel_length = v.get("barrel.length", needed)
     plate = v["caps.thickness"]
     extension = v["rod.extension"]
-    joint = joint_of(design)
-    fit = EndDimensions(plate_radius=outer_radius, radius=outer_radius)
-    if joint is not None:
+    joints, fits = joints_of(design), []
+    for end_joint in joints:
         end = end_of(
             design,
-            Numbers(v),
+            end_joint,
+            Numbers(v, end_joint.path),
             inner_radius=inner_radius,
             outer_radius=outer_radius,
             thicknesses=thicknesses,
             barrel_length=barrel_length,
             plate=plate,
         )
-        fit = joint.fit(end)
+        fits.append(end_joint.joint.fit(end))
+    if not fits:
+        fits.append(EndDimensions(plate_radius=outer_radius, radius=outer_radius))
     pin = v["clevis.pin_diameter"] if design.clevis is not None else 0.0
     eye_offset = mass.eye_length(pin_diameter=pin)
     return Geometry(
@@ -293,8 +340,8 @@ def derive(v: Values, design: Design) -> Geometry:
         head_length=head_length,
         head_clearance=v["head.clearance"],
         plate=plate,
-        fit=fit,
-        has_skirts=joint is not None and joint.skirts,
+        fits=tuple(fits),
+        has_skirts=any(end.joint.skirts for end in joints),
         barrel_length=barrel_length,
         eye_offset=eye_offset,
         pin_diameter=pin,
@@ -307,10 +354,11 @@ def derive(v: Values, design: Design) -> Geometry:
     )
 
 
-def end_at(design: Design, sizes: JointSizes, g: Geometry) -> End:
-    """Describe the end of the barrel, as input for the functions of its joint."""
+def end_at(design: Design, end_joint: EndJoint, sizes: JointSizes, g: Geometry) -> End:
+    """Describe an end of the barrel, as input for the functions of its joint."""
     return end_of(
         design,
+        end_joint,
         sizes,
         inner_radius=g.inner_radius,
         outer_radius=g.outer_radius,
@@ -326,8 +374,8 @@ def lands(geometry: Geometry, thread_radius: Array) -> dict[str, Array]:
     piston_length, piston_count, piston_depth = groove_totals(g.piston_grooves)
     head_length, head_count, head_depth = groove_totals(g.rod_grooves)
     bore = {"geometry_rod_bore": g.rod_inner_diameter} if g.rod_thicknesses else {}
-    between = g.barrel_length - 2 * g.fit.length
-    skirts = {"geometry_skirts": between} if g.has_skirts else {}
+    skirted = 2 * g.cap_fit.length if len(g.fits) == 1 else g.cap_fit.length + g.head_fit.length
+    skirts = {"geometry_skirts": g.barrel_length - skirted} if g.has_skirts else {}
     return (
         bore
         | skirts

@@ -256,7 +256,7 @@ class ModelRun:
     wall: Wall
     rings: tuple[Ring, ...]
     rod: RodSection
-    joint: strength.LoadedJoint | None
+    joints: tuple[strength.LoadedJoint, ...]
     beam: Beam
     springs: springs.Springs
     motion: motion.Motion
@@ -312,7 +312,7 @@ class Statics:
 
     base: Base
     rod: RodSection
-    joint: strength.LoadedJoint | None
+    joints: tuple[strength.LoadedJoint, ...]
     mass_parts: dict[str, Array]
     breakaway: Array
     branches: dict[circuit.Chamber, circuit.ChamberLines]
@@ -355,15 +355,15 @@ def statics(
     beam = beam_module.derive(
         v, design, g, case_state, barrel, rod, parts, critical_load=implicit.critical_load
     )
-    loaded_joint = strength.joint_under_load(v, design, stock, g, barrel)
-    strength.compute(v, design, stock, g, case_state, barrel, rod, beam, loaded_joint, out)
+    loaded_joints = strength.joints_under_load(v, design, stock, g, barrel)
+    strength.compute(v, design, stock, g, case_state, barrel, rod, beam, loaded_joints, out)
     stop = joint.at_stop(case_state.demands, case_state.push)
-    stop = replace(stop, mass=_moving(stop.mass, parts))
-    duty.compute(v, design, stock, g, case_state, barrel, rod, loaded_joint, stop, net, out)
+    stop = replace(stop, mass=weight.moving(parts, stop.mass))
+    duty.compute(v, design, stock, g, case_state, barrel, rod, loaded_joints, stop, net, out)
     thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
     for name, value in geometry_module.lands(g, thread / 2).items():
         out.put(name, value)
-    strength.joint_metrics(loaded_joint, out)
+    strength.joint_metrics(loaded_joints, out)
     if not g.rod_thicknesses:
         out.skip("geometry_rod_bore", "the rod has no layers")
     if not g.has_skirts:
@@ -374,12 +374,12 @@ def statics(
     return Statics(
         base=basis,
         rod=rod,
-        joint=loaded_joint,
+        joints=loaded_joints,
         mass_parts=parts,
         breakaway=friction.breakaway,
         branches=branches,
         springs=budget,
-        moving=_moving(case_state.demands[joint.WORST].mass, parts),
+        moving=weight.moving(parts, case_state.demands[joint.WORST].mass),
         beam=beam,
         damping=damping,
         leakage=leakage,
@@ -414,7 +414,7 @@ def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = 
         wall=s.base.wall,
         rings=s.base.rings,
         rod=s.rod,
-        joint=s.joint,
+        joints=s.joints,
         beam=s.beam,
         springs=s.springs,
         motion=linear,
@@ -422,11 +422,6 @@ def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = 
         places=places,
         mass_parts=s.mass_parts,
     )
-
-
-def _moving(load: Array, parts: dict[str, Array]) -> Array:
-    """Mass that moves with the rod, including the load."""
-    return load + parts["rod"] + parts["piston"] + parts["fastening"]
 
 
 def _at_stops(
@@ -450,7 +445,7 @@ def _at_stops(
             v, design, basis.geometry, stop_state, basis.wall, rod, breakaway, branches
         )
         stop_metrics = MetricArrays()
-        springs.compute(budget, _moving(s.demands[end].mass, parts), stop_metrics)
+        springs.compute(budget, weight.moving(parts, s.demands[end].mass), stop_metrics)
         for name in AT_STOPS:
             out.metrics[name][f"loaded as {end}"] = stop_metrics.metrics[name][""]
             out.applies_at[name, f"loaded as {end}"] = differing

@@ -18,12 +18,20 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array
+from ..base.numeric import Array, maximum
 from ..design.material import Material
 from ..design.model import Design
 from ..joints.joint import EndDimensions, EndSpan, Polygon, rectangle
 from . import geometry as geometry_module
-from .geometry import Geometry, Groove, RetentionNumbers, end_at, end_of, groove_totals, joint_of
+from .geometry import (
+    Geometry,
+    Groove,
+    RetentionNumbers,
+    end_at,
+    end_of,
+    groove_totals,
+    joints_of,
+)
 from .kernel import PreparedDesign
 from .result import Outline
 from .rods import end_material
@@ -121,38 +129,44 @@ def _stations(g: Geometry) -> _Stations:
 
 
 def _barrel(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
-    radius, turned = at.bore, float(g.fit.radius)
+    radius = at.bore
     for i, (ply, thickness) in enumerate(zip(design.barrel.layup, g.thicknesses, strict=True)):
         outer = radius + float(thickness)
         shape = rectangle(at.start, at.end, radius, outer)
-        if i == len(g.thicknesses) - 1 and turned < min(outer, float(g.outer_radius)):
-            shape = _turned_down(shape, turned, float(g.fit.length))
+        if i == len(g.thicknesses) - 1:
+            shape = _turned_down(shape, (g.cap_fit, g.head_fit), min(outer, float(g.outer_radius)))
         yield f"layup[{i}]", ply.material, [shape], 0
         radius = outer
 
 
-def _turned_down(shape: Polygon, radius: float, length: float) -> Polygon:
-    """A ring turned down at both ends, where the skirts of the caps fit over it."""
+def _turned_down(
+    shape: Polygon, fits: tuple[EndDimensions, EndDimensions], outer: float
+) -> Polygon:
+    """A ring turned down at an end whose skirt has a radius below `outer`."""
     (x0, r0), _, (x1, r1), _ = shape
-    left, right = x0 + length, x1 - length
-    ends = ((x1, radius), (right, radius), (right, r1), (left, r1), (left, radius), (x0, radius))
-    return ((x0, r0), (x1, r0), *ends)
+    corners = [(x0, r0), (x1, r0)]
+    for fit, face, inwards in ((fits[1], x1, -1), (fits[0], x0, 1)):
+        radius, step = float(fit.radius), face + inwards * float(fit.length)
+        end = [(face, radius), (step, radius), (step, r1)] if radius < outer else [(face, r1)]
+        corners += end if inwards < 0 else end[::-1]
+    return tuple(corners)
 
 
 def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     """Cap and head plate with the shapes that their joint adds, and separate parts of the joint."""
-    plate, radius = float(g.plate), float(g.fit.plate_radius)
+    plate = float(g.plate)
     caps = [
-        rectangle(at.face, at.start, 0.0, radius),
-        rectangle(at.end, at.end + plate, at.hole, radius),
+        rectangle(at.face, at.start, 0.0, float(g.cap_fit.plate_radius)),
+        rectangle(at.end, at.end + plate, at.hole, float(g.head_fit.plate_radius)),
     ]
     others: dict[tuple[str, str, int], list[Polygon]] = {}
-    joint = joint_of(design)
-    if joint is not None and design.retention is not None:
-        end = end_at(design, RetentionNumbers(design.retention), g)
-        face, back = at.face, at.end + plate
-        for span in (EndSpan(at.start, 1, face, back), EndSpan(at.end, -1, back, face)):
-            for piece in joint.outline(end, g.fit, span):
+    face, back = at.face, at.end + plate
+    spans = {"cap": EndSpan(at.start, 1, face, back), "head": EndSpan(at.end, -1, back, face)}
+    fits = {"cap": g.cap_fit, "head": g.head_fit}
+    for end_joint in joints_of(design):
+        end = end_at(design, end_joint, RetentionNumbers(end_joint.section), g)
+        for name in [end_joint.name] if end_joint.name else spans:
+            for piece in end_joint.joint.outline(end, fits[name], spans[name]):
                 if piece.part == "caps":
                     caps.append(piece.shape)
                 else:
@@ -251,7 +265,7 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
         "rod": g.rod_diameter,
         "rod_inner": g.rod_inner_diameter,
         "barrel_outer_diameter": 2 * g.outer_radius,
-        "plate_outer": 2 * g.fit.plate_radius,
+        "plate_outer": 2 * maximum(g.cap_fit.plate_radius, g.head_fit.plate_radius),
         "stroke": g.stroke,
         "piston_length": g.piston_length,
         "head_length": g.head_length,
@@ -268,20 +282,21 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
 
 
 def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
-    """Sentences about details of the joint that the drawn section does not show."""
-    joint = joint_of(design)
-    if joint is None or design.retention is None:
-        return []
-    end = end_of(
-        design,
-        RetentionNumbers(design.retention),
-        inner_radius=lengths["bore"] / 2,
-        outer_radius=lengths["barrel_outer_diameter"] / 2,
-        thicknesses=[ply.thickness for ply in design.barrel.layup],
-        barrel_length=lengths["barrel_length"],
-        plate=lengths["plate"],
-    )
-    return list(joint.notes(end))
+    """Sentences about details of the joints that the drawn section does not show."""
+    sentences = []
+    for end_joint in joints_of(design):
+        end = end_of(
+            design,
+            end_joint,
+            RetentionNumbers(end_joint.section),
+            inner_radius=lengths["bore"] / 2,
+            outer_radius=lengths["barrel_outer_diameter"] / 2,
+            thicknesses=[ply.thickness for ply in design.barrel.layup],
+            barrel_length=lengths["barrel_length"],
+            plate=lengths["plate"],
+        )
+        sentences += [end_joint.placed(sentence) for sentence in end_joint.joint.notes(end)]
+    return sentences
 
 
 MOST = 24
@@ -449,8 +464,6 @@ def _changed(geometry: Geometry, change: _Change) -> Geometry:
         value = getattr(geometry, field.name)
         if isinstance(value, tuple):
             values[field.name] = tuple(_changed_entry(entry, change) for entry in value)
-        elif isinstance(value, EndDimensions):
-            values[field.name] = _changed_fit(value, change)
         else:
             values[field.name] = value if isinstance(value, bool) else change(value)
     return Geometry(**values)
@@ -466,7 +479,11 @@ def _changed_fit(fit: EndDimensions, change: _Change) -> EndDimensions:
     )
 
 
-def _changed_entry(value: Groove | Array, change: _Change) -> Groove | Array:
+def _changed_entry(
+    value: Groove | EndDimensions | Array, change: _Change
+) -> Groove | EndDimensions | Array:
+    if isinstance(value, EndDimensions):
+        return _changed_fit(value, change)
     if not isinstance(value, Groove):
         return change(value)
     return replace(value, **{name: change(getattr(value, name)) for name in _GROOVE})

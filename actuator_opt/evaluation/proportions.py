@@ -8,6 +8,7 @@ dimensions and no models, so the command `check` gives these warnings too.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from itertools import chain
 from math import inf, pi
 
 import numpy as np
@@ -15,10 +16,10 @@ import numpy as np
 from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..design.model import Design
-from ..joints.joint import End, Joint
+from ..joints.joint import End, EndDimensions, Joint
 from ..joints.kinds import JOINTS
 from . import geometry
-from .geometry import Geometry, Numbers, end_at, joint_of
+from .geometry import Geometry, Numbers, end_at, joints_of
 from .kernel import PreparedDesign
 from .values import Values
 
@@ -109,16 +110,24 @@ def _gland(place: str) -> Ratio:
     return ratio
 
 
-def _skirt(of: Callable[[Geometry], Array]) -> Ratio:
+def _skirt(path: str, of: Callable[[EndDimensions], Array]) -> Ratio:
+    """Ratio of a skirt's dimension to the bore; `path` is the PATH of the joint's block."""
+
     def ratio(v: Values, design: Design, g: Geometry) -> Array | None:
-        return of(g) if g.has_skirts else None
+        for end in joints_of(design):
+            if end.path == path and end.joint.skirts:
+                return of(g.head_fit if end.name == "head" else g.cap_fit) / g.bore
+        return None
 
     return ratio
 
 
-def _joint_ratio(joint: Joint, number: Callable[[End], Array]) -> Ratio:
+def _joint_ratio(path: str, joint: Joint, number: Callable[[End], Array]) -> Ratio:
     def ratio(v: Values, design: Design, g: Geometry) -> Array | None:
-        return number(end_at(design, Numbers(v), g)) if joint_of(design) is joint else None
+        for end in joints_of(design):
+            if end.path == path and end.joint is joint:
+                return number(end_at(design, end, Numbers(v, path), g))
+        return None
 
     return ratio
 
@@ -154,6 +163,20 @@ def _lines(v: Values, design: Design, g: Geometry) -> Array | None:
 
 _BORE = "times the bore"
 _WIDE = "our choice"
+
+
+def _of_joint(path: str) -> Iterator[Proportion]:
+    """Proportions of the joint whose block is at a PATH: of skirts, and of each type of joint."""
+    yield Proportion(f"{path}.wall", _BORE, 0.01, 0.7, _WIDE, _skirt(path, lambda fit: fit.wall))
+    yield Proportion(f"{path}.length", _BORE, 0.1, 4.0, _WIDE, _skirt(path, lambda fit: fit.length))
+    for joint in JOINTS.values():
+        for usual in joint.usual:
+            yield Proportion(
+                usual.path.replace("retention", path, 1),
+                usual.meaning, usual.least, usual.most, usual.source,
+                _joint_ratio(path, joint, usual.number),
+            )  # fmt: skip
+
 
 TABLE: tuple[Proportion, ...] = (
     Proportion(
@@ -240,20 +263,7 @@ TABLE: tuple[Proportion, ...] = (
         "seals.rod", "times the rod diameter (groove depth)", 0.004, 0.4,
         "our choice, from ISO 3601-2 grooves", _gland("rod"),
     ),
-    Proportion(
-        "retention.wall", _BORE, 0.01, 0.7, _WIDE, _skirt(lambda g: g.fit.wall / g.bore),
-    ),
-    Proportion(
-        "retention.length", _BORE, 0.1, 4.0, _WIDE, _skirt(lambda g: g.fit.length / g.bore),
-    ),
-    *(
-        Proportion(
-            usual.path, usual.meaning, usual.least, usual.most, usual.source,
-            _joint_ratio(joint, usual.number),
-        )
-        for joint in JOINTS.values()
-        for usual in joint.usual
-    ),
+    *_of_joint("retention"),
     Proportion(
         "load.mass", "m/s^2 as acceleration of the load at supply pressure", 0.05, inf, _WIDE,
         _acceleration,
@@ -274,7 +284,8 @@ TABLE: tuple[Proportion, ...] = (
 def warnings(subject: PreparedDesign, v: Values, g: Geometry | None = None) -> Iterator[str]:
     """A sentence for each implausible value."""
     g = geometry.derive(v, subject.design) if g is None else g
-    for proportion in TABLE:
+    ends = [end.path for end in joints_of(subject.design) if end.name]
+    for proportion in chain(TABLE, *map(_of_joint, ends)):
         ratio = proportion.ratio(v, subject.design, g)
         numbers: Iterable[float] = [] if ratio is None else np.ravel(np.real(ratio)).tolist()
         texts = [proportion.beyond(number) for number in numbers if np.isfinite(number)]

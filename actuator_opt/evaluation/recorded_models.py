@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..base.numeric import Array, namespace
+from ..base.symbolic.program import Program
 from ..base.symbolic.recorded import RecordedFunction
 from ..design.structure import leaves, number_of
 from .build import Many, many, names_of_metrics, rows_of_many
@@ -115,6 +116,7 @@ class RecordedMany:
     subject : the prepared design, without custom metrics
     varied : arrays (designs,) by PATH of some designs, with which the recording is checked
     wanted : metrics to compute; default: all
+    run : computes the outputs of a program, see `RecordedFunction`
     """
 
     def __init__(
@@ -122,6 +124,7 @@ class RecordedMany:
         subject: PreparedDesign,
         varied: Mapping[str, Array],
         wanted: Container[str] | None = None,
+        run: Callable[[Program, Array], Array] = Program.values,
     ) -> None:
         self.subject, self.paths = subject, tuple(varied)
         self.names = names_of_metrics(subject, wanted)
@@ -137,6 +140,7 @@ class RecordedMany:
                 limits=(),
                 goals=["many", self.names],
             )
+            self._recorded.run = run
             computable = np.isfinite(expected).sum(axis=0)
             self._recorded.present[: len(points)] = points[:, np.argmax(computable)]
             self._recorded(points)

@@ -300,6 +300,8 @@ class Evaluation(Displayed):
     models: tuple[ModelUse, ...]
     mass_parts: Mapping[str, float]
     """Dry mass per part [kg] in assembly order; the sum is `mass`. Oil: `metrics["mass_oil"]`."""
+    mass_leaves_out: tuple[str, ...]
+    """Components that `mass` leaves out: no model weighs them, and the design states no mass."""
     curve: StrokeCurve
     outlines: tuple[Outline, ...]
     lengths: Mapping[str, float]
@@ -361,7 +363,7 @@ class Evaluation(Displayed):
         total, met = len(self.requirements), sum(row.met for row in self.requirements)
         missed = [check.name for check in self.checks if check.status == "missed"]
         more = f" and {len(missed) - 1} more" if len(missed) > 1 else ""
-        exception = f", but missed: {missed[0]}{more}" if missed and met == total else ""
+        exception = f"; checks missed: {missed[0]}{more}" if missed and met == total else ""
         return f"{met} of {total} requirements met{exception}"
 
     def __str__(self) -> str:
@@ -417,6 +419,8 @@ class Evaluation(Displayed):
                 "why": self.yield_estimate.why,
             },
             "counts": self.counts,
+            "mass_parts": dict(self.mass_parts),
+            "mass_leaves_out": list(self.mass_leaves_out),
             "warnings": list(self.warnings),
             "unverified": [asdict(value) for value in self.unverified],
             "wall": None if self.wall is None else self.wall.to_dict(),

@@ -20,8 +20,7 @@ from ..design.material import Material
 from ..design.model import Design
 from ..design.seals import SealElement
 from ..models import elastomer, gland
-from ..seals import stated_profile
-from ..seals.contact import SealContact
+from ..seals.contact import SealContact, stated_contact
 from ..seals.seal_type import SealSizes
 from .barrel import SEAL_STEP
 from .geometry import Geometry, Groove
@@ -201,7 +200,7 @@ INCOMPRESSIBLE = 0.495
 def seal_contact(ring: Ring) -> SealContact:
     """Contact pressure of a ring, at its numbers `squeeze_left` and `pressure`."""
     if ring.element.contact:
-        return stated_profile.contact(ring.element.contact, ring["pressure"])
+        return stated_contact(ring.element.contact, ring["pressure"])
     return ring.element.seal_type.contact(ring.sizes)
 
 

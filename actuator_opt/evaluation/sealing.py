@@ -27,7 +27,7 @@ from .state import LoadState, side_reactions
 from .values import Values
 
 if TYPE_CHECKING:
-    from ..finite_elements.result import MountedContact
+    from ..finite_elements.section import MountedContact
 
 
 def compute(

@@ -9,18 +9,28 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import sqrt
+from typing import Any, TypeVar
 
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, real, where
 from ..design.model import Design
-from ..joints.joint import Joint, Loaded, Strength
+from ..joints.joint import Joint, Loaded, Thermal
 from ..joints.kinds import JOINTS
 from ..joints.overlap import Overlap
 from ..models import end_plate, retention, rod
 from . import rod_strength, rods
 from .barrel import Wall
 from .barrel.wall import largest_area
-from .geometry import Geometry, Groove, Numbers, clamped, end_at, groove_totals, joint_of
+from .geometry import (
+    EndJoint,
+    Geometry,
+    Groove,
+    Numbers,
+    clamped,
+    end_at,
+    groove_totals,
+    joints_of,
+)
 from .limits import MaterialValues, MetricArrays
 from .rod_strength import Beam
 from .rods import RodSection
@@ -29,34 +39,46 @@ from .values import Values
 
 HOLE = 2.0
 """Factor by which a small central hole increases the stress in a plate [Timoshenko1959]."""
+Item = TypeVar("Item")
 NO_RETENTION = "no retention stated: add retention"
 
 
 @dataclass(frozen=True, slots=True)
 class LoadedJoint:
-    """The joint of caps and head under load."""
+    """The joint of one end of the barrel, or of both ends, under load."""
 
-    joint: Joint
+    end_joint: EndJoint
     loaded: Loaded
 
+    @property
+    def joint(self) -> Joint:
+        """The type of joint."""
+        return self.end_joint.joint
 
-def joint_under_load(
+    def placed(self, values: Mapping[str, Item]) -> dict[str, Item]:
+        """Values by location, with the name of the end if the two ends differ."""
+        return {self.end_joint.placed(place): value for place, value in values.items()}
+
+
+def joints_under_load(
     v: Values, design: Design, stock: MaterialValues, g: Geometry, wall: Wall
-) -> LoadedJoint | None:
-    """The joint of a design under its largest separating force; None without `retention`."""
-    joint = joint_of(design)
-    if joint is None:
-        return None
-    loaded = Loaded(
-        end=end_at(design, Numbers(v), g),
-        materials=stock,
-        force=v["supply.pressure"] * largest_area(design, g),
-        paths=wall.path.per_pressure,
-        line_stiffness=wall.axial_line_stiffness,
-        expansion=None if wall.expansion is None else wall.expansion[0],
-        clamp=wall.path.clamp,
+) -> tuple[LoadedJoint, ...]:
+    """The joints of a design under their largest separating force; none without `retention`."""
+    return tuple(
+        LoadedJoint(
+            end_joint,
+            Loaded(
+                end=end_at(design, end_joint, Numbers(v, end_joint.path), g),
+                materials=stock,
+                force=v["supply.pressure"] * largest_area(design, g),
+                paths=wall.path.per_pressure,
+                line_stiffness=wall.axial_line_stiffness,
+                expansion=None if wall.expansion is None else wall.expansion[0],
+                clamp=wall.path.clamp,
+            ),
+        )
+        for end_joint in joints_of(design)
     )
-    return LoadedJoint(joint, loaded)
 
 
 def compute(
@@ -68,35 +90,31 @@ def compute(
     wall: Wall,
     section: RodSection,
     beam: Beam,
-    loaded_joint: LoadedJoint | None,
+    loaded_joints: Sequence[LoadedJoint],
     out: MetricArrays,
 ) -> None:
     """Compute all metrics of static strength."""
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
     yields, bursts = wall.yield_pressure, wall.burst_pressure
-    if loaded_joint is not None:
-        joint_walls = loaded_joint.joint.wall(loaded_joint.loaded)
-        yields, bursts = {**yields, **joint_walls.yields}, {**bursts, **joint_walls.bursts}
+    for end in loaded_joints:
+        joint_walls = end.joint.wall(end.loaded)
+        yields = {**yields, **end.placed(joint_walls.yields)}
+        bursts = {**bursts, **end.placed(joint_walls.bursts)}
     _pressure_factors(v, wall, supply, yields, bursts, out)
     parts = {place: p / supply for place, p in yields.items()}
     parts |= rod_strength.yields(stock, design, g, state, section, beam)
-    parts |= {} if loaded_joint is None else loaded_joint.joint.yields(loaded_joint.loaded)
+    for end in loaded_joints:
+        parts |= end.placed(end.joint.yields(end.loaded))
     parts |= _fitting_yield(v, stock, design, section, push)
     out.put("yield_factor", parts)
     out.put("buckling_factor", beam.critical / push)
     rod_strength.compute(design, section, beam, supply, push, pull, out)
     _rod_end(v, stock, design, section, pull, out)
-    joint_strength = (
-        NO_RETENTION if loaded_joint is None else loaded_joint.joint.strength(loaded_joint.loaded)
-    )
-    _retention(joint_strength, out)
+    thermal = _retention(loaded_joints, out)
     fittings = rods.fittings(v, stock, design, section)
     _fittings(stock, fittings, push, out)
-    thermal = {
-        "caps": joint_strength if isinstance(joint_strength, str) else joint_strength.thermal,
-        "rod fittings": fittings if isinstance(fittings, str) else fittings.thermal(stock),
-    }
+    thermal["rod fittings"] = fittings if isinstance(fittings, str) else fittings.thermal(stock)
     rods.thermal(v, design, thermal, out)
     _caps(stock, design, g, supply, out)
     _pins(v, stock, design, push, out)
@@ -169,19 +187,45 @@ def _rod_end(
     out.put("thread_factor", strength / stress)
 
 
-def _retention(joint_strength: Strength | str, out: MetricArrays) -> None:
-    """Compute elastic limit and breaking load of the joint, divided by the largest axial force."""
-    if isinstance(joint_strength, str):
-        out.skip("retention_factor", joint_strength)
-        out.skip("retention_burst_factor", joint_strength)
-    else:
-        out.put("retention_factor", dict(joint_strength.working))
-        out.put("retention_burst_factor", dict(joint_strength.burst))
+def _retention(loaded_joints: Sequence[LoadedJoint], out: MetricArrays) -> dict[str, Thermal | str]:
+    """Compute elastic limit and breaking load of the joints, divided by the largest axial force.
+
+    Returns, for each end, the function for its strength under temperature alone, or the reason why
+    that strength is unknown.
+    """
+    if not loaded_joints:
+        out.skip("retention_factor", NO_RETENTION)
+        out.skip("retention_burst_factor", NO_RETENTION)
+        return {"caps": NO_RETENTION}
+    working: dict[str, Array] = {}
+    burst: dict[str, Array] = {}
+    thermal: dict[str, Thermal | str] = {}
+    unknown = ""
+    for end in loaded_joints:
+        place, strength = end.end_joint.name or "caps", end.joint.strength(end.loaded)
+        if isinstance(strength, str):
+            unknown = thermal[place] = end.end_joint.placed(strength)
+        else:
+            working |= end.placed(strength.working)
+            burst |= end.placed(strength.burst)
+            thermal[place] = strength.thermal
+    for metric, factors in (("retention_factor", working), ("retention_burst_factor", burst)):
+        if unknown:
+            out.skip(metric, unknown)
+        else:
+            out.put(metric, factors)
+    return thermal
 
 
-def joint_metrics(loaded_joint: LoadedJoint | None, out: MetricArrays) -> None:
-    """Compute the metrics of the joint; metrics of other joint types are missing, with a reason."""
-    metrics = {} if loaded_joint is None else loaded_joint.joint.own(loaded_joint.loaded)
+def joint_metrics(loaded_joints: Sequence[LoadedJoint], out: MetricArrays) -> None:
+    """Compute the metrics of the joints; those of other joint types are missing, with a reason."""
+    metrics: dict[str, Any] = {}
+    for end in loaded_joints:
+        for name, value in end.joint.own(end.loaded).items():
+            if end.end_joint.name:
+                metrics.setdefault(name, {})[end.end_joint.name] = value
+            else:
+                metrics[name] = value
     for joint in JOINTS.values():
         for name, absent in joint.metrics.items():
             if name in metrics:
@@ -213,7 +257,7 @@ def _caps(
     if strength is None or ratio is None:
         out.skip("cap_factor", f"{name} has no yield strength or Poisson's ratio")
         return
-    support = (g.fit.plate_radius + g.fit.radius) / 2
+    support = (g.cap_fit.plate_radius + g.cap_fit.radius) / 2
     stresses: dict[str, Array] = {}
     if design.cylinder.end_stop == "internal" or clamped(design) or design.clevis is None:
         stresses["cap, supported by its skirt"] = end_plate.hung_plate_stress(

@@ -17,8 +17,7 @@ from ..design.material import compatible
 from ..design.model import PLAIN_CAP
 from ..design.paths import quantity_of
 from ..metrics import METRICS
-from ..metrics.metric import CRITERION
-from ..metrics.table import OWN, ROWS, WALL_FED
+from ..metrics.table import CRITERION, OWN, ROWS, WALL_FED
 from ..models import contact_profile, gland, laminate, rough_surface, seals
 from ..models.strength import CRITERIA
 from . import linkage as joint, motion, proportions, springs, state
@@ -83,8 +82,9 @@ def model_of(
     if row is None:  # a user metric
         return None
     name = row.by_wall.get(wall) or row.model  # type: ignore[call-overload]
+    local = "" if place is None else place.removeprefix("cap: ").removeprefix("head: ")
     for pattern, other in row.at.items():
-        if place is not None and fnmatchcase(place, pattern):
+        if place is not None and fnmatchcase(local, pattern):
             name = other
     if name == CRITERION:
         return describe(cast(Callable[..., object], CRITERIA[criterion].modes))
@@ -280,8 +280,9 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
             yield metric, text
     yield from (("", text) for text in proportions.warnings(subject, v, g))
     yield from _wall_warnings(subject, run)
-    if run.joint is not None:
-        yield from run.joint.joint.warnings(run.joint.loaded, METRICS)
+    for end in run.joints:
+        for metric, sentence in end.joint.warnings(end.loaded, METRICS):
+            yield metric, end.end_joint.placed(sentence)
     yield from _rod_warnings(subject, run)
     yield from _bond_warnings(run)
     for part, assumption in (
@@ -396,9 +397,13 @@ def _bond_warnings(run: ModelRun) -> Iterable[tuple[str, str]]:
     """Warn of a bond whose strength is exceeded by shear from force and temperature together."""
     metrics = run.computed.metrics
     sums = {}
-    for place, metric in (("caps", "retention_factor"), ("rod fittings", "fitting_factor")):
+    bonds = {"rod fittings": ("fitting_factor", "")}
+    for end in run.joints:
+        name = end.end_joint.name
+        bonds[name or "caps"] = ("retention_factor", name)
+    for place, (metric, start) in bonds.items():
         heat = [x for at, x in metrics.get("bond_thermal_factor", {}).items() if place in at]
-        force = list(metrics.get(metric, {}).values())
+        force = [x for at, x in metrics.get(metric, {}).items() if at.startswith(start)]
         if heat and force:
             sums[place] = sum(
                 max(float(np.max(1 / np.real(row))) for row in rows) for rows in (heat, force)

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from ..base.numeric import Array
+from ..design.choices import COMPONENTS
 from ..design.model import Design
+from ..joints.joint import EndDimensions
 from ..models import mass
-from .geometry import Geometry, Numbers, end_at, joint_of
+from .geometry import Geometry, Numbers, end_at, joints_of
 from .limits import MaterialValues
 from .rods import RodSection, fitting_hole
 from .values import Values
 
 PARTS = ("barrel", "rod", "piston", "caps", "glands", "seals", "fastening", "clevises")
-"""Parts of the mass breakdown, in assembly order."""
+"""Parts of the mass breakdown, in assembly order. Components with a stated mass follow them."""
+STATED, STATED_MOVING = "components", "moving components"
+"""Parts of the breakdown: components with a stated mass, fixed or moving with the rod."""
+MOVING = ("rod", "piston", "fastening", STATED_MOVING)
+"""Parts that move with the rod."""
 
 
 def _barrel(v: Values, design: Design, g: Geometry) -> Array:
@@ -38,10 +46,10 @@ def _piston(v: Values, design: Design, g: Geometry) -> Array:
     return disc - density * groove_volume
 
 
-def _plate(density: Array, g: Geometry, hole: Array) -> Array:
+def _plate(density: Array, g: Geometry, fit: EndDimensions, hole: Array) -> Array:
     """Mass of one end plate."""
     return mass.tube_mass(
-        density=density, inner_diameter=hole, outer_diameter=2 * g.fit.plate_radius, length=g.plate
+        density=density, inner_diameter=hole, outer_diameter=2 * fit.plate_radius, length=g.plate
     )
 
 
@@ -113,22 +121,46 @@ def parts(
         "barrel": _barrel(v, design, g),
         "rod": rod.mass_per_length * g.rod_length,
         "piston": _piston(v, design, g),
-        "cap": _plate(caps, g, 0.0),
-        "head": _plate(caps, g, g.rod_diameter + 2 * g.head_clearance),
+        "cap": _plate(caps, g, g.cap_fit, 0.0),
+        "head": _plate(caps, g, g.head_fit, g.rod_diameter + 2 * g.head_clearance),
         "glands": _gland(v, design, g),
         "seals": _seals(v, g),
         "fastening": _rod_ends(v, design, rod),
         "clevises": clevises,
     }
-    joint = joint_of(design)
-    additions = {} if joint is None else joint.mass(end_at(design, Numbers(v), g), stock)
-    for part, addition in additions.items():
-        if part == "caps":
-            masses["cap"], masses["head"] = masses["cap"] + addition, masses["head"] + addition
-        else:
-            masses[part] = masses[part] + 2 * addition
+    for end_joint in joints_of(design):
+        end = end_at(design, end_joint, Numbers(v, end_joint.path), g)
+        for part, addition in end_joint.joint.mass(end, stock).items():
+            if part == "caps":
+                for plate in [end_joint.name] if end_joint.name else ["cap", "head"]:
+                    masses[plate] = masses[plate] + addition
+            else:
+                masses[part] = masses[part] + end_joint.count * addition
     masses["caps"] = masses.pop("cap") + masses.pop("head")
-    return {part: masses[part] for part in PARTS}
+    stated: dict[str, Array] = {}
+    for index, component in enumerate(design.extra_masses):
+        part = STATED_MOVING if component.place in ("piston", "rod") else STATED
+        stated[part] = stated.get(part, 0.0) + v[f"extra_masses[{index}].mass"]
+    return {part: masses[part] for part in PARTS} | stated
+
+
+def moving(parts: Mapping[str, Array], load: Array = 0.0) -> Array:
+    """Mass of the parts that move with the rod, and of the load on it [kg]."""
+    return sum((parts[part] for part in MOVING if part in parts), load)
+
+
+def left_out(design: Design) -> tuple[str, ...]:
+    """Components that the mass leaves out: no model weighs them, and the design states no mass.
+
+    A bonded end needs no static seal, since the adhesive seals it.
+    """
+    stated = {component.kind for component in design.extra_masses}
+    joints = joints_of(design)
+    if joints and all("adhesive" in end.joint.kinds for end in joints):
+        stated.add("static_seals")
+    if design.clevis is None:
+        stated.add("bearings")
+    return tuple(words for kind, words in COMPONENTS.items() if kind not in stated)
 
 
 def oil(v: Values, design: Design, geometry: Geometry, position: Array = 0.0) -> Array:

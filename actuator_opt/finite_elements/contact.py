@@ -8,8 +8,7 @@ from . import equilibrium
 from .equilibrium import Booleans, ElementState, NotConverged
 from .material import Floats
 from .mesh import Integers
-from .result import MountedContact, contact_end, stress_field
-from .section import Assembly
+from .section import Assembly, MountedContact, contact_end, stress_field
 
 HOLDING = 0.05
 """Share by which the contact pressure at a sealing node may fall below the fluid pressure before

@@ -29,8 +29,7 @@ from ..base.dataclass import dataclass
 from ..base.errors import ActuatorError, Diagnostic
 from .material import Floats, MooneyRivlin
 from .mesh import Integers
-from .result import MountedContact, SealSolution
-from .section import Assembly
+from .section import Assembly, MountedContact, SealSolution
 
 SLOPES = np.array([[-1.5, 2.0, -0.5], [-0.5, 0.0, 0.5], [0.5, -2.0, 1.5]])
 """Matrix that converts the positions of an edge's three nodes to d(position)/d(xi) at these nodes;

@@ -29,8 +29,7 @@ from .equilibrium import (
 )
 from .material import Floats, MooneyRivlin
 from .mesh import disc
-from .result import MountedContact, SealSolution
-from .section import Assembly, MeshedBody
+from .section import Assembly, MeshedBody, MountedContact, SealSolution
 
 MOST_FILL = 0.98
 """Largest share of the groove that an incompressible section may fill; the groove's corners always

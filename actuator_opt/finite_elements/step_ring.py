@@ -30,8 +30,7 @@ from .equilibrium import (
 )
 from .material import Floats, MooneyRivlin
 from .mesh import SlideRing, disc, slide_ring
-from .result import MountedContact, SealSolution
-from .section import Assembly, MeshedBody
+from .section import Assembly, MeshedBody, MountedContact, SealSolution
 
 COARSE = 0.12
 """Largest element size of the slide ring, relative to the section of the rubber ring."""
@@ -246,13 +245,27 @@ def squeezed_step_ring(
     >>> print(f"{seal.contacts[0].line_load / (2.6e-3 * 8e6):.3f} of section times modulus")
     0.095 of section times modulus
     """
-    thinnest = shape.thickness - max(shape.chamfer_height, float(shape.face(np.zeros(1))[0]))
-    check_inputs(
-        section,
-        squeeze,
-        rubber,
-        pressures,
+    faults = _slide_ring_faults(shape, plastic, groove_width)
+    check_inputs(section, squeeze, rubber, pressures, elements_around, *faults)
+    modulus = rubber.youngs_modulus
+    seal = StepRing(
+        rubber.over(modulus),
+        plastic.over(modulus),
+        shape.over(section),
         elements_around,
+        shape.edge_radius / section / edge_elements,
+        None if sliding_radius is None else sliding_radius / section,
+        1 if on_rod else -1,
+    )
+    return follow(seal, squeeze, groove_width / section, pressures, section, modulus)
+
+
+def _slide_ring_faults(
+    shape: SlideRing, plastic: MooneyRivlin, groove_width: float
+) -> tuple[tuple[bool, str, str], ...]:
+    """Possible faults of a slide ring: whether each is present, message and remedy."""
+    thinnest = shape.thickness - max(shape.chamfer_height, float(shape.face(np.zeros(1))[0]))
+    return (
         (
             not shape.width <= groove_width,
             f"the slide ring is {shape.width:g} m wide, but its groove {groove_width:g} m",
@@ -281,14 +294,3 @@ def squeezed_step_ring(
             "make chamfer and relief flatter, or the ring thicker",
         ),
     )
-    modulus = rubber.youngs_modulus
-    seal = StepRing(
-        rubber.over(modulus),
-        plastic.over(modulus),
-        shape.over(section),
-        elements_around,
-        shape.edge_radius / section / edge_elements,
-        None if sliding_radius is None else sliding_radius / section,
-        1 if on_rod else -1,
-    )
-    return follow(seal, squeeze, groove_width / section, pressures, section, modulus)

@@ -186,20 +186,8 @@ def _lugre(
     best = searched(tuple(fit.parameters), fit.values)
     residuals = problem.misfit(best[None])[0]
     jacobian = problem.slopes(best)
-    steady = residuals.size - blocks * reversals.kept.size
-    spare = max(steady - (0 if stribeck is None else len(stribeck.parameters)), 1)
-    variance = float(np.sum(residuals[:steady] ** 2)) / spare
-    spread = _spreads(jacobian, residuals, variance)[:steady]
-    noise = np.concatenate(
-        [
-            spread * rng.standard_normal((count, steady)) * _scales(rng, spare, count),
-            np.repeat(rng.standard_normal((count, blocks)), reversals.kept.size, axis=1)
-            * residuals[steady:]
-            * np.sqrt(blocks / (blocks - 1))
-            * _scales(rng, blocks - 1, count),
-        ],
-        axis=1,
-    )
+    fitted = 0 if stribeck is None else len(stribeck.parameters)
+    noise = _lugre_noise(rng, residuals, jacobian, blocks, reversals.kept.size, fitted, count)
     rows = []
     for first in range(0, count, ROWS):
         target = residuals + noise[first : first + ROWS]
@@ -221,21 +209,58 @@ def _lugre(
         blocks - 1,
         wider,
     )
-    old_verdicts = {
-        f"{SYMBOLS[n]} is {fit.parameters[n].verdict}" for n in _bristles(fit.parameters)
-    }
-    doubts = [doubt for doubt in fit.doubts if doubt not in old_verdicts]
+    old_verdicts = _bristle_verdicts(fit.parameters)
+    doubts = [doubt for doubt in fit.doubts if doubt not in old_verdicts.values()]
     doubts += [
-        f"{SYMBOLS[name]} is {parameters[name].verdict}"
-        for name in _bristles(parameters)
+        verdict
+        for name, verdict in _bristle_verdicts(parameters).items()
         if not parameters[name].identifiable
     ]
     return replace(fit, parameters=parameters, doubts=tuple(doubts))
 
 
-def _bristles(parameters: Mapping[str, Parameter]) -> list[str]:
-    """Names of the bristle parameters that are fitted."""
-    return [name for name in LOGARITHMIC[:2] if name in parameters]
+def _lugre_noise(
+    rng: np.random.Generator,
+    residuals: Array,
+    jacobian: Array,
+    blocks: int,
+    block: int,
+    fitted: int,
+    count: int,
+) -> Array:
+    """Random changes of the residuals, count x residuals.
+
+    The residuals of steady sliding vary independently, those of a window all with the same factor.
+
+    Parameters
+    ----------
+    residuals, jacobian : of the best fit; the last `blocks` x `block` residuals are of the windows
+    fitted : number of parameters that the steady points determine
+    count : number of samples
+    """
+    steady = residuals.size - blocks * block
+    spare = max(steady - fitted, 1)
+    variance = float(np.sum(residuals[:steady] ** 2)) / spare
+    spread = _spreads(jacobian, residuals, variance)[:steady]
+    return np.concatenate(
+        [
+            spread * rng.standard_normal((count, steady)) * _scales(rng, spare, count),
+            np.repeat(rng.standard_normal((count, blocks)), block, axis=1)
+            * residuals[steady:]
+            * np.sqrt(blocks / (blocks - 1))
+            * _scales(rng, blocks - 1, count),
+        ],
+        axis=1,
+    )
+
+
+def _bristle_verdicts(parameters: Mapping[str, Parameter]) -> dict[str, str]:
+    """Verdict on each fitted bristle parameter, in words."""
+    return {
+        name: f"{SYMBOLS[name]} is {parameters[name].verdict}"
+        for name in LOGARITHMIC[:2]
+        if name in parameters
+    }
 
 
 class LuGreResiduals:

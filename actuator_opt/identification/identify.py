@@ -16,9 +16,8 @@ from ..base.errors import InputError
 from ..base.fitting import Parameter, quantile
 from ..design.material import LawFit, fit_double_exponential, fit_power_law
 from ..studies.bench import Bench
-from .balance import Sliding, check_signs, slide, velocity_noise
+from .balance import Sliding, check_signs, coefficient, slide, velocity_noise
 from .bootstrap import resampled
-from .coefficient import coefficient
 from .conditioning import ConditionedRecord, condition
 from .doubtful import unbounded
 from .lugre import BENDS, LuGreFit, fit_lugre, settling_distance

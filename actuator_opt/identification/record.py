@@ -333,6 +333,10 @@ _SECONDS = {"sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms"
 _LARGEST = 1e30
 """Largest value of a sample, SI. Larger values count as missing, because loggers write values such
 as 1e38 for a missing sample (our choice)."""
+FEWEST = 2
+"""Smallest number of samples of a signal."""
+_FALLS = ("time does not increase", "sort the lines by time and remove repeated ones")
+_TIMES = ("t", *CHANNELS["t"].others)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -716,10 +720,6 @@ def _list(names: Sequence[str]) -> str:
     return shown(", ".join(f'"{name}"' for name in names))
 
 
-FEWEST = 2
-"""Smallest number of samples of a signal."""
-
-
 def parse_column(
     text: str, header: str, dimension: str, *, name: str, units: ColumnUnits = NONE
 ) -> tuple[Array, Array]:
@@ -795,9 +795,3 @@ def parse_column(
             line = int(lines[np.argmax(bad)])
             raise InputError(Diagnostic(message, remedy, file=name, line=line))
     return t, x
-
-
-_FALLS = ("time does not increase", "sort the lines by time and remove repeated ones")
-
-
-_TIMES = ("t", *CHANNELS["t"].others)

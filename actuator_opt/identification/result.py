@@ -14,8 +14,7 @@ from ..base.tables import Displayed
 from ..design.material import LawFit
 from ..studies.bench import Bench
 from ..version import VERSION
-from .balance import Sliding
-from .coefficient import Coefficient
+from .balance import Coefficient, Sliding
 from .conditioning import CUTOFF, ORDER, ConditionedRecord
 from .lugre import LuGreFit
 from .points import FrictionPoint

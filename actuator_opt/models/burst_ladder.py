@@ -213,7 +213,7 @@ def metals_first(layers: Sequence[WallLayer]) -> tuple[int, ...]:
     return tuple(sorted(range(len(layers)), key=lambda i: layers[i].strength is not None))
 
 
-def stacked_rows(xp: Any, columns: Sequence[Sequence[Array]], dims: int) -> Array:
+def _stacked_rows(xp: Any, columns: Sequence[Sequence[Array]], dims: int) -> Array:
     """Stack the values of all layers: (values, layers, ...), with `dims` axes for the designs."""
     rows = list(zip(*columns, strict=True))
     zero = batch_zero([value for row in rows for value in row])
@@ -296,7 +296,7 @@ def _together(xp: Any, walls: Sequence[WallLayer], dims: int) -> Array:
         for i, a in enumerate(walls)
     ]  # fmt: skip
     alike = xp.reshape(xp.asarray(same), (count, count, *ones))
-    angle = stacked_rows(xp, [(wall.angle,) for wall in walls], dims)[0, ...]
+    angle = _stacked_rows(xp, [(wall.angle,) for wall in walls], dims)[0, ...]
     turned = absolute(real(angle))
     return alike & (turned[:, None, ...] == turned[None, ...])
 
@@ -315,7 +315,7 @@ def climb(xp: Any, mechanics: Mechanics, layers: Sequence[WallLayer], shape: Arr
     walls = [layers[i] for i in mechanics.order]
     count, metals, faces = len(walls), mechanics.metals, mechanics.faces
     dims = shape.ndim
-    strengths = stacked_rows(xp, [inverse_strengths(wall) for wall in walls], dims)
+    strengths = _stacked_rows(xp, [inverse_strengths(wall) for wall in walls], dims)
     keeps = xp.reshape(xp.asarray([float(mode in (0, 3)) for mode in range(7)]), (7, 1))
     left = strengths * xp.reshape(keeps, (7, *(1,) * (dims + 1)))
     together = _together(xp, walls, dims)
@@ -495,7 +495,7 @@ def burst_by_ply_discount(
     shape = xp.asarray(shape)
     order = metals_first(layers)
     walls, ones = [layers[i] for i in order], (1,) * shape.ndim
-    stack = stacked_rows(xp, [_elastic(wall) for wall in walls], shape.ndim)
+    stack = _stacked_rows(xp, [_elastic(wall) for wall in walls], shape.ndim)
     fibres = [float(wall.strength is not None) for wall in walls]
     factors = [
         [residual + (1 - residual) * fibre for fibre in fibres],

@@ -39,7 +39,7 @@ def width_as_published(*, section: Array, gland_height: Array) -> Array:
     Parameters
     ----------
     section : free section 2 R [m]
-    gland_height : h = bore radius + growth - gasket radius [m]
+    gland_height : h = bore radius + growth - radius of the groove bottom [m]
 
     Returns
     -------

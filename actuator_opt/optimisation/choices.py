@@ -7,7 +7,14 @@ starts. The record of each combination states how it was searched.
 If variables take listed sizes, the sizes of each combination are searched, starting with the best
 combination. The continuous optimum bounds the result with sizes, so a combination is skipped if
 this bound does not beat the best design with sizes. The bounds are local optima, mostly of a quick
-look, so this skipping is no proof.
+look, so this skipping is no proof. A search of sizes that would repeat an earlier one is skipped
+too (see `Evidence`).
+
+On a cluster, the combinations that are next by the present ranking are solved side by side. Which
+of them count is then decided in order, as in one process; if a result changes the start of another
+combination, this combination is solved again. Combinations without variables are evaluated side by
+side. Quick looks, and searches of sizes, need the results of earlier combinations: they run in one
+process.
 """
 
 from __future__ import annotations
@@ -16,9 +23,12 @@ import math
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import field, replace
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
+from ..base.cluster import HERE, Cluster
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..design import Design
@@ -28,14 +38,70 @@ from ..evaluation import PreparedDesign, compute
 from ..evaluation.limits import LimitRow, all_limits, rows_of
 from .actuator import ActuatorProblem, Goal, build, goal_of, variant
 from .branch_and_bound import Memory, SizeSearch, at, search
-from .identical_problems import Evidence
+from .evaluator import Evaluator, Point
+from .problem import BoxProblem, Vector
 from .quick_look import DOUBTFUL, Look, LookStart, hessian_of, look_quickly
+from .resolve.boxes import NEAR
 from .result import Choices, Combination, How
 from .rounding import RUNNERS_UP, ListedSizes, Wanted, sizes_of
-from .solution import MET
+from .solution import MET, Solution
 from .solver import solve
 
-NEAR = 0.05
+SAME_OPTIMUM = 1e-6
+"""Continuous optima count as equal up to this relative difference, the accuracy of quick looks."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Results of all boxes (parts of the space) of a search, and the continuous `optimum`.
+
+    Combinations often differ only in numbers that enter inactive limits, such as the viscosity of
+    oils with the same bulk modulus. The search of listed sizes depends on the result of each box:
+    its optimum or its least infeasible point. If values and slopes of two problems agree at these
+    points, both searches give the same results. A limit may differ between the problems if all
+    these points are farther from it than their accuracy.
+    """
+
+    problem: BoxProblem
+    optimum: float
+    ends: Sequence[tuple[Evaluator, Point]]
+
+    def holds_for(self, other: BoxProblem, optimum: float) -> bool:
+        """Whether a search of another problem would give the same result."""
+        problem = self.problem
+        if not self.ends or abs(optimum - self.optimum) > SAME_OPTIMUM * abs(self.optimum):
+            return False
+        if problem.names != other.names or not problem.same_rows_and_box(other):
+            return False
+        exact = all(evaluator.exact for evaluator, _ in self.ends)
+        if not exact or problem.equality_names or other.equality_names:
+            return False
+        parts = [evaluator.columns(end.z[:, None]) for evaluator, end in self.ends]
+        rows = np.split(
+            other.rows(np.concatenate(parts, axis=1)),
+            np.cumsum([part.shape[1] for part in parts])[:-1],
+            axis=1,
+        )
+        comparisons = [
+            (end, evaluator.jacobian(end), *evaluator.values_and_slopes(part))
+            for (evaluator, end), part in zip(self.ends, rows, strict=True)
+        ]
+        differing = np.zeros(problem.row_count, dtype=bool)
+        for end, slopes, values, other_slopes in comparisons:
+            differing |= (values[:, 0] != end.rows) | (slopes != other_slopes).any(axis=1)
+        return not differing[0] and all(
+            (_distance(end.rows, slopes)[differing] > NEAR.step).all()
+            and (_distance(values[:, 0], other_slopes)[differing] > NEAR.step).all()
+            for end, slopes, values, other_slopes in comparisons
+        )
+
+
+def _distance(rows: Vector, slopes: Vector) -> Vector:
+    """Distance to each limit in solver coordinates, estimated from margin and slope."""
+    return np.asarray(rows / np.maximum(np.sqrt((slopes**2).sum(axis=1)), 1e-300))
+
+
+CLOSE = 0.05
 """A combination worse than the best by at most this relative amount is solved from many starts."""
 
 MOST_DOUBTFUL = 2
@@ -163,7 +229,10 @@ def _require_one(looks: Sequence[Look]) -> None:
 
 @np.errstate(all="ignore")  # designs without finite values come last
 def search_choices(
-    subject: PreparedDesign, settings: ChoiceSettings, max_solved: int = MOST_SOLVED
+    subject: PreparedDesign,
+    settings: ChoiceSettings,
+    max_solved: int = MOST_SOLVED,
+    cluster: Cluster = HERE,
 ) -> ChoiceSearch:
     """Look at every combination of the choices, and solve the best ones from many starts.
 
@@ -172,6 +241,7 @@ def search_choices(
     subject : the design with its choices
     settings : settings of the full searches
     max_solved : maximum number of combinations solved from many starts
+    cluster : workers for independent combinations
 
     Raises
     ------
@@ -179,22 +249,22 @@ def search_choices(
         every combination is impossible
     """
     choice_search = ChoiceSearch(goal_of(subject), possible(subject))
-    has_variables = bool(subject.design.variables)
+    if not subject.design.variables:
+        work = partial(_evaluated, choice_search.goal)
+        choice_search.looks = list(cluster.map(work, choice_search.looks))
+        _require_one(choice_search.looks)
+        return choice_search
     for look in choice_search.looks:
         if look.subject is None:
             continue
         try:
-            if has_variables:
-                look.actuator = _with_goal(build(look.subject), choice_search.goal)
-                look.checks = _missed_checks(look.actuator.fixed)
-            else:
-                _evaluate(look, choice_search.goal)
+            look.actuator = _with_goal(build(look.subject), choice_search.goal)
+            look.checks = _missed_checks(look.actuator.fixed)
         except InputError as error:
             _give_up(look, error)
     _require_one(choice_search.looks)
-    if has_variables:
-        _look_at_all(choice_search, settings)
-        _solve_best(choice_search, settings, max_solved)
+    _look_at_all(choice_search, settings)
+    _solve_best(choice_search, settings, max_solved, cluster)
     return choice_search
 
 
@@ -212,10 +282,18 @@ def _missed_checks(rows: Sequence[LimitRow]) -> frozenset[str]:
     )
 
 
-def _evaluate(look: Look, goal: Goal) -> None:
-    """Evaluate a combination that has no free variables."""
-    subject = look.subject
-    assert subject is not None
+@np.errstate(all="ignore")
+def _evaluated(goal: Goal, look: Look) -> Look:
+    """Evaluate a combination that has no free variables; return it."""
+    if look.subject is not None:
+        try:
+            _evaluate(look, look.subject, goal)
+        except InputError as error:
+            _give_up(look, error)
+    return look
+
+
+def _evaluate(look: Look, subject: PreparedDesign, goal: Goal) -> None:
     values = subject.values()
     computed = compute(subject, values).computed
     limits = all_limits(subject.design, subject.plugins)
@@ -289,16 +367,22 @@ def _starts(choice_search: ChoiceSearch, look: Look) -> list[LookStart]:
     return starts or ([] if start is None else [LookStart(start, descend=True)])
 
 
-def _solve_best(choice_search: ChoiceSearch, settings: ChoiceSettings, max_solved: int) -> None:
+def _solve_best(
+    choice_search: ChoiceSearch, settings: ChoiceSettings, max_solved: int, cluster: Cluster
+) -> None:
     """Solve the best combination from many starts, and those that are nearly as good."""
     first_gain = True
-    for _ in range(max_solved):
+    ahead: dict[int, _SolvedTask] = {}
+    for number in range(max_solved):
         look = _promising(choice_search)
         seconds = settings.left()
         if look is None or (seconds is not None and seconds <= 0):
             break
         previous = look.objective if look.feasible else math.inf
-        many_starts(look, settings)
+        if cluster and (look.order not in ahead or ahead[look.order].start is not look.x):
+            looks = [look, *(other for other in _close(choice_search) if other is not look)]
+            ahead = _solved_ahead(looks[: max_solved - number], settings, cluster)
+        many_starts(look, settings, ahead.get(look.order))
         gained = look.feasible and look.objective < previous - BETTER * abs(look.objective)
         if first_gain and gained and look.x is not None:
             first_gain = False
@@ -314,42 +398,86 @@ def _solve_best(choice_search: ChoiceSearch, settings: ChoiceSettings, max_solve
 
 def _promising(choice_search: ChoiceSearch) -> Look | None:
     """The next combination to solve from many starts; None if all others are clearly worse."""
+    ranked = choice_search.ranked()
+    return ranked[0] if ranked[0].solution is None else next(iter(_close(choice_search)), None)
+
+
+def _close(choice_search: ChoiceSearch) -> list[Look]:
+    """Combinations that are not solved from many starts and nearly as good as the best."""
     ranked, mendable = choice_search.ranked(), choice_search.mendable()
-    best = ranked[0]
-    if best.solution is None:
-        return best
+    best, looks = ranked[0], []
     solved = sum(look.solution is not None and not look.feasible for look in ranked)
     for look in ranked[1:]:
         if look.solution is not None or look.how != "quick":
             continue
         gap = look.objective - best.objective
-        close = gap <= NEAR * abs(best.objective)
+        close = gap <= CLOSE * abs(best.objective)
         as_good = len(look.checks & mendable) <= len(best.checks & mendable)
-        if best.feasible and look.feasible and close and as_good:
-            return look
         doubtful = not look.feasible and look.violation <= best.violation + DOUBTFUL
-        if doubtful and solved < MOST_DOUBTFUL:
-            return look
-    return None
+        promising = best.feasible and look.feasible and close and as_good
+        if promising or (doubtful and solved < MOST_DOUBTFUL):
+            looks.append(look)
+    return looks
 
 
-def many_starts(look: Look, settings: ChoiceSettings) -> None:
-    """Solve a combination from many starts and from its best known point."""
+class _SolveTask(NamedTuple):
+    """A combination to solve from many starts: its problem, known point and time limit."""
+
+    problem: BoxProblem
+    start: Vector | None
+    seconds: float | None
+
+
+class _SolvedTask(NamedTuple):
+    start: Vector | None
+    solution: Solution
+
+
+def _task(look: Look, settings: ChoiceSettings) -> _SolveTask:
     assert look.actuator is not None
     seconds = settings.left()
-    starts = [] if look.x is None else [look.x]
-    solution = solve(
-        look.actuator.problem,
+    seconds = None if seconds is None else max(seconds, LEAST_SECONDS)
+    return _SolveTask(look.actuator.problem, look.x, seconds)
+
+
+@np.errstate(all="ignore")
+def _solution(settings: ChoiceSettings, task: _SolveTask) -> Solution:
+    return solve(
+        task.problem,
         algorithm=settings.algorithm,
         starts=settings.starts,
         samples=settings.samples,
         seed=settings.seed,
-        max_seconds=None if seconds is None else max(seconds, LEAST_SECONDS),
-        more_starts=starts,
+        max_seconds=task.seconds,
+        more_starts=[] if task.start is None else [task.start],
     )
+
+
+def _solved_ahead(
+    looks: Sequence[Look], settings: ChoiceSettings, cluster: Cluster
+) -> dict[int, _SolvedTask]:
+    """Solve combinations on a cluster; the results by the place of the combination in the file."""
+    tasks = [_task(look, settings) for look in looks]
+    solutions = cluster.map(partial(_solution, settings), tasks)
+    return {
+        look.order: _SolvedTask(task.start, solution)
+        for look, task, solution in zip(looks, tasks, solutions, strict=True)
+    }
+
+
+def many_starts(look: Look, settings: ChoiceSettings, ahead: _SolvedTask | None = None) -> None:
+    """Solve a combination from many starts and from its best known point.
+
+    A solution `ahead` is used if it started from this point.
+    """
+    if ahead is not None and ahead.start is look.x:
+        solution = ahead.solution
+    else:
+        solution = _solution(settings, _task(look, settings))
     look.how, look.solution = "multistart", solution
     look.x, look.objective, look.violation = solution.x, solution.objective, solution.violation
     if len(solution.constraints):
+        assert look.actuator is not None
         worst = int(np.argmin(solution.constraints))
         look.missed = look.actuator.problem.constraint_names[worst]
 

@@ -31,8 +31,8 @@ from ..joints.kinds import JOINTS
 from . import repairs
 from .actuator import ActuatorProblem, build, variant
 from .evaluator import Evaluator
-from .infeasibility import Conflict
 from .problem import BoxProblem, PointValues, Vector
+from .repairs import Conflict
 
 DIMENSIONS = (
     "bore", "wall_thickness", "winding_angle", "rod_diameter", "rod_inner_diameter", "part_length",
@@ -134,9 +134,10 @@ def _gains(actuator: ActuatorProblem, conflict: Conflict) -> dict[str, float]:
 def _dimensions(
     actuator: ActuatorProblem, x: Vector, gains: Mapping[str, float]
 ) -> tuple[tuple[Cure, ...], tuple[Cure, ...], list[str]]:
-    """Dimensions that each suffice alone, least change first; PATHs not tried.
+    """Find dimensions whose change suffices.
 
-    In between, the second result has dimensions that only suffice together, if none suffices alone.
+    Returns dimensions that each suffice alone, least change first; if there are none, dimensions
+    that only suffice together; and the PATHs that were not tried.
     """
     design = actuator.subject.design
     candidates = sorted(
@@ -360,10 +361,12 @@ def _candidate_choices(
             if seal.seal_type.o_ring_gland:
                 for compound in SUBSTITUTES["seal"]:
                     yield f"{section}.compound", compound, {}
-    if design.retention is not None and matters("retention."):
-        for joint in JOINTS.names:
-            yield "retention.type", joint, {}
-    parts = ["rod", "piston", "head", "caps", "retention", "clevis"]
+    blocks = [] if design.retention is None else list(design.retention.ends)
+    ends = [f"retention.{name}" if name else "retention" for name in blocks]
+    for end in ends:
+        if matters(f"{end}."):
+            yield from ((f"{end}.type", joint, {}) for joint in JOINTS.names)
+    parts = ["rod", "piston", "head", "caps", *ends, "clevis"]
     parts += [f"barrel.layup[{i}]" for i in range(len(design.barrel.layup))]
     parts += [f"rod.layup[{i}]" for i in range(len(design.rod.layup))]
     for part in parts:

@@ -11,6 +11,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ..base.bounds import FRONT
+from ..base.cluster import HERE, Cluster
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError, remedy
 from ..base.quantities import Quantity
@@ -24,7 +25,7 @@ from .actuator import ActuatorProblem, Fault, Goal, build, idle_metrics
 from .front.front import Front, FrontSettings, NoAnchor, front
 from .front.objectives import Objectives
 from .front.plane import FrontGap
-from .infeasibility_card import explained
+from .infeasibility import explained
 from .problem import Vector
 from .result import Infeasibility
 from .rounding import design_at
@@ -243,6 +244,7 @@ def pareto(
     seed: int = 0,
     checks: int = 3,
     fault: Fault | None = None,
+    cluster: Cluster = HERE,
 ) -> ParetoFront:
     """Compute the Pareto front of a design.
 
@@ -255,6 +257,7 @@ def pareto(
     checks : number of independent searches between designs, which reveal designs that are only
         locally best
     fault : builds the Diagnostic of a faulty variable, with its line in the file
+    cluster : workers for independent searches (see `front`)
     """
     began = time.perf_counter()
     wished = wishes(objectives, dict(subject.quantities))
@@ -265,9 +268,9 @@ def pareto(
     names = [wish.metric for wish in wished]
     traded = Objectives(names, many.actuator.problem, many.actuator.trade)
     settings = FrontSettings(count=count, seed=seed, checks=checks)
-    result = front(traded, settings)
+    result = front(traded, settings, cluster)
     if not isinstance(result, NoAnchor) and not many.actuator.confirmed(result.x):
-        result = front(traded, settings)  # the recorded models are wrong and no longer used
+        result = front(traded, settings, cluster)  # without the recorded models: they are wrong
     if isinstance(result, NoAnchor):
         return _without(many, result, began)
     return _result(many, result, seed, began)

@@ -12,7 +12,7 @@ from ..base.quantities import Quantity
 from ..design.build import with_values
 from ..evaluation import Evaluation, PreparedDesign, evaluate, prepare
 from ..evaluation.result import Requirement
-from .infeasibility_card import change_text
+from .infeasibility import change_text
 from .result import Optimisation
 from .run import optimise
 

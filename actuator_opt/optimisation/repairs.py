@@ -431,3 +431,30 @@ def _opened(problem: BoxProblem, bound: Opening, x: Vector) -> float | None:
     evaluator = Evaluator(opened)
     point = go(evaluator, evaluator.point(evaluator.space.to_z(start)))
     return float(point.x[j]) if point.violation <= NOTHING else None
+
+
+@dataclass(frozen=True, slots=True)
+class Conflict:
+    """The requirements that conflict, and by how much.
+
+    Parameters
+    ----------
+    joint : limits to relax together so that the total relaxation is least, the most relaxed first;
+        empty if only laws conflict
+    sole : for each conflicting requirement, the relaxation that is enough if only it is relaxed
+    bounds : bounds of variables that are active at `x`, the most helpful first
+    laws : constraints that cannot be relaxed but conflict with each other
+    x : the point that is feasible once the limits in `joint` are relaxed
+    total : sum of the relaxations in `joint`
+    residual : residual of the optimality conditions of the least total relaxation, at `x`
+    multipliers : decrease of the total per unit by which each constraint is relaxed (m,)
+    """
+
+    joint: tuple[RelaxedConstraint, ...]
+    sole: tuple[RelaxedConstraint, ...]
+    bounds: tuple[Opening, ...]
+    laws: tuple[str, ...]
+    x: Vector
+    total: float
+    residual: float
+    multipliers: Vector

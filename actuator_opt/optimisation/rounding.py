@@ -39,7 +39,7 @@ from .actuator import ActuatorProblem, Fault
 from .branch_and_bound import SAME, Assignment, Listed, SizeSearch, search
 from .cures import least_changes, with_variables
 from .evaluator import Evaluator
-from .infeasibility_card import change_text, entry_of
+from .infeasibility import change_text, entry_of
 from .problem import BoxProblem, PointValues, Vector
 from .repairs import RelaxedConstraint
 from .result import Optimisation, RoundedVariable, Rounding, RunnerUp, SizeRemedy

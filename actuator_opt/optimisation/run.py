@@ -7,6 +7,7 @@ import time
 from dataclasses import replace
 from typing import Any
 
+from ..base.cluster import HERE, Cluster
 from ..base.dataclass import dataclass
 from ..base.progress import tell
 from ..design import quantity_of
@@ -21,7 +22,7 @@ from .choices import (
     record,
     search_choices,
 )
-from .infeasibility_card import explained
+from .infeasibility import explained
 from .prices import Sensitivity, sensitivities
 from .result import Certificate, Choices, Infeasibility, Kkt, Optimisation, Rounding, VariableResult
 from .rounding import Wanted, design_at, rounded, sizes_of
@@ -154,6 +155,7 @@ def optimise(
     certify: bool = False,
     keep_interrupted: bool = False,
     explain: bool = True,
+    cluster: Cluster = HERE,
 ) -> Optimisation:
     """Find the best design of an actuator.
 
@@ -174,6 +176,7 @@ def optimise(
     explain : whether to explain an infeasible result
     keep_interrupted : whether the best design so far is kept after Ctrl-C; not for designs with
         choices
+    cluster : workers for combinations of choices (see `choices`)
     """
     began = time.perf_counter()
     deadline = None if max_seconds is None else began + max_seconds
@@ -183,7 +186,8 @@ def optimise(
     choices: Choices | None = None
     if subject.design.choices:
         settings = ChoiceSettings(algorithm, starts, SAMPLES, seed, deadline)
-        choice_search = search_choices(subject, settings, MOST_SOLVED if sizes is None else 1)
+        most_solved = MOST_SOLVED if sizes is None else 1
+        choice_search = search_choices(subject, settings, most_solved, cluster)
         if sizes is not None:
             sized = best_of_sizes(choice_search, requested, settings)
         choices = record(choice_search, subject.design)

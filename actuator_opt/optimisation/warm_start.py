@@ -251,12 +251,12 @@ class WarmStart:
             for name in ("lower", "upper")
         )
         if same_box:
-            return [replace(valley, rows=evaluator.constraint_count) for valley in self.valleys]
+            return [valley.of(evaluator.constraint_count) for valley in self.valleys]
         result = []
         for valley in self.valleys:
             point = evaluator.point(space.to_z(evaluator.problem.inside(valley.point.x)))
             if same_coordinates:
-                result.append(replace(valley, rows=evaluator.constraint_count, point=point))
+                result.append(replace(valley.of(evaluator.constraint_count), point=point))
             elif point.valid:
                 result.append(valley_at(evaluator, point))
         return result

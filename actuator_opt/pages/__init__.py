@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from ..rendering.attachments import Attachment, read_attachment
-from ..rendering.blocks import Table
-from ..rendering.origin import ReportFile
+from ..rendering.blocks import ReportFile, Table
 
 __all__ = ["Attachment", "ReportFile", "Table", "read_attachment"]

@@ -14,7 +14,7 @@ from ..base import quantities
 from ..base.fitting import Parameter
 from ..base.quantities import Quantity
 from ..design.material import LawFit
-from ..identification.coefficient import Coefficient
+from ..identification.balance import Coefficient
 from ..identification.lugre import LuGreFit
 from ..identification.record import CHANNELS, Record
 from ..identification.result import Identification

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..base.quantities import Quantity
 from ..design import choice_list, quantity_of
-from ..optimisation.infeasibility_card import percent as change_percent
+from ..optimisation.infeasibility import percent as change_percent
 from ..optimisation.result import (
     Choices,
     Combination,
@@ -404,7 +404,7 @@ def _bounds(card: Infeasibility) -> Block:
 
 
 def _closes(gain: float, total: float | None) -> str:
-    """Share by which the total relaxation needed falls if a bound is widened by 1 %."""
+    """Share by which the total relaxation needed becomes smaller if a bound is widened by 1 %."""
     return f"{text.number(min(gain / total, 100.0), 2)} %" if total else DASH
 
 

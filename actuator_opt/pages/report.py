@@ -278,7 +278,7 @@ def verdict(subject: Evaluation | Optimisation) -> Verdict:
 
 
 def doubts(evaluation: Evaluation) -> tuple[list[str], list[str]]:
-    """Plain lines and cautions for the badge, on unverified values and extrapolated results."""
+    """Plain lines and cautions for the verdict, on unverified values and extrapolated results."""
     counts = evaluation.counts
     results, models = counts["extrapolated"], counts["extrapolated_models"]
     words = f"{results} result{'' if results == 1 else 's'}"
@@ -536,7 +536,16 @@ def masses(evaluation: Evaluation) -> Block:
         Column("share", "right"),
         Column("", "left", "80mm"),
     ]
-    return Table("Mass", columns, rows, total=below, on="paper")
+    note = mass_leaves_out(evaluation)
+    return Table("Mass", columns, rows, total=below, note=note, on="paper")
+
+
+def mass_leaves_out(evaluation: Evaluation) -> str:
+    """Sentence that names the components that the dry mass leaves out; "" if there are none."""
+    if not evaluation.mass_leaves_out:
+        return ""
+    named = ", ".join(evaluation.mass_leaves_out)
+    return f"The dry mass leaves out: {named}. State them under extra_masses to count them."
 
 
 # ---- checks ----
@@ -628,6 +637,8 @@ def _remarks(evaluation: Evaluation, optimisation: Optimisation | None) -> Itera
     if lines := warnings(optimisation or evaluation):
         yield Notes("Warnings", [text.pretty(line) for line in lines], style="yellow")
     data = []
+    if note := mass_leaves_out(evaluation):
+        yield Notes("Mass", [note], headless=True, on="terminal")
     if evaluation.extrapolated:
         data.append(f"extrapolated: {', '.join(evaluation.extrapolated)}")
     if evaluation.unverified:

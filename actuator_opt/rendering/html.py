@@ -26,9 +26,11 @@ from .blocks import (
     Flag,
     Listing,
     Notes,
+    Origin,
     Page,
     Pair,
     Reach,
+    ReportFile,
     Row,
     Share,
     Slot,
@@ -36,11 +38,11 @@ from .blocks import (
     Table,
     Tile,
     clean,
+    with_input,
 )
 from .chart_ink import drawn
 from .heights import cells_of, joined
 from .ink import POINT, Ink, PathMark, TextMark
-from .origin import Origin, ReportFile, with_input
 
 HERO = 110.0
 """Height of a large figure that can be scaled [mm] (our choice: a laptop shows it without

@@ -30,9 +30,11 @@ from .blocks import (
     Flag,
     Listing,
     Notes,
+    Origin,
     Page,
     Pair,
     Reach,
+    ReportFile,
     Share,
     Slot,
     Status,
@@ -41,11 +43,11 @@ from .blocks import (
     printable,
     short,
     soft,
+    with_input,
 )
 from .chart_ink import drawn
 from .heights import FULL, HALF, cells_of, fitting, room
 from .ink import Ink
-from .origin import Origin, ReportFile, with_input
 
 PIXELS_PER_INCH = 150.0
 _SUSPECTS = b"/Suspects false"

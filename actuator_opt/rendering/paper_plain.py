@@ -66,7 +66,7 @@ class _Flow:
             self.y += step
 
     def paste(self, drawing: Mapping[str, Any]) -> None:
-        """Copy a drawing to the left margin."""
+        """Draw a drawing on the page, flush with the left margin."""
         self.need(drawing["height"])
         for mark in drawing["marks"]:
             copy: Any = dict(mark)

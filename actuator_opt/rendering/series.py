@@ -23,7 +23,7 @@ from ..base.dataclass import dataclass
 from ..base.errors import library
 from ..base.files import aside, aside_bytes, write_text, writing
 from ..base.numeric import Array
-from .origin import ReportFile
+from .blocks import ReportFile
 
 
 @dataclass(frozen=True, slots=True)

@@ -776,8 +776,8 @@ def _tandem(study: HuangStudy) -> str:
     ]
     words = (
         "With the same flow past both seals, no relief shown reverses the trend (B rises "
-        f"to at least {times(least)} its value), because the Yx seal behind the step ring "
-        "carries the pressure. "
+        f"to at least {times(least)} its value without relief), because the Yx seal behind the "
+        "step ring carries the pressure. "
         if least > 1
         else "With the same flow past both seals some reliefs reverse the trend too. "
     )
@@ -785,7 +785,8 @@ def _tandem(study: HuangStudy) -> str:
         relief, rise = falls[-1]
         words += (
             "Without pressure between the seals, as if the space there were drained, B "
-            f"falls to {text.number(rise, 2)} of its value at a relief of {1e3 * relief:.2f} mm. "
+            f"falls to {text.number(rise, 2)} of its value without relief at a relief of "
+            f"{1e3 * relief:.2f} mm. "
         )
     return words
 

@@ -15,7 +15,7 @@ from .contact import SealContact, Shape, round_ring, shaped
 from .seal_type import Elements, Room, SealGroove, SealPart, SealSizes, SealType, no_faults
 
 if TYPE_CHECKING:
-    from ..finite_elements.result import SealSolution
+    from ..finite_elements.section import SealSolution
 
 ON_LIMIT = 1e-6
 """Tolerance on the squeeze range of a contact law, so that an optimum at the end of the range

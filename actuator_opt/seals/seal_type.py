@@ -11,7 +11,7 @@ from ..base.numeric import Array
 from .contact import SealContact, Shape, SizeField
 
 if TYPE_CHECKING:
-    from ..finite_elements.result import SealSolution
+    from ..finite_elements.section import SealSolution
 
 AXIAL_PLAY = 1.1
 """Default ratio of groove width to seal width. Our choice: 10 % clearance for motion and swell."""

@@ -34,7 +34,7 @@ from .seal_type import (
 )
 
 if TYPE_CHECKING:
-    from ..finite_elements.result import SealSolution
+    from ..finite_elements.section import SealSolution
 
 TAPER_DEFAULT = math.radians(6.0)
 """Default angle of the taper beside the land [rad] (our choice)."""

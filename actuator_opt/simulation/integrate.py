@@ -247,7 +247,7 @@ def cvodes(compiled: Compiled, relative: float, evaluations: list[int]) -> Advan
     Raises
     ------
     InputError
-        CasADi is missing, or the equations contain a record
+        CasADi is missing, or a measured record is an input of the equations
     """
     fallback = lsoda(compiled, RELATIVE["lsoda"], evaluations)
     casadi = library()

@@ -583,7 +583,10 @@ def _outside(signals: Mapping[str, Array], plant: Plant) -> str:
     position = float(signals["position"][0])
     beyond = max(-position, position - plant.stroke)
     if plant.design.linkage is not None and beyond > 0:
-        return "beyond the end stop, the joint reaches its dead centre: lower the load on the joint"
+        return (
+            "the load pushes the piston so far into the end stop that the linkage reaches its dead "
+            "centre: lower the load"
+        )
     if beyond > OUT * plant.stroke:
         return (
             "the piston is beyond its stops: lower the load, or stiffen the stops (smaller "

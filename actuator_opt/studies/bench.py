@@ -19,6 +19,7 @@ from ..evaluation.limits import MaterialValues
 from ..evaluation.rings import Ring, seal_contact
 from ..evaluation.sealing import WiperFriction, wipers
 from ..evaluation.springs import Springs
+from ..evaluation.weight import moving
 from ..models import forces
 from ..seals.contact import SealContact
 
@@ -232,7 +233,7 @@ def bench(subject: PreparedDesign) -> Bench:
         rod_diameter=float(np.squeeze(g.rod_diameter)),
         stroke=float(np.squeeze(g.stroke)),
         growth=growth,
-        mass=sum(float(np.squeeze(done.mass_parts[x])) for x in ("rod", "piston", "fastening")),
+        mass=float(np.squeeze(moving(done.mass_parts))),
         load_mass=float(v["load.mass"]),
         supply_pressure=float(v["supply.pressure"]),
         rings=tuple(floats(ring, 0) for ring in done.rings),

@@ -30,7 +30,7 @@ from ..version import VERSION
 from .film_walk import FilmMap, Stroke, drives, dry_friction, film_map, sealing
 
 if TYPE_CHECKING:
-    from ..finite_elements.result import MountedContact
+    from ..finite_elements.section import MountedContact
 
 
 @dataclass(frozen=True, slots=True)
@@ -392,28 +392,7 @@ def study(
     v = subject.values()
     evaluation = base(subject, v)
     seal_row = of_place(evaluation.rings, place)
-    case = _case(seal_row[0], speed)
-    if pressure is None:
-        pressure = float(of_case(seal_row[0]["pressure"], case))
-    if speed is None:
-        speed = float(of_case(seal_row[0]["speed"], case))
-    if not pressure >= 0:
-        raise InputError(
-            Diagnostic(
-                f"pressure {pressure / 1e5:g} bar is below the pressure on the outer side",
-                "state the sealed pressure relative to the outer side, 0 bar or more",
-                path=f"seals.{place}",
-            )
-        )
-    if not speed >= SLOWEST:
-        raise InputError(
-            Diagnostic(
-                f"speed {speed:g} m/s: oil film and secant damping need a moving seal",
-                f'state {SLOWEST:g} m/s or more, e.g. --speed "0.1 m/s"',
-                path=f"seals.{place}",
-            )
-        )
-    _within(seal_row, place, pressure)
+    case, speed, pressure = _operating_point(seal_row, place, speed, pressure)
     supply = float(v["supply.pressure"])
     driven = sealing(evaluation, place, case)
     temperature = float(of_case(evaluation.state.temperature, case))
@@ -442,6 +421,35 @@ def study(
         map=film_map(driven, [x * supply for x in MAP_SHARES], MAP_SPEEDS) if mapped else None,
         elements=elements,
     )
+
+
+def _operating_point(
+    seal_row: Sequence[Ring], place: Place, speed: float | None, pressure: float | None
+) -> tuple[int, float, float]:
+    """Load case, speed and pressure of a study: those stated, or else those of the load case."""
+    case = _case(seal_row[0], speed)
+    if pressure is None:
+        pressure = float(of_case(seal_row[0]["pressure"], case))
+    if speed is None:
+        speed = float(of_case(seal_row[0]["speed"], case))
+    if not pressure >= 0:
+        raise InputError(
+            Diagnostic(
+                f"pressure {pressure / 1e5:g} bar is below the pressure on the outer side",
+                "state the sealed pressure relative to the outer side, 0 bar or more",
+                path=f"seals.{place}",
+            )
+        )
+    if not speed >= SLOWEST:
+        raise InputError(
+            Diagnostic(
+                f"speed {speed:g} m/s: oil film and secant damping need a moving seal",
+                f'state {SLOWEST:g} m/s or more, e.g. --speed "0.1 m/s"',
+                path=f"seals.{place}",
+            )
+        )
+    _within(seal_row, place, pressure)
+    return case, speed, pressure
 
 
 def with_elements(

@@ -16,6 +16,8 @@ from ..base.dataclass import dataclass
 from ..base.errors import InputError
 from ..base.numeric import Array
 from ..base.quantities import Quantity
+from ..base.symbolic import gpu
+from ..base.symbolic.program import Program
 from ..design import Design
 from ..design.paths import quantity_of
 from ..design.writer import to_yaml
@@ -94,7 +96,7 @@ class Study:
     """Metrics to compute in addition to those that rank designs."""
     engine: Engine = "numpy"
     """Array library for the screen, the function that excludes designs that cannot be among the
-    best."""
+    best; or "gpu", which runs the recorded models of a full sweep on a GPU."""
     goal: Goal = field(init=False)
     designs: Designs = field(init=False)
     _screens: dict[tuple[object, ...], Scores | None] = field(default_factory=dict, repr=False)
@@ -166,13 +168,11 @@ class Study:
     def recorded(self) -> bool:
         """Whether the models are recorded: only if there are enough points, and no custom metrics.
 
-        It depends on the plan alone, so that every run of a sweep gives the same rows.
+        It depends on the plan and the engine alone, so that every run of a sweep gives the same
+        rows. A GPU runs recorded models only.
         """
-        return (
-            not self.plugins
-            and self.plan.count >= RECORDED_FROM
-            and self._group_size >= LEAST_RECORDED
-        )
+        enough = self.plan.count >= RECORDED_FROM and self._group_size >= LEAST_RECORDED
+        return not self.plugins and (enough or self.engine == "gpu")
 
     @property
     def _group_size(self) -> float:
@@ -189,8 +189,9 @@ class Study:
             paths = [axis.path for axis in self.plan.numeric]
             places = np.linspace(0, self.plan.count - 1, SAMPLE).astype(int)
             sample = np.concatenate([self.plan.points(k, 1).numbers for k in places], axis=1)
+            run = gpu.values if self.engine == "gpu" else Program.values
             points = {path: sample[k] for k, path in enumerate(paths) if path in varied}
-            self._recorded[id(subject)] = RecordedMany(subject, points, self.wanted)
+            self._recorded[id(subject)] = RecordedMany(subject, points, self.wanted, run)
         return self._recorded[id(subject)](varied)
 
     def reduced(self, first: int, count: int, limit: float, keep: int) -> Chunk:

@@ -257,7 +257,7 @@ class Plan:
 
     @property
     def named(self) -> tuple[SweepAxis, ...]:
-        """Return the axes of texts."""
+        """Return the axes whose values are texts, such as names of materials."""
         return tuple(axis for axis in self.axes if axis.values is None)
 
     @property

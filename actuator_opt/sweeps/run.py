@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-import pickle
 import signal
 import sys
 import threading
@@ -14,91 +13,21 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import lru_cache, partial
+from functools import partial
 from itertools import chain, islice
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 
 from ..base import progress
+from ..base.cluster import HERE, Cluster
 from ..base.database import Database, StoredNumbers, opened, reading, refused
-from ..base.errors import Diagnostic, UsageError
 from ..base.numeric import Array
 from ..version import VERSION
 from .chunk import Chunk, Study
 from .designs import CACHED
 from .result import Sample, Swept
-
-Task = TypeVar("Task")
-
-PATIENCE = "10s"
-"""Time within which a Dask scheduler must answer."""
-
-
-RETRIES = 5
-"""Maximum number of restarts of a task after its worker is lost."""
-
-
-WAITING = 3
-"""Number of tasks in the queue for each thread of the cluster."""
-
-
-def on_cluster(
-    address: str, study: Study, work: Callable[[Study, Task], Chunk], tasks: Iterable[Task]
-) -> Iterator[Chunk]:
-    """Run tasks on a cluster; yield their results in the order of the tasks.
-
-    Every task contains the study, so workers may leave and join at any time.
-
-    Parameters
-    ----------
-    address : address of the Dask scheduler, such as tcp://10.0.0.1:8786
-    study : the sweep
-    work : function that computes the chunk of one task
-    tasks : tasks in order
-
-    Raises
-    ------
-    UsageError
-        if Dask is not installed, or no scheduler answers at the address
-    """
-    try:
-        from distributed import Client
-    except ImportError:
-        message, remedy = "--scheduler needs Dask", "pip install 'actuator-opt[cluster]'"
-        raise UsageError(Diagnostic(message, remedy)) from None
-    try:
-        client: Any = Client(  # type: ignore[no-untyped-call]
-            address, timeout=PATIENCE, set_as_default=False
-        )
-    except (OSError, ValueError, TimeoutError) as error:
-        message = f"--scheduler {address}: no scheduler answers ({type(error).__name__})"
-        raise UsageError(Diagnostic(message, "start one with `dask scheduler`")) from None
-    with client:
-        if not client.scheduler_info()["workers"]:
-            message = f"--scheduler {address}: no worker has joined"
-            raise UsageError(Diagnostic(message, f"start one with `dask worker {address}`"))
-        blob = pickle.dumps((study, work))
-        waiting: deque[Any] = deque()
-        for task in tasks:
-            waiting.append(client.submit(_remote_chunk, blob, task, pure=False, retries=RETRIES))
-            if len(waiting) > WAITING * max(sum(client.nthreads().values()), 1):
-                yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
-
-
-@lru_cache(maxsize=2)
-def _unpacked(blob: bytes) -> tuple[Any, Any]:
-    study, work = pickle.loads(blob)
-    return study, work
-
-
-def _remote_chunk(blob: bytes, task: Any) -> Any:
-    """Run a task on a worker of the cluster."""
-    study, work = _unpacked(blob)
-    return work(study, task)
 
 
 class MissingRows(NamedTuple):
@@ -146,7 +75,8 @@ CHUNKS = 32
 """Number of chunks from which on a sweep has larger chunks instead of more (our choice)."""
 
 REDUCED = 65_536
-"""Number of points in a chunk if only the best designs are kept."""
+"""Number of points in a chunk if only the best designs are kept, or for a GPU, which needs this
+many designs at once to be busy."""
 
 SECTIONS = 16
 """Number of places in a sweep at which designs are evaluated to find the limits that they miss, if
@@ -180,7 +110,7 @@ def sweep(
     store: Path | None = None,
     keep: int = 10,
     workers: int | None = None,
-    scheduler: str | None = None,
+    cluster: Cluster = HERE,
     each: Callable[[Chunk], None] | None = None,
     watch: Sequence[str] = (),
 ) -> Swept:
@@ -192,7 +122,7 @@ def sweep(
     store : database from which existing rows are read, and to which new rows are written
     keep : number of best feasible designs to keep
     workers : number of processes; default: one per core
-    scheduler : address of a Dask scheduler, used instead of local processes
+    cluster : its workers are used instead of local processes
     each : function that is called with every chunk, in order
     watch : metrics; for every pair, the Pareto line of all designs is kept
 
@@ -210,7 +140,7 @@ def sweep(
     )
     size = _chunk_size(study)
     starts = range(0, study.plan.count, size)
-    computed = partial(_computed, study, len(starts), workers, scheduler)
+    computed = partial(_computed, study, len(starts), workers, cluster)
     if not study.full:
         chunks = computed(ChunkTask(first, size, None, swept.limit(keep), keep) for first in starts)
     elif store is None:
@@ -232,7 +162,7 @@ def _chunk_size(study: Study) -> int:
     """Return the number of points of a chunk; small if a design is built for nearly every point."""
     if study.designs.apart_count > CACHED:
         return SMALL_CHUNK
-    if not study.full:
+    if not study.full or study.engine == "gpu":
         return REDUCED
     return max(CHUNK, min(study.plan.count // CHUNKS, MOST_CHUNK))
 
@@ -289,12 +219,12 @@ def _computed(
     study: Study,
     chunks: int,
     workers: int | None,
-    scheduler: str | None,
+    cluster: Cluster,
     tasks: Iterable[ChunkTask],
 ) -> Iterator[Chunk]:
     """Compute the chunks of tasks, on a cluster or on this machine; yield them in order."""
-    if scheduler is not None:
-        yield from on_cluster(scheduler, study, _chunk, tasks)
+    if cluster:
+        yield from cluster.map(partial(_chunk, study), tasks)
         return
     remaining = iter(tasks)
     count = workers or (1 if "jax" in sys.modules else os.cpu_count() or 1)  # no fork with threads

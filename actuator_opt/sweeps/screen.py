@@ -2,7 +2,9 @@
 
 The models run once with symbols instead of numbers. The objective and those limits that become
 closed-form expressions of the varied numbers are compiled for NumPy, or for JAX if it is chosen and
-installed. Designs that pass are evaluated in full, so a screen never changes the result.
+installed: JAX compiles them into one function, on the processor too. Designs that pass are
+evaluated in full, so a screen never changes the result. The models themselves run on a GPU as
+recorded programs (`base.symbolic.gpu`), without JAX.
 """
 
 from __future__ import annotations
@@ -25,7 +27,7 @@ from ..optimisation.actuator import build
 from ..optimisation.certificate.certify import TracedLimit, trace
 from ..optimisation.certificate.relaxation import Unknown
 
-Engine: TypeAlias = Literal["numpy", "jax"]
+Engine: TypeAlias = Literal["numpy", "jax", "gpu"]
 
 
 ENGINES: tuple[Engine, ...] = get_args(Engine)
@@ -43,18 +45,24 @@ function is compiled only once for each size."""
 
 
 def usable_engine(name: str, *, reduced: bool) -> Engine:
-    """Return the named engine, or NumPy where it is not installed.
+    """Return the named engine, or NumPy if JAX is named but not installed.
 
     Raises
     ------
     UsageError
-        if the name is unknown, or for a full sweep, which always uses NumPy
+        if the name is unknown, or the engine does not suit a full or a reduced sweep
     """
     if name not in ENGINES:
-        raise UsageError(Diagnostic(f"--engine {name}: unknown", f"use {' or '.join(ENGINES)}"))
-    if name != "numpy" and not reduced:
+        names = f"{', '.join(ENGINES[:-1])} or {ENGINES[-1]}"
+        raise UsageError(Diagnostic(f"--engine {name}: unknown", f"use {names}"))
+    if name == "jax" and not reduced:
         message = f"--engine {name} only speeds up sweeps that keep the best designs"
         raise UsageError(Diagnostic(message, "add --reduce best:K, or omit --engine"))
+    if name == "gpu":
+        if reduced:
+            message = f"--engine {name} only speeds up sweeps that keep all designs"
+            raise UsageError(Diagnostic(message, "omit --reduce or --engine"))
+        return "gpu"
     return "jax" if name == "jax" and array_library("jax") is not np else "numpy"
 
 

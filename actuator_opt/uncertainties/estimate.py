@@ -8,12 +8,14 @@ unit cube; their coordinates are the cumulative probabilities of the inputs.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from math import erfc, sqrt
 from statistics import NormalDist
 from typing import Any
 
 import numpy as np
 
+from ..base.cluster import HERE, Cluster
 from ..base.dataclass import dataclass
 from ..base.progress import tell
 from ..design.uncertain import REACH, limits, log_deviation
@@ -138,7 +140,9 @@ REPLICATES = 8
 follow."""
 
 
-def indices(outputs: Outputs, dimension: int, *, rows: int, seed: int) -> Indices:
+def indices(
+    outputs: Outputs, dimension: int, *, rows: int, seed: int, cluster: Cluster = HERE
+) -> Indices:
     """Return the first-order and total indices of every output.
 
     The first-order index of input i is E[f(B) (f(AB_i) - f(A))] / V [Saltelli2010], its total index
@@ -153,13 +157,13 @@ def indices(outputs: Outputs, dimension: int, *, rows: int, seed: int) -> Indice
     dimension : number of inputs d
     rows : number of points in total; each takes (d + 2) evaluations of the design
     seed : seed of the randomisations
+    cluster : workers for the randomisations
     """
     power = max(3, round(np.log2(max(rows, 1) / REPLICATES)))
     parts = []
     dropped_rows = 0
-    for replicate in range(REPLICATES):
-        points = quasi(2 * dimension, power, (seed, 1, replicate))
-        moments, dropped = _replicate_moments(outputs, points, dimension, replicate)
+    work = partial(_replicate_moments, outputs, dimension, power, seed)
+    for moments, dropped in cluster.map(work, range(REPLICATES)):
         parts.append(moments)
         dropped_rows += dropped
     sums = np.array(parts)  # (replicates, 2 d + 1, k)
@@ -181,13 +185,14 @@ def indices(outputs: Outputs, dimension: int, *, rows: int, seed: int) -> Indice
 
 
 def _replicate_moments(
-    outputs: Outputs, points: Vector, dimension: int, replicate: int
+    outputs: Outputs, dimension: int, power: int, seed: int, replicate: int
 ) -> tuple[Vector, int]:
-    """Return the variances of one randomisation, and the number of rows left out.
+    """Return the variances of a randomisation of 2^power points, and the number of rows left out.
 
     The variances (2 d + 1, k) are the first-order parts due to each input, then the total parts due
     to each input, and finally the variance of the output.
     """
+    points = quasi(2 * dimension, power, (seed, 1, replicate))
     first, second = points[:dimension], points[dimension:]
     a, b = outputs(first), outputs(second)
     mixed: list[Vector] = []

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 import numpy as np
 
+from ..base.cluster import HERE, Cluster
 from ..base.dataclass import dataclass
 from ..base.errors import ActuatorError
 from ..base.progress import tell
@@ -32,7 +34,7 @@ def _notes(subject: PreparedDesign, uncertain_inputs: Sequence[Input]) -> Iterat
         )
     yield (
         "strengths do not scatter in this study: they stay at their allowables, with all "
-        "knock-downs, so the yield is conservative for material strength"
+        "knock-downs, so the estimated share of good parts is conservative"
         if not strengths
         else (
             "these strengths scatter, so the knock-down for their statistical basis, which "
@@ -95,6 +97,7 @@ def uncertainty(
     quasi_random: bool = False,
     rows: int = ROWS,
     metrics: Sequence[str] = (),
+    cluster: Cluster = HERE,
 ) -> Uncertainty:
     """Run an uncertainty study of a design.
 
@@ -106,6 +109,8 @@ def uncertainty(
     quasi_random : whether to draw scrambled Sobol points, in `BLOCKS` randomisations
     rows : size of the base sample for the sensitivity indices; 0 to omit them
     metrics : metrics to evaluate in addition to the margins; default: those of the objective
+    cluster : workers for the chunks of draws and the randomisations of the indices; the rest, a few
+        evaluations, runs in this process
 
     Raises
     ------
@@ -117,12 +122,12 @@ def uncertainty(
     model = UncertainModel(subject, uncertain_inputs, metrics or subject.design.objective.metrics)
     if count + rows * (len(uncertain_inputs) + 2) >= RECORDED_FROM:
         model.record()
+    nominal = model.flat(model.nominal)[:, 0]  # before the model is sent: the first call records it
     blocks = BLOCKS if quasi_random else 1
-    counts = draw(model, count, seed, blocks)
+    counts = draw(model, count, seed, blocks, cluster=cluster)
     rates = counts.rates()
     outputs = [*(limit.name for limit in model.limits), LEAST, *model.metrics]
-    sensitivity_indices, dropped = _indices(model, outputs, rows, seed)
-    nominal = model.flat(model.nominal)[:, 0]
+    sensitivity_indices, dropped = _indices(model, outputs, rows, seed, cluster)
     return Uncertainty(
         name=subject.design.name,
         version=VERSION,
@@ -175,6 +180,7 @@ def draw(
     blocks: int = 1,
     stream: int = 0,
     keep: int = MOST_KEPT,
+    cluster: Cluster = HERE,
 ) -> HitCounts:
     """Draw the inputs and count how often each limit is met.
 
@@ -185,26 +191,43 @@ def draw(
     seed, stream : seed and number of the stream; two streams of one seed are independent
     blocks : number of randomisations of quasi-random points; 1 for independent draws
     keep : maximum number of draws to store
+    cluster : workers for the chunks
     """
     size, limits = len(model.inputs), len(model.limits)
     per_block = count if blocks == 1 else 1 << max(0, int(np.ceil(np.log2(count / blocks))))
     hits = np.zeros((limits + 2, blocks))
     stored: list[tuple[Vector, Vector]] = []
     count_drawn = 0
-    for block in range(blocks):
-        source = (seed, 2 + stream, block)
-        for points in _points(size, per_block, source, blocks > 1):
-            draws = model.at(points)
-            met = draws.met
-            joint = np.stack([met[model.own].all(axis=0), met.all(axis=0)])
-            hits[:, block] += np.concatenate([met, joint]).sum(axis=1)
-            space = keep - count_drawn
-            if space > 0:
-                stored.append((draws.values[:, :space], draws.margins[:, :space]))
-            count_drawn += points.shape[1]
-            tell("draws", count_drawn / (per_block * blocks))
+
+    def tasks() -> Iterator[tuple[Vector, int]]:
+        space = keep
+        for block in range(blocks):
+            for points in _points(size, per_block, (seed, 2 + stream, block), blocks > 1):
+                yield points, max(space, 0)
+                space -= points.shape[1]
+
+    for chunk_hits, count_in_chunk, values, margins in cluster.map(partial(_met, model), tasks()):
+        hits[:, count_drawn // per_block] += chunk_hits
+        if values.shape[1]:
+            stored.append((values, margins))
+        count_drawn += count_in_chunk
+        tell("draws", count_drawn / (per_block * blocks))
     values, margins = (np.concatenate(part, axis=1) for part in zip(*stored, strict=True))
     return HitCounts(hits, per_block, StoredDraws(values, margins))
+
+
+def _met(model: UncertainModel, task: tuple[Vector, int]) -> tuple[Vector, int, Vector, Vector]:
+    """Evaluate a chunk of draws: points of the unit cube, and how many of them to store.
+
+    Returns the numbers of draws that meet each limit (see `HitCounts`), the number of draws, and
+    the inputs and margins of the draws to store.
+    """
+    points, space = task
+    draws = model.at(points)
+    met = draws.met
+    joint = np.stack([met[model.own].all(axis=0), met.all(axis=0)])
+    hits = np.concatenate([met, joint]).sum(axis=1)
+    return hits, points.shape[1], draws.values[:, :space], draws.margins[:, :space]
 
 
 def _points(size: int, count: int, seed: tuple[int, ...], scrambled: bool) -> Iterator[Vector]:
@@ -245,11 +268,11 @@ def quantiles(margins: Vector) -> Vector:
 
 
 def _indices(
-    model: UncertainModel, outputs: Sequence[str], rows: int, seed: int
+    model: UncertainModel, outputs: Sequence[str], rows: int, seed: int, cluster: Cluster
 ) -> tuple[tuple[Index, ...], float]:
     if rows == 0 or not model.inputs:
         return (), 0.0
-    estimate = indices(model.outputs, len(model.inputs), rows=rows, seed=seed)
+    estimate = indices(model.outputs, len(model.inputs), rows=rows, seed=seed, cluster=cluster)
     named = tuple(
         Index(entry.path, output, *(number(float(x[i, k])) for x in (
             estimate.first, estimate.total, estimate.first_half, estimate.total_half)))

@@ -28,8 +28,7 @@ from actuator_opt.optimisation.prices import Sensitivity
 from actuator_opt.optimisation.result import Infeasibility, Kkt, Optimisation, VariableResult
 from actuator_opt.pages import report
 from actuator_opt.rendering import paper, terminal
-from actuator_opt.rendering.blocks import Table
-from actuator_opt.rendering.origin import Origin
+from actuator_opt.rendering.blocks import Origin, Table
 from actuator_opt.replicas import published
 
 SOURCE = """name: robot knee
@@ -564,6 +563,7 @@ def build_evaluation(name: str = "robot knee", **changes: Any) -> Evaluation:
                 False,
             ),
         ),
+        mass_leaves_out=("ports and fittings",),
         mass_parts={
             "barrel": 0.0431,
             "rod": 0.0812,

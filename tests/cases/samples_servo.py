@@ -23,7 +23,7 @@ SAMPLES = {
         {"compression": x, "closing_speed": v, "stiffness": 5e7, "damping": 2e4}
         for x, v in ((1e-4, 0.1), (1e-4, -0.4))
     ],
-    "oil_energy.oil_energy_density": [
+    "chamber.oil_energy_density": [
         {**OIL, "pressure": 1.4e7, "slope": 10.0, "polytropic_index": 1.4},
         {**OIL, "pressure": -5e4, "slope": 0.0, "polytropic_index": 1.0},
     ],

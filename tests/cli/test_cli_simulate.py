@@ -284,7 +284,7 @@ def test_a_run_that_ends_says_where_the_actuator_was(tmp_path):
     place = re.match(r"at 0\.1\d+ s: .*position of the piston (-[\d.]+) mm, speed", result.err)
     assert -2.0 <= float(place[1]) < -1.95
     assert "pressure in chamber B -1.0" in result.err
-    assert "the joint reaches its dead centre" in result.err
+    assert "the linkage reaches its dead" in result.err
 
 
 @pytest.mark.parametrize("name", sorted(one.name for one in DESIGNS.glob("*.yaml")))

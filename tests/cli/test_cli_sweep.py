@@ -60,8 +60,9 @@ def test_no_feasible_variant_is_exit_1():
             "omit --store, --csv and --parquet",
             2,
         ),
-        ([*BORES, "--reduce", "best:3", "--engine", "abacus"], "use numpy or jax", 2),
+        ([*BORES, "--reduce", "best:3", "--engine", "abacus"], "use numpy, jax or gpu", 2),
         ([*BORES, "--engine", "jax"], "add --reduce best:K", 2),
+        ([*BORES, "--reduce", "best:3", "--engine", "gpu"], "omit --reduce or --engine", 2),
         ([*BORES, "--workers", "0"], "give 1 to 1024", 2),
         ([*BORES, "--workers", "100000"], "give 1 to 1024", 2),
         ([*BORES, "--csv", "/nowhere/x.csv"], "cannot write", 3),
@@ -85,7 +86,7 @@ def test_a_missing_engine_is_told_and_numpy_works(monkeypatch):
     words = ["sweep", KNEE, *SETS, *BORES, "--reduce", "best:1", "--json"]
     plain, asked = run(*words), run(*words, "--engine", "jax")
     assert asked.err.strip().splitlines() == [
-        "JAX not installed (pip install 'actuator-opt[gpu]'); used NumPy"
+        "JAX not installed (pip install 'actuator-opt[jax]'); used NumPy"
     ]
     plain, asked = json.loads(plain.out), json.loads(asked.out)
     assert asked["engine"] == "numpy"

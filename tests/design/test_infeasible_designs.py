@@ -11,7 +11,7 @@ from cli_runner import DESIGNS, KNEE, bench, run
 from actuator_opt.api import read
 from actuator_opt.design.materials import load_library
 from actuator_opt.optimisation.cures import SUBSTITUTES
-from actuator_opt.optimisation.infeasibility_card import KINDS
+from actuator_opt.optimisation.infeasibility import KINDS
 from actuator_opt.optimisation.run import optimise
 from actuator_opt.pages.report import verdict
 
@@ -182,7 +182,7 @@ def test_a_fixed_dimension_that_alone_is_enough_comes_first(path, now):
         factor = needed(card, "requirements.retention_burst_factor.min")
         assert first["needed"] == pytest.approx(first["now"] * 4 / factor, rel=1e-3)
     missed = next(check.name for check in result.evaluation.checks if check.status == "missed")
-    line = f"8 of 8 requirements met, but missed: {missed}"
+    line = f"8 of 8 requirements met; checks missed: {missed}"
     assert verdict(result).lines[0] == line
     assert line in str(result)
     assert card.sentence in str(result)
@@ -203,7 +203,7 @@ def test_a_back_up_ring_is_offered_with_all_it_needs():
     """NBR 70 at 210 bar has too large a gap: a ring, or NBR 90, comes before a lower factor."""
     actuator = read(bench(), set={"seals.piston.compound": "nbr_70"})
     result = solved(actuator)
-    assert "but missed: extrusion of the seals" in verdict(result).lines[0]
+    assert "checks missed: extrusion of the seals" in verdict(result).lines[0]
     ring, *others = result.infeasibility.cures
     assert (ring["kind"], ring["parameter"]) == ("choice", "seals.piston.back_up")
     assert (ring["now"], ring["needed"]) == ("none", "one")

@@ -27,8 +27,10 @@ from pathlib import Path
 
 import pytest
 
+import actuator_opt as ao
 from actuator_opt import api as verbs
 from actuator_opt.design.materials import load_library
+from actuator_opt.pages.report import masses
 
 DESIGNS = Path(__file__).parents[2] / "designs"
 DIMENSIONS = {
@@ -163,3 +165,39 @@ def test_the_drawing_has_the_volumes_of_the_mass_model(name) -> None:
         drawn[part] = drawn.get(part, 0.0) + density * volume
     for part in ("barrel", "rod", "piston", "caps", "glands"):
         assert drawn[part] == pytest.approx(evaluation.mass_parts[part], rel=1e-9), part
+
+
+EXTRA = """
+extra_masses:
+  - {kind: sensor, mass: 35 g, place: rod}
+  - {kind: ports, mass: 12 g, place: barrel}
+  - {kind: other, mass: 3 g, place: piston}
+"""
+
+
+def test_stated_components_count_and_those_on_the_rod_move():
+    """The mass grows by what is stated; the rod's frequency falls by the moving part alone."""
+    text = (DESIGNS / "knee.yaml").read_text("utf-8")
+    plain, full = ao.evaluate(ao.read(text)), ao.evaluate(ao.read(text + EXTRA))
+    assert full.metrics["mass"].value == pytest.approx(
+        plain.metrics["mass"].value + 0.050, rel=1e-12
+    )
+    assert full.mass_parts["components"] == pytest.approx(0.012)
+    assert full.mass_parts["moving components"] == pytest.approx(0.038)
+    moving = sum(plain.mass_parts[part] for part in ("rod", "piston", "fastening"))
+    load = ao.read(text).design.load.mass
+    ratio = full.metrics["natural_frequency"].value / plain.metrics["natural_frequency"].value
+    assert ratio == pytest.approx(((load + moving) / (load + moving + 0.038)) ** 0.5, rel=1e-9)
+
+
+def test_reports_name_what_the_mass_leaves_out():
+    """What a design states is no longer left out; a bond seals, so it needs no static seals."""
+    text = (DESIGNS / "knee.yaml").read_text("utf-8")
+    plain, full = ao.evaluate(ao.read(text)), ao.evaluate(ao.read(text + EXTRA))
+    gone = set(plain.mass_leaves_out) - set(full.mass_leaves_out)
+    assert gone == {"position sensor", "ports and fittings"}
+    assert "static seals of the ends" not in plain.mass_leaves_out
+    screwed = ao.evaluate(ao.read(DESIGNS / "steel_baseline.yaml"))
+    assert "static seals of the ends" in screwed.mass_leaves_out
+    assert plain.to_dict()["mass_leaves_out"] == list(plain.mass_leaves_out)
+    assert masses(plain).note.startswith("The dry mass leaves out: ports and fittings, fastening")

@@ -14,8 +14,7 @@ from actuator_opt.base.errors import ActuatorError
 from actuator_opt.finite_elements import equilibrium, mesh, o_ring
 from actuator_opt.finite_elements.material import MooneyRivlin, stress, tangent
 from actuator_opt.finite_elements.o_ring import squeezed_ring
-from actuator_opt.finite_elements.result import stress_field
-from actuator_opt.finite_elements.section import Assembly, MeshedBody
+from actuator_opt.finite_elements.section import Assembly, MeshedBody, stress_field
 from actuator_opt.models import seals
 
 SECTION, MODULUS, GROOVE = 3.53e-3, 8e6, 4.82e-3

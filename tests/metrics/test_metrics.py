@@ -8,9 +8,8 @@ import actuator_opt as ao
 from actuator_opt.evaluation.kernel import compute
 from actuator_opt.evaluation.limits import MetricArrays, all_limits, default_limits
 from actuator_opt.evaluation.validity import function_of, model_of
-from actuator_opt.metrics import METRICS, metric, table
-from actuator_opt.metrics.metric import CRITERION, CheckLine, Least, MetricRow
-from actuator_opt.metrics.table import ROWS
+from actuator_opt.metrics import METRICS, table
+from actuator_opt.metrics.table import CRITERION, ROWS, CheckLine, Least, MetricRow
 
 DESIGNS = sorted((Path(__file__).parents[2] / "designs").glob("*.yaml"))
 MASS = ROWS["mass"]
@@ -69,10 +68,10 @@ def test_a_limit_without_source_is_refused():
 def test_doubled_rows_and_checks_are_refused():
     """Two metrics of a name, two lines of a number."""
     with pytest.raises(ValueError, match="metric mass: duplicate name"):
-        metric.table([MASS, MASS])
+        table.table([MASS, MASS])
     other = row(check=CheckLine(MASS.check.number, "span"))
     with pytest.raises(ValueError, match=r"check 13\.1: used by mass and span"):
-        metric.table([MASS, other])
+        table.table([MASS, other])
 
 
 def test_an_undeclared_metric_cannot_be_computed():

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, strategies as st
 from scipy.integrate import quad, solve_ivp
 
-from actuator_opt.models import accumulator, chamber, lugre, oil_energy
+from actuator_opt.models import accumulator, chamber, lugre
 
 LAWS = [
     {"bulk_modulus": 1.4e9, "slope": 0.0, "air_content": 0.0, "polytropic_index": 1.4},
@@ -36,13 +36,13 @@ def test_energy_is_the_work_of_compression(law, pressure):
         inner, _ = quad(volume, low, high, epsabs=0, epsrel=1e-12)
         work += inner
     work -= pressure * volume(pressure)  # by parts: -int p dV = int V dp - p V
-    found = oil_energy.oil_energy_density(pressure=pressure, **law) * volume(pressure)
+    found = chamber.oil_energy_density(pressure=pressure, **law) * volume(pressure)
     assert found == pytest.approx(work, rel=1e-6, abs=1e-7 * abs(pressure))
 
 
 def test_stiff_oil_stores_half_the_square():
     """p^2/(2 K) where the oil hardly shrinks; at 140 bar and 1.4 GPa 70 kJ/m^3."""
-    found = oil_energy.oil_energy_density(pressure=140e5, bulk_modulus=1.4e9)
+    found = chamber.oil_energy_density(pressure=140e5, bulk_modulus=1.4e9)
     assert found == pytest.approx(140e5**2 / 2.8e9, rel=5e-3)
     assert found == pytest.approx(1.4e9 * np.expm1(0.01) - 140e5, rel=1e-9)
 

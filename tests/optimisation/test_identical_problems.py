@@ -8,7 +8,7 @@ import pytest
 
 import actuator_opt as ao
 from actuator_opt.optimisation.branch_and_bound import Listed, search
-from actuator_opt.optimisation.identical_problems import Evidence
+from actuator_opt.optimisation.choices import Evidence
 from actuator_opt.optimisation.problem import BoxProblem, PointValues
 from actuator_opt.optimisation.solver import solve
 

@@ -15,7 +15,7 @@ import actuator_opt as ao
 from actuator_opt.optimisation.redesign import solved
 from actuator_opt.pages import calibration as document
 from actuator_opt.rendering import paper, paper_plain as fallback, terminal
-from actuator_opt.rendering.origin import Origin
+from actuator_opt.rendering.blocks import Origin
 
 ORIGIN = Origin("a: 1\n", "a.yaml", "calibrate r.csv", "12ab")
 

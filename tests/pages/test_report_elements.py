@@ -18,7 +18,7 @@ from actuator_opt.evaluation.kernel import base
 from actuator_opt.evaluation.sealing import closed_form, room
 from actuator_opt.finite_elements.material import MooneyRivlin
 from actuator_opt.finite_elements.o_ring import squeezed_ring
-from actuator_opt.finite_elements.result import StressField
+from actuator_opt.finite_elements.section import StressField
 from actuator_opt.pages import seal, seal_figures, seal_sections as drawn
 from actuator_opt.rendering import contours, text
 from actuator_opt.studies.seal import study

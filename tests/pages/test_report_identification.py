@@ -23,8 +23,8 @@ from actuator_opt.pages import (
     read_attachment,
 )
 from actuator_opt.rendering import axes, chart, paper, paper_plain as fallback, terminal
+from actuator_opt.rendering.blocks import Origin
 from actuator_opt.rendering.chart import Axis
-from actuator_opt.rendering.origin import Origin
 from actuator_opt.rendering.series import csv_text
 
 ORIGIN = Origin(case.SOURCE, "a.yaml", "identify r.csv", "12ab")

@@ -19,8 +19,8 @@ from actuator_opt.evaluation import compute
 from actuator_opt.pages import seal, seal_figures, seal_sections
 from actuator_opt.pages.report import page
 from actuator_opt.rendering import contours, paper, paper_plain as fallback, terminal, text
+from actuator_opt.rendering.blocks import Origin
 from actuator_opt.rendering.ink import PALE, Ink
-from actuator_opt.rendering.origin import Origin
 from actuator_opt.studies.seal import study
 
 ORIGIN = Origin("a: 1\n", "a.yaml", "x", "12ab")

@@ -27,10 +27,9 @@ from actuator_opt.pages import (
     simulation_figures as figures,
 )
 from actuator_opt.rendering import axes, paper, series, terminal
-from actuator_opt.rendering.blocks import Chart, Column, Pair, Status, Table
+from actuator_opt.rendering.blocks import Chart, Column, Origin, Pair, Status, Table
 from actuator_opt.rendering.chart import Axis, Curve, Panel
 from actuator_opt.rendering.chart_ink import drawn
-from actuator_opt.rendering.origin import Origin
 from actuator_opt.simulation.integrate import Event
 from actuator_opt.simulation.result import EnergyFlow, RequirementResult, Second
 

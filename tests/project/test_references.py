@@ -15,8 +15,7 @@ import yaml
 from model_samples import public_functions
 
 from actuator_opt.evaluation.validity import describe, function_of
-from actuator_opt.metrics.metric import CRITERION
-from actuator_opt.metrics.table import ROWS
+from actuator_opt.metrics.table import CRITERION, ROWS
 from actuator_opt.models import elastomer, seals
 
 ROOT = Path(__file__).parents[2]

@@ -19,6 +19,7 @@ from actuator_opt.rendering.blocks import (
     Flag,
     Listing,
     Notes,
+    Origin,
     Page,
     Pair,
     Row,
@@ -31,7 +32,6 @@ from actuator_opt.rendering.blocks import (
     Verdict,
 )
 from actuator_opt.rendering.ink import Ink
-from actuator_opt.rendering.origin import Origin
 
 HOSTILE = "<script>alert('x')</script> & \"q\" \u202e \x1b[31m</style></pre>"
 VOID = {"meta", "br", "wbr", "rect", "path", "circle"}

@@ -103,7 +103,7 @@ def test_a_screen_loses_none_of_the_best(more, monkeypatch):
     screened_and_whole_agree(more, "numpy")
 
 
-@pytest.mark.skipif(not find_spec("jax"), reason="the extra gpu is not installed")
+@pytest.mark.skipif(not find_spec("jax"), reason="the extra jax is not installed")
 def test_another_engine_finds_the_same():
     """With JAX the same designs come out, to the bit; it is kept out of this process's forks."""
     script = (

@@ -22,7 +22,7 @@ VARY = ["cylinder.bore=18..26 mm", "rod.outer_diameter=9..13 mm"]
 def cluster():
     """Two workers, each a process of its own; a nanny starts a lost one again."""
     with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0", silence_logs=50
     ) as found:
         yield found
 
@@ -47,6 +47,6 @@ def test_a_cluster_with_a_killed_worker_gives_the_same_rows(cluster, monkeypatch
 
 def test_no_scheduler_is_said_in_one_line(monkeypatch):
     """Nothing answers at the address."""
-    monkeypatch.setattr("actuator_opt.sweeps.run.PATIENCE", "1s")
+    monkeypatch.setattr("actuator_opt.base.cluster.PATIENCE", "1s")
     with pytest.raises(UsageError, match="no scheduler answers"):
         ao.sweep(STEEL, ["cylinder.bore=18..26 mm:3"], scheduler="tcp://127.0.0.1:9")

@@ -21,7 +21,7 @@ from actuator_opt.design.writer import to_yaml
 from actuator_opt.pages import uncertainty as document
 from actuator_opt.pages.uncertainty import margins_figure, tornado
 from actuator_opt.rendering import paper, terminal
-from actuator_opt.rendering.origin import Origin
+from actuator_opt.rendering.blocks import Origin
 
 BORE, AIR = "cylinder.bore", "fluid.air_content"
 FIBRE = "materials.t700_epoxy.youngs_modulus_1"

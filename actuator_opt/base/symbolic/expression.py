@@ -491,7 +491,7 @@ def less_equal(first: Any, second: Any) -> Any:
 
 
 def both(first: Any, second: Any) -> Any:
-    """First and second."""
+    """Logical "and" of two conditions."""
     a, b = _ordered(_number(first), _number(second))
     if not isinstance(b, Symbol):
         return bool(a and b)
@@ -501,7 +501,7 @@ def both(first: Any, second: Any) -> Any:
 
 
 def either(first: Any, second: Any) -> Any:
-    """First or second."""
+    """Logical "or" of two conditions."""
     a, b = _ordered(_number(first), _number(second))
     if not isinstance(b, Symbol):
         return bool(a or b)

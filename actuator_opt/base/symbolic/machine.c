@@ -7,8 +7,8 @@
 
 #include "machine.h"
 
-#define TEXT(name) #name,
-static const char *const NAMES[] = {OPERATIONS(TEXT)};
+#define TEXT(name, result) #name,
+static const char *const NAMES[] = {OPERATIONS(TEXT) "roots"};
 
 enum { LANES = 32 };
 

@@ -5,19 +5,42 @@
    along several directions ("dual"). All numbers are doubles; a truth value is 0 or 1. NaN and
    infinity follow IEEE 754, as in NumPy.
 
-   C99 and C++, without allocation and without variables that outlive a call.
+   C99, C++ and CUDA, without allocation and without variables that outlive a call.
 */
+#if defined(__CUDACC_RTC__) /* the compiler of CUDA at run time has no headers */
+#define uint16_t unsigned short
+#define int32_t int
+#define ptrdiff_t long long
+#define size_t unsigned long long
+#define INFINITY __longlong_as_double(0x7ff0000000000000LL)
+#define NAN __longlong_as_double(0x7ff8000000000000LL)
+#define FUNCTION static __device__
+#define INLINE static __device__ __forceinline__
+#else
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
+#define FUNCTION static
+#if defined(__GNUC__)
+#define INLINE static inline __attribute__((always_inline))
+#else
+#define INLINE static inline
+#endif
+#endif
 
+/* Operations with their results, computed from operands a, b and c. */
 #define OPERATIONS(X) \
-    X(add) X(sub) X(mul) X(div) X(neg) X(sqrt) X(exp) X(expm1) X(log) X(log1p) X(pow) X(sin) \
-    X(cos) X(tan) X(tanh) X(sinh) X(cosh) X(arctan) X(arcsin) X(arccos) X(atan2) X(abs) X(sign) \
-    X(floor) X(cbrt) X(copysign) X(hypot) X(lt) X(le) X(eq) X(and) X(or) X(not) X(isnan) \
-    X(where) X(roots)
-#define ENUM(name) OP_##name,
-enum { OPERATIONS(ENUM) OPERATION_COUNT };
+    X(add, a + b) X(sub, a - b) X(mul, a * b) X(div, a / b) X(neg, -a) X(sqrt, sqrt(a)) \
+    X(exp, exp(a)) X(expm1, expm1(a)) X(log, log(a)) X(log1p, log1p(a)) X(pow, pow(a, b)) \
+    X(sin, sin(a)) X(cos, cos(a)) X(tan, tan(a)) X(tanh, tanh(a)) X(sinh, sinh(a)) \
+    X(cosh, cosh(a)) X(arctan, atan(a)) X(arcsin, asin(a)) X(arccos, acos(a)) \
+    X(atan2, atan2(a, b)) X(abs, fabs(a)) X(sign, sign_of(a)) X(floor, floor(a)) \
+    X(cbrt, cbrt(a)) X(copysign, copysign(a, b)) X(hypot, hypot(a, b)) X(lt, a < b) \
+    X(le, a <= b) X(eq, a == b) X(and, (a != 0) & (b != 0)) X(or, (a != 0) | (b != 0)) \
+    X(not, a == 0) X(isnan, a != a) X(where, a != 0 ? b : c)
+#define ENUM(name, result) OP_##name,
+/* After them, all roots of a polynomial, which are several results. */
+enum { OPERATIONS(ENUM) OP_roots, OPERATION_COUNT };
 
 /* An instruction is five short words: operation and flags, result, and up to three operands. */
 enum { WORDS = 5, MOST_DEGREE = 32 };
@@ -33,12 +56,6 @@ typedef struct {
     ptrdiff_t count, extras, results, constant_count, slots, inputs;
 } Program;
 
-#if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline))
-#else
-#define INLINE static inline
-#endif
-
 /* Write the constants of a program to their slots, after those of the instructions. */
 INLINE void constants_to(const Program *p, double *V, const int L) {
     for (ptrdiff_t k = 0; k < p->constant_count; k++)
@@ -52,7 +69,7 @@ static const double PI = 3.14159265358979323846;
 static const double SHY = 1 + 1e-15;   /* keeps rounding from carrying a step past the root */
 
 /* Roots of x^3 + b x^2 + c x + d, the real root first [Kahan1986]. */
-static void cubic(double b, double c, double d, double *re, double *im) {
+FUNCTION void cubic(double b, double c, double d, double *re, double *im) {
     double x = b * (-1.0 / 3), inflection = x;
     double first = x + b, second = first * x + c;
     double value = second * x + d, rise = (x + first) * x + second;
@@ -81,7 +98,7 @@ static void cubic(double b, double c, double d, double *re, double *im) {
 
 /* Roots of a monic polynomial with coefficients c[0..n-1], lowest first, all at once [Aberth1973];
    roots close to the real axis are placed on it and refined there. */
-static void together(const double *c, int n, double *re, double *im) {
+FUNCTION void together(const double *c, int n, double *re, double *im) {
     /* Starts on circles whose radii follow from the corners of the upper hull of log|c| [Bini1996]:
        few steps suffice even where the sizes of the roots differ by orders of magnitude. */
     double height[MOST_DEGREE + 1];
@@ -156,17 +173,15 @@ static void together(const double *c, int n, double *re, double *im) {
 
 /* All roots of a polynomial of degree n, lowest power first: NaN if a coefficient is not finite,
    a root at minus infinity if the leading one is zero. */
-static void roots(const double *p, int n, double *re, double *im) {
-    double lead = p[n], monic[MOST_DEGREE];
+FUNCTION void roots(const double *p, int n, double *re, double *im) {
+    double monic[MOST_DEGREE];
     int finite = 1, known = 1;
+    for (int k = 0; k <= n; k++) known &= isfinite(p[k]) != 0;
+    for (; known && n > 0 && p[n] == 0; n--) *re++ = -INFINITY, *im++ = 0.0;
+    if (n == 0) return;
+    const double lead = p[n];
     double size = pow(fabs(p[0] / lead), 1.0 / n);
     if (!(isfinite(size) && size > 0)) size = 1.0;
-    for (int k = 0; k <= n; k++) known &= isfinite(p[k]) != 0;
-    if (known && lead == 0) {
-        re[0] = -INFINITY, im[0] = 0.0;
-        if (n > 1) roots(p, n - 1, re + 1, im + 1);
-        return;
-    }
     for (int k = 0; k < n; k++) {
         monic[k] = p[k] / lead * pow(size, (double)(k - n));
         finite &= isfinite(monic[k]) != 0;
@@ -183,70 +198,37 @@ static void roots(const double *p, int n, double *re, double *im) {
 
 /* ---- values ---- */
 
-#define EACH for (int l = 0; l < L; l++)
-#define VALUE(expression) { EACH { const double a = A[l]; R[l] = (expression); } break; }
-#define VALUES(expression) \
-    { EACH { const double a = A[l], b = B[l]; R[l] = (expression); } break; }
+FUNCTION double sign_of(double a) { return a != a ? a : (a > 0) - (a < 0); }
 
-static double sign_of(double a) { return a != a ? a : (a > 0) - (a < 0); }
+/* The roots of an instruction, for one design whose slots are `stride` numbers apart; operands:
+   place of the coefficients' slots in `extra`, and the degree. */
+FUNCTION void roots_of(const uint16_t *at, const double *p, double *R, size_t stride) {
+    const int n = at[3];
+    double re[MOST_DEGREE], im[MOST_DEGREE];
+    roots(p, n, re, im);
+    for (int k = 0; k < n; k++) R[k * stride] = re[k], R[(n + k) * stride] = im[k];
+}
+
+#define VALUES(name, result) \
+    case OP_##name: \
+        for (int l = 0; l < L; l++) { \
+            const double a = A[l], b = B[l], c = C[l]; \
+            (void)b, (void)c, R[l] = (result); \
+        } \
+        break;
 
 /* Compute the values of an instruction's result in L lanes. */
 INLINE void value_of(const uint16_t *at, const int32_t *extra, double *V, const int L) {
-    double *R = V + (size_t)at[1] * L;
-    const double *A = V + (size_t)at[2] * L, *B = V + (size_t)at[3] * L;
+    double *R = V + (size_t)at[1] * L, p[MOST_DEGREE + 1];
+    const double *A = V + (size_t)at[2] * L, *B = V + (size_t)at[3] * L, *C = V + (size_t)at[4] * L;
     switch (OPERATION(at)) {
-        case OP_add: VALUES(a + b)
-        case OP_sub: VALUES(a - b)
-        case OP_mul: VALUES(a * b)
-        case OP_div: VALUES(a / b)
-        case OP_neg: VALUE(-a)
-        case OP_sqrt: VALUE(sqrt(a))
-        case OP_exp: VALUE(exp(a))
-        case OP_expm1: VALUE(expm1(a))
-        case OP_log: VALUE(log(a))
-        case OP_log1p: VALUE(log1p(a))
-        case OP_pow: VALUES(pow(a, b))
-        case OP_sin: VALUE(sin(a))
-        case OP_cos: VALUE(cos(a))
-        case OP_tan: VALUE(tan(a))
-        case OP_tanh: VALUE(tanh(a))
-        case OP_sinh: VALUE(sinh(a))
-        case OP_cosh: VALUE(cosh(a))
-        case OP_arctan: VALUE(atan(a))
-        case OP_arcsin: VALUE(asin(a))
-        case OP_arccos: VALUE(acos(a))
-        case OP_atan2: VALUES(atan2(a, b))
-        case OP_abs: VALUE(fabs(a))
-        case OP_sign: VALUE(sign_of(a))
-        case OP_floor: VALUE(floor(a))
-        case OP_cbrt: VALUE(cbrt(a))
-        case OP_copysign: VALUES(copysign(a, b))
-        case OP_hypot: VALUES(hypot(a, b))
-        case OP_lt: VALUES(a < b)
-        case OP_le: VALUES(a <= b)
-        case OP_eq: VALUES(a == b)
-        case OP_and: VALUES((a != 0) & (b != 0))
-        case OP_or: VALUES((a != 0) | (b != 0))
-        case OP_not: VALUE(a == 0)
-        case OP_isnan: VALUE(a != a)
-        case OP_where: {
-            const double *C = V + (size_t)at[4] * L;
-            EACH { const double b = B[l], c = C[l]; R[l] = A[l] != 0 ? b : c; }
-            break;
-        }
-        case OP_roots: { /* operands: place of the coefficients' slots in `extra`, and the degree */
-            const int n = at[3];
-            double p[MOST_DEGREE + 1], re[MOST_DEGREE], im[MOST_DEGREE];
-            EACH {
-                for (int k = 0; k <= n; k++) p[k] = V[(size_t)extra[at[2] + k] * L + l];
-                roots(p, n, re, im);
-                for (int k = 0; k < n; k++) {
-                    R[(size_t)k * L + l] = re[k];
-                    R[(size_t)(n + k) * L + l] = im[k];
-                }
+        OPERATIONS(VALUES)
+        case OP_roots:
+            for (int l = 0; l < L; l++) {
+                for (int k = 0; k <= at[3]; k++) p[k] = V[(size_t)extra[at[2] + k] * L + l];
+                roots_of(at, p, R + l, L);
             }
             break;
-        }
     }
 }
 

@@ -85,6 +85,10 @@ class Program:
         _MACHINE.run(self._runnable(None), points, np.empty(0), 0, results)
         return results
 
+    def require_valid(self) -> None:
+        """Raise `ValueError` if the program would use memory outside its slots."""
+        self._runnable(None)
+
     def with_fixed(self, values: Array) -> Program:
         """The same program of fewer inputs: the last inputs become constants with these values."""
         count = self.inputs - len(values)

@@ -1,8 +1,9 @@
 """Programs of recorded functions in a folder of the user, so that later runs need not record again.
 
 A file has a line of JSON with sizes and a checksum, and then the compressed arrays. Files are data
-from elsewhere: their sizes are checked here, their slots by the machine, and their results by
-`recorded`. A file that cannot be read or written only costs a new recording.
+from elsewhere: this module checks their sizes, the machine the slots of every instruction, and
+`recorded` compares results with the models. A file that cannot be read or written only costs a new
+recording.
 """
 
 from __future__ import annotations
@@ -40,20 +41,26 @@ _KINDS: Final = {"code": "<u2", "extra": "<i4", "outputs": "<i4", "frozen": "<i4
 """Type of the elements of every array, in the order of the file."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Recording:
     """A program whose last outputs are guards: conditions on which the function branches.
 
-    `answers` are the truth values of the guards for which the program is correct.
+    `answers` are the truth values of the guards for which the program is correct. `checked` says
+    whether this process has compared the program with its function.
     """
 
     program: Program
     answers: Array
+    checked: bool = False
 
     @property
     def rows(self) -> int:
         """Number of results, without the guards."""
         return len(self.program.outputs) - len(self.answers)
+
+    def covers(self, point: Array) -> bool:
+        """Whether a point (inputs,) takes the recorded branches."""
+        return bool(self.holds(self.program.values(point[None]))[0])
 
     def holds(self, results: Array) -> Array:
         """Whether each point (points, outputs) takes the recorded branches."""

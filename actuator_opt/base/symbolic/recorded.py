@@ -43,6 +43,7 @@ class RecordedFunction:
     Attributes
     ----------
     reason : why the function is not run by the machine, if it is not
+    run : computes the outputs of a program at points (points, inputs): the machine, or a GPU
     """
 
     def __init__(
@@ -57,6 +58,7 @@ class RecordedFunction:
         self.present = present
         self.structure = structure
         self.reason = "" if programs.AVAILABLE else programs.NOT_BUILT
+        self.run: Callable[[Program, Array], Array] = Program.values
         self.recording: Recording | None = None
         self._fixed: tuple[Recording, Program] | None = None
         self.recordings = 0
@@ -70,7 +72,7 @@ class RecordedFunction:
         """
         if not self.reason and self.recording is None:
             self._record(self.present)
-        if self.recording is None:
+        if self.recording is None or not programs.AVAILABLE:  # sent to a worker without the machine
             return self.function(self._whole(points))
         return self._slopes(points) if np.iscomplexobj(points) else self._values(points)
 
@@ -88,6 +90,7 @@ class RecordedFunction:
             expected = self.function(points)
         if same(self._values(points), expected, floor):
             return True
+        self.recording.checked = False
         self.recording, self.reason = None, "the recording differs from the models"
         return False
 
@@ -99,7 +102,7 @@ class RecordedFunction:
                 program = program.with_fixed(self.present[len(points) :])
                 self._fixed = self.recording, program
             program = self._fixed[1]
-        results = program.values(points.T)
+        results = self.run(program, points.T)
         holds = self.recording.holds(results)
         rows = results[:, : self.recording.rows].T
         rows = rows if fewer else np.ascontiguousarray(rows)
@@ -110,7 +113,9 @@ class RecordedFunction:
         """The points with the present values of all inputs that they lack, (inputs, k)."""
         if len(points) == len(self.names):
             return points
-        others = np.broadcast_to(self.present[len(points) :, None], (len(self.present) - len(points), points.shape[1]))
+        others = np.broadcast_to(
+            self.present[len(points) :, None], (len(self.present) - len(points), points.shape[1])
+        )
         return np.concatenate([points, others])
 
     def _slopes(self, points: Array) -> Array:
@@ -125,12 +130,12 @@ class RecordedFunction:
         steps = points.imag.reshape(-1, count, width).transpose(1, 0, 2) / STEP
         values, slopes = self.recording.program.slopes(points.real[:, firsts].T, steps)
         holds = self.recording.holds(values)
-        rows = np.empty((self.recording.rows, count, width), dtype=complex)
+        rows: Array = np.empty((self.recording.rows, count, width), dtype=complex)
         rows.real = values[:, : len(rows)].T[:, :, None]
         rows.imag = STEP * slopes[:, : len(rows)].transpose(1, 0, 2)
-        rows = rows.reshape(len(rows), -1)
-        self._complete(points, rows, np.repeat(holds, width))
-        return rows
+        joined: Array = rows.reshape(len(rows), -1)
+        self._complete(points, joined, np.repeat(holds, width))
+        return joined
 
     def _complete(self, points: Array, rows: Array, holds: Array) -> None:
         """Call the function itself for points on unrecorded branches; if many, record it again."""
@@ -151,11 +156,16 @@ class RecordedFunction:
             self.reason = "the models take different branches for different designs"
             return
         self.recordings += 1
+        key = "" if self.structure is None else program_store.key_of(self.structure)
+        known = program_store.read(key) if key else []
+        for stored in known:
+            if stored.checked and stored.covers(point):
+                self.recording = stored
+                return
         points = np.stack([point, point * (1 + 1e-3)], axis=1)
         with np.errstate(all="ignore"):
             expected = self.function(points)
-        key = "" if self.structure is None else program_store.key_of(self.structure)
-        for stored in program_store.read(key) if key else ():
+        for stored in known:
             if _agrees(stored, points, expected):
                 self.recording = stored
                 return
@@ -199,7 +209,8 @@ def _agrees(recording: Recording, points: Array, expected: Array) -> bool:
     except ValueError:  # damaged
         return False
     rows = results[:, : recording.rows].T[:, (holds := recording.holds(results))]
-    return bool(holds[0]) and same(rows, expected[:, holds])
+    recording.checked = bool(holds[0]) and same(rows, expected[:, holds])
+    return recording.checked
 
 
 def same(first: Array, second: Array, floor: float | Array = 1.0) -> bool:

@@ -9,10 +9,17 @@ from typing import Any
 
 from ...base import quantities
 from ...base.errors import Fault
-from ..build import how_to_add
 from ..kinds import Section, position_at
 from ..model import Design
-from ..structure import FileView, Loc, child_at, entries, length_text, without_effect
+from ..structure import (
+    FileView,
+    Loc,
+    child_at,
+    entries,
+    how_to_add,
+    length_text,
+    without_effect,
+)
 from .kinds import FRICTIONS, LAWS, SHAPES, SUPPLIES, ControlLaw
 from .model import (
     FEWEST_SAMPLES,
@@ -54,7 +61,7 @@ def part_lists(
 
 
 def _parts(view: FileView) -> Iterator[tuple[Loc, str, type[Section]]]:
-    """Location, shape and class of every signal part that has a known shape."""
+    """Location, name of the waveform and class of every signal part whose waveform is known."""
     for place, section in part_lists().items():
         for index in range(len(view.items(*place))):
             shape = view.text(*place, index, "shape")

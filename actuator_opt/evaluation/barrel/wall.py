@@ -26,7 +26,7 @@ from ...models.autofrettage import Autofrettage
 from ...models.layered_tube import layered_tube, ply_stresses_at_faces, tube_state
 from ...models.strength import yield_utilisation
 from ...models.strength_modes import Stress
-from ..geometry import Geometry, Numbers, clamped, end_at, joint_of
+from ..geometry import Geometry, Numbers, clamped, end_at, joints_of
 from ..limits import MaterialValues
 from ..plies import Layer, stress_of
 from ..state import LoadState
@@ -104,10 +104,11 @@ def load_path(
 
 def clamp_stiffness(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Array:
     """Axial stiffness of the parts, such as tie rods, that clamp the barrel between both ends."""
-    joint = joint_of(design)
-    assert joint is not None
-    assert joint.stiffness is not None
-    return joint.stiffness(end_at(design, Numbers(v), g), stock)
+    (end_joint,) = joints_of(design)
+    assert end_joint.joint.stiffness is not None
+    return end_joint.joint.stiffness(
+        end_at(design, end_joint, Numbers(v, end_joint.path), g), stock
+    )
 
 
 def _clamped(

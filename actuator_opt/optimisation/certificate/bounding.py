@@ -84,7 +84,8 @@ class Products:
 class Lines(NamedTuple):
     """Lines that bound a curve: low <= out + coefficient * ratio <= high.
 
-    `out` and `ratio` are the columns of the curve's value and of the log ratio that it depends on.
+    In the linear programme, `out` is the column of the curve's value, and `ratio` that of its
+    argument, which is the logarithm of a ratio.
     """
 
     ratio: Any

@@ -102,7 +102,7 @@ class Builder:
         return entry
 
     def _tightest(self, node: Symbol) -> tuple[float, Form]:
-        """Sign and logarithm of a value; from samples if these give tighter bounds."""
+        """Sign and logarithm of a value; a fit to samples is used if its bounds are tighter."""
         if node.op not in _MONOMIAL or self._repeats(node):
             with suppress(Unknown):
                 return self._sampled(node)
@@ -620,17 +620,24 @@ class Envelopes:
 
     @staticmethod
     def joint(statics: Statics, out: MetricArrays) -> None:
-        """Replace the retention factor of the barrel ends' joint by an unknown between estimates.
+        """Replace the retention factor of the barrel ends' joints by an unknown between estimates.
 
-        Nothing changes if the joint has no such factor or no estimates.
+        Nothing changes for a joint that has no such factor or no estimates.
         """
-        retention = statics.joint
-        if retention is None or retention.joint.envelope is None:
-            return
-        burst = out.metrics.get("retention_burst_factor", {})
-        factors = retention.joint.envelope(retention.loaded, burst)
-        if factors:
-            out.metrics["retention_factor"] = dict(factors)
+        for end in statics.joints:
+            if end.joint.envelope is None:
+                continue
+            factors, burst = (
+                {place: x for place, x in out.metrics.get(name, {}).items()
+                 if place.startswith(end.end_joint.name)}
+                for name in ("retention_factor", "retention_burst_factor")
+            )  # fmt: skip
+            estimates = end.placed(end.joint.envelope(end.loaded, burst))
+            if estimates:
+                others = out.metrics.get("retention_factor", {}).items()
+                out.metrics["retention_factor"] = estimates | {
+                    place: x for place, x in others if place not in factors
+                }
 
     def _path(
         self,

@@ -172,13 +172,13 @@ class Tables:
     def secant_errors(
         self, low: Vector, high: Vector, slope: Vector, indices: Any
     ) -> tuple[Vector, Vector]:
-        """Least and largest distance of some functions from lines through their values at `low`.
+        """Least and largest distance of some curves from lines through their values at `low`.
 
         Parameters
         ----------
-        low, high : ranges of the arguments, for all tables
+        low, high : ranges of the arguments, for all curves
         slope : slope of each line
-        indices : numbers of the tables examined
+        indices : indices of the curves examined
         """
         first, last = self.value(low)[indices], self.value(high)[indices]
         low, high, slope = low[indices], high[indices], slope[indices]

@@ -15,10 +15,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
+from ...base.cluster import HERE, Cluster
 from ...base.dataclass import dataclass
 from ...base.numeric import Array
 from ...base.progress import tell
@@ -165,7 +167,7 @@ def _optima(run_ends: Sequence[Point], converged: Sequence[Point | None]) -> lis
 
 
 def normalised(
-    objectives: Objectives, checked: Evaluator, anchors: Anchors
+    objectives: Objectives, checked: Evaluator, anchors: Anchors, cluster: Cluster = HERE
 ) -> tuple[Tracer, Vector]:
     """A `Tracer` with normalised objectives, and the n variables of the k anchors (n, k).
 
@@ -184,11 +186,11 @@ def normalised(
         width = np.where(width <= CONFLICT * magnitude, magnitude, width)
         if tracer is not None or best_of_all.any():
             break
-        tracer = Tracer(objectives, ideal, width, checked)
+        tracer = Tracer(objectives, ideal, width, checked, cluster)
         x = _sharpened(tracer, x, tracer.normal(values))
         values = objectives.values(x)
     if tracer is None:
-        tracer = Tracer(objectives, ideal, width, checked)
+        tracer = Tracer(objectives, ideal, width, checked, cluster)
     else:
         tracer.rescale(ideal, width)
     return tracer, x
@@ -222,13 +224,22 @@ ROUNDS = 24
 def overlooked(tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort) -> list[Vector]:
     """Search for better designs within the levels (upper limits of the objectives) of some designs.
 
-    Returns the variables (n,) of the designs found.
+    Returns the variables (n,) of the designs found. The searches are independent: on a cluster they
+    run side by side.
     """
-    run_ends: list[list[Point]] = [[] for _ in designs]
-    if tracer.exact and designs:
-        run_ends = _feasible_ends(tracer, designs, effort)
+    groups = tracer.cluster.parts(list(enumerate(designs)), 1)
+    work = partial(_overlooked, tracer, effort)
+    return [x for improvements in tracer.cluster.map(work, groups) for x in improvements]
+
+
+def _overlooked(
+    tracer: Tracer, effort: FrontEffort, numbered: Sequence[tuple[int, FrontDesign]]
+) -> list[Vector]:
+    run_ends: list[list[Point]] = [[] for _ in numbered]
+    if tracer.exact:
+        run_ends = _feasible_ends(tracer, [design for _, design in numbered], effort)
     result = []
-    for number, (design, points) in enumerate(zip(designs, run_ends, strict=True)):
+    for (number, design), points in zip(numbered, run_ends, strict=True):
         ends = [(point.objective, point.x) for point in points]
         if not ends:
             solution = solve(
@@ -356,15 +367,21 @@ class Front:
         return np.asarray(np.sqrt((np.diff(self.units, axis=1) ** 2).sum(axis=0)))
 
 
-def front(objectives: Objectives, settings: FrontSettings) -> Front | NoAnchor:
-    """Compute the front; return the failed search if an objective's best design is missing."""
+def front(
+    objectives: Objectives, settings: FrontSettings, cluster: Cluster = HERE
+) -> Front | NoAnchor:
+    """Compute the front; return the failed search if an objective's best design is missing.
+
+    On a cluster run the designs at given levels (`Tracer.solve`) and the searches that check them
+    (`overlooked`). The search for the anchors shares its model calls, and runs in this process.
+    """
     effort = FrontEffort(settings.starts, settings.samples, settings.seed)
     tell("searching for the ends of the front")
     checked, warnings = objectives.checked()
     anchors = find_anchors(objectives, checked, effort)
     if isinstance(anchors, NoAnchor):
         return anchors
-    tracer, x = normalised(objectives, checked, anchors)
+    tracer, x = normalised(objectives, checked, anchors, cluster)
     if x.shape[1] == 1:
         return _single(tracer, x, warnings)
     search = FrontSearch(tracer, tracer.initial_designs(x), anchors.others)

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import numpy.typing as npt
 
+from ...base.cluster import HERE, Cluster
 from ...base.dataclass import dataclass
 from .. import kkt
 from ..evaluator import Evaluator, Point
@@ -133,6 +134,9 @@ ROUNDS = 4
 """Maximum number of rounds in which designs exchange results. The rounds end as soon as nothing
 improves."""
 
+GROUP = 16
+"""Number of designs that a worker of a cluster computes in shared steps."""
+
 CURVED = 2
 """Maximum number of times that the Hessian is recomputed if full steps do not converge."""
 
@@ -183,12 +187,19 @@ class Tracer:
     objectives : the objectives
     ideal, width : offset and scale that normalise the objectives
     checked : an evaluator whose gradients are checked, see `Objectives.checked`
+    cluster : workers that compute the designs at given levels, see `solve`
     """
 
     def __init__(
-        self, objectives: Objectives, ideal: Vector, width: Vector, checked: Evaluator
+        self,
+        objectives: Objectives,
+        ideal: Vector,
+        width: Vector,
+        checked: Evaluator,
+        cluster: Cluster = HERE,
     ) -> None:
         self.objectives = objectives
+        self.cluster = cluster
         self._checked = checked
         self.rescale(ideal, width)
         self.scale = float(self.evaluator.space.scale[-1])
@@ -274,9 +285,15 @@ class Tracer:
         """Find the design at the levels of each start; None where not found.
 
         If the steps from a start fail, a descent follows from the best of the designs `fallbacks`.
+        The designs are independent of each other; on a cluster, groups of them run side by side.
         """
-        if not starts:
-            return []
+        work = partial(self._solved, fallbacks=fallbacks)
+        groups = self.cluster.parts(starts, GROUP if self.exact else 1)
+        return [design for designs in self.cluster.map(work, groups) for design in designs]
+
+    def _solved(
+        self, starts: Sequence[FrontStart], fallbacks: Sequence[FrontDesign]
+    ) -> list[FrontDesign | None]:
         designs: list[FrontDesign | None] = [None] * len(starts)
         if self.exact:
             designs = self._follow(starts)

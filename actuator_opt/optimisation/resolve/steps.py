@@ -18,7 +18,7 @@ limits determine the step [NocedalWright2006] section 16.2.
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from typing import Generic, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
@@ -240,14 +240,21 @@ class Valley:
     hessian : Hessian of the Lagrangian divided by `scale`, made positive definite (nf, nf)
     scale : norm of the objective's gradient
     rows : number of constraints
-    prices : multipliers of constraints, lower and upper bounds (rows + 2 nf,), divided by `scale`
+    price : penalty per unit of violation, larger than every multiplier
+    prices : multipliers of constraints, lower and upper bounds (rows + 2 nf,), divided by `scale`;
+        None if unknown
     """
 
     point: Point
     hessian: Vector
     scale: float
     rows: int
-    prices: Vector
+    price: float
+    prices: Vector | None
+
+    def of(self, rows: int) -> Valley:
+        """The same data for a problem with this number of constraints."""
+        return self if rows == self.rows else replace(self, rows=rows, prices=None)
 
     def full(self) -> Descent:
         """A new descent by full steps, with the Hessian and multipliers of this optimum."""
@@ -257,8 +264,7 @@ class Valley:
 
     def trusted(self) -> Descent:
         """A new descent within a trust region, with the Hessian and multipliers of this optimum."""
-        price = margin_price(self.prices[: self.rows])
-        return Descent(self.hessian, self.scale, self.rows, price, prices=self.prices)
+        return Descent(self.hessian, self.scale, self.rows, self.price, prices=self.prices)
 
 
 def valley_at(evaluator: Evaluator, point: Point) -> Valley:
@@ -269,7 +275,7 @@ def valley_at(evaluator: Evaluator, point: Point) -> Valley:
     places = [active.constraint, rows + active.lower, rows + size + active.upper]
     prices[np.concatenate(places)] = state.multipliers / state.scale
     hessian = kkt.convex_hessian(evaluator, state)
-    return Valley(point, hessian, state.scale, rows, prices)
+    return Valley(point, hessian, state.scale, rows, margin_price(prices[:rows]), prices)
 
 
 def is_optimum(evaluator: Evaluator, point: Point) -> bool:

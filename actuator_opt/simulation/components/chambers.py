@@ -17,7 +17,7 @@ from ...design.scenario.kinds import ENDS
 from ...design.scenario.model import LoadCylinder
 from ...evaluation.circuit import Chamber
 from ...evaluation.springs import Give
-from ...models import chamber, forces, oil_energy, one_way_valve, supply, wilson
+from ...models import chamber, forces, one_way_valve, supply, wilson
 from ...models.chamber import cavity
 from ...models.fluid import ATMOSPHERIC_PRESSURE
 from ...models.valve import edge_coefficient, viscosity_corrected
@@ -56,7 +56,7 @@ def oil_at(oil: Oil, pressure: Expression) -> Volumes:
     mixed = Volumes(
         chamber.density_ratio(pressure=limited, **oil.law),
         chamber.mixture_bulk_modulus(pressure=limited, **oil.law),
-        oil_energy.oil_energy_density(pressure=limited, **oil.law),
+        chamber.oil_energy_density(pressure=limited, **oil.law),
     )
     if not oil.cavity:
         return mixed

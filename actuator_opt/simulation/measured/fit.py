@@ -45,64 +45,38 @@ from .record import (
 MOST: Final = 4000
 """Largest number of samples of a channel used in a fit (our choice). Of a denser record, only every
 n-th sample is used."""
-
-
 FINE, LONGEST = 2, 5e-4
 """Simulation samples per record sample, and the longest time between two simulation samples [s]
 (our choices: cubic interpolation then follows a 200 Hz oscillation within 0.2 %)."""
-
-
 RELATIVE: Final = 1e-8
 """Relative tolerance of an integration step. It is tight because the derivatives of the residuals
 are small differences between two simulations."""
-
-
 STEPS: Final = (1e-3, 0.1)
 """Smallest and largest step of a parameter for a difference quotient, relative to its size (our
 choices: far above integration errors, yet local). Within these limits, the step is chosen so that
 the residuals change by as much as their noise."""
-
-
 FIRST: Final = 1e-2
 """First step of a parameter for a difference quotient, relative to its size (our choice)."""
-
-
 GUESSES: Final = (1 / 3, 3.0)
 """Factors by which each initial value may be multiplied before the search, if the record then fits
 better (our choice)."""
-
-
 ASTRAY: Final = 5.0
 """Ratio of residual to noise above which the search is repeated from the unchanged initial values
 (our choice)."""
-
-
 MARGIN: Final = 0.02
 """Half the range about the best trial lag in which the search varies the lag, as a share of the
 simulated time (our choice)."""
-
-
 LAGS: Final = 801
 """Number of lags that are tried before the search (our choice)."""
-
-
 FAR: Final = 10.0
 """Residual assigned to a failed simulation, divided by the largest residual of the first simulation
 (our choice)."""
-
-
 PASSES: Final = 40
 """Largest number of iterations of a least-squares search (our choice)."""
-
-
 ROUNDS: Final = 4
 """Largest number of searches, each with new weights of the channels (our choice)."""
-
-
 SETTLED: Final = 0.1
 """Relative change of the weights below which they count as converged (our choice)."""
-
-
 ROUGH, SHARP = 1e-4, 1e-8
 """Relative change of the cost and of the step that ends a search: for intermediate searches and for
 the final search (our choices)."""

@@ -10,37 +10,311 @@ due to the operating point.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import field
-from math import inf, isfinite, isnan
+from collections.abc import Callable, Mapping
+from dataclasses import field, replace
+from math import inf, isfinite, isnan, nan, pi
 from time import perf_counter
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, NamedTuple
+
+import numpy as np
 
 from ...base.dataclass import dataclass
 from ...base.errors import InputError, Unsolvable
+from ...base.numeric import Array
+from ...base.polynomial import at_frequency
 from ...base.progress import steps
 from ...base.tables import Displayed
 from ...design.scenario.kinds import Records
 from ...design.scenario.model import Scenario, ScenarioLoad
 from ...evaluation.build import evaluate
-from ...evaluation.kernel import PreparedDesign
+from ...evaluation.kernel import ModelRun, PreparedDesign, compute
 from ...evaluation.result import Requirement
+from ...evaluation.values import of_case
 from ...metrics import METRICS
+from ...models import linear, loop
+from ...studies.plant import Plant, plant
 from ..components.circuit import loop_of
 from ..result import Simulation
 from ..run import simulate
 from . import experiments
 from .experiments import (
     ExperimentResult,
-    LinearTier,
+    Facts,
     RunCounter,
-    Spot,
     Stand,
-    evidence,
-    operating_point,
-    relative_change,
-    relative_difference,
 )
+
+WEAKEST = "weakest position"
+
+
+STEADY_STEP = 0.4
+"""Gain with which a loop that would oscillate is brought to rest, relative to the ultimate gain
+(our choice)."""
+
+
+SLOW = 0.05
+"""Bandwidth assumed for a loop if it is unknown, relative to the resonance frequency (our
+choice)."""
+
+
+PEAK = 0.5
+"""Magnitude of the open loop above which a resonance peak is searched for a crossover (our
+choice)."""
+
+
+class Spot(NamedTuple):
+    """Load case, position and spool direction at which a metric of the linear models is worst."""
+
+    case: int
+    position: float
+    extending: bool | None
+    """Whether the spool is on the extending side; None if the direction has no effect."""
+    words: str
+
+
+class LoopFigures(NamedTuple):
+    """Metrics of the position loop for one spool direction."""
+
+    ultimate_gain: float
+    frequency: float
+    """Frequency of the oscillation at the ultimate gain [Hz]."""
+    phase_margin: float
+    bandwidth: float
+
+
+@dataclass(frozen=True, slots=True)
+class LinearTier:
+    """Linear models of a design, for any load case and any position of the piston."""
+
+    subject: PreparedDesign
+    done: ModelRun
+
+    @classmethod
+    def of(cls, subject: PreparedDesign) -> LinearTier:
+        """Build the linear models from an evaluation of the design."""
+        return cls(subject, compute(subject, subject.values()))
+
+    def spot(self, row: Requirement) -> Spot:
+        """Load case, position and spool direction at which a requirement has its worst value."""
+        cases = self.subject.cases
+        case = cases.index(row.case) if row.case in cases else 0
+        place = row.place or WEAKEST
+        extending: bool | None = None
+        parts = [row.case or "", row.place or WEAKEST]
+        if place.startswith(("extending, ", "retracting, ")):
+            direction, _, place = place.partition(", ")
+            extending = direction == "extending"
+        position = self.done.places.get(place, self.done.places[WEAKEST])
+        return Spot(case, of_case(position, case), extending, ", ".join(filter(None, parts)))
+
+    def plant(self, case: int) -> Plant:
+        """The plant with the oil and the temperature of a load case."""
+        subject = self.subject
+        order = [case, *(k for k in range(len(subject.cases)) if k != case)]
+        cases = tuple(subject.design.load_cases[k] for k in order)
+        films = {
+            (p, order.index(k), direction): t for (p, k, direction), t in subject.films.items()
+        }
+        design = subject.design.model_copy(update={"load_cases": cases})
+        return plant(replace(subject, design=design, films=films))
+
+    def stand(self, scenario: Scenario, spot: Spot, tally: RunCounter, scale: float) -> Stand:
+        """The design on a test stand at its worst point, with the pressures of the load case."""
+        actuator = self.plant(spot.case)
+        state = self.done.state
+        stand = Stand(
+            plant=actuator,
+            scenario=scenario,
+            position=spot.position,
+            pressure_a=of_case(state.holding_a, spot.case),
+            pressure_b=of_case(state.holding_b, spot.case),
+            tally=tally,
+            scale=scale,
+        )
+        if actuator.valve is None:
+            return stand
+        gain = self._gain(spot.case)
+        both = [self.figures(spot.case, spot.position, extending) for extending in (True, False)]
+        least = min(figures.ultimate_gain for figures in both)
+        bandwidths = [figures.bandwidth for figures in both if figures.bandwidth > 0]
+        slow = min(bandwidths, default=SLOW * self.resonance(spot.case, spot.position))
+        return stand.with_changes(
+            gain=gain, steady_gain=min(gain, STEADY_STEP * least), bandwidth=slow
+        )
+
+    def _open_loop(self, position: float, extending: bool) -> loop.PositionOpenLoop:
+        place = np.array([[position]])
+        return self.done.motion.position_loop(place, extending=np.array(extending))
+
+    def _gain(self, case: int) -> float:
+        return of_case(self.done.computed.metrics["position_gain"][""], case)
+
+    def figures(self, case: int, position: float, extending: bool) -> LoopFigures:
+        """Metrics of the position loop; margin and bandwidth are those at the design's gain."""
+        open_loop, gain = self._open_loop(position, extending), self._gain(case)
+        limit = loop.ultimate_gain(loop=open_loop)
+        margins = loop.margins(loop=open_loop, gain=gain)
+        return LoopFigures(
+            of_case(limit.gain, case),
+            of_case(limit.frequency, case),
+            of_case(margins.phase_margin, case),
+            of_case(margins.bandwidth, case),
+        )
+
+    def response(
+        self, case: int, position: float, extending: bool
+    ) -> Callable[[float | Array], Array]:
+        """The open loop as a function of frequency [Hz], including the controller gain."""
+        open_loop, gain = self._open_loop(position, extending), self._gain(case)
+
+        def at(frequency: float | Array) -> Array:
+            omega = 2 * pi * np.asarray(frequency, dtype=float).reshape(-1, 1, 1)
+            top, low = (
+                at_frequency(open_loop.numerator, omega),
+                at_frequency(open_loop.denominator, omega),
+            )
+            value = gain * np.asarray(top.complex / low.complex)
+            value = value[:, min(case, value.shape[1] - 1), 0]
+            return value if np.ndim(frequency) else complex(value[0])
+
+        return at
+
+    def crossings(
+        self, case: int, position: float, extending: bool
+    ) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Crossover and resonance frequencies of the open loop [Hz]."""
+        figures = self.figures(case, position, extending)
+        resonance = self.resonance(case, position)
+        low = 0.2 * min(figures.bandwidth or resonance, resonance)
+        grid = np.geomspace(low, 5 * resonance, 4000)
+        size = np.abs(self.response(case, position, extending)(grid))
+        crossed = np.flatnonzero((size[:-1] > 1) != (size[1:] > 1))
+        inner = size[1:-1]
+        peaks = np.flatnonzero((inner > size[:-2]) & (inner > size[2:]) & (inner > PEAK)) + 1
+        return tuple(grid[crossed].tolist()), tuple(grid[peaks].tolist())
+
+    def resonance(self, case: int, position: float) -> float:
+        """Natural frequency with closed ports [Hz]."""
+        return of_case(self.done.motion.closed_frequency(np.array([[position]])), case)
+
+    def held(self, case: int, position: float) -> dict[str, float]:
+        """Natural frequency, damping and dynamic stiffness, without the position loop."""
+        place = np.array([[position]])
+        motion = self.done.motion
+        model = motion.model(place)
+        figures = {
+            "natural_frequency": self.resonance(case, position),
+            "damping_ratio": of_case(motion.mode(model, place).damping_ratio, case),
+        }
+        frequency = self.subject.design.load_cases[case].frequency
+        if frequency is None:
+            return figures | dict.fromkeys(("dynamic_stiffness", "dynamic_phase"), nan)
+        parts = linear.dynamic_stiffness(model=model, frequency=frequency)
+        value = complex(of_case(parts.real, case), of_case(parts.imaginary, case))
+        return figures | {
+            "dynamic_stiffness": abs(value),
+            "dynamic_phase": float(np.angle(value)),
+        }
+
+    def closed(self, metric: str, case: int, position: float, extending: bool) -> float:
+        """A metric of the closed loop for one spool direction."""
+        figures = self.figures(case, position, extending)
+        if metric == "gain_margin":
+            return figures.ultimate_gain / self._gain(case)
+        return float(getattr(figures, metric))
+
+    def stated(self, case: int) -> tuple[float, float]:
+        """Chamber pressures that the linear models assume [Pa]."""
+        state = self.done.state
+        return of_case(state.holding_a, case), of_case(state.holding_b, case)
+
+    def unsimulated(self) -> str:
+        """Reason why experiments cannot represent this design.
+
+        Empty if they can.
+        """
+        if self.subject.design.ports.accumulators:
+            return "accumulators at the ports are not simulated, so no experiment is possible"
+        return ""
+
+
+MANY = 9.0
+"""Relative changes above this are reported as a factor instead of in per cent (our choice)."""
+
+
+STILL = 0.01
+"""Motion of the spool, relative to its largest opening, up to which it counts as still (our
+choice)."""
+
+
+def relative_difference(value: float | None, other: float | None) -> float | None:
+    """Relative difference of `value` from `other`; None if it cannot be computed.
+
+    >>> relative_difference(1.5, 2.0), relative_difference(None, 2.0)
+    (-0.25, None)
+    >>> relative_difference(1.0, 0.0) is None
+    True
+    """
+    if value is None or other is None or not isfinite(value) or not isfinite(other) or not other:
+        return None
+    return value / other - 1
+
+
+def relative_change(share: float) -> str:
+    """A relative change as text: in per cent, or as a factor if it is large.
+
+    >>> [relative_change(share) for share in (0.031, -0.5, 19.0, -1.2)]
+    ['+3.1 %', '-50 %', 'x 20', 'changes its sign']
+    """
+    if share < -1:
+        return "changes its sign"
+    if share >= MANY:
+        return f"x {1 + share:.3g}"
+    return f"{100 * share:+.{0 if abs(share) >= 0.095 else 1}f} %"
+
+
+def evidence(facts: Facts | None, cause: str) -> str:
+    """Evidence, as text, that friction or a large amplitude causes a difference."""
+    if facts is None:
+        return "no record"
+    if cause == "friction":
+        return _seals(facts)
+    words = []
+    if facts.saturated > 0:
+        words.append(f"the valve signal is at its limit {100 * facts.saturated:.0f} % of the time")
+    if facts.lowest < 0:
+        words.append(f"the pressure in a chamber falls to {1e-5 * facts.lowest:.2g} bar")
+    low, high = (0.0, 0.0) if facts.spool is None else facts.spool
+    if high - low > STILL * max(abs(low), abs(high)):
+        words.append(f"the spool oscillates between {low:.2g} and {high:.2g} V")
+    return "; ".join(words) or (
+        f"the pressure in chamber A oscillates by +-{1e-5 * facts.pulse:.2g} bar"
+    )
+
+
+def _seals(facts: Facts) -> str:
+    swing, travel = 1e3 * facts.swing, 1e3 * facts.travel
+    if not travel:
+        return f"the seals slide over {swing:.2g} mm"
+    word = "stick" if swing < travel else "slip"
+    return f"the seals {word}: amplitude {swing:.2g} mm, bristle travel {travel:.2g} mm"
+
+
+def operating_point(facts: Facts | None, assumed: tuple[float, float]) -> str:
+    """Operating point of a simulation, as text, with the pressures of the linear models."""
+    if facts is None:
+        return "no record"
+    (a, b), (taken_a, taken_b) = (
+        [1e-5 * pressure for pressure in pair] for pair in (facts.pressures, assumed)
+    )
+    words = (
+        f"chambers at {a:.0f} and {b:.0f} bar, but {taken_a:.0f} and {taken_b:.0f} bar in "
+        "the linear model"
+    )
+    if facts.spool is not None:
+        words += f"; spool at about {0.5 * sum(facts.spool):.2g} V"
+    return words
+
 
 LOOPS = ("ultimate_gain", "gain_margin", "phase_margin", "bandwidth")
 HELD = ("dynamic_stiffness", "dynamic_phase", "damping_ratio", "natural_frequency")
