@@ -111,7 +111,8 @@ class Database:
     ) -> None:
         self.connection, self.number, self.path = connection, number, path
         self.width, self.checksums = width, Checksums(study, width)
-        self._empty_at = None if self._has_rows() else self._data_version()
+        version = self._data_version()  # before looking: rows written in between are then looked up
+        self._empty_at = None if self._has_rows() else version
 
     def missing(self, keys: Sequence[bytes]) -> tuple[list[int], int]:
         """Indices of the keys without an intact row, and how many of them have a damaged row.
@@ -274,10 +275,8 @@ def _prepare(connection: sqlite3.Connection, path: Path, version: str) -> None:
         raise refused(path, "is another program's database", "name another file")
     connection.execute("PRAGMA journal_mode = WAL")
     connection.execute("PRAGMA synchronous = NORMAL")
-    connection.execute(
-        "PRAGMA cache_size = -65536"
-    )  # KiB: holds the index of keys, which arrive in random order
-    connection.execute("PRAGMA wal_autocheckpoint = 16384")  # pages: the same 64 MiB
+    connection.execute("PRAGMA cache_size = -65536")  # KiB: holds the index of keys
+    connection.execute("PRAGMA wal_autocheckpoint = 16384")  # pages, with 4 KiB each also 64 MiB
     with connection:
         connection.execute("BEGIN IMMEDIATE")  # create all tables or none
         for statement in _TABLES.split(";"):

@@ -594,3 +594,19 @@ def test_rows_that_stand_are_not_held(tmp_path):
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     assert peaks[1] < 1.2 * peaks[0]
+
+
+def test_rows_of_another_process_are_not_evaluated_again(tmp_path):
+    """An empty study is not searched, but rows that another connection adds are then found."""
+    about = {
+        "study": "a", "name": "", "design": "", "version": "1",
+        "columns": [NumberColumn("x", "m")],
+    }  # fmt: skip
+    keys = [bytes([k]) * 16 for k in range(4)]
+    file = tmp_path / "s.db"
+    with opened(file, **about) as first, opened(file, **about) as second:
+        assert first.missing(keys) == ([0, 1, 2, 3], 0)
+        first.put(keys[:1], StoredNumbers(np.ones((1, 1)), {}))
+        second.put(keys[1:3], StoredNumbers(np.ones((2, 1)), {}))
+        assert first.missing(keys) == ([3], 0)
+        assert second.missing(keys) == ([3], 0)
