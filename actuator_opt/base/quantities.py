@@ -94,6 +94,9 @@ INPUTS = _table("""
  squeeze              | C      | ratio       | %    | 0     | 45    | seal squeeze, as a share of the free cross-section
  stretch              | e      | ratio       | %    | 0     | 25    | seal stretch
  groove_width         | g      | length      | mm   | 0.5   | 60    | groove width
+ groove_depth         | h      | length      | mm   | 0.05  | 30    | radial depth of a groove
+ ring_thickness       | s      | length      | mm   | 0.2   | 100   | axial thickness of a ring
+ ring_width           | b      | length      | mm   | 0.2   | 200   | radial width of a ring
  seal_count           | n      | count       | -    | 0     | 8     | number of seals
  bolt_count           | n      | count       | -    | 2     | 48    | number of bolts or tie rods
  thread_diameter      | d_t    | length      | mm   | 1     | 500   | nominal thread diameter

@@ -470,7 +470,8 @@ class Caps(Section):
 
 _OVERLAP = Of(
     "part_length",
-    "length over which skirt and barrel overlap, or thread engagement of the tie rods",
+    "length of the skirt over the barrel, of the barrel's lip outside a retaining ring, or of the "
+    "engaged thread of the tie rods",
 )
 
 

@@ -11,7 +11,7 @@ import hashlib
 import json
 import math
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from ..design.housings import gland_deviations, housings, housings_for
 from ..design.material import Material
 from ..design.materials import Library, load_library
 from ..design.model import Design
+from ..joints.kinds import OWN_KEYS
 from ..metrics import METRICS, MetricRow
 from ..metrics.table import CHECKS
 from ..version import VERSION
@@ -206,14 +207,23 @@ def prepare(
     return PreparedDesign(design, materials, numbers, factors, plugins)
 
 
+def _blocks(retention: dict[str, Any] | None) -> Iterator[dict[str, Any]]:
+    """The block `retention` and those of its ends."""
+    if retention is not None:
+        yield from (retention[end] for end in ("cap", "head") if retention[end] is not None)
+        yield retention
+
+
 def spec_hash(subject: PreparedDesign) -> str:
     """Hash of all inputs that determine the result: design, material data and program version."""
     design = subject.design.model_dump(mode="json")
     for key in ("uncertainty", "extra_masses"):
         if not design[key]:  # unset fields are left out: hashes of older designs stay valid
             del design[key]
-    if design["retention"] is not None and design["retention"]["cap"] is None:
-        del design["retention"]["cap"], design["retention"]["head"]
+    for block in _blocks(design["retention"]):
+        for key in ("cap", "head", *OWN_KEYS):
+            if key in block and block[key] is None:
+                del block[key]
     content = {
         "design": design,
         "materials": {k: v for k, v in subject.numbers.items() if k.startswith("materials.")},

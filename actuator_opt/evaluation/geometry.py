@@ -9,7 +9,7 @@ joint (see `joints`); the design states one joint for both ends, or one for each
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, maximum
@@ -113,6 +113,7 @@ def end_of(
     thicknesses: Sequence[Array],
     barrel_length: Array,
     plate: Array,
+    rod_radius: Array,
 ) -> End:
     """Describe an end of the barrel; `thicknesses` are those of the barrel's layers."""
     layers = zip(design.barrel.layup, thicknesses, strict=True)
@@ -125,6 +126,7 @@ def end_of(
         outer_radius=outer_radius,
         barrel_length=barrel_length,
         plate=plate,
+        rod_radius=rod_radius,
     )
 
 
@@ -277,6 +279,11 @@ class Geometry:
     bearing_span: Array
 
     @property
+    def wall_length(self) -> Array:
+        """Length of the barrel wall, with the parts that enclose the end plates."""
+        return self.barrel_length + self.cap_fit.beyond + self.head_fit.beyond
+
+    @property
     def cap_fit(self) -> EndDimensions:
         """Dimensions of the cap that follow from its joint."""
         return self.fits[0]
@@ -316,6 +323,7 @@ def derive(v: Values, design: Design) -> Geometry:
             thicknesses=thicknesses,
             barrel_length=barrel_length,
             plate=plate,
+            rod_radius=rod / 2,
         )
         fits.append(end_joint.joint.fit(end))
     if not fits:
@@ -365,20 +373,28 @@ def end_at(design: Design, end_joint: EndJoint, sizes: JointSizes, g: Geometry) 
         thicknesses=g.thicknesses,
         barrel_length=g.barrel_length,
         plate=g.plate,
+        rod_radius=g.rod_diameter / 2,
     )
 
 
-def lands(geometry: Geometry, thread_radius: Array) -> dict[str, Array]:
-    """Wall thicknesses and clearances that must be positive, as constraints of the optimiser."""
+def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, Any]:
+    """Wall thicknesses and clearances that must be positive, as constraints of the optimiser.
+
+    `eyes` is whether both ends of the actuator have eyes.
+    """
     g = geometry
     piston_length, piston_count, piston_depth = groove_totals(g.piston_grooves)
     head_length, head_count, head_depth = groove_totals(g.rod_grooves)
     bore = {"geometry_rod_bore": g.rod_inner_diameter} if g.rod_thicknesses else {}
     skirted = 2 * g.cap_fit.length if len(g.fits) == 1 else g.cap_fit.length + g.head_fit.length
     skirts = {"geometry_skirts": g.barrel_length - skirted} if g.has_skirts else {}
+    lips = {"cap": g.eye_offset - g.pin_diameter - g.cap_fit.lip} if eyes else {}
+    lips["head"] = g.rod_extension - g.head_fit.lip
+    lip = {"geometry_lip": lips} if any(fit.groove for fit in g.fits) else {}
     return (
         bore
         | skirts
+        | lip
         | {
             "geometry_rod_in_bore": g.inner_radius - g.rod_diameter / 2,
             "geometry_rod_wall": (g.rod_diameter - g.rod_inner_diameter) / 2,

@@ -361,13 +361,15 @@ def statics(
     stop = replace(stop, mass=weight.moving(parts, stop.mass))
     duty.compute(v, design, stock, g, case_state, barrel, rod, loaded_joints, stop, net, out)
     thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
-    for name, value in geometry_module.lands(g, thread / 2).items():
+    for name, value in geometry_module.lands(g, thread / 2, eyes=design.clevis is not None).items():
         out.put(name, value)
     strength.joint_metrics(loaded_joints, out)
     if not g.rod_thicknesses:
         out.skip("geometry_rod_bore", "the rod has no layers")
     if not g.has_skirts:
         out.skip("geometry_skirts", "cap and head have no skirts over the barrel")
+    if not any(fit.groove for fit in g.fits):
+        out.skip("geometry_lip", "no retaining ring")
     _manufacture(v, subject, out)
     out.put("barrel_length", g.barrel_length)
     out.put("closed_length", g.closed_length)

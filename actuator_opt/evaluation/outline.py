@@ -10,7 +10,7 @@ reproduces its outlines; without such a template, it is not drawn.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from math import cos, pi, sin
 from typing import Any, Literal, TypeAlias
@@ -130,13 +130,36 @@ def _stations(g: Geometry) -> _Stations:
 
 def _barrel(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     radius = at.bore
+    start, end = at.start - float(g.cap_fit.beyond), at.end + float(g.head_fit.beyond)
+    ends = (g.cap_fit, at.start, 1), (g.head_fit, at.end, -1)
     for i, (ply, thickness) in enumerate(zip(design.barrel.layup, g.thicknesses, strict=True)):
         outer = radius + float(thickness)
-        shape = rectangle(at.start, at.end, radius, outer)
+        shape = rectangle(start, end, radius, outer)
         if i == len(g.thicknesses) - 1:
             shape = _turned_down(shape, (g.cap_fit, g.head_fit), min(outer, float(g.outer_radius)))
+        if i == 0:
+            shape = (*_bore_edge(ends, start, end, radius), *shape[2:])
         yield f"layup[{i}]", ply.material, [shape], 0
         radius = outer
+
+
+def _bore_edge(
+    ends: Iterable[tuple[EndDimensions, float, int]], start: float, end: float, radius: float
+) -> Polygon:
+    """Inner edge of the barrel from `start` to `end`, with the grooves outside the chamber."""
+    corners = [(start, radius)]
+    for fit, face, inwards in ends:
+        if fit.groove:
+            near, width, depth = (float(size) for size in fit.groove)
+            sides = sorted(face - inwards * place for place in (near, near + width))
+            floor = radius + depth
+            corners += [
+                (sides[0], radius),
+                (sides[0], floor),
+                (sides[1], floor),
+                (sides[1], radius),
+            ]
+    return (*corners, (end, radius))
 
 
 def _turned_down(
@@ -147,7 +170,8 @@ def _turned_down(
     corners = [(x0, r0), (x1, r0)]
     for fit, face, inwards in ((fits[1], x1, -1), (fits[0], x0, 1)):
         radius, step = float(fit.radius), face + inwards * float(fit.length)
-        end = [(face, radius), (step, radius), (step, r1)] if radius < outer else [(face, r1)]
+        turned = float(fit.length) > 0 and radius < outer
+        end = [(face, radius), (step, radius), (step, r1)] if turned else [(face, r1)]
         corners += end if inwards < 0 else end[::-1]
     return tuple(corners)
 
@@ -294,6 +318,7 @@ def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
             thicknesses=[ply.thickness for ply in design.barrel.layup],
             barrel_length=lengths["barrel_length"],
             plate=lengths["plate"],
+            rod_radius=lengths["rod"] / 2,
         )
         sentences += [end_joint.placed(sentence) for sentence in end_joint.joint.notes(end)]
     return sentences
@@ -475,6 +500,9 @@ def _changed_fit(fit: EndDimensions, change: _Change) -> EndDimensions:
         radius=change(fit.radius),
         length=change(fit.length),
         wall=change(fit.wall),
+        beyond=change(fit.beyond),
+        lip=change(fit.lip),
+        groove=tuple(change(size) for size in fit.groove),
         own=tuple(change(size) for size in fit.own),
     )
 

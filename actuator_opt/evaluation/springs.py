@@ -189,7 +189,7 @@ def _stretch(design: Design, g: Geometry, wall: Wall, extra: Array) -> Give:
     shortening = wall.swelling.shortening * wall.path.share
     cap = design.cylinder.mount.startswith("cap")
     area = g.area_b if cap else g.area_a
-    barrel_stretch = area * area * wall.swelling.stretch * wall.path.share * g.barrel_length
+    barrel_stretch = area * area * wall.swelling.stretch * wall.path.share * g.wall_length
     twice, once = 2 * shortening * area, shortening * area
     if cap:
         return Give(b0=barrel_stretch + twice * extra, b1=twice, c1=once)

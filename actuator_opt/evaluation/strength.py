@@ -260,7 +260,7 @@ def _caps(
     support = (g.cap_fit.plate_radius + g.cap_fit.radius) / 2
     stresses: dict[str, Array] = {}
     if design.cylinder.end_stop == "internal" or clamped(design) or design.clevis is None:
-        stresses["cap, supported by its skirt"] = end_plate.hung_plate_stress(
+        stresses["cap, supported at its edge"] = end_plate.hung_plate_stress(
             pressure=supply,
             loaded_radius=g.inner_radius,
             support_radius=support,

@@ -29,7 +29,7 @@ def _barrel(v: Values, design: Design, g: Geometry) -> Array:
         area = mass.layer_area(inner_radius=radius, thickness=thickness)
         total = total + v[f"materials.{ply.material}.density"] * area
         radius = radius + thickness
-    return total * g.barrel_length
+    return total * g.wall_length
 
 
 def _piston(v: Values, design: Design, g: Geometry) -> Array:

@@ -154,6 +154,8 @@ class End:
     barrel_length: Array
     plate: Array
     """Thickness of the end plate."""
+    rod_radius: Array
+    """Radius of the rod, which passes through the head."""
     cache: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
     """Intermediate results that the joint's functions store here to use again, under any key."""
 
@@ -162,22 +164,29 @@ class End:
 class EndDimensions:
     """Dimensions of cap and barrel that the joint determines, for mass model and drawing.
 
-    A skirt has `length`, `wall` thickness and an inner `radius`. A barrel with a larger outer
-    radius is turned down to this radius. `own` are further dimensions for the drawing of the joint.
+    A skirt has `length`, `wall` thickness and an inner `radius`. Over this length, a barrel with a
+    larger outer radius is turned down to this radius. A barrel that encloses the end plate extends
+    by `beyond` past the chamber, and by `lip` past the plate. `groove` is the groove in its bore:
+    distance from the chamber, axial width and radial depth. `own` are further dimensions for the
+    drawing of the joint.
     """
 
     plate_radius: Array
     radius: Array
     length: Array = 0.0
     wall: Array = 0.0
+    beyond: Array = 0.0
+    lip: Array = 0.0
+    groove: tuple[Array, ...] = ()
     own: tuple[Array, ...] = ()
 
 
 class EndSpan(NamedTuple):
     """Axial positions, in the drawing, of one end of the barrel and of the end plates [m].
 
-    `face` is the end face of the barrel, `inwards` the direction from it into the barrel (1 or -1),
-    `outside` the outer face of this end's plate, and `opposite` that of the plate at the other end.
+    `face` is the inner face of the end plate, where the chamber ends, `inwards` the direction from
+    it into the chamber (1 or -1), `outside` the outer face of this end's plate, and `opposite` that
+    of the plate at the other end.
     """
 
     face: float
@@ -188,6 +197,11 @@ class EndSpan(NamedTuple):
     def over(self, length: float, low: float, high: float) -> Polygon:
         """A rectangle between the radii `low` and `high`, over the last `length` of the barrel."""
         start, stop = sorted((self.face, self.face + self.inwards * length))
+        return rectangle(start, stop, low, high)
+
+    def beyond(self, near: float, far: float, low: float, high: float) -> Polygon:
+        """A rectangle between two radii, from `near` to `far` outside the chamber."""
+        start, stop = sorted(self.face - self.inwards * distance for distance in (near, far))
         return rectangle(start, stop, low, high)
 
 

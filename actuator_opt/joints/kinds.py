@@ -11,7 +11,11 @@ JOINTS: Kinds[Joint] = kinds_in(
     "JOINT",
     "bond",
     "thread",
+    "retaining_ring",
     "tie_rods",
 )
+
+OWN_KEYS = tuple(field.key for joint in JOINTS.values() for field in joint.fields if field.quantity)
+"""Keys of `retention` that only one joint has, all of them optional."""
 
 check(JOINTS.values())

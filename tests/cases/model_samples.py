@@ -94,6 +94,14 @@ PIPE = {
 TUBE = {"inner_radius": 16e-3, "outer_radius": 20e-3}
 METAL = {"youngs_modulus": 71.7e9, "poissons_ratio": 0.33}
 ROD = {"outer_diameter": 12e-3, "inner_diameter": 6e-3}
+GROOVE = {"bore_diameter": 21e-3, "groove_depth": 0.8e-3}
+DISHED = {
+    "force": 7e3,
+    "lever_length": 0.6e-3,
+    "inner_radius": 9e-3,
+    "outer_radius": 11.3e-3,
+    "ring_thickness": 1.5e-3,
+}
 THREAD = {"diameter": 10e-3, "pitch": 1.5e-3}
 STOP = {"driving_force": 6000.0, "mass": 40.0, "velocity": 0.3}
 FATIGUE = {"ultimate_strength": 700e6, "fatigue_limit": 300e6, "limit_cycles": 2e6}
@@ -336,6 +344,24 @@ SAMPLES = {
     "thread.flank_area": {"engagement": 8e-3, "crest_diameter": 10e-3, **THREAD},
     "thread.stripping_reductions": [{"strength_ratio": ratio} for ratio in (0.7, 1.3)],
     "thread.spread_stress": {"force": 1e4, "thickness": 2e-3, "engagement": 8e-3},
+    "retaining_ring.groove_area": GROOVE,
+    "retaining_ring.lip_shear": {"force": 7e3, "lip_length": 3e-3, **GROOVE},
+    "retaining_ring.lip_bending": {"force": 7e3, "lip_length": 3e-3, **GROOVE},
+    "retaining_ring.ring_shear": {"force": 7e3, "bore_diameter": 21e-3, "ring_thickness": 1.5e-3},
+    "retaining_ring.ring_dishing": DISHED,
+    "retaining_ring.plastic_dishing": DISHED,
+    "retaining_ring.wall_stresses": {
+        "force": 7e3, "lip_length": 3e-3, "thickness": 2e-3, "poissons_ratio": 0.33, **GROOVE,
+    },
+    "retaining_ring.collapse_factor": {"axial": 50e6, "bending": 90e6, "strength": 500e6},
+    "liner_transfer.interface_stiffness": {
+        "liner_thickness": 1.5e-3, "liner_shear_modulus": 27e9,
+        "winding_thickness": 2.5e-3, "winding_shear_modulus": 4.3e9,
+    },
+    "liner_transfer.edge_shear": {
+        "line_force": 1e5, "strain_difference": 2e-4, "interface_stiffness": 4e12,
+        "liner_stiffness": 1.1e8, "winding_stiffness": 2.2e7,
+    },
     "column.euler_load": {"bending_stiffness": 680.0, "effective_length": 0.6},
     "column.cowper_tube": {"poissons_ratio": 0.28, "radius_ratio": 0.75},
     "column.engesser_load": {"critical_load": 1e5, "shear_stiffness": 9e5},

@@ -19,6 +19,14 @@ TEXT = (DESIGNS / "steel_baseline.yaml").read_text("utf-8").replace("load:\n", f
 FREE = TEXT[: TEXT.index("variables:\n")] + TEXT[TEXT.index("# The same requirements") :]
 """The steel knee with a line and nothing to move: its caps screwed on, its pins of clevises."""
 
+RINGS = (
+    FREE[: FREE.index("retention:\n")]
+    + "retention:\n  type: retaining_ring\n  material: steel_bolt_12_9\n  length: 4 mm\n"
+    "  groove_depth: 0.5 mm\n  ring_thickness: 1 mm\n  ring_width: 2 mm\n\n"
+    + FREE[FREE.index("clevis:\n") :]
+)
+"""The same with its ends held by rings."""
+
 FIRES = {
     ("cylinder.dead_volume_a", "volume"): {"cylinder.dead_volume_a": "100 l"},
     ("cylinder.dead_volume_b", "volume"): {"cylinder.dead_volume_b": "1 l"},
@@ -49,6 +57,8 @@ FIRES = {
     ("retention.wall", "bore"): {"retention.wall": "20 mm"},
     ("retention.length", "bore"): {"cylinder.bore": "500 mm"},
     ("retention.length", "turns"): {"retention.length": "4 mm"},
+    ("retention.length", "groove depth"): {"retention.length": "15 mm"},
+    ("retention.ring_width", "groove depth"): {"retention.ring_width": "8 mm"},
     ("load.mass", "load"): {"load.mass": "500 t"},
     ("load_cases", "strokes"): {"load_cases[stance].speed": "0.0001 mm/s"},
     ("fluid.temperature", "oil"): {"fluid.temperature": "-90 degC"},
@@ -80,8 +90,9 @@ def test_every_proportion_has_a_number_that_fires():
 def test_a_slip_is_told(key):
     """The PATH, the number, the range and its source are in the sentence; nothing is refused."""
     (row,) = rows(*key)
+    text = RINGS if key[1] == "groove depth" else FREE
     (sentence,) = [
-        one for one in said(FREE, FIRES[key]) if one.startswith(row.path) and row.meaning in one
+        one for one in said(text, FIRES[key]) if one.startswith(row.path) and row.meaning in one
     ]
     assert row.source in sentence
     assert "check its unit" in sentence

@@ -1,0 +1,424 @@
+"""Plugs in the barrel's bore, each held by a ring in a groove of the bore.
+
+The end plate is a plug inside the barrel. From the pressure outwards, the barrel holds the plug
+with its static seal, the ring in its groove, and a lip of the barrel. The groove is cut into the
+innermost layer, which must be a metal. This layer carries the whole force at the groove, so the
+layers around it, such as a hoop winding, need no axial strength. The ring is split for assembly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import sqrt
+
+import numpy as np
+
+from ..base.errors import Fault
+from ..base.numeric import Array, minimum, real, where
+from ..base.quantities import INPUTS, Quantity
+from ..models import mass, retaining_ring as model
+from .joint import (
+    LEAST_METAL,
+    NOT_BONDED,
+    ROUNDING,
+    DrawnPart,
+    End,
+    EndDimensions,
+    EndSpan,
+    FactorBasis,
+    Fatigue,
+    Joint,
+    JointField,
+    KnownMaterials,
+    Loaded,
+    MaterialProperties,
+    Pulsed,
+    StatedValues,
+    Strength,
+    Usual,
+    WallPressures,
+    judged_later,
+)
+from .winding import winding_edge
+
+EDGE_BREAK = 0.2e-3
+"""Largest edge break of the plug and of the groove [m], which moves the force on the ring inwards.
+Our choice; the drawing states it."""
+
+SEAL_GROOVE = 2.4e-3
+"""Width of the plug's groove for its static O-ring [m]: ISO 3601-2, section 1.78 mm, no back-up
+ring."""
+
+NOTCH, NOTCH_HARD = 3.0, 4.0
+"""Fatigue notch factors of the groove's root, for metals below `HARD` and from `HARD` on. Our
+choice, for a root radius of at least a tenth of the depth; no published value for such grooves."""
+
+HARD = 830e6
+"""Lowest tensile strength of a metal that counts as hard [Pa]; as for threads."""
+
+LANDS = ("geometry_ring_groove", "geometry_ring_plug", "geometry_ring_opening")
+"""Metrics of the metal left under the groove and beside the static seal of the plug, and of the
+clearance between ring and rod."""
+
+OTHERWISE = "use another joint (retention.type)"
+
+
+# --- faults of the file ---------------------------------------------------------------------
+
+
+def _layer(view: StatedValues) -> tuple[float | None, str | None]:
+    """Thickness and material of the innermost layer."""
+    at = ("barrel", "layup", 0)
+    return view.number(*at, "thickness"), view.text(*at, "material")
+
+
+def _text(length: float) -> str:
+    return INPUTS["length"].text(length)
+
+
+def _faults(view: StatedValues) -> Iterator[Fault]:
+    """Report a ring that its groove does not hold, or that leaves no opening."""
+    depth, width = (view.number("retention", key) for key in ("groove_depth", "ring_width"))
+    if depth is not None and width is not None and width <= depth:
+        yield Fault(
+            ("retention", "ring_width"),
+            f"{_text(width)}: the ring vanishes in its groove, which is {_text(depth)} deep",
+            f"write more than {_text(depth)}; twice the depth is usual",
+        )
+
+
+def _material_faults(view: StatedValues, materials: KnownMaterials) -> Iterator[Fault]:
+    """Report a groove that is not in a metal of known strength, or leaves too little of it."""
+    thickness, name = _layer(view)
+    kind = None if name is None else materials.kind(name)
+    if name is None or kind is None:
+        return
+    loc = ("barrel", "layup", 0, "material")
+    if kind != "metal":
+        description = "plies, whose fibres it would cut" if kind == "ply" else f"a {kind}"
+        yield Fault(
+            loc,
+            f"{name}: the groove of the retaining ring is cut into the innermost layer, but this "
+            f"is of {description}; a groove needs metal",
+            f"make barrel.layup[0] of metal, or {OTHERWISE}",
+        )
+        return
+    properties = set(materials.properties(name))
+    needed = ("yield_strength", "ultimate_strength", "poissons_ratio")
+    missing = [key for key in needed if properties and key not in properties]
+    if missing:
+        yield Fault(
+            loc,
+            f"{name} has no {' nor '.join(missing)}: the strength of its groove cannot be computed",
+            f"state {missing[0]} under materials.{name}, or {OTHERWISE}",
+        )
+    depth = view.number("retention", "groove_depth")
+    varied = ("barrel.layup[0].thickness", "retention.groove_depth")
+    if thickness is None or depth is None or judged_later(view, varied):
+        return
+    if thickness - depth < LEAST_METAL * (1 - ROUNDING):
+        rest = _text(thickness - depth) if thickness > depth else "nothing"
+        yield Fault(
+            ("barrel", "layup", 0, "thickness"),
+            f"{_text(thickness)} of {name}: the groove of the retaining ring leaves {rest} of it, "
+            f"but {_text(LEAST_METAL)} is needed",
+            f"write a thickness of at least {_text(depth + LEAST_METAL)}, or {OTHERWISE}",
+        )
+
+
+# --- dimensions and mass --------------------------------------------------------------------
+
+
+def _fit(end: End) -> EndDimensions:
+    sizes = end.sizes
+    return EndDimensions(
+        plate_radius=end.inner_radius,
+        radius=end.inner_radius,
+        lip=sizes["ring_thickness"] + sizes["length"],
+        beyond=end.plate + sizes["ring_thickness"] + sizes["length"],
+        groove=(end.plate, sizes["ring_thickness"], sizes["groove_depth"]),
+    )
+
+
+def _radii(end: End) -> tuple[Array, Array]:
+    """Inner and outer radius of the ring."""
+    outer = end.inner_radius + end.sizes["groove_depth"]
+    return outer - end.sizes["ring_width"], outer
+
+
+def _mass(end: End, materials: MaterialProperties) -> Mapping[str, Array]:
+    """Mass of the ring; and, with a negative sign, that of the metal cut from the groove."""
+    assert end.material is not None
+    inner, outer = _radii(end)
+    width, depth = end.sizes["ring_thickness"], end.sizes["groove_depth"]
+    ring = mass.tube_mass(
+        density=materials.get(end.material, "density"),
+        inner_diameter=2 * inner,
+        outer_diameter=2 * outer,
+        length=width,
+    )
+    cut = mass.layer_area(inner_radius=end.inner_radius, thickness=depth) * width
+    return {
+        "fastening": ring,
+        "barrel": -materials.get(end.layers[0].material, "density") * cut,
+    }
+
+
+def _outline(end: End, fit: EndDimensions, span: EndSpan) -> Iterator[DrawnPart]:
+    assert end.material is not None
+    inner, outer = (float(radius) for radius in _radii(end))
+    start, width, _ = (float(size) for size in fit.groove)
+    yield DrawnPart(
+        "retaining rings", end.material, span.beyond(start, start + width, inner, outer)
+    )
+
+
+def _notes(end: End) -> Iterator[str]:
+    sizes = end.sizes
+    yield (
+        f"Groove of the retaining ring: {2e3 * (end.inner_radius + sizes['groove_depth']):.4g} mm "
+        f"diameter, {1e3 * sizes['ring_thickness']:.3g} mm wide, root radius at least "
+        f"{1e2 * sizes['groove_depth']:.2g} mm."
+    )
+    yield (
+        f"Split ring of square section, edges broken by at most {1e3 * EDGE_BREAK:g} mm. Chamfer "
+        "the groove's inner edge, which the seals of plug and piston pass at assembly."
+    )
+
+
+# --- strength -------------------------------------------------------------------------------
+
+
+def _sizes(end: End) -> dict[str, Array]:
+    """Sizes of groove and lip that the models share."""
+    return {
+        "bore_diameter": 2 * end.inner_radius,
+        "groove_depth": end.sizes["groove_depth"],
+        "lip_length": end.sizes["length"],
+    }
+
+
+def _ring(end: End, force: Array) -> dict[str, Array]:
+    """Arguments of the models of dishing."""
+    inner, outer = _radii(end)
+    return {
+        "force": force,
+        "lever_length": end.sizes["groove_depth"] / 2 + EDGE_BREAK,
+        "inner_radius": inner,
+        "outer_radius": outer,
+        "ring_thickness": end.sizes["ring_thickness"],
+    }
+
+
+def _under_groove(loaded: Loaded) -> tuple[Array, Array]:
+    """Axial and bending stress of the metal under the groove; the result is cached."""
+    cache, end = loaded.end.cache, loaded.end
+    if "under_groove" not in cache:
+        cache["under_groove"] = model.wall_stresses(
+            force=loaded.force,
+            **_sizes(end),
+            thickness=end.layers[0].thickness,
+            poissons_ratio=loaded.materials.get(end.layers[0].material, "poissons_ratio"),
+        )
+    stresses: tuple[Array, Array] = cache["under_groove"]
+    return stresses
+
+
+def _strengths(loaded: Loaded) -> tuple[tuple[Array, Array], tuple[Array, Array]] | str:
+    """Yield and ultimate strength of wall and ring; or the reason why one of them is unknown."""
+    end, pairs = loaded.end, []
+    if end.material is None:
+        return "a retaining ring needs a metal: add retention.material"
+    for name in (end.layers[0].material, end.material):
+        pair = tuple(
+            loaded.materials.allowable(name, key) for key in ("yield_strength", "ultimate_strength")
+        )
+        if loaded.materials.kind(name) != "metal" or any(value is None for value in pair):
+            return f"{name} is not a metal with yield and ultimate strength"
+        pairs.append(pair)
+    wall, ring = pairs
+    return (wall[0], wall[1]), (ring[0], ring[1])
+
+
+def _strength(loaded: Loaded) -> Strength | str:
+    strengths, end, force = _strengths(loaded), loaded.end, loaded.force
+    if isinstance(strengths, str):
+        return strengths
+    (wall, wall_ultimate), (ring, ring_ultimate) = strengths
+    sizes = _sizes(end)
+    area = model.groove_area(
+        bore_diameter=sizes["bore_diameter"], groove_depth=sizes["groove_depth"]
+    )
+    lip_shear = model.lip_shear(force=force, **sizes)
+    lip_bending = model.lip_bending(force=force, **sizes)
+    ring_shear = model.ring_shear(
+        force=force,
+        bore_diameter=sizes["bore_diameter"],
+        ring_thickness=end.sizes["ring_thickness"],
+    )
+    axial, bending = _under_groove(loaded)
+    working = {
+        "groove flank": minimum(wall, ring) * area / force,
+        "lip in shear": wall / sqrt(3) / lip_shear,
+        "lip in bending": wall / lip_bending,
+        "ring in shear": ring / sqrt(3) / ring_shear,
+        "ring in dishing": ring / model.ring_dishing(**_ring(end, force)),
+    }
+    burst = {
+        "lip in shear": wall_ultimate / sqrt(3) / lip_shear,
+        "lip in bending": 1.5 * wall_ultimate / lip_bending,
+        "ring in shear": ring_ultimate / sqrt(3) / ring_shear,
+        "ring in dishing": ring_ultimate / model.plastic_dishing(**_ring(end, force)),
+        "barrel under the groove": model.collapse_factor(
+            axial=axial, bending=bending, strength=wall_ultimate
+        ),
+    }
+    winding = winding_edge(loaded)
+    if winding is None:
+        return Strength(working, burst, NOT_BONDED)
+    if isinstance(winding, str):
+        return winding
+    return Strength(working | {"edge of the winding": winding.factor()}, burst, winding.thermal())
+
+
+def _yields(loaded: Loaded) -> Mapping[str, Array]:
+    strengths = _strengths(loaded)
+    if isinstance(strengths, str):
+        return {}
+    return {"barrel under the groove": strengths[0][0] / sum(_under_groove(loaded))}
+
+
+def _fatigue(loaded: Loaded) -> Fatigue:
+    """Stress at the groove's root and in the dished ring under pulsating force.
+
+    The notch factor multiplies the range of the stress, but not its mean.
+    """
+    strengths, end = _strengths(loaded), loaded.end
+    if isinstance(strengths, str):
+        return Fatigue()
+    name, stress = end.layers[0].material, sum(_under_groove(loaded))
+    hard = real(loaded.materials.get(name, "ultimate_strength", default=0.0)) >= HARD
+    assert end.material is not None
+    dished = model.ring_dishing(**_ring(end, loaded.force))
+    return Fatigue(
+        (
+            Pulsed("groove root", name, where(hard, NOTCH_HARD, NOTCH) * stress, stress / 2),
+            Pulsed("retaining ring", end.material, dished, dished / 2),
+        )
+    )
+
+
+def _lands(loaded: Loaded) -> Mapping[str, Array]:
+    """Metal left under groove and beside seal, and clearance of the rod [m]; all are limited."""
+    end = loaded.end
+    lands = (
+        end.layers[0].thickness - end.sizes["groove_depth"],
+        (end.plate - SEAL_GROOVE) / 2,
+        _radii(end)[0] - end.rod_radius,
+    )
+    return dict(zip(LANDS, lands, strict=True))
+
+
+def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
+    """Warn of too little metal; an optimised design never has it."""
+    lands = _lands(loaded)
+    for name in LANDS:
+        least = float(np.min(np.real(lands[name])))
+        if least < LEAST_METAL * (1 - ROUNDING):
+            label = quantities[name]
+            yield (
+                "retention_factor",
+                f"{label.label}: {label.text(least)}, but {label.text(LEAST_METAL)} is needed",
+            )
+
+
+_ABSENT = "no retaining ring"
+
+JOINT = Joint(
+    name="retaining_ring",
+    help="plugs in the bore, each held by a split ring in a groove of the innermost layer",
+    noun="a retaining ring",
+    fields=(
+        JointField("length"),
+        JointField(
+            "material",
+            "missing: a retaining ring needs a metal",
+            'add e.g. "material: steel_42crmo4"',
+        ),
+        JointField(
+            "groove_depth",
+            "missing: required by a retaining ring",
+            'add e.g. "groove_depth: 0.8 mm"',
+            quantity="groove_depth",
+            help="radial depth of the groove that holds the retaining ring",
+        ),
+        JointField(
+            "ring_thickness",
+            "missing: required by a retaining ring",
+            'add e.g. "ring_thickness: 1.5 mm"',
+            quantity="ring_thickness",
+            help="axial thickness of the retaining ring",
+        ),
+        JointField(
+            "ring_width",
+            "missing: required by a retaining ring",
+            'add e.g. "ring_width: 2 mm"',
+            quantity="ring_width",
+            help="radial width of the retaining ring",
+        ),
+    ),
+    kinds=("metal",),
+    without={},
+    faults=_faults,
+    material_faults=_material_faults,
+    skirts=False,
+    fit=_fit,
+    stiffness=None,
+    mass=_mass,
+    outline=_outline,
+    notes=_notes,
+    strength=_strength,
+    yields=_yields,
+    wall=lambda loaded: WallPressures(),
+    fatigue=_fatigue,
+    own=_lands,
+    envelope=None,
+    metrics=dict.fromkeys(LANDS, _ABSENT),
+    judged=(
+        FactorBasis("on yield", "groove, lip and ring"),
+        FactorBasis("rupture", "groove, lip and ring"),
+    ),
+    models={
+        ("retention_factor", "groove flank"): "retaining_ring.groove_area",
+        ("retention_factor", "lip in shear"): "retaining_ring.lip_shear",
+        ("retention_factor", "lip in bending"): "retaining_ring.lip_bending",
+        ("retention_factor", "ring in shear"): "retaining_ring.ring_shear",
+        ("retention_factor", "ring in dishing"): "retaining_ring.ring_dishing",
+        ("retention_factor", "edge of the winding"): "liner_transfer.edge_shear",
+        ("retention_burst_factor", "lip in shear"): "retaining_ring.lip_shear",
+        ("retention_burst_factor", "lip in bending"): "retaining_ring.lip_bending",
+        ("retention_burst_factor", "ring in shear"): "retaining_ring.ring_shear",
+        ("retention_burst_factor", "ring in dishing"): "retaining_ring.plastic_dishing",
+        ("retention_burst_factor", "barrel under the groove"): "retaining_ring.collapse_factor",
+        ("yield_factor", "barrel under the groove"): "retaining_ring.wall_stresses",
+    },
+    usual=(
+        Usual(
+            "retention.length",
+            "lip length / groove depth",
+            1.0,
+            20.0,
+            "our choice: DIN 472 rates a lip of three groove depths at full strength",
+            lambda end: end.sizes["length"] / end.sizes["groove_depth"],
+        ),
+        Usual(
+            "retention.ring_width",
+            "ring width / groove depth",
+            1.5,
+            10.0,
+            "our choice: the ring stands as far out of the groove as in it, or more",
+            lambda end: end.sizes["ring_width"] / end.sizes["groove_depth"],
+        ),
+    ),
+    warnings=_warnings,
+)

@@ -1,0 +1,227 @@
+"""A plug held by a ring in a groove: worked numbers, finite elements, refusals, a whole knee."""
+
+from __future__ import annotations
+
+from math import log, pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shell_oracle
+from scipy.linalg import solve_banded
+
+import actuator_opt as ao
+from actuator_opt.base.errors import InputError
+from actuator_opt.models import liner_transfer, retaining_ring
+
+DESIGNS = Path(__file__).parents[2] / "designs"
+KNEE = (DESIGNS / "knee.yaml").read_text("utf-8")
+FORCE = 7273.57
+SIZE = {"bore_diameter": 21e-3, "groove_depth": 0.8e-3}
+
+
+def near(value, rel=1e-5):
+    """Equal to six digits."""
+    return pytest.approx(value, rel=rel)
+
+
+def test_ring_and_lip_by_the_worked_numbers():
+    """Bore 21 mm, groove 22.6 mm, lip 3 mm, ring 1.5 mm, each number by hand."""
+    lip = {"force": FORCE, **SIZE, "lip_length": 3e-3}
+    assert FORCE / retaining_ring.groove_area(**SIZE) == near(132.755e6)
+    assert retaining_ring.lip_shear(**lip) == near(34.1482e6)
+    assert retaining_ring.lip_bending(**lip) == near(26.9844e6)
+    assert retaining_ring.ring_shear(
+        force=FORCE, bore_diameter=21e-3, ring_thickness=1.5e-3
+    ) == near(73.5e6)
+    dished = {"inner_radius": 9e-3, "outer_radius": 11.3e-3, "ring_thickness": 1.5e-3}
+    middle = 10.15e-3
+    moment = FORCE * 1.15e-3 / (2 * pi * middle)
+    assert moment == near(131.159)
+    turn = 12 * moment * middle / (1.5e-3**3 * log(11.3 / 9))  # times E
+    assert retaining_ring.ring_dishing(force=FORCE, lever_length=1.15e-3, **dished) == near(
+        turn * 1.5 / 18
+    )
+    assert turn * 1.5 / 18 == near(1733e6, 1e-3)
+    plastic = retaining_ring.plastic_dishing(force=FORCE, lever_length=1.15e-3, **dished)
+    assert plastic * 1.5e-3**2 / 4 * 2.3e-3 == near(moment * middle)
+
+
+@pytest.mark.parametrize("lip", [2e-3, 4e-3])
+@pytest.mark.parametrize("winding", [0.0, 1.5e-3, 3e-3])
+def test_metal_under_the_groove_against_finite_elements(lip, winding):
+    """The model's bending is an upper bound: by at most 15 % on bare metal, 60 % under plies."""
+    inner, thickness, depth, width = 10.5, 2.6, 0.6, 1.5
+    outer, n, tw = inner + thickness, 1e3 * lip, 1e3 * winding
+    metal = shell_oracle.isotropic(71700, 0.33)
+    hoop = shell_oracle.orthotropic((9000, 125000, 9000), (0.3, 0.4, 0.3), 3200)
+    radii = [*np.linspace(inner, inner + depth, 5), *np.linspace(inner + depth, outer, 13)[1:]]
+    if winding:
+        radii += [*np.linspace(outer, outer + tw, 7)[1:]]
+    stations = [
+        *np.linspace(0, n, 15),
+        *np.linspace(n, n + width, 13)[1:],
+        *np.linspace(n + width, n + width + 6, 25)[1:],
+        *np.linspace(n + width + 6, 40, 30)[1:],
+    ]
+    pressure = FORCE / (pi * ((inner + depth) ** 2 - inner**2))
+    wall = shell_oracle.solved(
+        radii=radii,
+        stations=stations,
+        layers=[
+            (lambda r, z: 1.0 * (r < outer), metal),
+            (lambda r, z: 1.0 * (r > outer), hoop),
+        ],
+        absent=lambda r, z: (r < inner + depth) & (z > n) & (z < n + width),
+        loads=[
+            (
+                lambda r, z: (abs(z - n) < 1e-6) & (r < inner + depth),
+                lambda r, z: (0 * r, 0 * r - pressure),
+            )
+        ],
+        fixed_z=lambda r, z: abs(z - 40) < 1e-6,
+    )
+    mean, bending = wall.through(n + 0.02, inner + depth, outer)
+    axial, bent = retaining_ring.wall_stresses(
+        force=FORCE,
+        bore_diameter=2e-3 * inner,
+        groove_depth=1e-3 * depth,
+        lip_length=lip,
+        thickness=1e-3 * thickness,
+        poissons_ratio=0.33,
+    )
+    assert axial == near(FORCE / (pi * (outer**2 - (inner + depth) ** 2)) * 1e6)
+    bound = (axial + bent) / 1e6 / (mean + bending)
+    assert 1.0 <= bound <= (1.6 if winding else 1.15), (mean, bending, axial, bent)
+
+
+def test_collapse_of_a_strip_against_its_stress_blocks():
+    """Blocks of +-S with the neutral axis at c carry N = 2 S c and M = S (t^2/4 - c^2)."""
+    strength, thickness = 500e6, 2e-3
+    for place in (0.0, 0.3e-3, 0.8e-3):
+        axial = 2 * strength * place / thickness
+        bending = 6 * strength * (thickness**2 / 4 - place**2) / thickness**2
+        factor = retaining_ring.collapse_factor(
+            axial=axial / 3, bending=bending / 3, strength=strength
+        )
+        assert factor == near(3.0, 1e-12)
+
+
+def test_liner_transfer_by_worked_numbers_and_its_equation():
+    """tau_0 7.53388 and 4.53562 MPa; and the shear lag solved as a boundary value problem."""
+    walls = {"liner_stiffness": 107.55e6, "winding_stiffness": 21.5e6}
+    k = 3937.26e9
+    of = {"interface_stiffness": k, **walls}
+    line = FORCE / (2 * pi * 12e-3)
+    give = {"liner_thickness": 1.5e-3, "liner_shear_modulus": 27e9}
+    soft = {"winding_thickness": 2.5e-3, "winding_shear_modulus": 4.3e9}
+    direct = 1 / liner_transfer.interface_stiffness(**give, **soft)
+    assert direct + 0.05e-3 / 1.2e9 == near(1 / k)  # a layer of resin of 0.05 mm in series
+    force = liner_transfer.edge_shear(line_force=line, strain_difference=0.0, **of)
+    assert force == near(7.53388e6)
+    cold = liner_transfer.edge_shear(line_force=0.0, strain_difference=5.4e-6 * 100, **of)
+    assert cold == near(4.53562e6)
+    length, mismatch = 40e-3, 2e-4
+
+    cells = 20_000  # slip of the interface, from bars between which each cell of adhesive shears
+    step = length / cells
+    give = 1 / walls["liner_stiffness"] + 1 / walls["winding_stiffness"]
+    drive = line / walls["liner_stiffness"] + mismatch
+    band = np.zeros((3, cells - 1))
+    band[0, 1:] = band[2, :-1] = 1 / step**2
+    band[1] = -2 / step**2 - k * give
+    carried = solve_banded((1, 1), band, np.full(cells - 1, -k * drive))
+    carried[-1:] = drive / give  # far from the edge
+    shear = (4 * carried[0] - carried[1]) / (2 * step)
+    expected = liner_transfer.edge_shear(line_force=line, strain_difference=mismatch, **of)
+    assert shear == near(expected, 1e-4)
+
+
+# --- the design file ------------------------------------------------------------------------
+
+
+RING = """retention:
+  type: retaining_ring
+  material: steel_bolt_12_9
+  length: 5 mm
+  groove_depth: 0.5 mm
+  ring_thickness: 1.5 mm
+  ring_width: 3 mm
+"""
+
+
+def held(text=KNEE):
+    """The knee with rings instead of bonds, in a thicker liner."""
+    start, end = text.index("retention:"), text.index("clevis:")
+    text = text[:start] + RING + "\n" + text[end:]
+    text = text.replace("thickness: 0.6 mm", "thickness: 2 mm", 1)
+    start = text.index("  retention.wall:")
+    end = text.index("  seals.piston.squeeze:\n    lower")
+    free = "".join(
+        f"  retention.{key}:\n    lower: {low} mm\n    upper: {high} mm\n"
+        for key, low, high in (
+            ("length", 1, 10), ("groove_depth", 0.3, 2), ("ring_thickness", 1, 5),
+            ("ring_width", 1, 5),
+        )
+    )  # fmt: skip
+    text = text[:start] + free + text[end:]
+    return text.replace("    upper: 2 mm\n  barrel.layup[1]", "    upper: 5 mm\n  barrel.layup[1]")
+
+
+def complaints(text, **changes):
+    """Every (path, message, remedy) a design is refused with."""
+    with pytest.raises(InputError) as error:
+        ao.read(text, set={path: str(value) for path, value in changes.items()})
+    return [(one.path, one.message, one.remedy) for one in error.value.diagnostics]
+
+
+@pytest.mark.parametrize(
+    ("changes", "path", "said"),
+    [
+        ({"barrel.layup[0].material": "t700_epoxy"}, "barrel.layup[0].material", "plies"),
+        ({"barrel.layup[0].material": "pa12_mjf"}, "barrel.layup[0].material", "a polymer"),
+        ({"barrel.layup[0].thickness": "1.4 mm"}, "barrel.layup[0].thickness", "leaves 0.9 mm"),
+        ({"retention.groove_depth": "2.5 mm"}, "barrel.layup[0].thickness", "leaves nothing"),
+        ({"retention.ring_width": "0.4 mm"}, "retention.ring_width", "vanishes in its groove"),
+        ({"retention.material": "epoxy_structural"}, "retention.material", "metal"),
+        ({"retention.wall": "2 mm"}, "retention.wall", "no wall"),
+    ],
+)
+def test_a_groove_that_cannot_be_cut_is_refused(changes, path, said):
+    """Plies, a liner that is too thin, a ring lost in its groove: each by its place."""
+    found = complaints(held(), **changes)
+    assert any(one == path and said in message for one, message, _ in found), found
+
+
+def test_missing_sizes_of_the_ring_are_named():
+    """Every size without default is asked for."""
+    text = held().replace("  groove_depth: 0.5 mm\n", "", 1)
+    assert any(path == "retention.groove_depth" for path, _, _ in complaints(text))
+
+
+def test_masses_of_the_ring_and_of_the_longer_barrel_by_hand():
+    """The barrel encloses plates, rings and lips; the grooves are cut from it."""
+    evaluated = ao.evaluate(ao.read(held()))
+    parts = evaluated.mass_parts
+    inner, plate, s, n, h = 11.5e-3, 5e-3, 1.5e-3, 5e-3, 0.5e-3
+    length = 110e-3 + 14e-3 + 14e-3 + 2 * (plate + s + n)
+    radii = np.array([inner, inner + 2e-3, inner + 3.2e-3, inner + 4.0e-3])
+    densities = np.array([2810.0, 1570.0, 1570.0])
+    wall = pi * np.sum(densities * np.diff(radii**2)) * length
+    cut = 2 * densities[0] * pi * ((inner + h) ** 2 - inner**2) * s
+    assert parts["barrel"] == near(wall - cut, 1e-9)
+    caps = densities[0] * pi * plate * (2 * inner**2 - (6.5e-3 + 30e-6) ** 2)
+    assert parts["caps"] == near(caps, 1e-9)
+    ring = 7850.0 * pi * s * ((inner + h) ** 2 - (inner + h - 3e-3) ** 2)
+    without = ao.evaluate(ao.read(KNEE)).mass_parts["fastening"]
+    assert parts["fastening"] == near(without + 2 * ring, 1e-9)
+
+
+def test_the_held_knee_beats_the_bonded_knee():
+    """Its optimum is certified by the optimality conditions, and at least 10 % lighter."""
+    bonded, ringed = (ao.optimise(ao.read(text)) for text in (KNEE, held()))
+    assert ringed.status == "optimal"
+    assert ringed.kkt.residual < 1e-6
+    assert ringed.evaluation.metrics["mass"].value < 0.9 * bonded.evaluation.metrics["mass"].value
+    assert ringed.evaluation.metrics["geometry_ring_opening"].value >= 1e-3 * (1 - 1e-6)
+    assert ringed.evaluation.metrics["geometry_lip"].value >= 1e-3 * (1 - 1e-6)
