@@ -15,9 +15,10 @@ from typing import Any, TypeAlias
 from ..base import errors
 from ..base.errors import Fault
 from ..base.quantities import Quantity
+from ..joints.kinds import JOINTS
 from .kinds import Fraction, MaterialName, Text, ValueFault, shape_in_words
 from .material import ROLES
-from .model import Design
+from .model import Design, EndRetention
 from .paths import Target, resolve
 from .requirements import in_faulty_block
 from .structure import KeyEntry, MaterialLookup, number_of, value_at
@@ -30,6 +31,36 @@ MOST_VALUES = 50
 
 MOST_COMBINATIONS = 1000
 """Largest number of combinations of all choices; the optimiser tries every combination."""
+
+
+def of_one_joint(design: Design) -> Design:
+    """A design without the keys and variables of `retention` that its joints do not use.
+
+    A file that lists several types of joint under `choices` states the keys of all of them. A
+    combination of choices has one type at each end, so it needs only the keys of this type.
+    """
+    if design.retention is None:
+        return design
+    removed: set[str] = set()
+    blocks: dict[str, EndRetention] = {}
+    for name, end in design.retention.ends.items():
+        used = {field.key.partition(".")[0] for field in JOINTS[end.type].fields}
+        unused = [
+            key
+            for key, field in EndRetention.model_fields.items()
+            if key not in used and not field.is_required() and getattr(end, key) != field.default
+        ]
+        at = f"retention.{name}" if name else "retention"
+        removed |= {f"{at}.{key}" for key in EndRetention.model_fields if key not in used}
+        defaults = {key: EndRetention.model_fields[key].default for key in unused}
+        blocks[name] = end.model_copy(update=defaults)
+    retention = blocks.get("") or design.retention.model_copy(update=blocks)
+    variables = {
+        path: variable
+        for path, variable in design.variables.items()
+        if not any(path == key or path.startswith(f"{key}.") for key in removed)
+    }
+    return design.model_copy(update={"retention": retention, "variables": variables})
 
 
 def recheck(tree: dict[str, Any]) -> Iterator[Fault]:

@@ -44,7 +44,9 @@ def groove_area(*, bore_diameter: Array, groove_depth: Array) -> Array:
 
 
 @geometry
-def lip_shear(*, force: Array, bore_diameter: Array, groove_depth: Array, lip_length: Array) -> Array:
+def lip_shear(
+    *, force: Array, bore_diameter: Array, groove_depth: Array, lip_length: Array
+) -> Array:
     """Mean shear stress of the lip at the groove's diameter, F/(pi d_2 n), d_2 = d_1 + 2 h.
 
     Parameters
@@ -76,7 +78,9 @@ def lip_shear(*, force: Array, bore_diameter: Array, groove_depth: Array, lip_le
 
 
 @geometry
-def lip_bending(*, force: Array, bore_diameter: Array, groove_depth: Array, lip_length: Array) -> Array:
+def lip_bending(
+    *, force: Array, bore_diameter: Array, groove_depth: Array, lip_length: Array
+) -> Array:
     """Bending stress of the lip at the groove's diameter, 6 F a/(pi d_2 n^2).
 
     The lip is a cantilever from the groove's diameter d_2 = d_1 + 2 h inwards. The lever a is the
@@ -105,7 +109,8 @@ def lip_bending(*, force: Array, bore_diameter: Array, groove_depth: Array, lip_
 
     Examples
     --------
-    >>> sigma = lip_bending(force=7273.57, bore_diameter=21e-3, groove_depth=0.8e-3, lip_length=3e-3)
+    >>> sigma = lip_bending(force=7273.57, bore_diameter=21e-3, groove_depth=0.8e-3,
+    ...                     lip_length=3e-3)
     >>> print(f"{sigma / 1e6:.4f}")
     26.9844
     """
@@ -148,7 +153,12 @@ def ring_shear(*, force: Array, bore_diameter: Array, ring_thickness: Array) -> 
 
 @geometry
 def ring_dishing(
-    *, force: Array, lever_length: Array, inner_radius: Array, outer_radius: Array, ring_thickness: Array
+    *,
+    force: Array,
+    lever_length: Array,
+    inner_radius: Array,
+    outer_radius: Array,
+    ring_thickness: Array,
 ) -> Array:
     """Hoop stress at the inner edge of the ring as the force dishes it.
 
@@ -187,7 +197,12 @@ def ring_dishing(
 
 @geometry
 def plastic_dishing(
-    *, force: Array, lever_length: Array, inner_radius: Array, outer_radius: Array, ring_thickness: Array
+    *,
+    force: Array,
+    lever_length: Array,
+    inner_radius: Array,
+    outer_radius: Array,
+    ring_thickness: Array,
 ) -> Array:
     """Yield stress at which the ring is fully plastic as the force dishes it.
 
@@ -280,7 +295,13 @@ def wall_stresses(
     factor = 1 - poissons_ratio * poissons_ratio
     beta = sqrt(sqrt(3 * factor) / (radius * remaining))
     of_wall = beta * remaining * remaining * remaining / (12 * factor)
-    of_lip = lip_length * lip_length * lip_length * namespace(inner).log(outer / inner) / (12 * (inner + thickness / 2))
+    of_lip = (
+        lip_length
+        * lip_length
+        * lip_length
+        * namespace(inner).log(outer / inner)
+        / (12 * (inner + thickness / 2))
+    )
     moment = force * thickness / 2 / (2 * pi * radius) * of_wall / (of_wall + of_lip)
     area = section_area(outer_diameter=2 * outer, inner_diameter=2 * (inner + groove_depth))
     return force / area, 6 * moment / (remaining * remaining)

@@ -22,6 +22,7 @@ from ..base.numeric import STEP, Array, namespace, real, where
 from ..base.quantities import Sense
 from ..base.symbolic.recorded import RecordedFunction
 from ..design import with_values
+from ..design.choice_list import of_one_joint
 from ..design.material import Material
 from ..design.materials import Library
 from ..evaluation import PreparedDesign, compute, prepare
@@ -50,6 +51,7 @@ Its arguments are PATH, message and remedy."""
 def variant(subject: PreparedDesign, values: Mapping[str, Any], library: Library) -> PreparedDesign:
     """Prepare the design with some values replaced; materials new to it come from the library.
 
+    Keys and variables that the joints of these values do not use are left out.
     `values` maps each PATH, such as "barrel.bore", to its new value.
 
     Raises
@@ -57,8 +59,8 @@ def variant(subject: PreparedDesign, values: Mapping[str, Any], library: Library
     InputError
         the values contradict the design or each other
     """
-    design = with_values(
-        subject.design, dict(values), materials=library, metrics=subject.quantities
+    design = of_one_joint(
+        with_values(subject.design, dict(values), materials=library, metrics=subject.quantities)
     )
     names = names_of_materials(design)
     materials: dict[str, Material] = {

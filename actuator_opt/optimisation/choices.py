@@ -42,6 +42,7 @@ from .evaluator import Evaluator, Point
 from .problem import BoxProblem, Vector
 from .quick_look import DOUBTFUL, Look, LookStart, hessian_of, look_quickly
 from .resolve.boxes import NEAR
+from .resolve.steps import ScaledHessian
 from .result import Choices, Combination, How
 from .rounding import RUNNERS_UP, ListedSizes, Wanted, sizes_of
 from .solution import MET, Solution
@@ -333,6 +334,27 @@ def _any(choice_search: ChoiceSearch) -> bool:
     return any(look.x is not None for look in choice_search.looks)
 
 
+def _translated(other: Look, look: Look) -> Vector | None:
+    """The best point of a combination, in the variables of another combination.
+
+    A variable that only the other combination has keeps its start.
+    """
+    if other.x is None or other.actuator is None or look.actuator is None:
+        return other.x
+    known = dict(zip(other.actuator.paths, other.x, strict=True))
+    start = look.actuator.problem.start
+    assert start is not None
+    pairs = zip(look.actuator.paths, start, strict=True)
+    return np.array([known.get(path, number) for path, number in pairs])
+
+
+def _shared(other: Look, look: Look) -> ScaledHessian | None:
+    """The Hessian of another combination, if both have the same variables."""
+    if other.actuator is None or look.actuator is None:
+        return None
+    return other.hessian if other.actuator.paths == look.actuator.paths else None
+
+
 def _starts(choice_search: ChoiceSearch, look: Look) -> list[LookStart]:
     """Starts for a combination, from solved combinations that differ in the fewest values.
 
@@ -340,7 +362,11 @@ def _starts(choice_search: ChoiceSearch, look: Look) -> list[LookStart]:
     reduces the violation. The nearest neighbour with a known Hessian (the latest of several) gives
     a third start, whose steps use that Hessian.
     """
-    solved = [other for other in choice_search.looks if other.x is not None and other is not look]
+    solved = [
+        replace(other, x=_translated(other, look), hessian=_shared(other, look))
+        for other in choice_search.looks
+        if other.x is not None and other is not look
+    ]
 
     def distance(other: Look) -> tuple[int, float]:
         differing = sum(other.values[path] != value for path, value in look.values.items())
@@ -389,8 +415,11 @@ def _solve_best(
             for other in choice_search.looks:
                 promising = other.violation <= DOUBTFUL
                 if other.solution is None and other.actuator is not None and promising:
-                    start = LookStart(look.x, descend=True)
-                    look_quickly(other, [start], settings.seed, settings.left())
+                    start = _translated(look, other)
+                    assert start is not None
+                    look_quickly(
+                        other, [LookStart(start, descend=True)], settings.seed, settings.left()
+                    )
     best = choice_search.ranked()[0]
     if best.solution is None:
         many_starts(best, settings)
