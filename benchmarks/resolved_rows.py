@@ -1,6 +1,6 @@
 """Every re-solved end of a sensitivity table against an optimisation of its own; run by hand.
 
-    python benchmarks/resolved_rows.py designs/knee.yaml [MORE.yaml ...] [--starts N] [--seeds N]
+    python benchmarks/resolved_rows.py DESIGN.yaml [MORE.yaml ...] [--starts N] [--seeds N]
 
 Each end is the file read again with the parameter replaced and searched from many starts, without
 any knowledge of the unchanged optimum. Exit status 1 where one of them disagrees.

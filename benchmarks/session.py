@@ -1,6 +1,6 @@
 """Warm re-solves of a session against cold ones; run by hand.
 
-    python benchmarks/session.py designs/knee.yaml [MORE.yaml ...] [--moves N] [--seed N] [--cold N]
+    python benchmarks/session.py DESIGN.yaml [MORE.yaml ...] [--moves N] [--seed N] [--cold N]
 
 Each move changes one to three priced numbers at random by up to 2 %. The warm optimum must agree
 with the cold one to 1e-6 or be better, and there must be one wherever the cold search finds one.

@@ -40,7 +40,7 @@ from actuator_opt.optimisation.run import sensitivities
 from actuator_opt.optimisation.solver import solve
 from actuator_opt.uncertainties import study
 
-KNEE = Path(__file__).parent.parent / "designs" / "knee.yaml"
+KNEE = Path(__file__).parent.parent / "designs" / "knee_bonded.yaml"
 
 
 SERVO = """

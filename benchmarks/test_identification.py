@@ -11,7 +11,7 @@ import actuator_opt as ao
 from actuator_opt.identification import Record, identify, parse_record, synthetic
 from actuator_opt.studies.bench import bench
 
-KNEE = Path(__file__).parent.parent / "designs" / "knee.yaml"
+KNEE = Path(__file__).parent.parent / "designs" / "knee_bonded.yaml"
 SPEEDS = (0.0005, 0.001, 0.002, 0.003, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2)
 TRUTH = synthetic.Truth(
     coulomb=150.0,

@@ -23,7 +23,7 @@ from actuator_opt.studies.bench import bench as bench_of
 
 COUNT = 200
 LAG = 4e-3
-DESIGN = Path(__file__).parent.parent / "designs" / "knee.yaml"
+DESIGN = Path(__file__).parent.parent / "designs" / "knee_bonded.yaml"
 PLUNGER_MOTIONS = (
     lambda rng: oracle.plateaus(np.geomspace(1e-3, 0.1, 7) * rng.uniform(0.9, 1.1), longest=0.8),
     lambda rng: oracle.plateaus(np.array([1, 2, 4, 8]) * 1e-3 * rng.uniform(0.9, 1.1), longest=1.0),

@@ -344,7 +344,7 @@ def _record(chance: random.Random) -> Input:
     text = "\n".join(",".join(row) for row in rows).encode("utf-8", "replace")
     if chance.random() < 0.2:
         text = changed_bytes(chance, text)
-    words = ("identify", "@r.csv", "--design", str(DESIGNS / "knee.yaml"), "--json")
+    words = ("identify", "@r.csv", "--design", str(DESIGNS / "knee_bonded.yaml"), "--json")
     return Input("record", words, files={"r.csv": text})
 
 
@@ -361,7 +361,7 @@ def _run(chance: random.Random) -> Input:
     else:
         data = changed_bytes(chance, data)
     verbs = [("runs", "show", "@a.run"), ("runs", "show", "@a.run", "--json"),
-             ("compare", "@a.run", str(DESIGNS / "knee.yaml"), "--json")]  # fmt: skip
+             ("compare", "@a.run", str(DESIGNS / "knee_bonded.yaml"), "--json")]  # fmt: skip
     if kind == "sweep":
         verbs.append(("explore", "@a.run", "--out", "@x.html", "--json"))
     return Input("run", chance.choice(verbs), files={"a.run": data})

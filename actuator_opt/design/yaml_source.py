@@ -334,6 +334,7 @@ _SYNTAX = (
     ("unexpected end of stream", "a quote is not closed", "close the quote"),
     ("document separator", "a quote is not closed", "close the quote"),
     ("<document start>", "text after the end of the document", "remove it"),
+    ("nesting depth", f"nested deeper than {MAX_DEPTH} levels", "flatten the file"),
     ("escape", "unknown escape in a quoted text", "use single quotes"),
 )  # fmt: skip
 

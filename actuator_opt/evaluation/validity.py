@@ -16,6 +16,7 @@ from ..base.dataclass import dataclass
 from ..design.material import compatible
 from ..design.model import PLAIN_CAP
 from ..design.paths import quantity_of
+from ..joints.winding import WINDING_EDGE
 from ..metrics import METRICS
 from ..metrics.table import CRITERION, OWN, ROWS, WALL_FED
 from ..models import contact_profile, gland, laminate, rough_surface, seals
@@ -394,27 +395,33 @@ def _rod_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str,
 
 
 def _bond_warnings(run: ModelRun) -> Iterable[tuple[str, str]]:
-    """Warn of a bond whose strength is exceeded by shear from force and temperature together."""
+    """Warn of a bond whose strength is exceeded by shear from force and temperature together.
+
+    The end of a winding on a liner is such a bond too.
+    """
     metrics = run.computed.metrics
     sums = {}
-    bonds = {"rod fittings": ("fitting_factor", "")}
+    bonds = {"rod fittings": ("fitting_factor", "bond", "bond of the rod fittings")}
     for end in run.joints:
-        name = end.end_joint.name
-        bonds[name or "caps"] = ("retention_factor", name)
-    for place, (metric, start) in bonds.items():
+        name = end.end_joint.name or "caps"
+        for edge, words in (("bond", "bond of the"), (WINDING_EDGE, "end of the winding at the")):
+            start = end.end_joint.placed(edge)
+            if any(at.startswith(start) for at in metrics.get("retention_factor", {})):
+                bonds[name] = ("retention_factor", start, f"{words} {name}")
+    for place, (metric, start, words) in bonds.items():
         heat = [x for at, x in metrics.get("bond_thermal_factor", {}).items() if place in at]
         force = [x for at, x in metrics.get(metric, {}).items() if at.startswith(start)]
         if heat and force:
-            sums[place] = sum(
+            sums[words] = sum(
                 max(float(np.max(1 / np.real(row))) for row in rows) for rows in (heat, force)
             )
     if sums and max(sums.values()) > 1:
         place = max(sums, key=lambda name: sums[name])
         yield (
             "",
-            f"bond of the {place}: at the bond's edge, the elastic shear stresses due to force and "
-            f"temperature add up to {sums[place]:.2f} times the strength; each stress is checked "
-            "alone, because a ductile adhesive yields, which relieves both",
+            f"{place}: at the edge, the elastic shear stresses due to force and temperature add up "
+            f"to {sums[place]:.2f} times the strength; each stress is checked alone, because a "
+            "ductile adhesive or resin yields, which relieves both",
         )
 
 

@@ -9,7 +9,6 @@ from . import overlap
 from .joint import (
     End,
     EndDimensions,
-    FactorBasis,
     Fatigue,
     Joint,
     JointField,
@@ -107,7 +106,7 @@ JOINT = Joint(
     own=lambda loaded: {},
     envelope=_envelope,
     metrics={},
-    judged=(FactorBasis("the elastic peak shear", "a bond"), FactorBasis("mean bond shear")),
+    judged=("the elastic peak shear of a bond", "mean bond shear"),
     models={
         ("retention_factor", "bond at the skirt's edge"): "lap_joint.bond_edge_shear",
         ("retention_factor", "bond at the barrel's edge"): "lap_joint.bond_edge_shear",

@@ -106,14 +106,8 @@ class JointField(NamedTuple):
     help: str = ""
 
 
-class FactorBasis(NamedTuple):
-    """Words that name the strength on which a safety factor is based, such as "rupture of threads".
-
-    `measure` is the kind of strength ("rupture"), `of` names the parts ("threads and skirt").
-    """
-
-    measure: str
-    of: str = ""
+ON_METAL = ("yield of metal parts", "rupture of metal parts")
+"""Strengths on which the factors of a metal joint are based: `Joint.judged`."""
 
 
 class Usual(NamedTuple):
@@ -367,7 +361,7 @@ class Joint:
     metrics: Mapping[str, str]
     """Metrics that only this joint has, each with the text that says why other joints do not have
     it."""
-    judged: tuple[FactorBasis, FactorBasis]
+    judged: tuple[str, str]
     """Words for the strengths on which the working factor and the burst factor are based."""
     models: Mapping[tuple[str, str], str]
     """Main model, such as `rod.section_area`, that computes a metric at a location; the keys are
@@ -436,20 +430,4 @@ def judged_on(joints: Iterable[Joint], index: int) -> str:
 
     `index` is 0 for the working factor, 1 for the burst factor.
     """
-    groups: dict[str, list[str]] = {}
-    for joint in joints:
-        judged = joint.judged[index]
-        groups.setdefault(judged.measure, []).append(judged.of)
-    return ", ".join(
-        f"{measure} of {_alternatives(parts)}" if all(parts) else measure
-        for measure, parts in groups.items()
-    )
-
-
-def _alternatives(parts: Sequence[str]) -> str:
-    """Join parts with "or", or with ", or of" if one of the parts is itself a list.
-
-    >>> _alternatives(["threads", "tie rods"]), _alternatives(["threads and skirt", "tie rods"])
-    ('threads or tie rods', 'threads and skirt, or of tie rods')
-    """
-    return (", or of " if any(" and " in part for part in parts) else " or ").join(parts)
+    return " or ".join(dict.fromkeys(joint.judged[index] for joint in joints))

@@ -20,12 +20,12 @@ from ..models import mass, retaining_ring as model
 from .joint import (
     LEAST_METAL,
     NOT_BONDED,
+    ON_METAL,
     ROUNDING,
     DrawnPart,
     End,
     EndDimensions,
     EndSpan,
-    FactorBasis,
     Fatigue,
     Joint,
     JointField,
@@ -39,7 +39,7 @@ from .joint import (
     WallPressures,
     judged_later,
 )
-from .winding import winding_edge
+from .winding import WINDING_EDGE, winding_edge
 
 EDGE_BREAK = 0.2e-3
 """Largest edge break of the plug and of the groove [m], which moves the force on the ring inwards.
@@ -278,7 +278,7 @@ def _strength(loaded: Loaded) -> Strength | str:
         return Strength(working, burst, NOT_BONDED)
     if isinstance(winding, str):
         return winding
-    return Strength(working | {"edge of the winding": winding.factor()}, burst, winding.thermal())
+    return Strength(working | {WINDING_EDGE: winding.factor()}, burst, winding.thermal())
 
 
 def _yields(loaded: Loaded) -> Mapping[str, Array]:
@@ -384,17 +384,14 @@ JOINT = Joint(
     own=_lands,
     envelope=None,
     metrics=dict.fromkeys(LANDS, _ABSENT),
-    judged=(
-        FactorBasis("on yield", "groove, lip and ring"),
-        FactorBasis("rupture", "groove, lip and ring"),
-    ),
+    judged=ON_METAL,
     models={
         ("retention_factor", "groove flank"): "retaining_ring.groove_area",
         ("retention_factor", "lip in shear"): "retaining_ring.lip_shear",
         ("retention_factor", "lip in bending"): "retaining_ring.lip_bending",
         ("retention_factor", "ring in shear"): "retaining_ring.ring_shear",
         ("retention_factor", "ring in dishing"): "retaining_ring.ring_dishing",
-        ("retention_factor", "edge of the winding"): "liner_transfer.edge_shear",
+        ("retention_factor", WINDING_EDGE): "liner_transfer.edge_shear",
         ("retention_burst_factor", "lip in shear"): "retaining_ring.lip_shear",
         ("retention_burst_factor", "lip in bending"): "retaining_ring.lip_bending",
         ("retention_burst_factor", "ring in shear"): "retaining_ring.ring_shear",
@@ -415,8 +412,8 @@ JOINT = Joint(
             "retention.ring_width",
             "ring width / groove depth",
             1.5,
-            10.0,
-            "our choice: the ring stands as far out of the groove as in it, or more",
+            20.0,
+            "our choice: at least half as far out of the groove as in it",
             lambda end: end.sizes["ring_width"] / end.sizes["groove_depth"],
         ),
     ),

@@ -25,10 +25,10 @@ from . import overlap
 from .joint import (
     LEAST_METAL,
     NOT_BONDED,
+    ON_METAL,
     ROUNDING,
     End,
     EndDimensions,
-    FactorBasis,
     Fatigue,
     Joint,
     JointField,
@@ -515,7 +515,7 @@ JOINT = Joint(
         LANDS[1]: _ABSENT,
         CREST: _ABSENT,
     },
-    judged=(FactorBasis("on yield", "threads"), FactorBasis("rupture", "threads and skirt")),
+    judged=ON_METAL,
     models={
         ("retention_factor", "barrel thread"): "thread.male_strip_area",
         ("retention_factor", "skirt thread"): "thread.female_strip_area",

@@ -12,12 +12,12 @@ from ..base.quantities import Quantity
 from ..models import endurance, mass, retention
 from .joint import (
     NOT_BONDED,
+    ON_METAL,
     Clamp,
     DrawnPart,
     End,
     EndDimensions,
     EndSpan,
-    FactorBasis,
     Fatigue,
     Joint,
     JointField,
@@ -165,7 +165,7 @@ JOINT = Joint(
     own=_own,
     envelope=None,
     metrics={"joint_factor": "no tie rods"},
-    judged=(FactorBasis("on yield", "tie rods"), FactorBasis("rupture", "tie rods")),
+    judged=ON_METAL,
     models={
         ("retention_factor", "tie rods"): "retention.tie_rod_stress",
     },

@@ -10,6 +10,9 @@ from ..models import liner_transfer
 from ..models.strength_modes import load_multiplier
 from .joint import Loaded, MaterialProperties, Thermal
 
+WINDING_EDGE = "edge of the winding"
+"""Location of the shear in rows of strength."""
+
 
 @dataclass(frozen=True, slots=True)
 class WindingEdge:

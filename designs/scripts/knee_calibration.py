@@ -1,6 +1,6 @@
 """From a bench record to the redesigned knee: identify, calibrate, optimise again, one page.
 
-The prototype of knee.yaml ran on a bench against a load cylinder with a load cell between: constant
+The bonded prototype ran on a bench against a load cylinder with a load cell between: constant
 speeds from 1 to 200 mm/s, out and in, at three loads. The record is SYNTHETIC: made by this script
 from the friction of `TRUTH`, with noise, steps, lag and outliers of real sensors, so that what is
 identified can be held against what was put in.
@@ -23,7 +23,7 @@ from actuator_opt.identification import Record, synthetic
 from actuator_opt.rendering import terminal
 from actuator_opt.studies.bench import Bench, bench
 
-DESIGN = Path(__file__).resolve().parents[1] / "knee.yaml"
+DESIGN = Path(__file__).resolve().parents[1] / "knee_bonded.yaml"
 RECORD = DESIGN.parent / "records" / "knee_bench.csv"
 TRUTH = synthetic.Truth(
     coulomb=33.0,

@@ -8,7 +8,7 @@ the knee takes with no limit to the least that any knee takes.
     python designs/scripts/knee_custom_constraint.py                  # prints the tables
     python designs/scripts/knee_custom_constraint.py --out reports    # and writes the report there
     python designs/scripts/knee_custom_constraint.py --quick          # few widths
-    actuator-opt optimise designs/knee.yaml --plugin designs/scripts/knee_custom_constraint.py
+    actuator-opt optimise KNEE.yaml --plugin designs/scripts/knee_custom_constraint.py
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from actuator_opt.rendering.text import fixed, number
 
 Data = dict[str, Any]
 
-DESIGN = Path(__file__).resolve().parents[1] / "knee.yaml"
+DESIGN = Path(__file__).resolve().parents[1] / "knee_bonded.yaml"
 RUNNING = 1.5e-3
 """Room on either side of skirt and pipe, m: own choice, for what the side plates give."""
 RETURN_SPEED = 3.05
@@ -191,7 +191,7 @@ def lead(study: Data) -> list[str]:
         f" there a millimetre less costs {number(-after['price'], 3)} g by the multiplier."
         f" Solved again {number(1e3 * STEP, 2)} mm narrower and wider the mean slopes are {below}"
         f" and {above} g/mm.",
-        f"No knee within the bounds of knee.yaml is narrower than {fixed(taken(least), 1)} mm; that"
+        f"No knee within the bounds of the file is narrower than {fixed(taken(least), 1)} mm; that"
         f" one weighs {fixed(1e3 * least['mass'], 1)} g.",
     ]
 

@@ -1,6 +1,6 @@
 """One knee, five barrels: steel, aluminium, carbon cloth, wound carbon with and without a liner.
 
-Each is brought to its own optimum of mass for the requirements and load cases of knee.yaml. What
+Each is brought to its own optimum of mass for the requirements of the bonded knee. What
 each limit costs there, what a thin laminate would have promised, and how the masses move with the
 gap and the stiffness asked for, are computed too. knee_materials.typ makes the report of them: a
 table, a figure and a discussion of what decides.
@@ -105,9 +105,9 @@ def variant(
     checks to leave out, `asks` least values to ask for besides; `goal` replaces the objective,
     `model` is that of the barrel.
     """
-    data, layers = _data("knee.yaml"), wall or WALLS[key]
+    data, layers = _data("knee_bonded.yaml"), wall or WALLS[key]
     data["name"] = f"robot knee, {key} barrel"
-    data["notes"] = "A variant of designs/knee.yaml made by designs/scripts/knee_materials.py."
+    data["notes"] = "A variant of knee_bonded.yaml made by designs/scripts/knee_materials.py."
     data["barrel"] |= {"layup": [dict(part["ply"]) for part in layers], "model": model}
     free = {path: b for path, b in data["variables"].items() if not path.startswith("barrel.")}
     for index, part in enumerate(layers):
@@ -282,7 +282,7 @@ def composite(key: str, optimum: Any, left_out: tuple[str, ...]) -> Data:
 
 def compute() -> Data:
     """The whole study as plain numbers, SI."""
-    design = ao.read(_file("knee.yaml")).design
+    design = ao.read(_file("knee_bonded.yaml")).design
     limits = {r.metric: r.limit for r in ao.evaluate(design).requirements}
     variants = {key: one(key, limits) for key in WALLS}
     library = ao.load_library()

@@ -1,6 +1,6 @@
 """At which supply pressure a robot's knee is lightest, with its line and the oil in both.
 
-The knee of knee.yaml is re-optimised at every pressure for the least of what it makes the robot
+The bonded knee is re-optimised at every pressure for the least of what it makes the robot
 carry: the actuator, a pressure and a return pipe, and the oil that fills all of it. Loads, speeds
 and every requirement stay as they are; ring sections and clearances are free, so that the seals are
 those that the pressure asks for. What binds where says why the minimum lies where it does.
@@ -8,7 +8,7 @@ those that the pressure asks for. What binds where says why the minimum lies whe
     python designs/scripts/knee_pressure.py                  # prints the tables
     python designs/scripts/knee_pressure.py --out reports    # and writes the report there
     python designs/scripts/knee_pressure.py --quick          # few pressures
-    actuator-opt evaluate designs/knee.yaml --plugin designs/scripts/knee_pressure.py
+    actuator-opt evaluate designs/knee_bonded.yaml --plugin designs/scripts/knee_pressure.py
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from actuator_opt.rendering.text import fixed, number
 
 Data = dict[str, Any]
 
-DESIGN = Path(__file__).resolve().parents[1] / "knee.yaml"
+DESIGN = Path(__file__).resolve().parents[1] / "knee_bonded.yaml"
 BAR = 1e5
 PRESSURES = (60, 75, 90, 105, 120, 140, 160, 185, 210, 240, 275, 310, 350)
 QUICK = (90, 210)
@@ -58,7 +58,7 @@ ASSUMED: dict[str, tuple[float, str, str]] = {
     "design_factor": (4.0, "", PARKER + ": Lamé, severity A, over the ultimate strength"),
     "least_wall": (0.51e-3, "m", "Parker catalogue 4300, table T6: 0.020 in, 1/4 in tube"),
     "return_rating": (50e5, "Pa", "own choice: ten times the return pressure, for surges"),
-    "port": (6e-3, "m", "knee.yaml; it grows with the flow below its 210 bar"),
+    "port": (6e-3, "m", "knee_bonded.yaml; it grows with the flow below its 210 bar"),
     "sag": (0.1, "", "own choice: what the pressure may fall by as the accumulator gives"),
     "precharge": (0.9, "", "common practice: gas over the lowest working pressure"),
 }

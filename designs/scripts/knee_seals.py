@@ -1,6 +1,6 @@
 """What the seals of the knee cost: grams over friction, leakage and squeeze, each re-optimised.
 
-The knee of knee.yaml is re-optimised for least mass over the running friction allowed: with its
+The bonded knee is re-optimised for least mass over the running friction allowed: with its
 rings as they stand, with ring sections and clearances free too, and with these on an oil film.
 Compounds, sections and back-up rings are enumerated as choices. Prices come from the multipliers
 and are checked by solving again; closed forms stand beside the models.
@@ -36,7 +36,7 @@ from actuator_opt.rendering.script_pages import (
 )
 from actuator_opt.rendering.text import fixed, number
 
-DESIGN = Path(__file__).resolve().parents[1] / "knee.yaml"
+DESIGN = Path(__file__).resolve().parents[1] / "knee_bonded.yaml"
 PLACES = ("piston", "rod")
 VARIANTS = {
     "shipped": "rings of 1.78 mm, by coefficient",

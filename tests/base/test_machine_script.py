@@ -171,7 +171,7 @@ def test_the_knee(in_browser, tmp_path):
     Functions such as exp differ in the last digit between languages. Where slopes of a thousand
     cancel, this shows in a slope near zero: one in a thousand may differ by more than 1e-13.
     """
-    actuator = build(ao.read(ROOT / "designs/knee.yaml").subject())
+    actuator = build(ao.read(ROOT / "designs/knee_bonded.yaml").subject())
     recorded_function = actuator.recorded
     recorded_function(recorded_function.present[:, None])
     made, count = recorded_function.recording.program, len(actuator.paths)

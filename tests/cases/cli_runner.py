@@ -15,7 +15,7 @@ from actuator_opt import cli
 
 ROOT = Path(__file__).resolve().parents[2]
 DESIGNS = ROOT / "designs"
-KNEE = DESIGNS / "knee.yaml"
+KNEE = DESIGNS / "knee_bonded.yaml"
 
 BENCH = """\
 name: test bench

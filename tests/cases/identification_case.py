@@ -13,7 +13,7 @@ from actuator_opt.identification import identify, synthetic
 from actuator_opt.identification.record import Record
 from actuator_opt.studies.bench import bench
 
-DESIGN = Path(__file__).parents[2] / "designs" / "knee.yaml"
+DESIGN = Path(__file__).parents[2] / "designs" / "knee_bonded.yaml"
 SOURCE = DESIGN.read_text(encoding="utf-8")
 TRUTH = synthetic.Truth(
     coulomb=150.0,

@@ -8,7 +8,7 @@ from pathlib import Path
 import actuator_opt as ao
 from actuator_opt.uncertainties.inputs import inputs
 
-KNEE = (Path(__file__).parents[2] / "designs" / "knee.yaml").read_text(encoding="utf-8")
+KNEE = (Path(__file__).parents[2] / "designs" / "knee_bonded.yaml").read_text(encoding="utf-8")
 PLAIN = re.sub(r"requirements:\n(?:  .*\n|\n)+?(?=waivers)", "", KNEE, flags=re.MULTILINE)
 """The knee without requirements: only the forces of its load cases, met with a third to spare."""
 

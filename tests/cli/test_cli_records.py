@@ -223,7 +223,7 @@ def test_a_record_that_is_not_there():
 @pytest.fixture(scope="module")
 def calibrated(tmp_path_factory):
     """JSON and design of `calibrate` of the shipped record."""
-    file = tmp_path_factory.mktemp("calibrated") / "knee.yaml"
+    file = tmp_path_factory.mktemp("calibrated") / "knee_bonded.yaml"
     result = run("calibrate", str(RECORD), "--design", str(KNEE), "--write", str(file), "--json")
     assert result.code == 1, result.err  # the start of the knee misses requirements
     return result.json, file
@@ -297,7 +297,7 @@ def test_calibrate_without_search_and_its_page(tmp_path):
 
 def test_a_folder_that_cannot_be_written_is_said_before_the_work(tmp_path):
     """The place to write is tried first."""
-    target = tmp_path / "none" / "knee.yaml"
+    target = tmp_path / "none" / "knee_bonded.yaml"
     result = run("calibrate", str(RECORD), "--design", str(KNEE), "--write", str(target))
     assert result.code == 3
     assert "its folder does not exist" in result.err

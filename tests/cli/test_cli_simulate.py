@@ -169,7 +169,7 @@ def test_sensitivities_are_ranked(short):
 @pytest.mark.parametrize(
     ("scenario", "design", "said"),
     [
-        ("course_open_loop.yaml", "knee.yaml", "valve"),
+        ("course_open_loop.yaml", "knee_bonded.yaml", "valve"),
         ("course_motor_velocity.yaml", "servo_knee.yaml", "replaces the cylinder"),
         ("course_valve_ramp.yaml", "servo_knee.yaml", "replaces the cylinder"),
         ("aalto_closed_ports.yaml", "servo_knee.yaml", "stroke"),
@@ -222,9 +222,9 @@ def test_the_unit_of_a_column_is_that_of_its_header(tmp_path):
 
 def test_nothing_that_is_read_is_written_over(short, tmp_path):
     """The design a scenario names stays when --csv names it."""
-    design = tmp_path / "knee.yaml"
+    design = tmp_path / "knee_bonded.yaml"
     design.write_bytes((DESIGNS / "servo_knee.yaml").read_bytes())
-    short.write_text(SHORT.replace(str(DESIGNS / "servo_knee.yaml"), "knee.yaml"))
+    short.write_text(SHORT.replace(str(DESIGNS / "servo_knee.yaml"), "knee_bonded.yaml"))
     before = design.read_bytes()
     assert run("simulate", str(short), "--csv", str(design)).code == 3
     assert design.read_bytes() == before
@@ -304,7 +304,7 @@ def test_a_start_scenario_runs_around_every_design(name, tmp_path):
 
 def test_a_start_scenario_and_a_start_design_are_one_or_the_other():
     """Both at once are refused in one line."""
-    knee = str(DESIGNS / "knee.yaml")
+    knee = str(DESIGNS / "knee_bonded.yaml")
     result = run("init", "--scenario", knee, "--from", knee)
     assert (result.code, result.out) == (2, "")
     assert "use only one of them" in result.err

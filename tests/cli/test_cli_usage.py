@@ -113,8 +113,8 @@ def test_files_that_cannot_be_read(verb, name):
 
 def test_near_names_are_offered(tmp_path):
     """A mistyped file name gets the nearest one of its folder."""
-    (tmp_path / "knee.yaml").write_text(BENCH)
-    assert "knee.yaml?" in run("evaluate", tmp_path / "kene.yaml").err
+    (tmp_path / "knee_bonded.yaml").write_text(BENCH)
+    assert "knee_bonded.yaml?" in run("evaluate", tmp_path / "kene.yaml").err
 
 
 def test_check_of_several_files(tmp_path):

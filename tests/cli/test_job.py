@@ -19,7 +19,7 @@ from actuator_opt.cli.app import COMMANDS, HIDDEN
 DATE = "2026-03-04"
 SCENARIO = DESIGNS / "scenarios" / "knee_step.yaml"
 RECORD = DESIGNS / "records" / "knee_bench.csv"
-KNEE = DESIGNS / "knee.yaml"
+KNEE = DESIGNS / "knee_bonded.yaml"
 PIECES = ("text", "report", "csv", "record", "data")
 FRONT = ["mass:min", "stiffness_min:max"]
 

@@ -183,7 +183,7 @@ def test_the_contradictions_come_out_of_the_models(published, number, why) -> No
 
 def test_only_a_design_that_names_a_paper_gets_its_tables() -> None:
     """The knee has no published tables; the paper's cylinder has, each with a note."""
-    assert published_tables(verbs.evaluate(DESIGNS / "knee.yaml")) == []
+    assert published_tables(verbs.evaluate(DESIGNS / "knee_bonded.yaml")) == []
     tables = published_tables(verbs.evaluate(DESIGNS / "elasswad_knee.yaml"))
     assert len(tables) == 9
     for table in tables:
@@ -211,4 +211,4 @@ def test_a_report_without_the_replicas_says_where_they_are(monkeypatch) -> None:
     monkeypatch.setitem(sys.modules, REPLICAS, None)
     (notes,) = published_blocks(evaluation)
     assert "ElAsswad2018 are not part of this installation" in notes.items[0]
-    assert published_blocks(verbs.evaluate(DESIGNS / "knee.yaml")) == []
+    assert published_blocks(verbs.evaluate(DESIGNS / "knee_bonded.yaml")) == []

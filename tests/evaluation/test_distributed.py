@@ -21,13 +21,13 @@ lines:
     outer_diameter: 12 mm
     material: steel_42crmo4
 """
-KNEE = Path(__file__).parents[2] / "designs" / "knee.yaml"
+KNEE = Path(__file__).parents[2] / "designs" / "knee_bonded.yaml"
 
 
 @pytest.fixture(scope="module")
 def held(tmp_path_factory):
     """The knee with one long pipe at its cap side, ports closed at the pipe's far end."""
-    path = tmp_path_factory.mktemp("line") / "knee.yaml"
+    path = tmp_path_factory.mktemp("line") / "knee_bonded.yaml"
     path.write_text(KNEE.read_text("utf-8") + LINE, "utf-8")
     subject = prepare(read_design(path).design)
     return subject, compute(subject, subject.values())

@@ -21,7 +21,7 @@ from actuator_opt.models.strength import CRITERIA, yield_utilisation
 from actuator_opt.models.strength_modes import load_multiplier
 
 DESIGNS = Path(__file__).parents[2] / "designs"
-KNEE = (DESIGNS / "knee.yaml").read_text("utf-8")
+KNEE = (DESIGNS / "knee_bonded.yaml").read_text("utf-8")
 LAYERS = """  layup:
     - {material: al_7075_t6, thickness: 0.6 mm}
     - {material: t700_epoxy, angle: 88 deg, thickness: 0.7 mm}

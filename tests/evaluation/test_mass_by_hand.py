@@ -108,7 +108,7 @@ TABLE = {
 def knee() -> verbs.Evaluation:
     """The knee with the dimensions and densities of the hand calculation."""
     densities = {f"materials.{name}.density": value for name, value in DENSITIES.items()}
-    return verbs.evaluate(verbs.read(DESIGNS / "knee.yaml", set=DIMENSIONS | densities))
+    return verbs.evaluate(verbs.read(DESIGNS / "knee_bonded.yaml", set=DIMENSIONS | densities))
 
 
 @pytest.mark.parametrize("part", BY_HAND)
@@ -177,7 +177,7 @@ extra_masses:
 
 def test_stated_components_count_and_those_on_the_rod_move():
     """The mass grows by what is stated; the rod's frequency falls by the moving part alone."""
-    text = (DESIGNS / "knee.yaml").read_text("utf-8")
+    text = (DESIGNS / "knee_bonded.yaml").read_text("utf-8")
     plain, full = ao.evaluate(ao.read(text)), ao.evaluate(ao.read(text + EXTRA))
     assert full.metrics["mass"].value == pytest.approx(
         plain.metrics["mass"].value + 0.050, rel=1e-12
@@ -192,7 +192,7 @@ def test_stated_components_count_and_those_on_the_rod_move():
 
 def test_reports_name_what_the_mass_leaves_out():
     """What a design states is no longer left out; a bond seals, so it needs no static seals."""
-    text = (DESIGNS / "knee.yaml").read_text("utf-8")
+    text = (DESIGNS / "knee_bonded.yaml").read_text("utf-8")
     plain, full = ao.evaluate(ao.read(text)), ao.evaluate(ao.read(text + EXTRA))
     gone = set(plain.mass_leaves_out) - set(full.mass_leaves_out)
     assert gone == {"position sensor", "ports and fittings"}

@@ -20,7 +20,7 @@ from actuator_opt.design.materials import load_library
 from actuator_opt.evaluation import compute, state
 from actuator_opt.pages.material import fluid_figure
 
-KNEE = Path(__file__).parents[2] / "designs" / "knee.yaml"
+KNEE = Path(__file__).parents[2] / "designs" / "knee_bonded.yaml"
 FLUIDS = load_library().names(kind="fluid")
 WARM, P_AIR = 313.15, 101325.0
 

@@ -25,7 +25,7 @@ from actuator_opt.models import stepped
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.pages import section as drawing
 
-KNEE = (Path(__file__).parents[2] / "designs" / "knee.yaml").read_text(encoding="utf-8")
+KNEE = (Path(__file__).parents[2] / "designs" / "knee_bonded.yaml").read_text(encoding="utf-8")
 PLY_P = {
     "youngs_modulus_1": 138e9, "youngs_modulus_2": 9e9, "youngs_modulus_3": 9e9,
     "poissons_ratio_12": 0.28, "poissons_ratio_13": 0.28, "poissons_ratio_23": 0.42,

@@ -155,9 +155,9 @@ def bounded(margin):
 def test_inputs_are_the_numbers_of_the_design(tmp_path):
     """Metrics are those of `evaluate`; each changed input gives those of the changed design."""
     made = exported("knee", tmp_path)
-    subject, stock = ao.read(ROOT / "designs/knee.yaml").subject(), load_library()
+    subject, stock = ao.read(ROOT / "designs/knee_bonded.yaml").subject(), load_library()
     names = [entry[0] for entry in made.outputs[1 : made.first]]
-    evaluated = ao.evaluate(ROOT / "designs/knee.yaml").to_dict()["metrics"]
+    evaluated = ao.evaluate(ROOT / "designs/knee_bonded.yaml").to_dict()["metrics"]
     for name, unit, value in made.outputs[1 : made.first]:
         if evaluated[name]["value"] is not None:
             assert float(value) == pytest.approx(evaluated[name]["value"], rel=1e-12), name

@@ -118,11 +118,11 @@ def dimensions(document):
 
 def test_dimensions_measure_the_design():
     """DIMLFAC 1, and the measurements are the evaluation's lengths in mm."""
-    evaluation, document = drawn(DESIGNS / "knee.yaml")
+    evaluation, document = drawn(DESIGNS / "knee_bonded.yaml")
     assert document.header["$INSUNITS"] == 4
     lengths = {name: 1000 * value for name, value in evaluation.lengths.items()}
     measured = sorted(one.get_measurement() for one in dimensions(document))
-    skirt = 1000 * ao.read(DESIGNS / "knee.yaml").design.retention.length
+    skirt = 1000 * ao.read(DESIGNS / "knee_bonded.yaml").design.retention.length
     names = ("bore", "rod", "rod_inner", "barrel_outer_diameter", "plate_outer", "pin", "stroke",
              "piston_length", "head_length", "barrel_length", "plate", "plate", "extension",
              "closed_length")  # fmt: skip
@@ -183,7 +183,7 @@ def test_nothing_overlaps_whatever_the_design_has(name):
 
 def test_every_colour_shows_on_black_and_on_white():
     """Contrast of 3:1 at least on either ground [WCAG 1.4.11]; letters are black or white (7)."""
-    document = drawn(DESIGNS / "knee.yaml")[1]
+    document = drawn(DESIGNS / "knee_bonded.yaml")[1]
     colours = ezdxf.colors
 
     def luminance(index):
@@ -207,7 +207,7 @@ def test_every_colour_shows_on_black_and_on_white():
 
 def test_eyes_are_round():
     """Lug and hole are arcs of the pin's proportions: 3/4 pi d^2 of lug, and the neck."""
-    evaluation, document = drawn(DESIGNS / "knee.yaml")
+    evaluation, document = drawn(DESIGNS / "knee_bonded.yaml")
     d = 1000 * evaluation.lengths["pin"]
     for layer in ("cap eye", "rod eye"):
         lug, hole = outlined(document, layer)

@@ -82,7 +82,7 @@ def test_shipped_designs_weigh_what_the_mass_model_says(path):
 
 def test_places_are_those_of_the_section():
     """Each solid, put where the assembly says, covers what the outline covers."""
-    evaluation, _, read = exported(DESIGNS / "knee.yaml")
+    evaluation, _, read = exported(DESIGNS / "knee_bonded.yaml")
     solids, places = read.solids(), dict(read.occurrences())
     lengths = {name: 1000 * value for name, value in evaluation.lengths.items()}
     start = lengths["eye_offset"] + lengths["plate"]

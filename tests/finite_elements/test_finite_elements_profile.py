@@ -48,7 +48,7 @@ def test_the_closed_profile_follows_the_elements(squeeze):
 @pytest.fixture(scope="module")
 def solved(tmp_path_factory):
     """The knee's rod seal by finite elements from the command line: its JSON, and what it saved."""
-    path = tmp_path_factory.mktemp("saved") / "knee.yaml"
+    path = tmp_path_factory.mktemp("saved") / "knee_bonded.yaml"
     result = run("seal", KNEE, "--seal", "rod", "--finite-elements", "--write", path, "--json")
     assert result.code == 0
     return json.loads(result.out), path

@@ -30,7 +30,7 @@ def bench(name="knee"):
 @cache
 def plunger():
     """The knee without a piston seal."""
-    return bench_of(ao.read(DESIGNS / "knee.yaml", set={"seals.piston.count": 0}).subject())
+    return bench_of(ao.read(DESIGNS / "knee_bonded.yaml", set={"seals.piston.count": 0}).subject())
 
 
 def made(motion, truth=TRUTH, *, name="knee", seed=1, settings=None, **given):

@@ -27,7 +27,7 @@ from actuator_opt.identification.stribeck_fit import fit_stribeck
 from actuator_opt.identification.windows import windows
 from actuator_opt.studies.bench import bench
 
-KNEE = Path(__file__).parents[2] / "designs" / "knee.yaml"
+KNEE = Path(__file__).parents[2] / "designs" / "knee_bonded.yaml"
 AREA = 1e-3
 TRUTH = {
     "coulomb": 150.0, "static": 300.0, "stribeck_speed": 4e-3, "exponent": 2.0,

@@ -30,7 +30,7 @@ LATE = Settings(pressure_lag=4e-3)
 @cache
 def bench(**changes):
     """The knee's bench, with values of the design changed."""
-    return bench_of(ao.read(DESIGNS / "knee.yaml", set=changes).subject())
+    return bench_of(ao.read(DESIGNS / "knee_bonded.yaml", set=changes).subject())
 
 
 @cache

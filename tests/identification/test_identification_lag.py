@@ -19,7 +19,7 @@ from actuator_opt.pages.identification import page
 from actuator_opt.rendering import terminal
 from actuator_opt.studies.bench import bench
 
-DESIGN = Path(__file__).parents[2] / "designs" / "knee.yaml"
+DESIGN = Path(__file__).parents[2] / "designs" / "knee_bonded.yaml"
 RUBBER = oracle.Friction(
     coulomb=60.0, static=110.0, viscous=300.0, bristle_stiffness=2e6, bristle_damping=0.0
 )

@@ -318,7 +318,9 @@ def test_growth_of_the_wound_barrel():
     push = np.zeros(size)
     push[0] = 2 * pi * 0.0115
     growth = np.linalg.solve(k, push)[0]
-    assert bench(ao.read(DESIGNS / "knee.yaml").subject()).growth == pytest.approx(growth / 2, 1e-3)
+    assert bench(ao.read(DESIGNS / "knee_bonded.yaml").subject()).growth == pytest.approx(
+        growth / 2, 1e-3
+    )
 
 
 # Filter and lag

@@ -191,7 +191,7 @@ def test_an_objective_is_its_metric(name, aim, pick):
 
 def test_the_terminal_prints_the_value_its_margin_is_of():
     """`power >= 1 kW` printed 1600 W at -40 %: 600 W of the slower load case are."""
-    found = run("evaluate", "designs/knee.yaml", "--set", "requirements.power.min=1 kW")
+    found = run("evaluate", "designs/knee_bonded.yaml", "--set", "requirements.power.min=1 kW")
     (line,) = [line for line in found.out.splitlines() if line.lstrip("✘ ").startswith("power ")]
     assert "600.0" in line
     assert "1600" not in line
@@ -202,7 +202,7 @@ def test_the_terminal_prints_the_value_its_margin_is_of():
 def test_an_optimum_shows_its_objective():
     """What is maximised is the smallest value, in JSON, in the file that is written and in rows."""
     free = ("cylinder.bore", "rod.outer_diameter", "piston.length")
-    start = ao.read("designs/knee.yaml", set=NEAR)
+    start = ao.read("designs/knee_bonded.yaml", set=NEAR)
     design = start.design.model_copy(
         update={
             "objective": Objective(maximise="end_stop_pressure"),
@@ -268,7 +268,7 @@ def test_a_user_reads_the_worst_place_and_limits_by_it():
     def guide_room(design):
         return design.metric("bearing_factor") - 5
 
-    one = prepare(ao.read("designs/knee.yaml").design, plugins=collect(guide, guide_room))
+    one = prepare(ao.read("designs/knee_bonded.yaml").design, plugins=collect(guide, guide_room))
     places = compute(one, one.values()).computed.metrics["bearing_factor"]
     stance = min(float(array[0, 0]) for array in places.values())
     assert max(float(array[0, 0]) for array in places.values()) > stance

@@ -58,7 +58,7 @@ FIRES = {
     ("retention.length", "bore"): {"cylinder.bore": "500 mm"},
     ("retention.length", "turns"): {"retention.length": "4 mm"},
     ("retention.length", "groove depth"): {"retention.length": "15 mm"},
-    ("retention.ring_width", "groove depth"): {"retention.ring_width": "8 mm"},
+    ("retention.ring_width", "groove depth"): {"retention.ring_width": "10.5 mm"},
     ("load.mass", "load"): {"load.mass": "500 t"},
     ("load_cases", "strokes"): {"load_cases[stance].speed": "0.0001 mm/s"},
     ("fluid.temperature", "oil"): {"fluid.temperature": "-90 degC"},
@@ -113,7 +113,7 @@ def test_the_number_is_the_ratio():
 
 def test_check_evaluate_and_optimise_tell():
     """`check` succeeds and warns, in text and JSON; `evaluate` and `optimise` warn as well."""
-    knee = str(DESIGNS / "knee.yaml")
+    knee = str(DESIGNS / "knee_bonded.yaml")
     slip = ("--set", "cylinder.dead_volume_a=100 l")
     told = run("check", knee, *slip)
     assert told.code == 0

@@ -112,7 +112,8 @@ def test_the_old_law_can_be_named():
     assert np.max(old / GRID["line_load"]) == pytest.approx(1.375, abs=0.01)
     named = {f"seals.{place}.law": "plane_strain" for place in ("piston", "rod")}
     new, old = (
-        verbs.evaluate(verbs.read(ROOT / "designs/knee.yaml", set=values)) for values in ({}, named)
+        verbs.evaluate(verbs.read(ROOT / "designs/knee_bonded.yaml", set=values))
+        for values in ({}, named)
     )
     assert old.metrics["friction_running"].value > new.metrics["friction_running"].value
     for evaluation, law in ((new, "energised"), (old, "plane_strain")):

@@ -15,7 +15,7 @@ from actuator_opt.models import barrel, thread
 from actuator_opt.optimisation.choices import possible
 
 DESIGNS = Path(__file__).parents[2] / "designs"
-KNEE = (DESIGNS / "knee.yaml").read_text("utf-8")
+KNEE = (DESIGNS / "knee_bonded.yaml").read_text("utf-8")
 STEEL = (DESIGNS / "steel_baseline.yaml").read_text("utf-8")
 SCREWED = KNEE.replace("  type: bond\n", "  type: thread\n  thread: {pitch: 1 mm}\n").replace(
     "  material: epoxy_structural\n", ""

@@ -12,7 +12,7 @@ from actuator_opt.optimisation.choices import Evidence
 from actuator_opt.optimisation.problem import BoxProblem, PointValues
 from actuator_opt.optimisation.solver import solve
 
-KNEE = Path(__file__).parents[2] / "designs" / "knee.yaml"
+KNEE = Path(__file__).parents[2] / "designs" / "knee_bonded.yaml"
 
 
 def _plate(*, load=1.0, weight=1.0, slack=50.0):

@@ -33,7 +33,7 @@ from actuator_opt.uncertainties.study import DRAWS, quick_yield
 
 DESIGNS = Path(__file__).parents[2] / "designs"
 DENSITY = "materials.steel_42crmo4.density"
-KNEE = DESIGNS / "knee.yaml"
+KNEE = DESIGNS / "knee_bonded.yaml"
 
 
 def unchecked(evaluation):

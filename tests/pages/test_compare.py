@@ -143,7 +143,7 @@ def test_long_names_are_whole_in_the_figure(shipped):
 
 def test_stiffness_over_the_stroke_of_designs(shipped):
     """The least stiffness and what is required of whom stand with the curves; six at most."""
-    path = DESIGNS / "knee.yaml"
+    path = DESIGNS / "knee_bonded.yaml"
     stiffer = ao.evaluate(ao.read(path, set={"requirements.stiffness_min.min": "11 kN/mm"}))
     others = [one for name, one in shipped.items() if name != "knee"]
     found = ao.compare(shipped["knee"], stiffer, *others[:5])
@@ -255,7 +255,7 @@ def test_what_cannot_be_compared(tmp_path):
     assert run("compare", *[good] * 13).code == 2
     assert run("compare", good, "2024", "--json").code == 3
     assert not (tmp_path / "out").exists()
-    piped = run("compare", "-", DESIGNS / "knee.yaml", "--json", stdin=SMALL.encode())
+    piped = run("compare", "-", DESIGNS / "knee_bonded.yaml", "--json", stdin=SMALL.encode())
     assert piped.json["designs"][0]["origin"] == "<stdin>"
 
 

@@ -132,7 +132,12 @@ def test_the_terminal_fits_its_width(width):
 def test_the_fallback_draws_it():
     """Without the typesetter the page is still written, in pure Python."""
     data = paper._printable(page(calibrated("shipped")))
-    data |= {"title": "knee", "source": "name: knee", "source_file": "knee.yaml", "run": "{}"}
+    data |= {
+        "title": "knee",
+        "source": "name: knee",
+        "source_file": "knee_bonded.yaml",
+        "run": "{}",
+    }
     pdf, images = fallback.render(data, 0)
     assert pdf.startswith(b"%PDF")
     assert images

@@ -72,7 +72,7 @@ WHERE_SHAKEN = """  dynamic_stiffness:
 def written(*, shaken="", valve="", gain="", more="", change=()):
     """The knee with lines, a load case that shakes it, a valve, a gain, and limits on them."""
     limits = OF_THE_LOAD + (OF_THE_LOOP if valve else "") + (WHERE_SHAKEN if shaken else "")
-    text = text_of("knee.yaml").replace("requirements:\n", f"requirements:\n{limits}")
+    text = text_of("knee_bonded.yaml").replace("requirements:\n", f"requirements:\n{limits}")
     text = text.replace("    side_load: 30 N\n", f"    side_load: 30 N\n{shaken}")
     for old, new in change:
         assert old in text
@@ -81,7 +81,7 @@ def written(*, shaken="", valve="", gain="", more="", change=()):
 
 
 TEXTS = {
-    "knee": text_of("knee.yaml"),
+    "knee": text_of("knee_bonded.yaml"),
     "aerospace": text_of("aerospace.yaml"),
     "shaken": written(shaken="    frequency: 20 Hz\n"),
     "loop": written(

@@ -76,7 +76,7 @@ TANDEM = """
 def written(piston, rod, change=()):
     """The knee with other seals and a longer piston and head."""
     seals = f"seals:\n  piston:{piston}  rod:{rod}\n"
-    text = re.sub(r"^seals:\n.*?(?=^load:)", seals, text_of("knee.yaml"), flags=re.M | re.S)
+    text = re.sub(r"^seals:\n.*?(?=^load:)", seals, text_of("knee_bonded.yaml"), flags=re.M | re.S)
     text = text.replace("  length: 14 mm\n", "  length: 40 mm\n")
     for old, new in change:
         assert old in text

@@ -16,7 +16,7 @@ from actuator_opt.rendering import paper, paper_plain as fallback
 from actuator_opt.rendering.ink import Ink
 
 SOURCE = {"source_text": "a: 1\n", "source_name": "a.yaml", "command": "x", "date": None}
-NAMES = ("knee.yaml", "aerospace.yaml", "elasswad_knee.yaml", "steel_baseline.yaml", "puck")
+NAMES = ("knee_bonded.yaml", "aerospace.yaml", "elasswad_knee.yaml", "steel_baseline.yaml", "puck")
 
 
 @cache
@@ -50,7 +50,7 @@ def text_of(cell):
 
 def test_all_of_the_wall_is_on_the_page():
     """Drawing, layers, stresses, criteria, ladder, both theories, thickness, metals: in order."""
-    assert list(blocks_of(evaluated("knee.yaml"))) == [
+    assert list(blocks_of(evaluated("knee_bonded.yaml"))) == [
         "from the bore outwards",
         "layers",
         "stress through the wall",
@@ -77,7 +77,9 @@ def test_without_a_study_there_is_the_drawing():
 
 def test_the_wall_stands_before_the_check_list():
     """The section follows the masses and comes before the checks, in one piece."""
-    titles = [b["title"] for b in fixture.page_data(evaluated("knee.yaml"), **SOURCE)["blocks"]]
+    titles = [
+        b["title"] for b in fixture.page_data(evaluated("knee_bonded.yaml"), **SOURCE)["blocks"]
+    ]
     places = [k for k, title in enumerate(titles) if title.startswith("Barrel wall")]
     assert places == list(range(places[0], places[0] + 9))
     assert titles[places[-1] + 1] == "Check list"
@@ -129,7 +131,7 @@ def test_bars_are_to_scale():
 
 def test_criteria_table_reads_as_the_study():
     """Each cell starts with the ratio of its ply and criterion, and names mode, face and load."""
-    evaluation = evaluated("knee.yaml")
+    evaluation = evaluated("knee_bonded.yaml")
     block = blocks_of(evaluation)["strength ratios by every criterion"]
     rows = [[text_of(cell) for cell in row] for row in block["rows"]]
     assert [row[0] for row in rows] == ["2", "3"]
@@ -149,7 +151,7 @@ def test_criteria_table_reads_as_the_study():
 
 def test_ladder_names_layers_as_the_page_does():
     """No YAML index is left in the figure: layup[2] is layer 3."""
-    block = blocks_of(evaluated("knee.yaml"))["from working pressure to burst"]
+    block = blocks_of(evaluated("knee_bonded.yaml"))["from working pressure to burst"]
     words = [mark["text"] for mark in block["ink"]["marks"] if "text" in mark]
     assert not any("layup[" in one for one in words)
     assert any(re.match(r"layer \d", one) for one in words)
@@ -168,16 +170,16 @@ def test_a_fabric_carries_its_warning():
 
 def test_equal_designs_give_equal_pages():
     """Two evaluations of one design make the same data to the letter."""
-    first, second = (ao.evaluate(evaluated("knee.yaml").design) for _ in range(2))
+    first, second = (ao.evaluate(evaluated("knee_bonded.yaml").design) for _ in range(2))
     assert fixture.page_data(first, **SOURCE) == fixture.page_data(second, **SOURCE)
 
 
 def test_the_plain_report_draws_it_too():
     """Without the typst wheel the section is there, on sheets of the fallback."""
-    data = fixture.page_data(evaluated("knee.yaml"), **SOURCE) | {
+    data = fixture.page_data(evaluated("knee_bonded.yaml"), **SOURCE) | {
         "source_file": "a.yaml", "source": "a: 1\n", "run": "{}",
     }  # fmt: skip
-    data["blocks"] = paper.plain_blocks(wall.wall_blocks(evaluated("knee.yaml")))
+    data["blocks"] = paper.plain_blocks(wall.wall_blocks(evaluated("knee_bonded.yaml")))
     pdf, images = fallback.render(data, 0)
     assert pdf.startswith(b"%PDF")
     assert len(images) == 3

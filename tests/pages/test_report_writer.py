@@ -22,7 +22,7 @@ import sys, pathlib
 import report_fixture as fixture
 for file in fixture.write_report(
         fixture.build_optimisation(), folder=pathlib.Path(sys.argv[1]), stem="r", command="c",
-        source_text=fixture.SOURCE, source_name="knee.yaml", date=sys.argv[2] or None):
+        source_text=fixture.SOURCE, source_name="knee_bonded.yaml", date=sys.argv[2] or None):
     print(file.path.name, file.sha256)
 """
 
@@ -32,8 +32,8 @@ def write(subject, folder, **changes):
     given = {
         "stem": "r",
         "source_text": fixture.SOURCE,
-        "source_name": "designs/knee.yaml",
-        "command": "actuator-opt optimise designs/knee.yaml",
+        "source_name": "designs/knee_bonded.yaml",
+        "command": "actuator-opt optimise designs/knee_bonded.yaml",
         "date": None,
     }
     return fixture.write_report(subject, folder=folder, **(given | changes))
@@ -87,7 +87,7 @@ def test_an_independent_reader_finds_the_attachment(tmp_path):
     pypdf = pytest.importorskip("pypdf")
     files = write(fixture.build_optimisation(fixture.build_evaluation(NAME)), tmp_path)
     reader = pypdf.PdfReader(files[0].path)
-    assert reader.attachments["knee.yaml"] == [fixture.SOURCE.encode()]
+    assert reader.attachments["knee_bonded.yaml"] == [fixture.SOURCE.encode()]
     assert len(reader.pages) == files[0].pages
     first = " ".join(reader.pages[0].extract_text().split())
     assert NAME.strip() in first

@@ -38,7 +38,7 @@ def text_of(name):
 
 def with_wall(layup):
     """The knee with another wall."""
-    text = text_of("knee.yaml")
+    text = text_of("knee_bonded.yaml")
     start, end = text.index("  layup:"), text.index("rod:\n")
     return text[:start] + layup + "\n" + text[end:]
 
@@ -82,7 +82,7 @@ def test_metal_wall_is_lame(place):
     assert found.wall.rest == ()
 
 
-@pytest.mark.parametrize("name", ["knee.yaml", "aerospace.yaml", "puck"])
+@pytest.mark.parametrize("name", ["knee_bonded.yaml", "aerospace.yaml", "puck"])
 def test_profiles_are_in_equilibrium(name):
     """Hoop stress sums to p r_i, axial stress to N; sigma_r is -p, continuous, 0 outside.
 
@@ -146,7 +146,7 @@ def test_each_criterion_is_the_one_the_metric_would_use(criterion):
     assert own.wall.ladder.criterion == criterion
 
 
-@pytest.mark.parametrize("name", ["knee.yaml", "aerospace.yaml", "steel_baseline.yaml"])
+@pytest.mark.parametrize("name", ["knee_bonded.yaml", "aerospace.yaml", "steel_baseline.yaml"])
 def test_yield_row_is_the_metric(name):
     """The liner's strength ratio, cure stress and autofrettage included, is liner_yield_factor."""
     found = evaluated(name)
@@ -167,7 +167,7 @@ def test_profile_of_strength_used_peaks_at_the_ratio():
         assert found.radius[row.layer, np.argmax(used)] == pytest.approx(row.radius)
 
 
-@pytest.mark.parametrize("name", ["knee.yaml", "max_stress"])
+@pytest.mark.parametrize("name", ["knee_bonded.yaml", "max_stress"])
 def test_ladder_ends_in_burst(name):
     """Working < proof < first damage < burst; the largest step is burst, the last breaks fibres."""
     found = evaluated(name)
@@ -179,7 +179,7 @@ def test_ladder_ends_in_burst(name):
 
 
 @pytest.mark.parametrize("factor", [0.8, 1.25])
-@pytest.mark.parametrize("name", ["knee.yaml", "max_stress", "steel_baseline.yaml"])
+@pytest.mark.parametrize("name", ["knee_bonded.yaml", "max_stress", "steel_baseline.yaml"])
 def test_thickness_gives_the_growth_it_promises(name, factor):
     """A design with that thickness has the promised bore growth and mass per length.
 
@@ -203,7 +203,7 @@ def test_the_main_layer_carries_the_hoop_force():
     assert ao.evaluate(ao.read(with_wall(layup))).wall.main_layer == 0
 
 
-@pytest.mark.parametrize("name", ["knee.yaml", "steel_baseline.yaml", "aerospace.yaml"])
+@pytest.mark.parametrize("name", ["knee_bonded.yaml", "steel_baseline.yaml", "aerospace.yaml"])
 def test_metal_barrels_are_the_thinnest_that_do(name):
     """Growth and burst hold by Lamé and Faupel, one of them with nothing to spare."""
     found = evaluated(name)
@@ -266,7 +266,7 @@ def test_allowables_carry_their_knock_downs():
     assert (layer.kind, layer.balanced, layer.angle) == ("composite", True, math.radians(88))
 
 
-@pytest.mark.parametrize("name", ["knee.yaml", "elasswad_knee.yaml", "steel_baseline.yaml"])
+@pytest.mark.parametrize("name", ["knee_bonded.yaml", "elasswad_knee.yaml", "steel_baseline.yaml"])
 def test_json_is_small_and_finite(name):
     """The wall of evaluate --json has no NaN, no profile, and stays under 10 kB."""
     found = evaluated(name).to_dict()["wall"]

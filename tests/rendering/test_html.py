@@ -172,7 +172,7 @@ def test_files_are_whole(tmp_path):
     assert file.path.read_text("utf-8") == html.document(page(), origin())
 
 
-KNEE = Path(__file__).parents[2] / "designs" / "knee.yaml"
+KNEE = Path(__file__).parents[2] / "designs" / "knee_bonded.yaml"
 
 
 def test_every_result_is_shown_in_a_notebook():

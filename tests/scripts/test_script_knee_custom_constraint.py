@@ -73,7 +73,7 @@ def test_the_price_is_a_slope(numbers) -> None:
 
 
 def test_without_the_rules_it_is_the_knee_as_shipped(numbers) -> None:
-    """The optimum before is that of knee.yaml alone."""
+    """The optimum before is that of knee_bonded.yaml alone."""
     found = ao.optimise(ao.read(study.DESIGN), starts=2, prices=False)
     assert numbers["before"]["mass"] == pytest.approx(found.objective_value, rel=1e-6)
 

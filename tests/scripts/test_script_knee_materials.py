@@ -44,7 +44,7 @@ def _said(numbers: dict[str, Any]) -> str:
 
 @pytest.mark.parametrize("key", ["steel", "aluminium", "lined", "linerless"])
 def test_each_barrel_is_its_own_optimum_at_the_requirements_of_the_knee(key, numbers) -> None:
-    """Solved afresh the mass is the committed one, and all that knee.yaml requires is met."""
+    """Solved afresh the mass is the committed one, and all requirements are met."""
     row = numbers["variants"][key]
     found, lacks = study.solved(key, joint=row["joint"])
     assert (found.status, lacks) == ("optimal", [])
@@ -59,8 +59,8 @@ def test_each_barrel_is_its_own_optimum_at_the_requirements_of_the_knee(key, num
     [*((key, "bond") for key in study.WALLS), *((key, "thread") for key in study.METALS)],
 )
 def test_variants_differ_in_wall_and_joint_only(key, joint) -> None:
-    """Everything but barrel, joint and their own free dimensions is that of knee.yaml."""
-    text = (ROOT / "designs" / "knee.yaml").read_text("utf-8")
+    """Everything but barrel, joint and their own free dimensions is that of knee_bonded.yaml."""
+    text = (ROOT / "designs" / "knee_bonded.yaml").read_text("utf-8")
     knee = yaml.load(text, Loader=yaml.BaseLoader)
     made = yaml.load(study.variant(key, joint=joint).source.text, Loader=yaml.BaseLoader)
     own = {"name", "notes", "barrel", "variables"} | ({"retention"} if joint == "thread" else set())

@@ -37,7 +37,7 @@ def _knee(row: dict[str, Any], *, free: bool = True) -> Any:
 
 
 def test_requirements_are_those_of_the_knee() -> None:
-    """Nothing that is asked differs from knee.yaml: requirements, loads, waivers."""
+    """Nothing that is asked differs from knee_bonded.yaml: requirements, loads, waivers."""
     shipped, asked = ao.read(study.DESIGN).design, study.wishes().design
     assert asked.requirements == shipped.requirements
     assert asked.load_cases == shipped.load_cases

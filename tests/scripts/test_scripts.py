@@ -58,7 +58,7 @@ def test_every_script_of_the_folder_is_tested() -> None:
 def test_a_script_serves_as_a_plugin_file(name) -> None:
     """What a script declares can be evaluated with ``--plugin``, finite and with its own label."""
     plugins = load(SCRIPTS / name)
-    evaluation = verbs.evaluate(ROOT / "designs" / "knee.yaml", plugins=plugins)
+    evaluation = verbs.evaluate(ROOT / "designs" / "knee_bonded.yaml", plugins=plugins)
     for plugin in plugins:
         metric = evaluation.metrics[plugin.name]
         assert metric.value is not None
@@ -120,7 +120,7 @@ def test_the_metric_script_prints_a_changed_optimum(tmp_path) -> None:
 def test_the_added_metric_is_what_its_docstring_says() -> None:
     """Oil per cycle of a 23/13-110 cylinder is (A_A + A_B) s: 415.5 + 282.7 mm2 over 110 mm."""
     knee = verbs.read(
-        ROOT / "designs" / "knee.yaml",
+        ROOT / "designs" / "knee_bonded.yaml",
         set={"cylinder.bore": "23 mm", "rod.outer_diameter": "13 mm", "piston.length": "13.8 mm"},
         plugins=[SCRIPTS / "custom_metric.py"],
     )

@@ -11,7 +11,7 @@ import actuator_opt as ao
 from actuator_opt.base.errors import InputError
 
 DESIGNS = Path(__file__).parents[2] / "designs"
-KNEE = DESIGNS / "knee.yaml"
+KNEE = DESIGNS / "knee_bonded.yaml"
 THICK_WIPER = """    wiper:
       compound: pu_94_u_cup
       section: 2 mm

@@ -14,7 +14,7 @@ from actuator_opt.design.schema import json_schema
 from actuator_opt.design.writer import to_yaml
 from actuator_opt.pages import report as page
 
-KNEE = (Path(__file__).parents[2] / "designs" / "knee.yaml").read_text(encoding="utf-8")
+KNEE = (Path(__file__).parents[2] / "designs" / "knee_bonded.yaml").read_text(encoding="utf-8")
 PATH = "seals.piston.friction_coefficient"
 
 

@@ -65,7 +65,7 @@ def scenario(friction="none", **more):
     return Scenario.model_validate(
         {
             "name": "step",
-            "design": "knee.yaml",
+            "design": "knee_bonded.yaml",
             "duration": 0.4,
             "friction": {"model": friction},
             "control": {"position": [step]},

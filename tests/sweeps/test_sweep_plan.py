@@ -12,7 +12,7 @@ from actuator_opt.design import read_design
 from actuator_opt.sweeps import plan, read_axis
 from actuator_opt.sweeps.plan import SweepAxis
 
-KNEE = read_design("designs/knee.yaml").design.model_copy(update={"variables": {}})
+KNEE = read_design("designs/knee_bonded.yaml").design.model_copy(update={"variables": {}})
 
 
 def numbers(path, low, high, count=None):

@@ -1,0 +1,178 @@
+"""Bending of walls at clamps and steps: worked numbers, and axisymmetric finite elements."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+import shell_oracle
+from scipy.integrate import solve_bvp
+
+from actuator_opt.models import end_bending
+from actuator_opt.models.end_bending import Shell, ShellLayer
+
+FORCE = 7273.57
+
+
+def near(value, rel=1e-5):
+    """Equal to six digits."""
+    return pytest.approx(value, rel=rel)
+
+
+def metal(thickness, modulus=71.7e9, ratio=0.33):
+    """A metal layer."""
+    stiff = modulus / (1 - ratio**2)
+    return ShellLayer(thickness, stiff, stiff, ratio * stiff, modulus / (2 * (1 + ratio)))
+
+
+def hoop(thickness):
+    """Plies wound around the axis: 125 GPa around, 9 GPa along, 3.2 GPa in transverse shear."""
+    factor = 1 - 0.3**2 * 9 / 125
+    return ShellLayer(thickness, 9e9 / factor, 125e9 / factor, 0.3 * 9e9 / factor, 3.2e9)
+
+
+def test_clamp_by_the_worked_numbers_of_aluminium():
+    """D 22.63, k 383.337, M_0 215.135 thin and 197.867 with shear, 28 MPa on 1.5 mm."""
+    wall = end_bending.shell(layers=[metal(1.5e-3)], inner_radius=16e-3)
+    assert wall.bending == near(22.6300)
+    assert wall.foundation == near(383.337e9)
+    assert wall.shear == near(5 / 6 * 71.7e9 / 2.66 * 1.5e-3)  # 5/6 G t of a homogeneous wall
+    growth = end_bending.free_growth(wall=wall, pressure=28e6, bore_radius=16e-3, line_force=0.0)
+    assert growth == near(28e6 * 16e-3 * 16.75e-3 / (71.7e9 * 1.5e-3))
+    stated = wall._replace(shear=33.75e6)
+    assert end_bending.clamped(wall=stated, growth=73.0428e-6).moment == near(197.867)
+    thin = end_bending.clamped(wall=wall._replace(shear=1e15), growth=73.0428e-6)
+    assert thin.moment == near(215.135)
+    assert thin.force == near(109.761e3)
+
+
+def test_step_by_the_worked_numbers():
+    """D 20/160, k 400/800, w 10/5 um, N e 82.5: |M| 16.9043 and 65.5957 on both sides."""
+    left = Shell(20.0, 400e9, 1e15, 0.0, 1e-2, 1e8, 3e7)
+    right = Shell(160.0, 800e9, 1e15, 0.0, 1e-2, 2e8, 6e7)
+    edge = end_bending.stepped(
+        left=left, right=right, left_growth=10e-6, right_growth=5e-6, offset_moment=82.5
+    )
+    assert edge.growth == near(9.02837e-6)
+    assert edge.moment == near(65.5957)
+    mirrored = end_bending.stepped(
+        left=right, right=left, left_growth=5e-6, right_growth=10e-6, offset_moment=-82.5
+    )
+    assert abs(mirrored.moment) == near(16.9043)
+
+
+def test_clamp_against_the_equation_of_the_shell():
+    """Q = S (w' + psi), Q' = k (w - w_0), D psi'' = Q, solved as a boundary value problem."""
+    wall = end_bending.shell(layers=[metal(0.9e-3), hoop(2.9e-3)], inner_radius=10.5e-3)
+    free = 6e-3  # in N and mm from here on
+    bending, shear, foundation = 1e3 * wall.bending, 1e-3 * wall.shear, 1e-9 * wall.foundation
+
+    def slopes(x, y):
+        w, force, turn, curve = y
+        strain = force / shear
+        return np.stack([strain - turn, foundation * (w - free), curve, force / bending])
+
+    ends = np.linspace(0, 60, 400)
+    guess = np.zeros((4, 400))
+    guess[0] = free * (1 - np.exp(-ends / 5))
+    answer = solve_bvp(
+        slopes, lambda a, b: [a[0], a[2], b[0] - free, b[2]], ends, guess, tol=1e-7,
+        max_nodes=100_000,
+    )  # fmt: skip
+    assert answer.success
+    edge = end_bending.clamped(wall=wall, growth=1e-3 * free)
+    w, force, _, curve = answer.sol(0.0)
+    assert abs(curve) * bending == near(edge.moment, 1e-4)
+    assert abs(force) * 1e3 == near(edge.force, 1e-4)
+    assert w == near(1e3 * edge.growth)
+
+
+def grid(*parts):
+    """Points of several intervals (start, stop, cells)."""
+    points = [np.linspace(start, stop, cells + 1) for start, stop, cells in parts]
+    return np.unique(np.round(np.concatenate(points), 9))
+
+
+HOOP = shell_oracle.orthotropic((9000, 125000, 9000), (0.3, 0.4, 0.3), 3200)
+METAL = shell_oracle.isotropic(71700, 0.33)
+
+
+@pytest.mark.parametrize(
+    ("inner", "liner", "winding"), [(16.0, 1.5, 0.0), (10.5, 0.6, 1.2), (10.5, 1.56, 2.48)]
+)
+def test_clamp_against_finite_elements(inner, liner, winding):
+    """Moment of a rigidly clamped wall, 0.2 mm from the clamp, within -20 and +25 %."""
+    pressure, outer = 21.0, inner + liner + winding
+    layers = [
+        (lambda r, z: 1.0 * (r < inner + liner), METAL),
+        (lambda r, z: 1.0 * (r > inner + liner), HOOP),
+    ]
+    radii = [(inner, inner + liner, 10)]
+    if winding:
+        radii.append((inner + liner, outer, 14))
+    wall = shell_oracle.solved(
+        radii=grid(*radii),
+        stations=grid((0, 1, 25), (1, 8, 50), (8, 45, 40)),
+        layers=layers,
+        loads=[(lambda r, z: abs(r - inner) < 1e-6, lambda r, z: (0 * r + pressure, 0 * r))],
+        fixed_r=lambda r, z: abs(z) < 1e-6,
+        fixed_z=lambda r, z: abs(z) < 1e-6,
+    )
+    own = [metal(1e-3 * liner), *([hoop(1e-3 * winding)] if winding else [])]
+    shell = end_bending.shell(layers=own, inner_radius=1e-3 * inner)
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+    moment = 0.0
+    for low, high in [(inner, inner + liner), (inner + liner, outer)]:
+        r = (low + high) / 2 + (high - low) / 2 * nodes
+        if high > low:
+            axial = wall.stress(r, np.full_like(r, 0.2))[2]
+            lever = inner + 1e3 * shell.centre - r
+            moment += np.sum(weights * axial * lever * r) * (high - low) / 2
+    moment /= 1e3 * shell.radius
+    far = wall.moved(np.array([(inner + outer) / 2]), np.array([25.0]))[0, 0]
+    edge = end_bending.clamped(wall=shell, growth=1e-3 * far)
+    assert 0.8 <= edge.moment / moment <= 1.25
+    growth = end_bending.free_growth(
+        wall=shell, pressure=21e6, bore_radius=1e-3 * inner, line_force=0.0
+    )
+    assert growth == near(1e-3 * far, 0.15)
+
+
+def test_step_at_a_skirt_against_finite_elements():
+    """A barrel under a skirt: axial stress of the bore beside it, offset included, within 25 %."""
+    inner, thick, skirt, length = 10.5, 1.8, 1.2, 14.0
+    pressure, outer = 21.0, inner + 1.8 + 1.2
+    line = FORCE / (pi * (outer**2 - inner**2))
+    wall = shell_oracle.solved(
+        radii=grid((inner, inner + thick, 14), (inner + thick, outer, 10)),
+        stations=grid((0, 10, 40), (10, length, 40), (length, 20, 60), (20, 50, 40)),
+        layers=[(lambda r, z: 1.0 + 0 * r, METAL)],
+        absent=lambda r, z: (r > inner + thick) & (z > length),
+        loads=[
+            (lambda r, z: abs(r - inner) < 1e-6, lambda r, z: (0 * r + pressure, 0 * r)),
+            (lambda r, z: abs(z) < 1e-6, lambda r, z: (0 * r, 0 * r - line)),
+        ],
+        fixed_z=lambda r, z: abs(z - 50) < 1e-6,
+    )
+    mean, bending = wall.through(length + 0.2, inner, inner + thick)
+    own = metal(1e-3 * thick)
+    right = end_bending.shell(layers=[own], inner_radius=1e-3 * inner)
+    left = end_bending.shell(layers=[own, metal(1e-3 * skirt)], inner_radius=1e-3 * inner)
+    along = FORCE / (2 * pi * right.radius)
+    growths = [
+        end_bending.free_growth(
+            wall=shell, pressure=21e6, bore_radius=1e-3 * inner,
+            line_force=FORCE / (2 * pi * shell.radius),
+        )
+        for shell in (left, right)
+    ]  # fmt: skip
+    edge = end_bending.stepped(
+        left=left, right=right, left_growth=growths[0], right_growth=growths[1],
+        offset_moment=along * (right.centre - left.centre),
+    )  # fmt: skip
+    (axial, _), (outside, _) = end_bending.edge_stresses(
+        layer=own, start=0.0, wall=right, edge=edge, line_force=along
+    )
+    assert (axial - outside) / 2e6 == near(bending, 0.25)
+    assert (axial + outside) / 2e6 == near(mean, 0.1)
