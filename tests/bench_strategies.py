@@ -71,8 +71,9 @@ GENERIC: dict[str, tuple[Callable[[], BoxProblem], float]] = {
 
 
 def shipped() -> list[str]:
-    """Names of the shipped designs with variables, the cheap ones first."""
-    names = [p.stem for p in sorted(DESIGNS.glob("*.yaml")) if verbs.read(p).design.variables]
+    """Names of the shipped designs with variables and without choices, the cheap ones first."""
+    designs = {p.stem: verbs.read(p).design for p in sorted(DESIGNS.glob("*.yaml"))}
+    names = [name for name, one in designs.items() if one.variables and not one.choices]
     return sorted(names, key=lambda name: DEAR.get(name, 1))
 
 

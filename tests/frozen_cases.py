@@ -119,7 +119,7 @@ def bending_record() -> str:
 
 def _others() -> Iterator[Case]:
     """Options and commands that one design or none shows well enough."""
-    knee, steel = "designs/knee.yaml", "designs/steel_baseline.yaml"
+    knee, steel = "designs/knee_bonded.yaml", "designs/steel_baseline.yaml"
     aerospace, servo = "designs/aerospace.yaml", "designs/servo_knee.yaml"
     record, write = "designs/records/knee_bench.csv", "--write out/best.yaml"
     quick = "--starts 2 --no-record"
@@ -159,7 +159,7 @@ def _others() -> Iterator[Case]:
         )  # fmt: skip
     verified = f"optimise {servo} --starts 1 --no-record --verify-dynamics {STEP}"
     yield Case("optimise/verify_dynamics", (step(f"{verified} --out out"),), SEARCHED, 20.0)
-    for name, file in (("knee", knee), ("steel_baseline", steel), ("elasswad_knee", None)):
+    for name, file in (("knee_bonded", knee), ("steel_baseline", steel), ("elasswad_knee", None)):
         line = f"sensitivity {file or 'designs/elasswad_knee.yaml'} --out out"
         yield Case(f"sensitivity/{name}", (step(line, *DATE),), SEARCHED, 3.0)
     yield Case(
@@ -352,12 +352,12 @@ def _others() -> Iterator[Case]:
         "rerun/evaluation",
         (
             step(f"evaluate {knee} --report {recorded}", looks=0),
-            step("rerun out/knee.pdf --out again"),
+            step("rerun out/knee_bonded.pdf --out again"),
         ),
     )
 
 
-def _edited(*changes: tuple[str, str], name: str = "knee") -> str:
+def _edited(*changes: tuple[str, str], name: str = "knee_bonded") -> str:
     """The text of a shipped file with its first (old) replaced by (new)."""
     text = (SHIPPED / f"{name}.yaml").read_text(encoding="utf-8")
     for old, new in changes:
@@ -368,38 +368,38 @@ def _edited(*changes: tuple[str, str], name: str = "knee") -> str:
 
 
 FAULTS: tuple[tuple[str, tuple[tuple[str, str], ...]], ...] = (
-    ("knee", (("  pressure: 210 bar", "  presure: 210 bar"),)),
-    ("knee", (("cylinder:\n", "cylindre:\n"),)),
-    ("knee", (("  bore: 23 mm", "  bore: 23 bar"),)),
-    ("knee", (("  bore: 23 mm", "  bore: 23"),)),
-    ("knee", (("  bore: 23 mm", "  bore: wide"),)),
-    ("knee", (("  bore: 23 mm", "  bore: -23 mm"),)),
-    ("knee", (("  bore: 23 mm\n", ""),)),
-    ("knee", (("mount: cap_clevis", "mount: cap_clevice"),)),
-    ("knee", (("end_stop: internal", "end_stop: inside"),)),
-    ("knee", (("type: o_ring", "type: oring"),)),
-    ("knee", (("back_up: both", "back_up: two"),)),
-    ("knee", (("compound: nbr_90", "compound: nbr_91"),)),
-    ("knee", (("compound: nbr_90", "compound: al_7075_t6"),)),
-    ("knee", (("material: iso_vg_32", "material: iso_vg_33"),)),
-    ("knee", (("  type: bond", "  type: glue"),)),
-    ("knee", (("  type: bond", "  type: thread"),)),
-    ("knee", (("    friction_coefficient: 0.10", "    friction: films"),)),
-    ("knee", (("    friction_coefficient: 0.10", "    friction_coeficient: 0.10"),)),
-    ("knee", (("    section: 1.78 mm", "    series: iso_3601"),)),
-    ("knee", (("    section: 1.78 mm", "    housing: iso_5597"),)),
-    ("knee", (("direction: push", "direction: pushing"),)),
-    ("knee", (("    speed: 0.1 m/s", "    position: middle\n    speed: 0.1 m/s"),)),
-    ("knee", (("name: swing", "name: stance"),)),
-    ("knee", (("  cylinder.bore:\n", "  cylinder.boar:\n"),)),
-    ("knee", (("    lower: 16 mm", "    lower: 60 mm"),)),
-    ("knee", (("  stiffness_min:\n", "  stifness_min:\n"),)),
-    ("knee", (("    min: 10 kN/mm", "    min: 10 N*m"),)),
-    ("knee", (("  minimise: mass", "  minimise: weight"),)),
-    ("knee", (("  minimise: mass", "  minimize: mass"),)),
-    ("knee", (("  outer_diameter: 13 mm", "  outer_diameter: 5 mm"),)),
-    ("knee", (("  outer_diameter: 13 mm", "\touter_diameter: 13 mm"),)),
-    ("knee", (("  seal_section:", "  seal_sections:"),)),
+    ("knee_bonded", (("  pressure: 210 bar", "  presure: 210 bar"),)),
+    ("knee_bonded", (("cylinder:\n", "cylindre:\n"),)),
+    ("knee_bonded", (("  bore: 23 mm", "  bore: 23 bar"),)),
+    ("knee_bonded", (("  bore: 23 mm", "  bore: 23"),)),
+    ("knee_bonded", (("  bore: 23 mm", "  bore: wide"),)),
+    ("knee_bonded", (("  bore: 23 mm", "  bore: -23 mm"),)),
+    ("knee_bonded", (("  bore: 23 mm\n", ""),)),
+    ("knee_bonded", (("mount: cap_clevis", "mount: cap_clevice"),)),
+    ("knee_bonded", (("end_stop: internal", "end_stop: inside"),)),
+    ("knee_bonded", (("type: o_ring", "type: oring"),)),
+    ("knee_bonded", (("back_up: both", "back_up: two"),)),
+    ("knee_bonded", (("compound: nbr_90", "compound: nbr_91"),)),
+    ("knee_bonded", (("compound: nbr_90", "compound: al_7075_t6"),)),
+    ("knee_bonded", (("material: iso_vg_32", "material: iso_vg_33"),)),
+    ("knee_bonded", (("  type: bond", "  type: glue"),)),
+    ("knee_bonded", (("  type: bond", "  type: thread"),)),
+    ("knee_bonded", (("    friction_coefficient: 0.10", "    friction: films"),)),
+    ("knee_bonded", (("    friction_coefficient: 0.10", "    friction_coeficient: 0.10"),)),
+    ("knee_bonded", (("    section: 1.78 mm", "    series: iso_3601"),)),
+    ("knee_bonded", (("    section: 1.78 mm", "    housing: iso_5597"),)),
+    ("knee_bonded", (("direction: push", "direction: pushing"),)),
+    ("knee_bonded", (("    speed: 0.1 m/s", "    position: middle\n    speed: 0.1 m/s"),)),
+    ("knee_bonded", (("name: swing", "name: stance"),)),
+    ("knee_bonded", (("  cylinder.bore:\n", "  cylinder.boar:\n"),)),
+    ("knee_bonded", (("    lower: 16 mm", "    lower: 60 mm"),)),
+    ("knee_bonded", (("  stiffness_min:\n", "  stifness_min:\n"),)),
+    ("knee_bonded", (("    min: 10 kN/mm", "    min: 10 N*m"),)),
+    ("knee_bonded", (("  minimise: mass", "  minimise: weight"),)),
+    ("knee_bonded", (("  minimise: mass", "  minimize: mass"),)),
+    ("knee_bonded", (("  outer_diameter: 13 mm", "  outer_diameter: 5 mm"),)),
+    ("knee_bonded", (("  outer_diameter: 13 mm", "\touter_diameter: 13 mm"),)),
+    ("knee_bonded", (("  seal_section:", "  seal_sections:"),)),
     ("aerospace", (("criterion: hashin", "criterion: hashing"),)),
     ("aerospace", (("type: tie_rods", "type: tierods"),)),
     ("aalto_40_25_220", (("type: step_ring", "type: step_rings"),)),
@@ -421,7 +421,7 @@ FAULTS: tuple[tuple[str, tuple[tuple[str, str], ...]], ...] = (
 
 
 def _faults() -> Iterator[Case]:
-    knee = "designs/knee.yaml"
+    knee = "designs/knee_bonded.yaml"
     wrong = [
         step(
             "check -",
@@ -434,9 +434,9 @@ def _faults() -> Iterator[Case]:
     ]
     yield Case("faults/files", tuple(wrong), seconds=3.0)
     usage = (
-        step("evaluat designs/knee.yaml", looks=1),
+        step("evaluat designs/knee_bonded.yaml", looks=1),
         step("evaluate", looks=1),
-        step("evaluate designs/knee.yaml --jsn", looks=1),
+        step("evaluate designs/knee_bonded.yaml --jsn", looks=1),
         step("evaluate designs/missing.yaml", looks=1),
         step("evaluate designs", looks=1),
         step(f"evaluate {knee} --set cylinder.boar=30", looks=1),
@@ -465,7 +465,7 @@ def _faults() -> Iterator[Case]:
         step(f"compare {knee}", looks=1),
         step(f"seal {knee} --seal wiper", looks=1),
         step(f"seal {knee} --seal piston --speed", "3 bar", looks=1),
-        step("simulate designs/knee.yaml", looks=1),
+        step("simulate designs/knee_bonded.yaml", looks=1),
         step("simulate designs/scenarios/knee_step.yaml --fit air_content", looks=1),
         step(f"identify missing.csv --design {knee}", looks=1),
         step(f"identify designs/records/knee_bench.csv --design {knee} --column p9=p1", looks=1),
@@ -476,7 +476,7 @@ def _faults() -> Iterator[Case]:
         step("report nothing.yaml --out out", looks=1),
         step("report last --out out", looks=1),
         step("explore missing.db --out out", looks=1),
-        step("rerun designs/knee.yaml", looks=1),
+        step("rerun designs/knee_bonded.yaml", looks=1),
         step("materials show al_7075", looks=1),
         step("materials list --kind metals", looks=1),
         step("materials compare al_7075_t6", looks=1),

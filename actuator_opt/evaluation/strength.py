@@ -12,12 +12,13 @@ from math import sqrt
 from typing import Any, TypeVar
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, real, where
-from ..design.model import Design
+from ..base.numeric import Array, namespace, real, where
+from ..design.model import Design, Ply
 from ..joints.joint import Joint, Loaded, Thermal
 from ..joints.kinds import JOINTS
 from ..joints.overlap import Overlap
-from ..models import end_plate, retention, rod
+from ..models import end_plate, ply, retention, rod
+from ..models.end_bending import ShellLayer
 from . import rod_strength, rods
 from .barrel import Wall
 from .barrel.wall import largest_area
@@ -60,10 +61,39 @@ class LoadedJoint:
         return {self.end_joint.placed(place): value for place, value in values.items()}
 
 
+def _shell_layer(
+    v: Values, stock: MaterialValues, at: str, entry: Ply, thickness: Array
+) -> ShellLayer:
+    """Stiffness of a layer of the barrel against bending; `at` is its PATH."""
+    c = stock.ply_constants(entry.material)
+    stiffness = ply.ply_stiffness(
+        youngs_modulus_1=c["youngs_modulus_1"],
+        youngs_modulus_2=c["youngs_modulus_2"],
+        poissons_ratio_12=c["poissons_ratio_12"],
+        shear_modulus_12=c["shear_modulus_12"],
+    )
+    if stock.material(entry.material).isotropic:
+        along, both, _, modulus = stiffness
+        return ShellLayer(thickness, along, along, both, modulus)
+    angle = v[f"{at}.angle"]
+    axial, coupling, hoop, *_ = ply.rotated(stiffness=stiffness, angle=angle)
+    cosine = namespace(angle).cos(angle)
+    share = cosine * cosine
+    shear = share * c["shear_modulus_13"] + (1 - share) * c["shear_modulus_23"]
+    return ShellLayer(thickness, axial, hoop, coupling, shear)
+
+
 def joints_under_load(
     v: Values, design: Design, stock: MaterialValues, g: Geometry, wall: Wall
 ) -> tuple[LoadedJoint, ...]:
     """The joints of a design under their largest separating force; none without `retention`."""
+    layers = list(zip(design.barrel.layup, g.thicknesses, strict=True))
+    known = all(stock.ply_constants(entry.material) for entry, _ in layers)
+    shells = tuple(
+        _shell_layer(v, stock, f"barrel.layup[{i}]", *layer)
+        for i, layer in enumerate(layers)
+        if known
+    )
     return tuple(
         LoadedJoint(
             end_joint,
@@ -75,6 +105,8 @@ def joints_under_load(
                 line_stiffness=wall.axial_line_stiffness,
                 expansion=None if wall.expansion is None else wall.expansion[0],
                 clamp=wall.path.clamp,
+                shells=shells,
+                pressure=v["supply.pressure"],
             ),
         )
         for end_joint in joints_of(design)

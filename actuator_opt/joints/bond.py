@@ -102,7 +102,7 @@ JOINT = Joint(
     strength=_strength,
     yields=overlap.yields,
     wall=lambda loaded: WallPressures(),
-    fatigue=lambda loaded: Fatigue(),
+    fatigue=lambda loaded: Fatigue(overlap.beside_pulsed(loaded)),
     own=lambda loaded: {},
     envelope=_envelope,
     metrics={},
@@ -110,6 +110,7 @@ JOINT = Joint(
     models={
         ("retention_factor", "bond at the skirt's edge"): "lap_joint.bond_edge_shear",
         ("retention_factor", "bond at the barrel's edge"): "lap_joint.bond_edge_shear",
+        ("yield_factor", overlap.BESIDE): "end_bending.edge_stresses",
     },
     usual=(),
     warnings=nothing,

@@ -13,6 +13,7 @@ from ..base.dataclass import dataclass
 from ..base.errors import Fault
 from ..base.numeric import Array
 from ..base.quantities import Quantity
+from ..models.end_bending import ShellLayer
 
 LEAST_METAL = 1e-3
 """Smallest permitted dimension of a turned part [m]. It applies to walls beside or under a groove
@@ -251,6 +252,10 @@ class Loaded:
     line_stiffness: Array
     expansion: Array | None
     clamp: Clamp | None
+    shells: tuple[ShellLayer, ...]
+    """Stiffness of the barrel's layers against bending; empty if an elastic constant is unknown."""
+    pressure: Array
+    """Supply pressure [Pa]."""
 
 
 class Pulsed(NamedTuple):

@@ -12,10 +12,20 @@ from functools import partial
 from math import pi
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, absolute
-from ..models import lap_joint, mass
+from ..base.numeric import Array, absolute, maximum, minimum
+from ..models import end_bending, lap_joint, mass
+from ..models.barrel import von_mises
 from ..models.strength_modes import load_multiplier
-from .joint import DrawnPart, End, EndDimensions, EndSpan, Loaded, MaterialProperties, Thermal
+from .joint import (
+    DrawnPart,
+    End,
+    EndDimensions,
+    EndSpan,
+    Loaded,
+    MaterialProperties,
+    Pulsed,
+    Thermal,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +132,96 @@ def outline(end: End, fit: EndDimensions, span: EndSpan) -> Iterator[DrawnPart]:
         yield DrawnPart("caps", end.cap, span.over(length, inner, inner + float(fit.wall)))
 
 
+BESIDE = "barrel beside the skirt"
+"""Location where the barrel leaves a skirt and bends."""
+
+
+def _beside(loaded: Loaded) -> tuple[tuple[str, Array], ...]:
+    """Equivalent stress of each metal layer of the barrel beside a skirt; the result is cached.
+
+    Skirt and barrel are one wall up to the skirt's edge, where the force passes from one to the
+    other. This changes growth and middle of the wall, so that the barrel bends. Residual stresses
+    of cure and autofrettage are not included.
+    """
+    if "beside" not in loaded.end.cache:
+        loaded.end.cache["beside"] = tuple(_bent(loaded))
+    stresses: tuple[tuple[str, Array], ...] = loaded.end.cache["beside"]
+    return stresses
+
+
+def _bent(loaded: Loaded) -> Iterator[tuple[str, Array]]:
+    end, materials = loaded.end, loaded.materials
+    modulus, ratio = (materials.get(end.cap, key) for key in ("youngs_modulus", "poissons_ratio"))
+    if not loaded.shells or modulus is None or ratio is None:
+        return
+    stiffness = modulus / (1 - ratio * ratio)
+    skirt = end_bending.ShellLayer(
+        end.sizes["wall"], stiffness, stiffness, ratio * stiffness, modulus / (2 * (1 + ratio))
+    )
+    barrel, whole = (
+        end_bending.shell(layers=layers, inner_radius=end.inner_radius)
+        for layers in (loaded.shells, (*loaded.shells, skirt))
+    )
+    free, under = (
+        end_bending.free_growth(
+            wall=wall,
+            pressure=loaded.pressure,
+            bore_radius=end.inner_radius,
+            line_force=loaded.force / (2 * pi * wall.radius),
+        )
+        for wall in (barrel, whole)
+    )
+    line_force = loaded.force / (2 * pi * barrel.radius)
+    edge = end_bending.stepped(
+        left=whole,
+        right=barrel,
+        left_growth=under,
+        right_growth=free,
+        offset_moment=line_force * (barrel.centre - whole.centre),
+    )
+    start: Array = 0.0
+    for layer, shell in zip(end.layers, loaded.shells, strict=True):
+        if materials.kind(layer.material) == "metal":
+            inner, outer = end_bending.edge_stresses(
+                layer=shell, start=start, wall=barrel, edge=edge, line_force=line_force
+            )
+            yield (
+                layer.material,
+                maximum(
+                    von_mises(hoop=inner[1], radial=-loaded.pressure, axial=inner[0]),
+                    von_mises(hoop=outer[1], radial=0.0, axial=outer[0]),
+                ),
+            )
+        start = start + layer.thickness
+
+
+def beside_yields(loaded: Loaded) -> dict[str, Array]:
+    """Yield strength of the barrel's metal divided by its stress beside a skirt; least value."""
+    weakest: Array = None
+    for name, stress in _beside(loaded):
+        strength = loaded.materials.allowable(name, "yield_strength")
+        if strength is not None:
+            factor = strength / stress
+            weakest = factor if weakest is None else minimum(weakest, factor)
+    return {} if weakest is None else {BESIDE: weakest}
+
+
+def beside_pulsed(loaded: Loaded) -> tuple[Pulsed, ...]:
+    """Stress of the barrel beside a skirt under pulsating pressure."""
+    stresses = _beside(loaded)
+    places = [BESIDE] if len(stresses) == 1 else [f"{BESIDE}, {name}" for name, _ in stresses]
+    return tuple(
+        Pulsed(place, name, stress, stress / 2)
+        for place, (name, stress) in zip(places, stresses, strict=True)
+    )
+
+
 def yields(loaded: Loaded) -> dict[str, Array]:
+    """Yield strength divided by stress, of the skirt and of the barrel beside it."""
+    return _skirt_yield(loaded) | beside_yields(loaded)
+
+
+def _skirt_yield(loaded: Loaded) -> dict[str, Array]:
     """Yield strength of the skirt divided by its stress under the separating force."""
     end = loaded.end
     strength = loaded.materials.allowable(end.cap, "yield_strength")

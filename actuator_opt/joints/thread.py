@@ -359,7 +359,8 @@ def _yields(loaded: Loaded) -> dict[str, Array]:
     if isinstance(end_thread, str):
         return overlap.yields(loaded)
     strength = loaded.materials.allowable(end_thread.female, "yield_strength")
-    return {"skirt under the thread": strength * end_thread.skirt_section / loaded.force}
+    skirt = {"skirt under the thread": strength * end_thread.skirt_section / loaded.force}
+    return skirt | overlap.beside_yields(loaded)
 
 
 def _lands(loaded: Loaded) -> dict[str, Array]:
@@ -459,7 +460,7 @@ def _fatigue(loaded: Loaded) -> Fatigue:
         stress = loaded.force / section
         hard = real(loaded.materials.get(name, "ultimate_strength", default=0.0)) >= HARD
         pulsed.append(Pulsed(place, name, where(hard, CUT_HARD, CUT) * stress, stress / 2))
-    return Fatigue(tuple(pulsed))
+    return Fatigue((*pulsed, *overlap.beside_pulsed(loaded)))
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:

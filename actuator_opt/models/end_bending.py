@@ -9,12 +9,13 @@ shear stiffness S. Distances z are from the bore. The bending decays within a fe
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, geometry, sqrt
 
 
-class ShellLayer(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class ShellLayer:
     """A layer: thickness [m], and plane-stress stiffness in the axes of the wall [Pa].
 
     Q_zz is axial, Q_tt in the hoop direction, Q_zt couples both; `shear` is G_rz.
@@ -27,7 +28,8 @@ class ShellLayer(NamedTuple):
     shear: Array
 
 
-class Shell(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Shell:
     """Stiffnesses of a wall, per circumference.
 
     D is `bending` [N m], k `foundation` [Pa/m], S `shear` [N/m], z_n `centre`, the distance of the
@@ -44,7 +46,8 @@ class Shell(NamedTuple):
     coupling: Array
 
 
-class Edge(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Edge:
     """State of a wall at its edge, per circumference.
 
     `growth` is its radial displacement [m], `moment` bends the bore into tension [N], and `force`
@@ -70,7 +73,7 @@ def shell(*, layers: Sequence[ShellLayer], inner_radius: Array) -> Shell:
 
     Returns
     -------
-    stiffnesses, stiffness centre and radius of the wall
+    stiffnesses, stiffness centre [m] and radius [m] of the wall
 
     Notes
     -----
@@ -174,7 +177,7 @@ def clamped(*, wall: Shell, growth: Array) -> Edge:
 
     Returns
     -------
-    the edge, with growth 0, M_0 and Q_0
+    the edge: growth 0 [m], M_0 [N] and Q_0 [N/m]
 
     Notes
     -----
@@ -216,7 +219,7 @@ def stepped(
 
     Returns
     -------
-    the edge of the right wall
+    the edge of the right wall: growth [m], moment [N] and shear force [N/m]
 
     Notes
     -----

@@ -28,7 +28,7 @@ import samples_servo
 import samples_tube
 
 import actuator_opt.models
-from actuator_opt.models import elastomer, seals
+from actuator_opt.models import elastomer, end_bending, seals
 from actuator_opt.models.burst_ladder import BurstLadder, WallLayer
 from actuator_opt.models.strength_modes import PlyStrength
 
@@ -94,6 +94,8 @@ PIPE = {
 TUBE = {"inner_radius": 16e-3, "outer_radius": 20e-3}
 METAL = {"youngs_modulus": 71.7e9, "poissons_ratio": 0.33}
 ROD = {"outer_diameter": 12e-3, "inner_diameter": 6e-3}
+SHELL_LAYER = end_bending.ShellLayer(2e-3, 8e10, 8e10, 2.6e10, 2.7e10)
+SHELL = end_bending.Shell(55.0, 7e11, 4e7, 1e-3, 11e-3, 1.6e8, 5e7)
 GROOVE = {"bore_diameter": 21e-3, "groove_depth": 0.8e-3}
 DISHED = {
     "force": 7e3,
@@ -361,6 +363,19 @@ SAMPLES = {
     "liner_transfer.edge_shear": {
         "line_force": 1e5, "strain_difference": 2e-4, "interface_stiffness": 4e12,
         "liner_stiffness": 1.1e8, "winding_stiffness": 2.2e7,
+    },
+    "end_bending.shell": {"layers": [SHELL_LAYER], "inner_radius": 10e-3},
+    "end_bending.free_growth": {
+        "wall": SHELL, "pressure": 2e7, "bore_radius": 1e-2, "line_force": 1e5,
+    },
+    "end_bending.clamped": {"wall": SHELL, "growth": 8e-6},
+    "end_bending.stepped": {
+        "left": SHELL, "right": replace(SHELL, bending=30.0), "left_growth": 4e-6,
+        "right_growth": 9e-6, "offset_moment": 60.0,
+    },
+    "end_bending.edge_stresses": {
+        "layer": SHELL_LAYER, "start": 0.0, "wall": SHELL, "line_force": 1e5,
+        "edge": end_bending.Edge(5e-6, 80.0, 4e4),
     },
     "column.euler_load": {"bending_stiffness": 680.0, "effective_length": 0.6},
     "column.cowper_tube": {"poissons_ratio": 0.28, "radius_ratio": 0.75},

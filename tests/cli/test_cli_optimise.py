@@ -306,8 +306,8 @@ def test_the_knee_end_to_end(tmp_path):
     assert result.code == 0, result.err
     written = [line.removeprefix("wrote ") for line in result.err.splitlines()]
     assert str(file) in written
-    assert str(tmp_path / "reports" / "knee.pdf") in written
-    assert (tmp_path / "reports" / "knee.pdf").read_bytes().startswith(b"%PDF")
+    assert str(tmp_path / "reports" / "knee_bonded.pdf") in written
+    assert (tmp_path / "reports" / "knee_bonded.pdf").read_bytes().startswith(b"%PDF")
     assert {str(path) for path in (tmp_path / "reports").iterdir()} <= set(written)
     for word in ("requirements met", "at lower bound", "KKT residual", "%/%"):
         assert word in result.out

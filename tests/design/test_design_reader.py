@@ -445,14 +445,14 @@ def test_later_faults_find_their_place():
 
 def test_files_that_cannot_be_read(tmp_path):
     """A missing file, a folder and a misspelt name are input faults with a remedy."""
-    (tmp_path / "knee_bonded.yaml").write_text(GOOD)
+    (tmp_path / "knee.yaml").write_text(GOOD)
     with pytest.raises(InputError, match=r"no such file; did you mean .*knee\.yaml"):
         read(str(tmp_path / "kne.yaml"))
     with pytest.raises(InputError, match="is a folder"):
         read(tmp_path)
     with pytest.raises(InputError, match="cannot be read"):
         read("a\0b")
-    assert read(tmp_path / "knee_bonded.yaml").source.file == str(tmp_path / "knee_bonded.yaml")
+    assert read(tmp_path / "knee.yaml").source.file == str(tmp_path / "knee.yaml")
 
 
 def test_standard_input(monkeypatch):

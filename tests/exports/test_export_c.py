@@ -99,7 +99,7 @@ def exported(name, folder):
 
 @recorded
 @compiled
-@pytest.mark.parametrize("name", ["knee", "steel_baseline", "servo_knee"])
+@pytest.mark.parametrize("name", ["knee_bonded", "steel_baseline", "servo_knee"])
 def test_the_compiled_file_equals_the_models(name, tmp_path):
     """At 200 random points of the box: values to 1e-12, gradients to 1e-9, NaN at the same places.
 
@@ -154,7 +154,7 @@ def bounded(margin):
 @compiled
 def test_inputs_are_the_numbers_of_the_design(tmp_path):
     """Metrics are those of `evaluate`; each changed input gives those of the changed design."""
-    made = exported("knee", tmp_path)
+    made = exported("knee_bonded", tmp_path)
     subject, stock = ao.read(ROOT / "designs/knee_bonded.yaml").subject(), load_library()
     names = [entry[0] for entry in made.outputs[1 : made.first]]
     evaluated = ao.evaluate(ROOT / "designs/knee_bonded.yaml").to_dict()["metrics"]
@@ -185,15 +185,15 @@ def test_another_branch_is_reported(tmp_path):
 
     No dimension of the knee leads to another branch, so an answer is inverted in the file.
     """
-    made = exported("knee", tmp_path)
+    made = exported("knee_bonded", tmp_path)
     assert made.gradients(made.present)[0] == 0
-    file = tmp_path / "knee.c"
+    file = tmp_path / "knee_bonded.c"
     text, count = re.subn(r"(ANSWERS\[\d*\] = \{\s*)1", r"\g<1>0", file.read_text("ascii"), count=1)
     assert count == 1
     other = tmp_path / "other"  # of another path, or the loader takes the first library again
     shutil.copytree(tmp_path, other)
-    (other / "knee.c").write_text(text, "ascii")
-    code, outputs, slopes = Compiled(other, "knee").gradients(made.present)
+    (other / "knee_bonded.c").write_text(text, "ascii")
+    code, outputs, slopes = Compiled(other, "knee_bonded").gradients(made.present)
     assert code == 1
     assert np.isnan(outputs).all()
     assert np.isnan(slopes).all()

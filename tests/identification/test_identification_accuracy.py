@@ -22,7 +22,7 @@ BANDS = {"coulomb": 0.03, "viscous": 0.10, "static": 0.20, "stribeck_speed": 0.2
 
 
 @cache
-def bench(name="knee"):
+def bench(name="knee_bonded"):
     """The bench of a design."""
     return bench_of(ao.read(str(DESIGNS / f"{name}.yaml")).subject())
 
@@ -33,7 +33,7 @@ def plunger():
     return bench_of(ao.read(DESIGNS / "knee_bonded.yaml", set={"seals.piston.count": 0}).subject())
 
 
-def made(motion, truth=TRUTH, *, name="knee", seed=1, settings=None, **given):
+def made(motion, truth=TRUTH, *, name="knee_bonded", seed=1, settings=None, **given):
     """Identification of a record of a motion."""
     on = bench(name)
     given = {"mass": on.mass} | given
@@ -42,7 +42,7 @@ def made(motion, truth=TRUTH, *, name="knee", seed=1, settings=None, **given):
 
 
 @cache
-def plateaus(name="knee", seed=1):
+def plateaus(name="knee_bonded", seed=1):
     """Identification of plateaus by a design's bench."""
     return made(oracle.plateaus(SPEEDS), name=name, seed=seed)
 
@@ -74,7 +74,7 @@ def test_oracle_agrees_with_radau():
     assert np.max(np.abs(found - expected)) < 1e-3 * TRUTH.static
 
 
-@pytest.mark.parametrize("name", ["knee", "steel_baseline"])
+@pytest.mark.parametrize("name", ["knee_bonded", "steel_baseline"])
 def test_plateaus(name):
     """Plateau friction within 2 % of g(v) + sigma_2 v both ways; the curve within its bands."""
     found = plateaus(name)

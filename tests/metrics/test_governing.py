@@ -30,7 +30,7 @@ from actuator_opt.rendering import paper, terminal, text
 from actuator_opt.rendering.blocks import short
 from actuator_opt.rendering.console import Console
 
-DESIGNS = ("knee", "servo_knee", "aerospace", "aalto_40_25_220", "linkage")
+DESIGNS = ("knee_bonded", "servo_knee", "aerospace", "aalto_40_25_220", "linkage")
 LINKAGE = "linkage:\n  base_radius: 202.4 mm\n  crank_radius: 151.8 mm\n\nload:\n"
 SENSES = ("min", "max")
 
@@ -38,7 +38,7 @@ SENSES = ("min", "max")
 @cache
 def subject(name):
     """A shipped design, or the knee on a linkage."""
-    file = Path("designs") / f"{'knee' if name == 'linkage' else name}.yaml"
+    file = Path("designs") / f"{'knee_bonded' if name == 'linkage' else name}.yaml"
     source = file.read_text(encoding="utf-8")
     if name == "linkage":
         source = source.replace("load:\n", LINKAGE, 1)
@@ -228,9 +228,9 @@ def test_an_optimum_shows_its_objective():
 
 def test_the_knee_of_a_front_shows_what_is_wanted():
     """A metric wanted large stands with its smallest value, in the points and in the evaluation."""
-    known = everything("knee")["end_stop_pressure"]
+    known = everything("knee_bonded")["end_stop_pressure"]
     wished = pareto.wishes(["mass:min", "end_stop_pressure:max"], METRICS)
-    many = pareto._problem(subject("knee"), wished, None)
+    many = pareto._problem(subject("knee_bonded"), wished, None)
     start = many.actuator.problem.start
     _, evaluation = design_at(many.actuator, start)
     assert evaluation.metrics["end_stop_pressure"].value == min(known) < max(known)
@@ -244,7 +244,7 @@ def test_the_knee_of_a_front_shows_what_is_wanted():
 def test_unlimited_is_more_than_any_limit():
     """A part that nothing pushes does not meet a largest buckling factor; nor has it a number."""
     limits = {"bearing_factor": Limit(max=8.0)}
-    one = limited("knee", limits)
+    one = limited("knee_bonded", limits)
     computed = compute(one, one.values()).computed.metrics["bearing_factor"]
     assert np.isinf(computed["head"]).any()
     evaluation = evaluate(one)
@@ -252,7 +252,7 @@ def test_unlimited_is_more_than_any_limit():
     assert (row.value, row.met) == (None, False)
     assert evaluation.metrics["bearing_factor"].value is None
     assert not evaluate_many(one, {}, 1).feasible.any()
-    least = evaluate(limited("knee", {"bearing_factor": Limit(min=2.0)}))
+    least = evaluate(limited("knee_bonded", {"bearing_factor": Limit(min=2.0)}))
     assert least.metrics["bearing_factor"].value == least.requirements[0].value
     assert least.requirements[0].met
 
@@ -281,9 +281,9 @@ def test_a_user_reads_the_worst_place_and_limits_by_it():
 
 def test_a_scattered_objective_is_its_worst_value():
     """What is maximised scatters in its smallest value, although its largest is its worst."""
-    one = subject("knee")
+    one = subject("knee_bonded")
     design = one.design.model_copy(update={"objective": Objective(maximise="end_stop_pressure")})
     found = ao.uncertainty(design, count=20, rows=0)
-    known = everything("knee")["end_stop_pressure"]
+    known = everything("knee_bonded")["end_stop_pressure"]
     assert found.nominal["end_stop_pressure"] == pytest.approx(min(known), rel=1e-12)
     assert min(known) < max(known)

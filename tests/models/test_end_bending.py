@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -40,9 +41,9 @@ def test_clamp_by_the_worked_numbers_of_aluminium():
     assert wall.shear == near(5 / 6 * 71.7e9 / 2.66 * 1.5e-3)  # 5/6 G t of a homogeneous wall
     growth = end_bending.free_growth(wall=wall, pressure=28e6, bore_radius=16e-3, line_force=0.0)
     assert growth == near(28e6 * 16e-3 * 16.75e-3 / (71.7e9 * 1.5e-3))
-    stated = wall._replace(shear=33.75e6)
+    stated = replace(wall, shear=33.75e6)
     assert end_bending.clamped(wall=stated, growth=73.0428e-6).moment == near(197.867)
-    thin = end_bending.clamped(wall=wall._replace(shear=1e15), growth=73.0428e-6)
+    thin = end_bending.clamped(wall=replace(wall, shear=1e15), growth=73.0428e-6)
     assert thin.moment == near(215.135)
     assert thin.force == near(109.761e3)
 

@@ -161,7 +161,7 @@ def brute_force(text, result, **options):
     [
         (None, SEALS | {"caps.material": "[ti_6al4v, steel_42crmo4]"}),
         ("steel_baseline", {"rod.material": "[steel_42crmo4, steel_17_4ph_h1025]"}),
-        ("knee", {"barrel.layup[2].material": "[t700_epoxy, im7_8552]"}),
+        ("knee_bonded", {"barrel.layup[2].material": "[t700_epoxy, im7_8552]"}),
         pytest.param(
             "aerospace",
             {"caps.material": "[ti_6al4v, steel_42crmo4]"},

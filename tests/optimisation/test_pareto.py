@@ -97,7 +97,9 @@ def test_writes_table_csv_and_report(tmp_path):
     assert len(rows) == 6
     assert float(rows[0]["mass [g]"]) == pytest.approx(1e3 * data["points"][0]["metrics"]["mass"])
     names = sorted(path.name for path in (tmp_path / "r").iterdir())
-    assert {"knee_pareto.pdf", "knee_pareto_figure.png", "knee_pareto_figure.svg"} <= set(names)
+    assert {f"knee_bonded_pareto{end}" for end in (".pdf", "_figure.png", "_figure.svg")} <= set(
+        names
+    )
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 from dataclasses import replace
+from string import ascii_uppercase
 
 import pytest
 from cli_runner import BENCH, DESIGNS, run
@@ -165,7 +166,7 @@ def test_many_designs_at_once(shipped):
     assert all(head[0] == "A" and len(head) > 1 for head in heads)
     assert {label for head in heads for label in head} >= set(found.labels)
     data = ao.comparison_json(found)
-    assert [one["label"] for one in data["designs"]] == list("ABCDEFGH"[: len(SHIPPED)])
+    assert [one["label"] for one in data["designs"]] == list(ascii_uppercase[: len(SHIPPED)])
     for row in data["differences"]:
         assert len(row["values"]) == len(SHIPPED)
         assert len({str(value) for value in row["values"]}) > 1, row

@@ -117,7 +117,7 @@ def test_readme_has_two_complete_commands():
     """Two one-line commands, joined by &&, each written once and named nowhere before."""
     design, test = commands()
     for command, end in (
-        (design, ".venv/bin/actuator-opt optimise designs/knee_bonded.yaml"),
+        (design, ".venv/bin/actuator-opt optimise designs/knee.yaml"),
         (test, ".venv/bin/python -m pytest"),
     ):
         steps = command.split(" && ")

@@ -194,9 +194,9 @@ def test_a_notebook_shows_the_page():
 def test_the_report_is_written_as_asked(tmp_path):
     """PDF by default; HTML alone, or both, by `--format`; another word is refused at once."""
     for form, names in (
-        ("pdf", {"knee.pdf", "knee.png"}),
-        ("html", {"knee.html"}),
-        ("both", {"knee.pdf", "knee.png", "knee.html"}),
+        ("pdf", {"knee_bonded.pdf", "knee_bonded.png"}),
+        ("html", {"knee_bonded.html"}),
+        ("both", {"knee_bonded.pdf", "knee_bonded.png", "knee_bonded.html"}),
     ):
         out = tmp_path / form
         assert run("report", KNEE, "--format", form, "--out", out).code in (0, 1)
@@ -204,4 +204,4 @@ def test_the_report_is_written_as_asked(tmp_path):
     done = run("report", KNEE, "--format", "docx", "--out", tmp_path / "none")
     assert done.code == 2
     assert "use one of pdf, html, both" in done.err
-    assert not (tmp_path / "none" / "knee.html").exists()
+    assert not (tmp_path / "none" / "knee_bonded.html").exists()

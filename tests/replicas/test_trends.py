@@ -21,7 +21,7 @@ from actuator_opt.replicas.trends import FACTORS
 
 DESIGNS = Path(__file__).parents[2] / "designs"
 NAMES = [factor.name for factor in FACTORS]
-OILS = {"knee": ("iso_vg_32", 313.15), "aalto_40_25_220": ("aalto_thesis_oil", 300.15)}
+OILS = {"knee_bonded": ("iso_vg_32", 313.15), "aalto_40_25_220": ("aalto_thesis_oil", 300.15)}
 """Oil and temperature of both designs [K]."""
 
 
@@ -111,7 +111,7 @@ def gent(hardness):
 
 def warming(name, found):
     """Slope d ln E/d ln T: -b T, and the end of the climb from the glass, s'/s T."""
-    compound = {"knee": "nbr_90", "aalto_40_25_220": "nbr_70"}[name]
+    compound = {"knee_bonded": "nbr_90", "aalto_40_25_220": "nbr_70"}[name]
     numbers, temperature = load_library().get(compound).numbers, OILS[name][1]
     above = temperature - (numbers["stiffening_temperature"] - 5.0)
     decades = 17.44 * (5 / 56.6 - above / (51.6 + above))
@@ -160,8 +160,8 @@ def test_table_1_as_printed():
 
 def test_the_point_is_the_one_of_most_friction(name, found):
     """Pulling, where the rod's ring holds the pressure too; the friction is that of the law."""
-    assert found.case == {"knee": "swing", "aalto_40_25_220": "down"}[name]
-    assert found.replaced == {"knee": ()}.get(name, ("piston", "rod"))
+    assert found.case == {"knee_bonded": "swing", "aalto_40_25_220": "down"}[name]
+    assert found.replaced == {"knee_bonded": ()}.get(name, ("piston", "rod"))
     ring = found.rings[0]
     fall = (ring["breakaway_ratio"] - 1) * math.exp(-((found.stribeck_ratio) ** 2))
     by_hand = sum(Hand(ring).force for ring in found.rings) * (1 + fall)
@@ -214,7 +214,7 @@ def test_squeeze(name, found):
     ]
     assert min(told) - 0.02 <= wet <= max(told) + 0.02
     assert wet < dry
-    if name == "knee":  # so little that its sign says nothing
+    if name == "knee_bonded":  # so little that its sign says nothing
         assert abs(wet) < 0.01
         assert said(found, "squeeze")[0] == "agrees"
     else:
@@ -246,7 +246,7 @@ def test_speed(name, found):
     dry, wet = pair(found, "relative motion speed")
     assert dry == pytest.approx(-2 * y * y * fall / (1 + fall), rel=1e-4, abs=1e-12)
     assert wet > 0
-    dry_said = {"knee": "no effect"}.get(name, "agrees")
+    dry_said = {"knee_bonded": "no effect"}.get(name, "agrees")
     assert said(found, "relative motion speed") == (dry_said, "disagrees")
     for ring in found.rings:
         inwards = solved(ring)
@@ -375,7 +375,7 @@ def test_roughness_on_the_film(name, found):
     told = on_film(found, names, by_hand)
     assert metal + ring == pytest.approx(told, rel=0.02)
     assert abs(metal) < abs(ring) / 8  # (sigma_1/sigma)^2 of 1/17 and 16/17, but for the flow
-    expected = {"knee": ("disagrees", "agrees")}.get(name, ("no effect", "disagrees"))
+    expected = {"knee_bonded": ("disagrees", "agrees")}.get(name, ("no effect", "disagrees"))
     assert (said(found, NAMES[1])[1], said(found, NAMES[9])[1]) == expected
 
 
@@ -449,7 +449,7 @@ def test_without_a_film_the_reason_stands_in_the_note():
 def test_without_a_moving_case_there_is_no_friction_to_follow():
     """Standing still: no numbers, and what it needs."""
     changes = {f"load_cases[{case}].speed": "0 m/s" for case in ("stance", "swing")}
-    table = trends.trends_table(evaluated("knee", **changes))
+    table = trends.trends_table(evaluated("knee_bonded", **changes))
     assert {cell for row in table.rows for cell in row[1:]} == {"–"}
     assert "has a speed above zero" in table.note
 

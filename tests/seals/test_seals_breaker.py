@@ -52,7 +52,7 @@ def test_map_makes_its_folder(tmp_path):
     """A map alone is written into a folder that does not exist yet."""
     done = _seal(tmp_path, "--map", "--out", "new", "--quiet")
     assert done.returncode == 0, done.stderr
-    assert (tmp_path / "new" / "knee_rod_seal_map.csv").is_file()
+    assert (tmp_path / "new" / "knee_bonded_rod_seal_map.csv").is_file()
 
 
 def test_remedy_for_no_speed_is_accepted(tmp_path):

@@ -252,7 +252,7 @@ ONE = [
     (LOOP, ("duration: 2 s", "duration: 2"), "2\nsample", "duration", '"2": unit missing', '"2 s"'),
     (LOOP, ("duration: 2 s\n", ""), "name: the loop", "duration", "missing", 'add e.g. "duration'),
     (LOOP, ("design: servo_knee.yaml", 'design: "-"'), '"-"', "design", "is not a file",
-     "knee_bonded.yaml"),
+     "knee.yaml"),
     (LOOP, ("position: 30 %", "position: worst"), "worst", "initial.position",
      "not an initial position",
      'write "50 %" or "55 mm"'),

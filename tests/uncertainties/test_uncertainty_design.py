@@ -198,7 +198,7 @@ def test_the_command_writes_draws_and_pages(tmp_path):
             "uncertainty", KNEE, "-n", "100", "--index-rows", "64", "--csv", target, "--report",
             "--out", tmp_path, "--quasi",
         )  # fmt: skip
-        assert "knee_uncertainty.pdf" in result.err
+        assert "knee_bonded_uncertainty.pdf" in result.err
         files[number] = {p.name: p.read_bytes() for p in sorted(tmp_path.iterdir())}
     assert files[0] == files[1]
     with (tmp_path / "draws.csv").open(encoding="utf-8", newline="") as file:
