@@ -374,7 +374,7 @@ def _have(joints: list[Joint]) -> str:
 
 def skirts(view: FileView) -> Iterator[Fault]:
     """Check that the skirts of cap and head, which overlap the barrel, do not meet on it."""
-    with_skirts = [end for end in ends(view) if end.joint is not None and end.joint.skirts]
+    with_skirts = [end for end in ends(view) if end.joint and end.joint.form == "skirts"]
     overlaps = [end.number(_BLOCK, "length") for end in with_skirts]
     length = view.number("barrel", "length")
     parts = [("cylinder", "stroke"), ("piston", "length"), ("head", "length")]

@@ -16,7 +16,7 @@ from ..base.numeric import Array, absolute, maximum
 from ..design.material import Material
 from ..design.model import Design, EndRetention, Ply, closed_length
 from ..design.seals import Seal, SealElement
-from ..joints.joint import BarrelLayer, End, EndDimensions, Joint, JointSizes
+from ..joints.joint import BarrelLayer, End, EndDimensions, Form, Joint, JointSizes
 from ..joints.kinds import JOINTS
 from ..models import forces, gland, mass
 from .values import Values
@@ -269,7 +269,8 @@ class Geometry:
     fits: tuple[EndDimensions, ...]
     """Dimensions of cap and head that follow from their joints; one entry if the joints are the
     same."""
-    has_skirts: bool
+    forms: tuple[Form, ...]
+    """Forms of cap and head; one entry if their joints are the same."""
     barrel_length: Array
     eye_offset: Array
     pin_diameter: Array
@@ -349,7 +350,7 @@ def derive(v: Values, design: Design) -> Geometry:
         head_clearance=v["head.clearance"],
         plate=plate,
         fits=tuple(fits),
-        has_skirts=any(end.joint.skirts for end in joints),
+        forms=tuple(end.joint.form for end in joints),
         barrel_length=barrel_length,
         eye_offset=eye_offset,
         pin_diameter=pin,
@@ -377,6 +378,11 @@ def end_at(design: Design, end_joint: EndJoint, sizes: JointSizes, g: Geometry) 
     )
 
 
+STATIC_SEAL = 2.4e-3
+"""Width of a plug's groove for its static O-ring [m]: ISO 3601-2, section 1.78 mm, without back-up
+ring."""
+
+
 def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, Any]:
     """Wall thicknesses and clearances that must be positive, as constraints of the optimiser.
 
@@ -387,14 +393,14 @@ def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, 
     head_length, head_count, head_depth = groove_totals(g.rod_grooves)
     bore = {"geometry_rod_bore": g.rod_inner_diameter} if g.rod_thicknesses else {}
     skirted = 2 * g.cap_fit.length if len(g.fits) == 1 else g.cap_fit.length + g.head_fit.length
-    skirts = {"geometry_skirts": g.barrel_length - skirted} if g.has_skirts else {}
+    skirts = {"geometry_skirts": g.barrel_length - skirted} if "skirts" in g.forms else {}
     lips = {"cap": g.eye_offset - g.pin_diameter - g.cap_fit.lip} if eyes else {}
     lips["head"] = g.rod_extension - g.head_fit.lip
-    lip = {"geometry_lip": lips} if any(fit.groove for fit in g.fits) else {}
+    plugs = {"geometry_lip": lips, "geometry_plug": (g.plate - STATIC_SEAL) / 2}
     return (
         bore
         | skirts
-        | lip
+        | (plugs if "plugs" in g.forms else {})
         | {
             "geometry_rod_in_bore": g.inner_radius - g.rod_diameter / 2,
             "geometry_rod_wall": (g.rod_diameter - g.rod_inner_diameter) / 2,

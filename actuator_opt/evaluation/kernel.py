@@ -366,12 +366,13 @@ def statics(
     strength.joint_metrics(loaded_joints, out)
     if not g.rod_thicknesses:
         out.skip("geometry_rod_bore", "the rod has no layers")
-    if not g.has_skirts:
+    if "skirts" not in g.forms:
         out.skip("geometry_skirts", "cap and head have no skirts over the barrel")
-    if not any(fit.groove for fit in g.fits):
-        out.skip("geometry_lip", "no retaining ring")
+    if "plugs" not in g.forms:
+        for name in ("geometry_lip", "geometry_plug"):
+            out.skip(name, "no plug in the bore")
     _manufacture(v, subject, out)
-    out.put("barrel_length", g.barrel_length)
+    out.put("barrel_length", g.wall_length)
     out.put("closed_length", g.closed_length)
     return Statics(
         base=basis,

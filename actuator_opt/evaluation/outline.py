@@ -295,6 +295,8 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
         "head_length": g.head_length,
         "barrel_length": g.barrel_length,
         "plate": g.plate,
+        "beyond_cap": g.cap_fit.beyond,
+        "beyond_head": g.head_fit.beyond,
         "closed_length": g.closed_length,
         "pin_cap": 0.0,
         "pin_rod": g.closed_length,
@@ -488,9 +490,12 @@ def _changed(geometry: Geometry, change: _Change) -> Geometry:
     for field in fields(Geometry):
         value = getattr(geometry, field.name)
         if isinstance(value, tuple):
-            values[field.name] = tuple(_changed_entry(entry, change) for entry in value)
+            values[field.name] = tuple(
+                entry if isinstance(entry, str) else _changed_entry(entry, change)
+                for entry in value
+            )
         else:
-            values[field.name] = value if isinstance(value, bool) else change(value)
+            values[field.name] = change(value)
     return Geometry(**values)
 
 

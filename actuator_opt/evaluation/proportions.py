@@ -115,7 +115,7 @@ def _skirt(path: str, of: Callable[[EndDimensions], Array]) -> Ratio:
 
     def ratio(v: Values, design: Design, g: Geometry) -> Array | None:
         for end in joints_of(design):
-            if end.path == path and end.joint.skirts:
+            if end.path == path and end.joint.form == "skirts":
                 return of(g.head_fit if end.name == "head" else g.cap_fit) / g.bore
         return None
 

@@ -226,7 +226,7 @@ def _stations(lengths: Mapping[str, float]) -> dict[str, tuple[float, float]]:
         "head": (end - mm["head_length"], end),
         "other plate": (end, end + mm["plate"]),
         "extension": (end + mm["plate"], end + mm["plate"] + mm["extension"]),
-        "barrel": (start, end),
+        "barrel": (start - mm["beyond_cap"], end + mm["beyond_head"]),
         "closed length": (mm["pin_cap"], mm["pin_rod"]),
     }
     return {name: span for name, span in spans.items() if span[1] - span[0] > _SMALLEST}

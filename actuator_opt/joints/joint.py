@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
-from typing import Any, NamedTuple, Protocol, TypeAlias
+from typing import Any, Literal, NamedTuple, Protocol, TypeAlias
 
 from ..base.dataclass import dataclass
 from ..base.errors import Fault
@@ -274,6 +274,8 @@ class Life(NamedTuple):
     factor: Array
 
 
+Form: TypeAlias = Literal["skirts", "plugs", "plates"]
+
 Thermal = Callable[[Array, bool], Array]
 """Function that returns the strength divided by the load that a temperature change alone causes.
 Its arguments are the change [K], and whether to use the strength at the lowest temperature."""
@@ -339,8 +341,8 @@ class Joint:
     """Function that yields errors in the values of a design file."""
     material_faults: Callable[[StatedValues, KnownMaterials], Iterable[Fault]]
     """Function that yields errors in a design file that depend on material properties."""
-    skirts: bool
-    """Whether the caps have skirts over the outside of the barrel."""
+    form: Form
+    """Form of the caps: skirts over the outside of the barrel, plugs in its bore, or plates."""
     fit: Callable[[End], EndDimensions]
     stiffness: Callable[[End, MaterialProperties], Array] | None
     """Axial stiffness of the parts that clamp the barrel [N/m]; None if none do."""

@@ -11,6 +11,7 @@ JOINTS: Kinds[Joint] = kinds_in(
     "JOINT",
     "bond",
     "thread",
+    "plug_thread",
     "retaining_ring",
     "tie_rods",
 )

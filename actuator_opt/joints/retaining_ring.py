@@ -37,17 +37,13 @@ from .joint import (
     Strength,
     Usual,
     WallPressures,
-    judged_later,
 )
+from .plug import innermost_faults
 from .winding import WINDING_EDGE, winding_edge
 
 EDGE_BREAK = 0.2e-3
 """Largest edge break of the plug and of the groove [m], which moves the force on the ring inwards.
 Our choice; the drawing states it."""
-
-SEAL_GROOVE = 2.4e-3
-"""Width of the plug's groove for its static O-ring [m]: ISO 3601-2, section 1.78 mm, no back-up
-ring."""
 
 NOTCH, NOTCH_HARD = 3.0, 4.0
 """Fatigue notch factors of the groove's root, for metals below `HARD` and from `HARD` on. Our
@@ -56,20 +52,11 @@ choice, for a root radius of at least a tenth of the depth; no published value f
 HARD = 830e6
 """Lowest tensile strength of a metal that counts as hard [Pa]; as for threads."""
 
-LANDS = ("geometry_ring_groove", "geometry_ring_plug", "geometry_ring_opening")
-"""Metrics of the metal left under the groove and beside the static seal of the plug, and of the
-clearance between ring and rod."""
-
-OTHERWISE = "use another joint (retention.type)"
+LANDS = ("geometry_ring_groove", "geometry_ring_opening")
+"""Metrics of the metal left under the groove, and of the clearance between ring and rod."""
 
 
 # --- faults of the file ---------------------------------------------------------------------
-
-
-def _layer(view: StatedValues) -> tuple[float | None, str | None]:
-    """Thickness and material of the innermost layer."""
-    at = ("barrel", "layup", 0)
-    return view.number(*at, "thickness"), view.text(*at, "material")
 
 
 def _text(length: float) -> str:
@@ -89,41 +76,9 @@ def _faults(view: StatedValues) -> Iterator[Fault]:
 
 def _material_faults(view: StatedValues, materials: KnownMaterials) -> Iterator[Fault]:
     """Report a groove that is not in a metal of known strength, or leaves too little of it."""
-    thickness, name = _layer(view)
-    kind = None if name is None else materials.kind(name)
-    if name is None or kind is None:
-        return
-    loc = ("barrel", "layup", 0, "material")
-    if kind != "metal":
-        description = "plies, whose fibres it would cut" if kind == "ply" else f"a {kind}"
-        yield Fault(
-            loc,
-            f"{name}: the groove of the retaining ring is cut into the innermost layer, but this "
-            f"is of {description}; a groove needs metal",
-            f"make barrel.layup[0] of metal, or {OTHERWISE}",
-        )
-        return
-    properties = set(materials.properties(name))
-    needed = ("yield_strength", "ultimate_strength", "poissons_ratio")
-    missing = [key for key in needed if properties and key not in properties]
-    if missing:
-        yield Fault(
-            loc,
-            f"{name} has no {' nor '.join(missing)}: the strength of its groove cannot be computed",
-            f"state {missing[0]} under materials.{name}, or {OTHERWISE}",
-        )
     depth = view.number("retention", "groove_depth")
     varied = ("barrel.layup[0].thickness", "retention.groove_depth")
-    if thickness is None or depth is None or judged_later(view, varied):
-        return
-    if thickness - depth < LEAST_METAL * (1 - ROUNDING):
-        rest = _text(thickness - depth) if thickness > depth else "nothing"
-        yield Fault(
-            ("barrel", "layup", 0, "thickness"),
-            f"{_text(thickness)} of {name}: the groove of the retaining ring leaves {rest} of it, "
-            f"but {_text(LEAST_METAL)} is needed",
-            f"write a thickness of at least {_text(depth + LEAST_METAL)}, or {OTHERWISE}",
-        )
+    yield from innermost_faults(view, materials, "the groove of the retaining ring", depth, varied)
 
 
 # --- dimensions and mass --------------------------------------------------------------------
@@ -181,7 +136,7 @@ def _notes(end: End) -> Iterator[str]:
         f"{1e2 * sizes['groove_depth']:.2g} mm."
     )
     yield (
-        f"Split ring of square section, edges broken by at most {1e3 * EDGE_BREAK:g} mm. Chamfer "
+        f"Split ring of rectangular section, edges broken by at most {1e3 * EDGE_BREAK:g} mm. Chamfer "
         "the groove's inner edge, which the seals of plug and piston pass at assembly."
     )
 
@@ -309,11 +264,10 @@ def _fatigue(loaded: Loaded) -> Fatigue:
 
 
 def _lands(loaded: Loaded) -> Mapping[str, Array]:
-    """Metal left under groove and beside seal, and clearance of the rod [m]; all are limited."""
+    """Metal left under the groove, and clearance of the rod [m]; optimisations limit both."""
     end = loaded.end
     lands = (
         end.layers[0].thickness - end.sizes["groove_depth"],
-        (end.plate - SEAL_GROOVE) / 2,
         _radii(end)[0] - end.rod_radius,
     )
     return dict(zip(LANDS, lands, strict=True))
@@ -371,7 +325,7 @@ JOINT = Joint(
     without={},
     faults=_faults,
     material_faults=_material_faults,
-    skirts=False,
+    form="plugs",
     fit=_fit,
     stiffness=None,
     mass=_mass,

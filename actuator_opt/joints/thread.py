@@ -499,7 +499,7 @@ JOINT = Joint(
     },
     faults=_faults,
     material_faults=_material_faults,
-    skirts=True,
+    form="skirts",
     fit=_fit,
     stiffness=None,
     mass=_mass,

@@ -7,12 +7,12 @@ wall's other face.
 
 from __future__ import annotations
 
-from math import pi, sqrt, tan
+from math import pi, tan
 
-from ..base.numeric import Array, geometry, real, where
+from ..base.numeric import Array, geometry, namespace, positive, real, sqrt, where
 from .mass import pitch_diameter
 
-HEIGHT = sqrt(3) / 2
+HEIGHT = 3**0.5 / 2
 """Ratio of the height H of an ISO thread's sharp triangle to its pitch [ISO68-1]."""
 
 RUN_OUT = 0.8
@@ -335,3 +335,72 @@ def spread_stress(*, force: Array, thickness: Array, engagement: Array) -> Array
     46.41 MPa
     """
     return force * tan(FLANK) / (2 * pi * thickness * engagement)
+
+
+@geometry
+def internal_wall_stresses(
+    *,
+    force: Array,
+    diameter: Array,
+    pitch: Array,
+    engagement: Array,
+    bore_diameter: Array,
+    outer_diameter: Array,
+    poissons_ratio: Array,
+) -> tuple[Array, Array]:
+    """Axial and bending stress of a tube at the inner end of a thread in its bore.
+
+    sigma = F/A between the thread's roots, d, and the outer diameter, with thickness t_n. The force
+    N per circumference enters along the engaged length L, at the pitch diameter, so that couples
+    N e/L with e = t_n/2 + (d - d_2)/2 bend the end of the tube. At the inner end, the wall becomes
+    thicker by h = (d - d_b)/2. sigma_b = 6 M/t_n^2, M = N (e f + h/4),
+    f = (exp(-a) sin a + (1 - exp(-2 a) (cos 2a + sin 2a))/4)/a, a = beta L,
+    beta^4 = 3 (1 - nu^2)/(r_n t_n)^2.
+
+    Parameters
+    ----------
+    force : F [N]
+    diameter : nominal diameter d [m]
+    pitch : P [m]
+    engagement : engaged length L [m]
+    bore_diameter : d_b, of the tube beside the thread [m]
+    outer_diameter : of the layer with the thread [m]
+    poissons_ratio : nu, of this layer [-]
+
+    Returns
+    -------
+    axial stress and bending stress [Pa]
+
+    Notes
+    -----
+    Valid: turns equally loaded, thread at the end of the tube; layers outside lower the bending.
+
+    Axisymmetric finite elements with t_n = 1.65 mm, h = 0.55 mm and L = 4 mm to 9 mm give 0.94 to 1
+    of the sum of both stresses for the bare layer, and 0.75 to 0.83 under 1.5 mm to 3 mm of hoop
+    winding, if the force enters at the roots.
+
+    References
+    ----------
+    [derived] long tube with free end under couples: forces +-m at the ends of their length
+
+    Examples
+    --------
+    >>> axial, bending = internal_wall_stresses(
+    ...     force=7273.57, diameter=22.1e-3, pitch=1e-3, engagement=6e-3, bore_diameter=21e-3,
+    ...     outer_diameter=25.4e-3, poissons_ratio=0.33)
+    >>> print(f"{axial / 1e6:.2f} {bending / 1e6:.2f}")
+    59.08 91.43
+    """
+    remaining = positive(outer_diameter - diameter) / 2
+    radius = (outer_diameter + diameter) / 4
+    beta = sqrt(sqrt(3 * (1 - poissons_ratio * poissons_ratio)) / (radius * remaining))
+    length, xp = beta * engagement, namespace(outer_diameter)
+    fall = xp.exp(-length)
+    end = fall * xp.sin(length)
+    loaded = (1 - fall * fall * (xp.cos(2 * length) + xp.sin(2 * length))) / 4
+    spread = (end + loaded) / length
+    line_force = force / (2 * pi * radius)
+    lever = (remaining + diameter - pitch_diameter(diameter=diameter, pitch=pitch)) / 2
+    moment = line_force * (lever * spread + (diameter - bore_diameter) / 8)
+    area = pi * (outer_diameter * outer_diameter - diameter * diameter) / 4
+    return force / area, 6 * moment / (remaining * remaining)

@@ -187,7 +187,10 @@ class ChoiceSearch:
 
 
 def possible(subject: PreparedDesign) -> list[Look]:
-    """All combinations of the choices, each with its design or the reason why it is impossible.
+    """All combinations of the choices, each with its design or the reason why it is left out.
+
+    A combination is impossible, or equal to an earlier one: a joint without a material is the same
+    with every material.
 
     Raises
     ------
@@ -195,16 +198,28 @@ def possible(subject: PreparedDesign) -> list[Look]:
         every combination is impossible
     """
     library = load_library()
-    looks = []
+    looks: list[Look] = []
     for order, values in enumerate(combinations(subject.design)):
         look = Look(order, values)
         try:
             look.subject = variant(subject, values, library)
         except InputError as error:
             _give_up(look, error)
+        else:
+            _drop_repeated(look, looks)
         looks.append(look)
     _require_one(looks)
     return looks
+
+
+def _drop_repeated(look: Look, earlier: Sequence[Look]) -> None:
+    assert look.subject is not None
+    for other in earlier:
+        if other.subject is not None and other.subject.design == look.subject.design:
+            values = ", ".join(f"{path}: {value}" for path, value in other.values.items())
+            look.fault, look.how = f"the same design as {values}", "not possible"
+            look.subject = None
+            return
 
 
 def _give_up(look: Look, error: InputError) -> None:

@@ -345,6 +345,10 @@ SAMPLES = {
     "thread.crest_overlap": {"crest_diameter": 9.9e-3, **THREAD},
     "thread.flank_area": {"engagement": 8e-3, "crest_diameter": 10e-3, **THREAD},
     "thread.stripping_reductions": [{"strength_ratio": ratio} for ratio in (0.7, 1.3)],
+    "thread.internal_wall_stresses": {
+        "force": 7e3, "diameter": 22e-3, "pitch": 1e-3, "engagement": 6e-3, "bore_diameter": 21e-3,
+        "outer_diameter": 25e-3, "poissons_ratio": 0.33,
+    },
     "thread.spread_stress": {"force": 1e4, "thickness": 2e-3, "engagement": 8e-3},
     "retaining_ring.groove_area": GROOVE,
     "retaining_ring.lip_shear": {"force": 7e3, "lip_length": 3e-3, **GROOVE},

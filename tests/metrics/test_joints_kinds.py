@@ -32,6 +32,8 @@ BLOCKS = {
     "thread": "type: thread\n  length: 10 mm\n  wall: 2 mm\n  thread:\n    pitch: 1 mm\n",
     "tie_rods": "type: tie_rods\n  material: steel_bolt_12_9\n  length: 8 mm\n  count: 6\n"
     "  preload: 40 kN\n  thread:\n    diameter: 6 mm\n    pitch: 1 mm\n",
+    "plug_thread": "type: plug_thread\n  length: 8 mm\n  wall: 1.5 mm\n"
+    "  thread:\n    pitch: 0.75 mm\n",
     "retaining_ring": "type: retaining_ring\n  material: steel_bolt_12_9\n  length: 4 mm\n"
     "  groove_depth: 0.5 mm\n  ring_thickness: 2 mm\n  ring_width: 2 mm\n",
 }

@@ -1,0 +1,64 @@
+"""Plugs in the bore of the barrel: what the joints that hold them there share.
+
+The end plate is the plug; its rim has the static seal. Groove or thread are outside the seal, so
+that oil pressure does not act there. They are cut into the innermost layer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from ..base.errors import Fault
+from ..base.quantities import INPUTS
+from .joint import LEAST_METAL, ROUNDING, KnownMaterials, StatedValues, judged_later
+
+NEEDED = ("yield_strength", "ultimate_strength", "poissons_ratio")
+"""Material properties that the innermost layer needs."""
+
+
+def innermost_faults(
+    view: StatedValues,
+    materials: KnownMaterials,
+    cut: str,
+    depth: float | None,
+    varied: Iterable[str],
+) -> Iterator[Fault]:
+    """Report a cut into an innermost layer that is not of known metal, or is too thin.
+
+    `cut` names what is cut, such as "the groove of the retaining ring", and `depth` is its depth.
+    `varied` are the PATHs of the sizes that determine the metal left under it.
+    """
+    loc = ("barrel", "layup", 0)
+    thickness, name = view.number(*loc, "thickness"), view.text(*loc, "material")
+    kind = None if name is None else materials.kind(name)
+    if name is None or kind is None:
+        return
+    otherwise = "or use another joint (retention.type)"
+    if kind != "metal":
+        description = "plies, whose fibres it would cut" if kind == "ply" else f"a {kind}"
+        yield Fault(
+            (*loc, "material"),
+            f"{name}: {cut} is cut into the innermost layer, but this is of {description}; it "
+            "needs metal",
+            f"make barrel.layup[0] of metal, {otherwise}",
+        )
+        return
+    properties = set(materials.properties(name))
+    missing = [key for key in NEEDED if properties and key not in properties]
+    if missing:
+        yield Fault(
+            (*loc, "material"),
+            f"{name} has no {' nor '.join(missing)}: the strength of {cut} cannot be computed",
+            f"state {missing[0]} under materials.{name}, {otherwise}",
+        )
+    if thickness is None or depth is None or judged_later(view, varied):
+        return
+    if thickness - depth < LEAST_METAL * (1 - ROUNDING):
+        text = INPUTS["length"].text
+        rest = text(thickness - depth) if thickness > depth else "nothing"
+        yield Fault(
+            (*loc, "thickness"),
+            f"{text(thickness)} of {name}: {cut} leaves {rest} of it, but {text(LEAST_METAL)} is "
+            "needed",
+            f"write a thickness of at least {text(depth + LEAST_METAL)}, {otherwise}",
+        )
