@@ -18,7 +18,7 @@ from ..design.model import Design, EndRetention, Ply, closed_length
 from ..design.seals import Seal, SealElement
 from ..joints.joint import BarrelLayer, End, EndDimensions, Form, Joint, JointSizes
 from ..joints.kinds import JOINTS
-from ..models import forces, gland, mass
+from ..models import forces, gland, mass, winding_path
 from .values import Values
 
 
@@ -431,6 +431,27 @@ def manufacture_margins(
         if numbers.get("minimum_thickness", 0.0) > 0:
             thickness_margins[path] = v[f"{path}.thickness"] / v[f"{at}minimum_thickness"] - 1
     return angle_margins, thickness_margins
+
+
+def turn_lengths(
+    v: Values, design: Design, materials: Mapping[str, Material], g: Geometry
+) -> dict[str, Array]:
+    """Length that the winding needs to turn at each end, by layer of barrel and rod [m].
+
+    Metals, and layers at exactly 0 deg, which are laid and not wound, are left out.
+    """
+    lengths = {}
+    radius, rod_radius = g.inner_radius, g.rod_inner_diameter / 2
+    for path, ply in _layers(design):
+        thickness = v[f"{path}.thickness"]
+        if path.startswith("barrel"):
+            outer = radius = radius + thickness
+        else:
+            outer = rod_radius = rod_radius + thickness
+        laid = ply.angle == 0 and f"{path}.angle" not in (*design.variables, *v.varied)
+        if materials[ply.material].kind == "ply" and not laid:
+            lengths[path] = winding_path.turn_length(radius=outer, angle=v[f"{path}.angle"])
+    return lengths
 
 
 def _layers(design: Design) -> Iterator[tuple[str, Ply]]:

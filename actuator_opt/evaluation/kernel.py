@@ -371,7 +371,7 @@ def statics(
     if "plugs" not in g.forms:
         for name in ("geometry_lip", "geometry_plug"):
             out.skip(name, "no plug in the bore")
-    _manufacture(v, subject, out)
+    _manufacture(v, subject, g, out)
     out.put("barrel_length", g.wall_length)
     out.put("closed_length", g.closed_length)
     return Statics(
@@ -478,8 +478,13 @@ def _films(subject: PreparedDesign) -> dict[Key, FilmTable]:
     return subject.films
 
 
-def _manufacture(v: Values, subject: PreparedDesign, out: MetricArrays) -> None:
-    """Compute the margins to the manufacturing limits of plies."""
+def _manufacture(v: Values, subject: PreparedDesign, g: Geometry, out: MetricArrays) -> None:
+    """Compute the margins to the manufacturing limits of plies, and the turns of windings."""
+    turns = geometry_module.turn_lengths(v, subject.design, subject.materials, g)
+    if turns:
+        out.put("turn_length", turns)
+    else:
+        out.skip("turn_length", "no layer is wound")
     angles, spare = geometry_module.manufacture_margins(v, subject.design, subject.materials)
     for name, values, limit in (
         ("winding_margin", angles, "smallest angle"),

@@ -21,6 +21,7 @@ from ..metrics import METRICS
 from ..metrics.table import CRITERION, OWN, ROWS, WALL_FED
 from ..models import contact_profile, gland, laminate, rough_surface, seals
 from ..models.strength import CRITERIA
+from ..models.winding_path import SLIPPAGE
 from . import linkage as joint, motion, proportions, springs, state
 from .barrel import LAMINATES, kind
 from .film_tables import FilmTable
@@ -285,6 +286,7 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
         for metric, sentence in end.joint.warnings(end.loaded, METRICS):
             yield metric, end.end_joint.placed(sentence)
     yield from _rod_warnings(subject, run)
+    yield from _winding_warnings(run)
     yield from _bond_warnings(run)
     for part, assumption in (
         ("head", "material and length of the piston"),
@@ -370,6 +372,25 @@ def _wall_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str
                 "reverse_yield_factor",
                 "autofrettage makes the liner yield axially too: the computed axial residual "
                 "strain is up to a third too low; computed hoop residual stresses are accurate",
+            )
+
+
+LONG_TURN = 0.2
+"""A warning names a winding whose turn takes more than this share of its part. Our choice."""
+
+
+def _winding_warnings(run: ModelRun) -> Iterable[tuple[str, str]]:
+    """Warn of a helical winding that needs much length to turn at its ends."""
+    g, text = run.geometry, METRICS["turn_length"].text
+    for place, values in run.computed.metrics.get("turn_length", {}).items():
+        length = float(np.max(np.real(values)))
+        part = float(np.max(np.real(g.wall_length if place.startswith("barrel") else g.rod_length)))
+        if length > LONG_TURN * part:
+            yield (
+                "turn_length",
+                f"{place}: on a plain mandrel, the winding needs {text(length)} beyond each end to "
+                f"turn (friction {SLIPPAGE:g}), and the part is {text(part)} long; cut it off, or "
+                "turn it over pins or domes",
             )
 
 

@@ -136,8 +136,8 @@ def _notes(end: End) -> Iterator[str]:
         f"{1e2 * sizes['groove_depth']:.2g} mm."
     )
     yield (
-        f"Split ring of rectangular section, edges broken by at most {1e3 * EDGE_BREAK:g} mm. Chamfer "
-        "the groove's inner edge, which the seals of plug and piston pass at assembly."
+        f"Split ring of rectangular section, edges broken by at most {1e3 * EDGE_BREAK:g} mm. "
+        "Chamfer the groove's inner edge, which the seals of plug and piston pass at assembly."
     )
 
 

@@ -123,7 +123,7 @@ def engaged_length(*, length: Array, pitch: Array) -> Array:
 def male_strip_area(*, diameter: Array, pitch: Array, engagement: Array) -> Array:
     """Shear area of the male thread, which strips off at the crests of the female thread.
 
-    A = pi D_1 (L_e/P) [P/2 + (d_2 - D_1)/sqrt(3)] = 0.75 pi D_1 L_e, with the pitch diameter d_2
+    A = pi D_1 (L_e/P) [P/2 + (d_2 - D_1)/3**0.5] = 0.75 pi D_1 L_e, with the pitch diameter d_2
     and the minor diameter D_1 of the female thread.
 
     Parameters
@@ -151,7 +151,7 @@ def male_strip_area(*, diameter: Array, pitch: Array, engagement: Array) -> Arra
     422.715 mm^2
     """
     minor = minor_diameter(diameter=diameter, pitch=pitch)
-    width = pitch / 2 + (pitch_diameter(diameter=diameter, pitch=pitch) - minor) / sqrt(3)
+    width = pitch / 2 + (pitch_diameter(diameter=diameter, pitch=pitch) - minor) / 3**0.5
     return pi * minor * (engagement / pitch) * width
 
 
@@ -161,7 +161,7 @@ def female_strip_area(
 ) -> Array:
     """Shear area of the female thread, which strips off at the crests of the male thread.
 
-    A = pi d_c (L_e/P) [P/2 + (d_c - D_2)/sqrt(3)], with the pitch diameter D_2; with full crests
+    A = pi d_c (L_e/P) [P/2 + (d_c - D_2)/3**0.5], with the pitch diameter D_2; with full crests
     (d_c = d), A = 0.875 pi d L_e.
 
     Parameters
@@ -191,7 +191,7 @@ def female_strip_area(
     >>> print(f"{area * 1e6:.3f} mm^2")
     514.593 mm^2
     """
-    width = pitch / 2 + (crest_diameter - pitch_diameter(diameter=diameter, pitch=pitch)) / sqrt(3)
+    width = pitch / 2 + (crest_diameter - pitch_diameter(diameter=diameter, pitch=pitch)) / 3**0.5
     return pi * crest_diameter * (engagement / pitch) * width
 
 
