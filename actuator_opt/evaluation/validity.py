@@ -387,7 +387,7 @@ def _winding_warnings(run: ModelRun) -> Iterable[tuple[str, str]]:
         part = float(np.max(np.real(g.wall_length if place.startswith("barrel") else g.rod_length)))
         if length > LONG_TURN * part:
             yield (
-                "turn_length",
+                "",
                 f"{place}: on a plain mandrel, the winding needs {text(length)} beyond each end to "
                 f"turn (friction {SLIPPAGE:g}), and the part is {text(part)} long; cut it off, or "
                 "turn it over pins or domes",
