@@ -354,6 +354,8 @@ def build(
 ) -> ActuatorProblem:
     """Build the optimisation problem of a design.
 
+    Of a design that lists types of joint under `choices`, it is that of the stated type.
+
     Parameters
     ----------
     subject : the prepared design
@@ -365,6 +367,8 @@ def build(
     InputError
         the design has no variables, or a variable that no model reads
     """
+    if subject.design.choices:
+        subject = replace(subject, design=of_one_joint(subject.design))
     design = subject.design
     if not design.variables:
         raise InputError(
