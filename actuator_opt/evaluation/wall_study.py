@@ -30,6 +30,7 @@ from ..models.strength import CRITERIA
 from ..models.strength_modes import Stress, load_multiplier
 from . import plies
 from .barrel import LAMINATES, Wall, kind
+from .barrel.wall import RUPTURE
 from .geometry import Geometry
 from .kernel import ModelRun, PreparedDesign
 from .limits import MaterialValues
@@ -525,7 +526,9 @@ def _ladder(
     if burst is not None and any(not layer.isotropic for layer in layers):
         areas = wall.path.per_pressure.items()
         load = next(single(area) for name, area in areas if path.endswith(name))
-        climate = next(i for i, state in enumerate(climates) if path.startswith(state.name))
+        torn = path.startswith(RUPTURE)
+        at = path.removeprefix(f"{RUPTURE}, ")
+        climate = next(i for i, state in enumerate(climates) if at.startswith(state.name))
         stack = [layer.as_wall(climate) for layer in layers]
         ladder = (
             tube_burst.burst_of_tube(
@@ -542,7 +545,14 @@ def _ladder(
                 axial_force_per_pressure=load,
             )
         )
-        steps = tuple(Step(step.layer, step.mode, step.pressure) for step in ladder.steps())
+        steps = tuple(
+            Step(step.layer, step.mode, step.pressure)
+            for step in ladder.steps()
+            if not torn or step.pressure < burst
+        )
+        if torn:
+            metal = next(i for i, layer in enumerate(layers) if layer.isotropic)
+            steps = (*steps, Step(metal, RUPTURE, burst))
     supply = float(v["supply.pressure"])
     return Ladder(
         working=supply,

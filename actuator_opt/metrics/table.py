@@ -304,6 +304,7 @@ ROWS = table((
                           "4:1 industrial practice (2.5:1 aerospace option)"),
               by_wall={"layered": "tube_burst.burst_of_tube",
                        "thin_laminate": "burst_ladder.burst_by_ply_discount"},
+              at={"axial rupture*": "tube_burst.axial_rupture_pressure"},
               short="burst / working pressure"),
     MetricRow("first_ply_factor", "S_fpf", "ratio", "",
               "first-ply pressure divided by working pressure",

@@ -338,3 +338,51 @@ def burst_of_tube(
         metals=sum(layer.strength is None for layer in layers),
     )
     return climb(xp, mechanics, layers, shape)
+
+
+def axial_rupture_pressure(
+    *,
+    areas: Sequence[Array],
+    strengths: Sequence[Array],
+    angles: Sequence[Array],
+    axial_force_per_pressure: Array,
+) -> Array:
+    """Pressure at which the axial force exceeds what metals and fibres can carry together.
+
+    p = sum(A S cos^2 a)/(N/p). A metal has a = 0; of a ply only the fibres count (netting).
+
+    Parameters
+    ----------
+    areas : cross-section area of each layer, A [m^2]
+    strengths : ultimate strength of a metal, or fibre strength of a ply, S [Pa]
+    angles : winding angles from the tube axis, a [rad]
+    axial_force_per_pressure : N/p [m^2]
+
+    Returns
+    -------
+    pressure [Pa]
+
+    Notes
+    -----
+    Valid: ductile metals; every layer at its strength at once, so that it is an upper bound.
+
+    `burst_of_tube` ends when a fibre fails. A wall whose fibres run around it only, on a yielded
+    liner, would stretch without limit before; there, this pressure governs.
+
+    References
+    ----------
+    [derived] axial equilibrium at rupture
+
+    Examples
+    --------
+    >>> p = axial_rupture_pressure(areas=[116e-6, 229e-6], strengths=[480e6, 2000e6],
+    ...                            angles=[0.0, 1.5358897417550099],
+    ...                            axial_force_per_pressure=363e-6)
+    >>> print(f"{p / 1e6:.2f}")
+    154.93
+    """
+    force = 0.0
+    for area, strength, angle in zip(areas, strengths, angles, strict=True):
+        cosine = namespace(angle).cos(angle)
+        force = force + area * strength * (cosine * cosine)
+    return force / axial_force_per_pressure

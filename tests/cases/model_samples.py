@@ -382,6 +382,10 @@ SAMPLES = {
         "edge": end_bending.Edge(5e-6, 80.0, 4e4),
     },
     "winding_path.turn_length": {"radius": 14e-3, "angle": 0.4},
+    "tube_burst.axial_rupture_pressure": {
+        "areas": [1e-4, 2e-4], "strengths": [5e8, 2e9], "angles": [0.0, 1.2],
+        "axial_force_per_pressure": 4e-4,
+    },
     "column.euler_load": {"bending_stiffness": 680.0, "effective_length": 0.6},
     "column.cowper_tube": {"poissons_ratio": 0.28, "radius_ratio": 0.75},
     "column.engesser_load": {"critical_load": 1e5, "shear_stiffness": 9e5},

@@ -20,7 +20,7 @@ import numpy as np
 from ...base.dataclass import dataclass
 from ...base.numeric import Array, array_of, maximum, real, where
 from ...design.model import Design
-from ...models import burst_ladder, column, liner, rod, strength, tube_burst
+from ...models import burst_ladder, column, liner, mass, rod, strength, tube_burst
 from ...models.autofrettage import Autofrettage, autofrettage
 from ...models.strength_modes import Stress, load_multiplier
 from .. import plies
@@ -31,7 +31,9 @@ from ..state import LoadState
 from ..values import Values
 from .wall import (
     FORCE,
+    NONE,
     PRESSURE,
+    RUPTURE,
     WARMTH,
     Cycle,
     LoadPath,
@@ -169,6 +171,7 @@ def compute(
     _cooling(layers, residual.from_cure(), wall, exact=exact)
     _strengths(design, layers, residual, v["supply.pressure"], wall)
     _ladder(layers, states, g, path, wall, exact=exact)
+    _axial_rupture(stock, layers, states, g, path, wall)
     return wall
 
 
@@ -413,3 +416,37 @@ def _ladder(
     if any(layer.isotropic for layer in layers):
         for place, pressure in _rows(states, paths, of_all(ladder.first_ply_pressure)):
             wall.first_ply_pressure[f"first ply with yielding liner, {place}"] = pressure
+
+
+def _axial_rupture(
+    stock: MaterialValues,
+    layers: Sequence[Layer],
+    states: Sequence[Climate],
+    g: Geometry,
+    path: LoadPath,
+    wall: Wall,
+) -> None:
+    """Limit the burst pressures of a wall with metal layers by its axial strength."""
+    metals = any(layer.isotropic for layer in layers)
+    if not wall.burst_pressure or not metals or path.clamp is not None:
+        return
+    areas, radius = [], g.inner_radius
+    for layer in layers:
+        areas.append(mass.layer_area(inner_radius=radius, thickness=layer.thickness))
+        radius = radius + layer.thickness
+    for k, state in enumerate(states):
+        strengths = [
+            stock.allowable(layer.name, "ultimate_strength", "yield_strength", cold=state.cold)
+            if layer.isotropic
+            else layer.strengths[k].tension_1
+            for layer in layers
+        ]
+        for place, axial in path.per_pressure.items():
+            if place != NONE:
+                name = ", ".join(part for part in (state.name, place) if part)
+                wall.burst_pressure[f"{RUPTURE}, {name}"] = tube_burst.axial_rupture_pressure(
+                    areas=areas,
+                    strengths=strengths,
+                    angles=[0.0 if layer.isotropic else layer.angle for layer in layers],
+                    axial_force_per_pressure=axial,
+                )

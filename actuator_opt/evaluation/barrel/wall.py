@@ -35,6 +35,8 @@ from ..values import Values
 NONE = "no axial load"
 STOP = "piston at the end stop"
 LARGEST = "largest axial load"
+RUPTURE = "axial rupture"
+"""Start of the locations where the axial strength of the wall limits its burst pressure."""
 
 
 @dataclass(frozen=True, slots=True)
