@@ -12,6 +12,7 @@ from scipy.linalg import solve_banded
 
 import actuator_opt as ao
 from actuator_opt.base.errors import InputError
+from actuator_opt.evaluation import compute
 from actuator_opt.models import liner_transfer, retaining_ring
 
 DESIGNS = Path(__file__).parents[2] / "designs"
@@ -240,3 +241,57 @@ def test_the_composite_knee_beats_steel(changes, saving):
         paths = {variable.path for variable in chosen.variables}
         assert {"retention.groove_depth", "barrel.layup[2].angle"} <= paths
         assert "retention.wall" not in paths
+
+
+def test_the_rows_of_the_knee_by_hand():
+    """F = 21 MPa on a bore of 21.5 mm; each row from the sizes in the file, in N and mm."""
+    subject = ao.read(DESIGNS / "knee.yaml").subject()
+    run = compute(subject, subject.values())
+    rows = {
+        f"{metric}: {place}": float(np.ravel(value)[0])
+        for metric in ("retention_factor", "retention_burst_factor", "yield_factor")
+        for place, value in run.computed.metrics[metric].items()
+    }
+    stock = run.joints[0].loaded.materials
+    wall, torn = (
+        float(stock.allowable("al_7075_t6", key)) / 1e6
+        for key in ("yield_strength", "ultimate_strength")
+    )
+    ring, broken = (
+        float(stock.allowable("steel_bolt_12_9", key)) / 1e6
+        for key in ("yield_strength", "ultimate_strength")
+    )
+    bore, h, s, n, b, t = 21.5, 0.4, 1.3, 5.8, 4.2, 1.6
+    force = 21 * pi / 4 * bore**2
+    groove = bore + 2 * h
+    assert rows["retention_factor: groove flank"] == near(
+        min(wall, ring) * pi / 4 * (groove**2 - bore**2) / force, 1e-9
+    )
+    shear = force / (pi * groove * n)
+    assert rows["retention_factor: lip in shear"] == near(wall / 3**0.5 / shear, 1e-9)
+    assert rows["retention_burst_factor: lip in shear"] == near(torn / 3**0.5 / shear, 1e-9)
+    centroid = (groove**3 - bore**3) / (3 * (groove**2 - bore**2))  # of the flank, as a radius
+    lip = 6 * force * (groove / 2 - centroid) / (pi * groove * n**2)
+    assert rows["retention_factor: lip in bending"] == near(wall / lip, 1e-9)
+    assert rows["retention_burst_factor: lip in bending"] == near(1.5 * torn / lip, 1e-9)
+    cut = force / (pi * bore * s)
+    assert rows["retention_factor: ring in shear"] == near(ring / 3**0.5 / cut, 1e-9)
+    outside = bore / 2 + h
+    inside, lever = outside - b, h / 2 + 0.2  # edges broken by 0.2 mm
+    dished = 3 * force * lever / (pi * s**2 * inside * log(outside / inside))
+    assert rows["retention_factor: ring in dishing"] == near(ring / dished, 1e-9)
+    plastic = force * lever / (2 * pi) / (s**2 / 4 * b)
+    assert rows["retention_burst_factor: ring in dishing"] == near(broken / plastic, 1e-9)
+    outer, left, nu = bore / 2 + t, t - h, 0.33
+    radius = outer - left / 2
+    beta = (3 * (1 - nu**2)) ** 0.25 / (radius * left) ** 0.5
+    bent = beta * left**3 / (12 * (1 - nu**2))
+    turned = n**3 * log(outer / (bore / 2)) / (12 * (bore / 2 + t / 2))
+    moment = force * t / 2 / (2 * pi * radius) * bent / (bent + turned)
+    axial = force / (pi * (outer**2 - outside**2))
+    bending = 6 * moment / left**2
+    assert rows["yield_factor: barrel under the groove"] == near(wall / (axial + bending), 1e-9)
+    small, large = (2 / 3 * bending / torn, axial / torn)
+    collapse = 2 / (small + (small**2 + 4 * large**2) ** 0.5)
+    assert rows["retention_burst_factor: barrel under the groove"] == near(collapse, 1e-9)
+    assert axial + bending > 100  # MPa: none of these is a row of nothing
