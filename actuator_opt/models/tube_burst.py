@@ -17,7 +17,7 @@ from .solid_ply import Solid, solid_stiffness
 from .strength_modes import PlyStrength
 from .tube_elements import LayeredTube, TubeLayer, layered_tube
 
-__all__ = ["PlyStrength", "WallLayer", "burst_of_tube"]
+__all__ = ["PlyStrength", "WallLayer", "axial_rupture_pressure", "burst_of_tube"]
 
 TRANSVERSE_RATIO = 0.4
 """Poisson's ratio nu23 of a ply if not stated: usual for carbon epoxy, default of the library."""
@@ -340,6 +340,7 @@ def burst_of_tube(
     return climb(xp, mechanics, layers, shape)
 
 
+@geometry
 def axial_rupture_pressure(
     *,
     areas: Sequence[Array],
