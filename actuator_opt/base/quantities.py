@@ -298,3 +298,8 @@ RESULTS = _table("""
  dynamic_phase        | phi    | angle       | deg    | -180 | 180 | phase by which the force leads the motion
 """)
 """Results of a simulation, which the requirements of a scenario can name."""
+
+
+def length_text(value: float) -> str:
+    """A length for display."""
+    return INPUTS["length"].text(value)

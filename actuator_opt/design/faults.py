@@ -14,13 +14,14 @@ from typing import Any, NamedTuple, get_args
 
 from ..base import errors, quantities
 from ..base.errors import Fault, article
+from ..base.quantities import length_text
 from ..joints.joint import Joint
 from ..models import linkage as crank
 from . import choices, material, seal_faults, wall_faults
 from .kinds import MaterialName
 from .material import ROLES
 from .model import PLAIN_CAP, closed_length
-from .structure import FileView, Loc, MaterialLookup, child, leaves, length_text
+from .structure import FileView, Loc, MaterialLookup, child, leaves
 
 _ROUND = math.radians(0.01)
 """Suggested joint angles are rounded to this step (rad), into the allowed range."""

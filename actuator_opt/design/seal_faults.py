@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 from ..base.errors import Fault, InputError, article
-from ..base.quantities import INPUTS
+from ..base.quantities import INPUTS, length_text
 from ..friction.kinds import LAWS as FRICTION_LAWS
 from ..models.elastomer import modulus_gent
 from ..models.seals import LAWS
@@ -16,7 +16,7 @@ from ..seals.kinds import SIZES, TYPES
 from ..seals.seal_type import SealType, SizeFault
 from ..seals.u_cup import lip_faults
 from .seals import BACK_UPS
-from .structure import FileView, Loc, MaterialLookup, Properties, child_at, length_text
+from .structure import FileView, Loc, MaterialLookup, Properties, child_at
 
 
 def elements(view: FileView) -> Iterator[Loc]:

@@ -11,7 +11,6 @@ from functools import cache
 from types import UnionType
 from typing import Any, Literal, Protocol, TypeAlias, Union, get_args, get_origin, runtime_checkable
 
-from ..base import quantities
 from ..base.dataclass import dataclass
 from ..base.errors import Fault
 from ..base.quantities import Quantity
@@ -262,8 +261,3 @@ def without_effect(
     for key in keys:
         if view.has(*loc, key):
             yield Fault((*loc, key), f"without effect {where}", remedy, at_key=True)
-
-
-def length_text(value: float) -> str:
-    """A length for display."""
-    return quantities.INPUTS["length"].text(value)

@@ -12,6 +12,7 @@ from typing import Any
 
 from ..base import quantities
 from ..base.errors import Fault, InputError
+from ..base.quantities import length_text
 from ..joints.joint import Joint
 from ..joints.kinds import JOINTS
 from .material import PLY_CONSTANTS, PLY_REQUIRED, compliance_determinant, ply_constants
@@ -26,7 +27,6 @@ from .structure import (
     child_at,
     entries,
     how_to_add,
-    length_text,
     lists_of,
     number_of,
 )

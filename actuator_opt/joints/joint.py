@@ -9,9 +9,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 from typing import Any, Literal, NamedTuple, Protocol, TypeAlias
 
+import numpy as np
+
 from ..base.dataclass import dataclass
 from ..base.errors import Fault
-from ..base.numeric import Array
+from ..base.numeric import Array, real, where
 from ..base.quantities import Quantity
 from ..models.end_bending import ShellLayer
 
@@ -19,6 +21,10 @@ LEAST_METAL = 1e-3
 """Smallest permitted dimension of a turned part [m]. It applies to walls beside or under a groove
 or thread, the wall of a rod, the bore of a laminated rod, and the gap between rod and bore. Our
 choice for this size range."""
+
+HARD = 830e6
+"""Lowest tensile strength of a metal that counts as hard [Pa]. Our choice, to separate the grades
+of [Shigley2011] table 8-16."""
 
 NOT_BONDED = "the caps are not bonded"
 
@@ -420,6 +426,48 @@ def judged_later(stated: StatedValues, varied: Iterable[str]) -> bool:
     paths = tuple(varied)
     free = any(stated.has("variables", path) for path in paths)
     return free and any(chosen(stated, path) for path in (*paths, "retention.type"))
+
+
+def metal_strengths(
+    materials: MaterialProperties, *names: str
+) -> tuple[tuple[Array, Array], ...] | str:
+    """Yield and ultimate strength of metals; or the first reason why one is unknown."""
+    pairs = []
+    for name in names:
+        strength, ultimate = (
+            materials.allowable(name, key) for key in ("yield_strength", "ultimate_strength")
+        )
+        if materials.kind(name) != "metal":
+            return f"{name} is not a metal"
+        if strength is None or ultimate is None:
+            return f"{name} has no yield or ultimate strength"
+        pairs.append((strength, ultimate))
+    return tuple(pairs)
+
+
+def notch_factor(materials: MaterialProperties, name: str, soft: float, hard: float) -> Array:
+    """Fatigue notch factor of a metal: `soft` below the tensile strength `HARD`, else `hard`."""
+    return where(real(materials.get(name, "ultimate_strength", default=0.0)) >= HARD, hard, soft)
+
+
+def too_thin(
+    lands: Mapping[str, Array],
+    quantities: Mapping[str, Quantity],
+    consequence: str = "",
+) -> Iterator[tuple[str, str]]:
+    """Warn of lands that are smaller than `LEAST_METAL`; an optimised design never has them.
+
+    `lands` are dimensions [m], by metric. `consequence` ends the sentence.
+    """
+    for name, land in lands.items():
+        least = float(np.min(np.real(land)))
+        if least < LEAST_METAL * (1 - ROUNDING):
+            label = quantities[name]
+            yield (
+                "retention_factor",
+                f"{label.label}: {label.text(least)}, but {label.text(LEAST_METAL)} is needed"
+                f"{consequence}",
+            )
 
 
 def models_at(joints: Iterable[Joint], metric: str) -> dict[str, str]:

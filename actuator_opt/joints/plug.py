@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from ..base.errors import Fault
-from ..base.quantities import INPUTS
+from ..base.quantities import length_text
 from .joint import LEAST_METAL, ROUNDING, KnownMaterials, StatedValues, judged_later
 
 NEEDED = ("yield_strength", "ultimate_strength", "poissons_ratio")
@@ -54,11 +54,10 @@ def innermost_faults(
     if thickness is None or depth is None or judged_later(view, varied):
         return
     if thickness - depth < LEAST_METAL * (1 - ROUNDING):
-        text = INPUTS["length"].text
-        rest = text(thickness - depth) if thickness > depth else "nothing"
+        rest = length_text(thickness - depth) if thickness > depth else "nothing"
         yield Fault(
             (*loc, "thickness"),
-            f"{text(thickness)} of {name}: {cut} leaves {rest} of it, but {text(LEAST_METAL)} is "
-            "needed",
-            f"write a thickness of at least {text(depth + LEAST_METAL)}, {otherwise}",
+            f"{length_text(thickness)} of {name}: {cut} leaves {rest} of it, but "
+            f"{length_text(LEAST_METAL)} is needed",
+            f"write a thickness of at least {length_text(depth + LEAST_METAL)}, {otherwise}",
         )

@@ -10,16 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import sqrt
 
-import numpy as np
-
 from ..base.errors import Fault
-from ..base.numeric import Array, minimum, real, where
-from ..base.quantities import INPUTS, Quantity
+from ..base.numeric import Array, minimum
+from ..base.quantities import Quantity, length_text
 from ..models import mass, retaining_ring, thread
 from ..models.rod import section_area
 from .joint import (
-    LEAST_METAL,
-    NOT_BONDED,
     ON_METAL,
     ROUNDING,
     DrawnPart,
@@ -36,10 +32,13 @@ from .joint import (
     StatedValues,
     Strength,
     WallPressures,
+    metal_strengths,
+    notch_factor,
+    too_thin,
 )
 from .plug import innermost_faults
-from .thread import CUT, CUT_HARD, HARD
-from .winding import WINDING_EDGE, winding_edge
+from .thread import CUT, CUT_HARD
+from .winding import with_winding
 
 LAND = "geometry_bore_thread"
 """Metric of the metal left under the thread in the bore."""
@@ -49,10 +48,6 @@ MINOR = 1.25 * thread.HEIGHT
 
 
 # --- faults of the file ---------------------------------------------------------------------
-
-
-def _text(length: float) -> str:
-    return INPUTS["length"].text(length)
 
 
 def _stated(view: StatedValues) -> tuple[float, float, float] | None:
@@ -74,15 +69,16 @@ def _faults(view: StatedValues) -> Iterator[Fault]:
     if length is not None and length < least:
         yield Fault(
             ("retention", "length"),
-            f"{_text(length)}: less than one turn of the thread engages at pitch {_text(pitch)}",
-            f"write at least {_text(least)}",
+            f"{length_text(length)}: less than one turn of the thread engages at pitch "
+            f"{length_text(pitch)}",
+            f"write at least {length_text(least)}",
         )
     smallest = bore + MINOR * pitch
     if diameter < smallest * (1 - ROUNDING) and not view.has("variables", "cylinder.bore"):
         yield Fault(
             ("retention", "thread", "diameter"),
-            f"{_text(diameter)}: the piston, of {_text(bore)}, cannot pass this thread",
-            f"write at least {_text(smallest)}, or remove the line to use this diameter",
+            f"{length_text(diameter)}: the piston, of {length_text(bore)}, cannot pass this thread",
+            f"write at least {length_text(smallest)}, or remove the line to use this diameter",
         )
 
 
@@ -170,17 +166,9 @@ def _notes(end: End) -> Iterator[str]:
 # --- strength -------------------------------------------------------------------------------
 
 
-def _strengths(loaded: Loaded) -> tuple[tuple[Array, Array], tuple[Array, Array]] | str:
+def _strengths(loaded: Loaded) -> tuple[tuple[Array, Array], ...] | str:
     """Yield and ultimate strength of barrel and plug; or the reason why one is unknown."""
-    pairs = []
-    for name in (loaded.end.layers[0].material, loaded.end.cap):
-        pair = tuple(
-            loaded.materials.allowable(name, key) for key in ("yield_strength", "ultimate_strength")
-        )
-        if loaded.materials.kind(name) != "metal" or any(value is None for value in pair):
-            return f"{name} is not a metal with yield and ultimate strength"
-        pairs.append((pair[0], pair[1]))
-    return pairs[0], pairs[1]
+    return metal_strengths(loaded.materials, loaded.end.layers[0].material, loaded.end.cap)
 
 
 def _areas(end: End) -> tuple[Array, Array, Array]:
@@ -253,12 +241,7 @@ def _strength(loaded: Loaded) -> Strength | str:
             axial=axial, bending=bending, strength=wall_ultimate
         ),
     }
-    winding = winding_edge(loaded)
-    if winding is None:
-        return Strength(working, burst, NOT_BONDED)
-    if isinstance(winding, str):
-        return winding
-    return Strength(working | {WINDING_EDGE: winding.factor()}, burst, winding.thermal())
+    return with_winding(loaded, working, burst)
 
 
 def _yields(loaded: Loaded) -> Mapping[str, Array]:
@@ -282,8 +265,8 @@ def _fatigue(loaded: Loaded) -> Fatigue:
         ("thread root in the bore", end.layers[0].material, sum(_under_thread(loaded))),
         ("thread root of the plug", end.cap, loaded.force / _plug_section(end)),
     ):
-        hard = real(loaded.materials.get(name, "ultimate_strength", default=0.0)) >= HARD
-        pulsed.append(Pulsed(place, name, where(hard, CUT_HARD, CUT) * stress, stress / 2))
+        notch = notch_factor(loaded.materials, name, CUT, CUT_HARD)
+        pulsed.append(Pulsed(place, name, notch * stress, stress / 2))
     return Fatigue(tuple(pulsed))
 
 
@@ -293,14 +276,8 @@ def _own(loaded: Loaded) -> Mapping[str, Array]:
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
-    """Warn of too little metal; an optimised design never has it."""
-    least = float(np.min(np.real(_own(loaded)[LAND])))
-    if least < LEAST_METAL * (1 - ROUNDING):
-        label = quantities[LAND]
-        yield (
-            "retention_factor",
-            f"{label.label}: {label.text(least)}, but {label.text(LEAST_METAL)} is needed",
-        )
+    """Warn of too little metal under the thread."""
+    yield from too_thin(_own(loaded), quantities)
 
 
 JOINT = Joint(

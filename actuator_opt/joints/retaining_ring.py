@@ -11,17 +11,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import sqrt
 
-import numpy as np
-
 from ..base.errors import Fault
-from ..base.numeric import Array, minimum, real, where
-from ..base.quantities import INPUTS, Quantity
+from ..base.numeric import Array, minimum
+from ..base.quantities import Quantity, length_text
 from ..models import mass, retaining_ring as model
 from .joint import (
-    LEAST_METAL,
-    NOT_BONDED,
     ON_METAL,
-    ROUNDING,
     DrawnPart,
     End,
     EndDimensions,
@@ -37,9 +32,12 @@ from .joint import (
     Strength,
     Usual,
     WallPressures,
+    metal_strengths,
+    notch_factor,
+    too_thin,
 )
 from .plug import innermost_faults
-from .winding import WINDING_EDGE, winding_edge
+from .winding import WINDING_EDGE, with_winding
 
 EDGE_BREAK = 0.2e-3
 """Largest edge break of the plug and of the groove [m], which moves the force on the ring inwards.
@@ -49,18 +47,11 @@ NOTCH, NOTCH_HARD = 3.0, 4.0
 """Fatigue notch factors of the groove's root, for metals below `HARD` and from `HARD` on. Our
 choice, for a root radius of at least a tenth of the depth; no published value for such grooves."""
 
-HARD = 830e6
-"""Lowest tensile strength of a metal that counts as hard [Pa]; as for threads."""
-
 LANDS = ("geometry_ring_groove", "geometry_ring_opening")
 """Metrics of the metal left under the groove, and of the clearance between ring and rod."""
 
 
 # --- faults of the file ---------------------------------------------------------------------
-
-
-def _text(length: float) -> str:
-    return INPUTS["length"].text(length)
 
 
 def _faults(view: StatedValues) -> Iterator[Fault]:
@@ -69,8 +60,9 @@ def _faults(view: StatedValues) -> Iterator[Fault]:
     if depth is not None and width is not None and width <= depth:
         yield Fault(
             ("retention", "ring_width"),
-            f"{_text(width)}: the ring vanishes in its groove, which is {_text(depth)} deep",
-            f"write more than {_text(depth)}; twice the depth is usual",
+            f"{length_text(width)}: the ring vanishes in its groove, which is "
+            f"{length_text(depth)} deep",
+            f"write more than {length_text(depth)}; twice the depth is usual",
         )
 
 
@@ -179,20 +171,11 @@ def _under_groove(loaded: Loaded) -> tuple[Array, Array]:
     return stresses
 
 
-def _strengths(loaded: Loaded) -> tuple[tuple[Array, Array], tuple[Array, Array]] | str:
+def _strengths(loaded: Loaded) -> tuple[tuple[Array, Array], ...] | str:
     """Yield and ultimate strength of wall and ring; or the reason why one of them is unknown."""
-    end, pairs = loaded.end, []
-    if end.material is None:
+    if loaded.end.material is None:
         return "a retaining ring needs a metal: add retention.material"
-    for name in (end.layers[0].material, end.material):
-        pair = tuple(
-            loaded.materials.allowable(name, key) for key in ("yield_strength", "ultimate_strength")
-        )
-        if loaded.materials.kind(name) != "metal" or any(value is None for value in pair):
-            return f"{name} is not a metal with yield and ultimate strength"
-        pairs.append(pair)
-    wall, ring = pairs
-    return (wall[0], wall[1]), (ring[0], ring[1])
+    return metal_strengths(loaded.materials, loaded.end.layers[0].material, loaded.end.material)
 
 
 def _strength(loaded: Loaded) -> Strength | str:
@@ -228,12 +211,7 @@ def _strength(loaded: Loaded) -> Strength | str:
             axial=axial, bending=bending, strength=wall_ultimate
         ),
     }
-    winding = winding_edge(loaded)
-    if winding is None:
-        return Strength(working, burst, NOT_BONDED)
-    if isinstance(winding, str):
-        return winding
-    return Strength(working | {WINDING_EDGE: winding.factor()}, burst, winding.thermal())
+    return with_winding(loaded, working, burst)
 
 
 def _yields(loaded: Loaded) -> Mapping[str, Array]:
@@ -252,12 +230,12 @@ def _fatigue(loaded: Loaded) -> Fatigue:
     if isinstance(strengths, str):
         return Fatigue()
     name, stress = end.layers[0].material, sum(_under_groove(loaded))
-    hard = real(loaded.materials.get(name, "ultimate_strength", default=0.0)) >= HARD
+    notch = notch_factor(loaded.materials, name, NOTCH, NOTCH_HARD)
     assert end.material is not None
     dished = model.ring_dishing(**_ring(end, loaded.force))
     return Fatigue(
         (
-            Pulsed("groove root", name, where(hard, NOTCH_HARD, NOTCH) * stress, stress / 2),
+            Pulsed("groove root", name, notch * stress, stress / 2),
             Pulsed("retaining ring", end.material, dished, dished / 2),
         )
     )
@@ -274,16 +252,8 @@ def _lands(loaded: Loaded) -> Mapping[str, Array]:
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
-    """Warn of too little metal; an optimised design never has it."""
-    lands = _lands(loaded)
-    for name in LANDS:
-        least = float(np.min(np.real(lands[name])))
-        if least < LEAST_METAL * (1 - ROUNDING):
-            label = quantities[name]
-            yield (
-                "retention_factor",
-                f"{label.label}: {label.text(least)}, but {label.text(LEAST_METAL)} is needed",
-            )
+    """Warn of too little metal under the groove or clearance of the rod."""
+    yield from too_thin(_lands(loaded), quantities)
 
 
 _ABSENT = "no retaining ring"

@@ -12,12 +12,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import pi, sqrt
 
-import numpy as np
-
 from ..base.dataclass import dataclass
 from ..base.errors import Fault
-from ..base.numeric import Array, minimum, real, where
-from ..base.quantities import INPUTS, Quantity
+from ..base.numeric import Array, minimum
+from ..base.quantities import Quantity, length_text
 from ..models import barrel, mass, thread
 from ..models.rod import section_area
 from ..models.strength import yield_utilisation
@@ -41,6 +39,9 @@ from .joint import (
     Usual,
     WallPressures,
     judged_later,
+    metal_strengths,
+    notch_factor,
+    too_thin,
 )
 
 NEEDED = ("yield_strength", "ultimate_strength")
@@ -52,10 +53,6 @@ LANDS = ("geometry_barrel_thread", "geometry_skirt_thread")
 CREST = "geometry_thread_crest"
 """Names of the three metrics of a thread: metal left under the barrel's thread root and under the
 skirt's, and overlap of the thread flanks."""
-
-HARD = 830e6
-"""Lowest tensile strength of a metal that counts as hard [Pa]. Our choice, to separate the grades
-of [Shigley2011] table 8-16."""
 
 CUT, CUT_HARD = 3.0, 3.8
 """Fatigue notch factors of a cut thread root, for metals below `HARD` and from `HARD` on.
@@ -79,10 +76,6 @@ class _Stated:
     diameter: float
     pitch: float
     wall: float
-
-
-def _text(length: float) -> str:
-    return INPUTS["length"].text(length)
 
 
 def _layer(view: StatedValues) -> tuple[str, str, int]:
@@ -110,8 +103,9 @@ def _faults(view: StatedValues) -> Iterator[Fault]:
     if pitch is not None and length is not None and length < (1 + thread.RUN_OUT) * pitch:
         yield Fault(
             ("retention", "length"),
-            f"{_text(length)}: less than one turn of the thread engages at pitch {_text(pitch)}",
-            f"write at least {_text((1 + thread.RUN_OUT) * pitch)}",
+            f"{length_text(length)}: less than one turn of the thread engages at pitch "
+            f"{length_text(pitch)}",
+            f"write at least {length_text((1 + thread.RUN_OUT) * pitch)}",
         )
     sizes = _stated(view)
     if sizes is None:
@@ -124,11 +118,11 @@ def _faults(view: StatedValues) -> Iterator[Fault]:
     if overlap < thread.LEAST_OVERLAP * (1 - ROUNDING) and not judged_later(
         view, _size_paths(view)
     ):
-        text = _text(sizes.outside)
+        text = length_text(sizes.outside)
         yield Fault(
             ("retention", "thread", "diameter"),
-            f"{_text(sizes.diameter)}: larger than the outer diameter of the barrel ({text}), into "
-            "which the thread is cut",
+            f"{length_text(sizes.diameter)}: larger than the outer diameter of the barrel "
+            f"({text}), into which the thread is cut",
             f"write at most {text}, or remove the line to use the outer diameter",
         )
 
@@ -192,13 +186,13 @@ def _layer_faults(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
     layer = _layer(view)
     if remaining < LEAST_METAL * (1 - ROUNDING) and not judged_later(view, _size_paths(view)):
         name = view.text(*layer, "material")
-        rest = _text(remaining) if remaining > 0 else "nothing"
+        rest = length_text(remaining) if remaining > 0 else "nothing"
         least = sizes.layer + LEAST_METAL - remaining
         yield Fault(
             (*layer, "thickness"),
-            f"{_text(sizes.layer)} of {name}: the thread leaves {rest} of it, "
-            f"but {_text(LEAST_METAL)} is needed",
-            f"write a thickness of at least {_text(least)} or a finer pitch, {OTHERWISE}",
+            f"{length_text(sizes.layer)} of {name}: the thread leaves {rest} of it, "
+            f"but {length_text(LEAST_METAL)} is needed",
+            f"write a thickness of at least {length_text(least)} or a finer pitch, {OTHERWISE}",
         )
 
 
@@ -207,8 +201,9 @@ def _skirt_wall_faults(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
     if sizes.wall < LEAST_METAL * (1 - ROUNDING) and not judged_later(view, ["retention.wall"]):
         yield Fault(
             ("retention", "wall"),
-            f"{_text(sizes.wall)}: a thread needs {_text(LEAST_METAL)} of metal around it",
-            f"write at least {_text(LEAST_METAL)}",
+            f"{length_text(sizes.wall)}: a thread needs {length_text(LEAST_METAL)} of metal "
+            "around it",
+            f"write at least {length_text(LEAST_METAL)}",
         )
 
 
@@ -319,13 +314,6 @@ def _derived(end: End) -> EndThread:
     )
 
 
-def _strengths(materials: MaterialProperties, name: str) -> tuple[Array, Array]:
-    return (
-        materials.allowable(name, "yield_strength"),
-        materials.allowable(name, "ultimate_strength"),
-    )
-
-
 def _assessed(loaded: Loaded) -> EndThread | str:
     """The thread of an end, or the reason why it has no safety factor; the result is cached."""
     cache = loaded.end.cache
@@ -337,11 +325,9 @@ def _assessed(loaded: Loaded) -> EndThread | str:
 
 def _assessment(loaded: Loaded) -> EndThread | str:
     end_thread, materials = derive(loaded.end), loaded.materials
-    for name in (end_thread.male, end_thread.female):
-        if materials.kind(name) != "metal":
-            return f"{name} is not a metal, but a thread must be cut into metal"
-        if any(strength is None for strength in _strengths(materials, name)):
-            return f"{name} has no yield or ultimate strength"
+    strengths = metal_strengths(materials, end_thread.male, end_thread.female)
+    if isinstance(strengths, str):
+        return strengths
     return end_thread
 
 
@@ -373,11 +359,20 @@ def _lands(loaded: Loaded) -> dict[str, Array]:
     return dict(zip(LANDS, walls, strict=True)) | {CREST: end_thread.overlap}
 
 
+def _strengths(
+    materials: MaterialProperties, end_thread: EndThread
+) -> tuple[tuple[Array, Array], ...]:
+    """Yield and ultimate strength of the metals of both threads, male before female."""
+    strengths = metal_strengths(materials, end_thread.male, end_thread.female)
+    assert not isinstance(strengths, str)
+    return strengths
+
+
 def _working(
     materials: MaterialProperties, end_thread: EndThread, force: Array
 ) -> dict[str, Array]:
     """Elastic limit divided by stress, for shear of both threads and for flank pressure."""
-    male, female = (_strengths(materials, name)[0] for name in (end_thread.male, end_thread.female))
+    (male, _), (female, _) = _strengths(materials, end_thread)
     return {
         "barrel thread": male / sqrt(3) * end_thread.male_area / force,
         "skirt thread": female / sqrt(3) * end_thread.female_area / force,
@@ -387,7 +382,7 @@ def _working(
 
 def _burst(materials: MaterialProperties, end_thread: EndThread, force: Array) -> dict[str, Array]:
     """Breaking load divided by force, for both threads and for the skirt (tension, spreading)."""
-    male, female = (_strengths(materials, name)[1] for name in (end_thread.male, end_thread.female))
+    (_, male), (female_yield, female) = _strengths(materials, end_thread)
     ratio = female * end_thread.female_area / (male * end_thread.male_area)
     of_male, of_female = thread.stripping_reductions(strength_ratio=ratio)
     spread = thread.spread_stress(
@@ -397,7 +392,7 @@ def _burst(materials: MaterialProperties, end_thread: EndThread, force: Array) -
         "barrel thread": of_male * male / sqrt(3) * end_thread.male_area / force,
         "skirt thread": of_female * female / sqrt(3) * end_thread.female_area / force,
         "skirt under the thread": female * end_thread.skirt_section / force,
-        "skirt spread by the thread": _strengths(materials, end_thread.female)[0] / spread,
+        "skirt spread by the thread": female_yield / spread,
     }
 
 
@@ -418,8 +413,7 @@ def _wall(loaded: Loaded) -> WallPressures:
     yields, bursts = {}, {}
     size = {"inner_radius": end_thread.layer_radius, "outer_radius": end_thread.root_diameter / 2}
     inside = end_thread.bore_radius / end_thread.layer_radius
-    strength, ultimate = _strengths(materials, end_thread.male)
-    skirt_strength, skirt_ultimate = _strengths(materials, end_thread.female)
+    (strength, ultimate), (skirt_strength, skirt_ultimate) = _strengths(materials, end_thread)
     support = (
         barrel.burst_pressure_thick(
             inner_radius=end_thread.diameter / 2,
@@ -458,23 +452,16 @@ def _fatigue(loaded: Loaded) -> Fatigue:
         ("skirt thread root", end_thread.female, end_thread.skirt_section),
     ):
         stress = loaded.force / section
-        hard = real(loaded.materials.get(name, "ultimate_strength", default=0.0)) >= HARD
-        pulsed.append(Pulsed(place, name, where(hard, CUT_HARD, CUT) * stress, stress / 2))
+        notch = notch_factor(loaded.materials, name, CUT, CUT_HARD)
+        pulsed.append(Pulsed(place, name, notch * stress, stress / 2))
     return Fatigue((*pulsed, *overlap.beside_pulsed(loaded)))
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
-    """Warn of a thread that leaves too little metal; an optimised design never has one."""
-    lands = _lands(loaded)
-    for name in LANDS:
-        least = float(np.min(np.real(lands[name])))
-        if least < LEAST_METAL * (1 - ROUNDING):
-            label = quantities[name]
-            yield (
-                "retention_factor",
-                f"{label.label}: {label.text(least)}, but {label.text(LEAST_METAL)} is needed: "
-                "such a thread cannot be cut, so its safety factors have no meaning",
-            )
+    """Warn of a thread that leaves too little metal."""
+    lands = {name: land for name, land in _lands(loaded).items() if name in LANDS}
+    consequence = ": such a thread cannot be cut, so its safety factors have no meaning"
+    yield from too_thin(lands, quantities, consequence)
 
 
 _ABSENT = "the caps are not threaded"

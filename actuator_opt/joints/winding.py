@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import pi
 
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, minimum
 from ..models import liner_transfer
 from ..models.strength_modes import load_multiplier
-from .joint import Loaded, MaterialProperties, Thermal
+from .joint import NOT_BONDED, Loaded, MaterialProperties, Strength, Thermal
 
 WINDING_EDGE = "edge of the winding"
 """Location of the shear in rows of strength."""
@@ -107,3 +108,15 @@ def winding_edge(loaded: Loaded) -> WindingEdge | str | None:
             "winding_stiffness": of_winding,
         },
     )
+
+
+def with_winding(
+    loaded: Loaded, working: Mapping[str, Array], burst: Mapping[str, Array]
+) -> Strength | str:
+    """Strength of an end from its factors, and those of the end of a winding if there is one."""
+    winding = winding_edge(loaded)
+    if winding is None:
+        return Strength(working, burst, NOT_BONDED)
+    if isinstance(winding, str):
+        return winding
+    return Strength({**working, WINDING_EDGE: winding.factor()}, burst, winding.thermal())

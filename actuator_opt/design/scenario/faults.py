@@ -9,6 +9,7 @@ from typing import Any
 
 from ...base import quantities
 from ...base.errors import Fault
+from ...base.quantities import length_text
 from ..kinds import Section, position_at
 from ..model import Design
 from ..structure import (
@@ -17,7 +18,6 @@ from ..structure import (
     child_at,
     entries,
     how_to_add,
-    length_text,
     without_effect,
 )
 from .kinds import FRICTIONS, LAWS, SHAPES, SUPPLIES, ControlLaw
