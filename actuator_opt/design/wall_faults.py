@@ -328,7 +328,7 @@ def _both_or_each(view: FileView) -> Iterator[Fault]:
             remedy = "move the line into cap: or head:"
             yield Fault((_BLOCK, name), "without effect beside cap and head", remedy, at_key=True)
     for end in views:
-        if (joint := end.joint) is not None and joint.stiffness is not None:
+        if (joint := end.joint) is not None and joint.clamping is not None:
             message = f"{joint.noun} clamp both ends, so they cannot hold one end alone"
             remedy = f"write type: {joint.name} under retention, without cap and head"
             yield Fault((*end.at, "type"), message, remedy)

@@ -100,7 +100,7 @@ def joints_of(design: Design) -> tuple[EndJoint, ...]:
 
 def clamped(design: Design) -> bool:
     """Whether the joint clamps the barrel between both ends."""
-    return any(end.joint.stiffness is not None for end in joints_of(design))
+    return any(end.joint.clamping is not None for end in joints_of(design))
 
 
 def end_of(

@@ -342,11 +342,11 @@ def _stress_field(
     """Stresses under all loads at all points; autofrettage stress is equal at both temperatures."""
     tube = layered_tube(layers=_sublayers(layers), inner_radius=float(g.inner_radius))
     pulls = [pressure * single(area) for area in wall.path.per_pressure.values()]
-    clamp = single(wall.path.held)
+    clamps = [single(force) for force in wall.path.held_in(len(climates))]
     state = tube_state(
         tube=tube,
         inner_pressure=np.array([pressure] * len(pulls) + [0.0] * len(climates)),
-        axial_force=np.array(pulls + [clamp] * len(climates)),
+        axial_force=np.array(pulls + clamps),
         temperature_change=np.array(
             [0.0] * len(pulls) + [float(state.change) for state in climates]
         ),
@@ -536,7 +536,7 @@ def _ladder(
                 inner_radius=float(g.inner_radius),
                 axial_force_per_pressure=load,
                 temperature_change=float(climates[climate].change),
-                held_force=single(wall.path.held),
+                held_force=single(wall.path.held_in(len(climates))[climate]),
             )
             if exact
             else burst_ladder.burst_by_ply_discount(

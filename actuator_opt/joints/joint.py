@@ -231,14 +231,27 @@ class DrawnPart(NamedTuple):
 class Clamp:
     """Parts that clamp the barrel between both ends, such as tie rods.
 
-    `preload` is the total preload [N], and `largest` the largest total force at supply pressure
-    [N]. `closed` is the preload divided by the clamping force that proof pressure takes away; the
-    joint stays closed if it is above 1.
+    `preload` is the total preload at assembly [N], and `largest` the largest total force at supply
+    pressure and the temperature of assembly [N]. `closed` is the preload divided by the clamping
+    force that proof pressure takes away, by temperature; the joint stays closed if it is above 1.
+    `changes` are the changes of the preload at the lowest and the highest temperature [N]; empty if
+    unknown.
     """
 
     preload: Array
     largest: Array
-    closed: Array
+    closed: Mapping[str, Array]
+    changes: tuple[Array, ...] = ()
+
+
+class Clamping(NamedTuple):
+    """Axial stiffness of the parts that clamp the barrel [N/m], and their free growth [m/K].
+
+    The growth is None if their thermal expansion is unknown.
+    """
+
+    stiffness: Array
+    growth: Array | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -350,8 +363,8 @@ class Joint:
     form: Form
     """Form of the caps: skirts over the outside of the barrel, plugs in its bore, or plates."""
     fit: Callable[[End], EndDimensions]
-    stiffness: Callable[[End, MaterialProperties], Array] | None
-    """Axial stiffness of the parts that clamp the barrel [N/m]; None if none do."""
+    clamping: Callable[[End, MaterialProperties], Clamping] | None
+    """Function that describes the parts that clamp the barrel; None if none do."""
     mass: Callable[[End, MaterialProperties], Mapping[str, Array]]
     """Mass [kg] of the joint at one end, by part: barrel, caps or fastening."""
     outline: Callable[[End, EndDimensions, EndSpan], Iterable[DrawnPart]]
@@ -365,7 +378,7 @@ class Joint:
     wall: Callable[[Loaded], WallPressures]
     """Failure pressures of the barrel wall itself, where the joint weakens it."""
     fatigue: Callable[[Loaded], Fatigue]
-    own: Callable[[Loaded], Mapping[str, Array]]
+    own: Callable[[Loaded], Mapping[str, Array | Mapping[str, Array]]]
     """Values of the metrics that only this joint has; `metrics` lists their names."""
     envelope: Callable[[Loaded, Mapping[str, Array]], Mapping[str, Array]] | None
     """Function that gives upper bounds of `Strength.working` from `Strength.burst`; or None. It is

@@ -7,13 +7,14 @@ from math import pi
 
 import numpy as np
 
-from ..base.numeric import Array
+from ..base.numeric import Array, maximum
 from ..base.quantities import Quantity
 from ..models import endurance, mass, retention
 from .joint import (
     NOT_BONDED,
     ON_METAL,
     Clamp,
+    Clamping,
     DrawnPart,
     End,
     EndDimensions,
@@ -42,12 +43,14 @@ def _length(end: End) -> Array:
     return end.barrel_length + 2 * end.plate
 
 
-def _stiffness(end: End, materials: MaterialProperties) -> Array:
-    """Axial stiffness of all n tie rods of diameter d and length L: n E (pi d^2/4)/L."""
+def _clamping(end: End, materials: MaterialProperties) -> Clamping:
+    """Stiffness n E (pi d^2/4)/L of n tie rods of diameter d and length L; growth alpha L."""
     assert end.material is not None
     modulus = materials.get(end.material, "youngs_modulus")
     diameter = end.sizes["thread.diameter"]
-    return end.sizes["count"] * modulus * pi * diameter * diameter / 4 / _length(end)
+    stiffness = end.sizes["count"] * modulus * pi * diameter * diameter / 4 / _length(end)
+    expansion = materials.get(end.material, "thermal_expansion")
+    return Clamping(stiffness, None if expansion is None else expansion * _length(end))
 
 
 def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
@@ -97,7 +100,11 @@ def _strength(loaded: Loaded) -> Strength | str:
     ultimate = materials.allowable(end.material, "ultimate_strength")
     if strength is None or ultimate is None:
         return "tie rods need a thread and a material with yield and ultimate strength"
-    stress = _stress(end, _clamp(loaded).largest)
+    clamp = _clamp(loaded)
+    largest = clamp.largest
+    for change in clamp.changes:
+        largest = maximum(largest, clamp.largest + change)
+    stress = _stress(end, largest)
     return Strength({"tie rods": strength / stress}, {"": ultimate / stress}, NOT_BONDED)
 
 
@@ -113,7 +120,7 @@ def _fatigue(loaded: Loaded) -> Fatigue:
     return Fatigue(lives={"tie rods": life})
 
 
-def _own(loaded: Loaded) -> dict[str, Array]:
+def _own(loaded: Loaded) -> dict[str, Mapping[str, Array]]:
     return {"joint_factor": _clamp(loaded).closed}
 
 
@@ -123,7 +130,13 @@ def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tu
         yield (
             "joint_factor",
             f"no tie-rod preload is stated; {force / 1e3:.1f} kN is assumed, which keeps the joint "
-            "closed at proof pressure",
+            "closed at proof pressure, at every stated temperature",
+        )
+    if not _clamp(loaded).changes:
+        yield (
+            "joint_factor",
+            "how temperature changes the preload of the tie rods is unknown: state environment, "
+            "and the thermal expansion of barrel, caps and tie rods",
         )
 
 
@@ -154,7 +167,7 @@ JOINT = Joint(
     material_faults=nothing,
     form="plates",
     fit=_fit,
-    stiffness=_stiffness,
+    clamping=_clamping,
     mass=_mass,
     outline=_outline,
     notes=_notes,

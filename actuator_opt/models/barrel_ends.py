@@ -234,3 +234,59 @@ def tie_rod_forces(
     share = barrel_stiffness / (barrel_stiffness + tie_rod_stiffness)
     barrel = share * (axial_force + free_shortening * tie_rod_stiffness) - preload
     return barrel, axial_force - barrel
+
+
+@geometry
+def preload_change(
+    *,
+    temperature_change: Array,
+    barrel_expansion: Array,
+    barrel_length: Array,
+    plate_expansion: Array,
+    plate_thickness: Array,
+    tie_rod_expansion: Array,
+    tie_rod_length: Array,
+    barrel_stiffness: Array,
+    tie_rod_stiffness: Array,
+) -> Array:
+    """Change of the tie rods' preload by temperature.
+
+    Delta F_0 = Delta T (alpha_b L_b + 2 alpha_p t_p - alpha_r L_r) k_b k_r/(k_b + k_r). A barrel
+    that expands less than the rods, such as one of carbon, loses preload when it warms up.
+
+    Parameters
+    ----------
+    temperature_change : Delta T since assembly [K]
+    barrel_expansion : alpha_b, axial thermal expansion of the barrel [1/K]
+    barrel_length : L_b [m]
+    plate_expansion : alpha_p, thermal expansion of both end plates [1/K]
+    plate_thickness : t_p of one plate [m]
+    tie_rod_expansion : alpha_r, thermal expansion of the rods [1/K]
+    tie_rod_length : L_r, between the outer faces of the plates [m]
+    barrel_stiffness, tie_rod_stiffness : k_b and k_r, axial stiffness of the barrel, and of all
+        rods together [N/m]
+
+    Returns
+    -------
+    change of the total preload [N], positive where the clamping force grows
+
+    Notes
+    -----
+    Valid: one temperature in all parts, rigid plates, linear elastic, joint closed.
+
+    References
+    ----------
+    [derived] two springs whose free lengths change
+
+    Examples
+    --------
+    >>> change = preload_change(temperature_change=40.0, barrel_expansion=20e-6,
+    ...     barrel_length=126e-3, plate_expansion=23.6e-6, plate_thickness=7e-3,
+    ...     tie_rod_expansion=11.5e-6, tie_rod_length=140e-3, barrel_stiffness=39.6825e6,
+    ...     tie_rod_stiffness=115.566e6)
+    >>> print(f"{change:.1f} N")
+    1465.6 N
+    """
+    grown = barrel_expansion * barrel_length + 2 * plate_expansion * plate_thickness
+    gap = temperature_change * (grown - tie_rod_expansion * tie_rod_length)
+    return gap / (1 / barrel_stiffness + 1 / tie_rod_stiffness)

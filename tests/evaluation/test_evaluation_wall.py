@@ -175,10 +175,32 @@ def test_tie_rods_share_the_force_with_the_barrel(tmp_path):
     per_pressure = wall.path.per_pressure["piston at the end stop"]
     assert np.squeeze(per_pressure * supply) - 15e3 == pytest.approx(float(np.squeeze(force)))
     assert np.squeeze(wall.path.clamp.largest) == pytest.approx(float(np.squeeze(rod_force)))
-    factor = float(np.squeeze(done.computed.metrics["joint_factor"][""]))
+    factor = float(np.squeeze(done.computed.metrics["joint_factor"]["at assembly"]))
     lost = float(np.squeeze(force)) + 15e3
     assert factor == pytest.approx(15e3 / (values["supply.proof_ratio"] * lost))
     assert 0 < float(np.squeeze(wall.path.share)) < 1
+
+
+def test_temperature_changes_the_preload_of_tie_rods(tmp_path):
+    """Barrel and plates grow against the rods; each temperature has its own factor."""
+    _, values, done = _done(_file(tmp_path, *TIED))
+    wall, g = done.wall, done.geometry
+    assert wall.path.clamp is not None
+    barrel = 1 / (wall.swelling.stretch * g.barrel_length)
+    rods = 4 * 206e9 * pi * 5e-3**2 / 4 / (g.barrel_length + 2 * g.plate)
+    gap = wall.expansion[0] * g.barrel_length + 2 * 23.6e-6 * g.plate
+    gap = gap - 11.5e-6 * (g.barrel_length + 2 * g.plate)
+    gain = float(np.squeeze(gap * barrel * rods / (barrel + rods)))
+    factors = {
+        place: float(np.squeeze(value))
+        for place, value in done.computed.metrics["joint_factor"].items()
+    }
+    for word, change in (("cold", -20.0), ("hot", 60.0)):
+        ratio = factors[word] / factors["at assembly"]
+        assert ratio == pytest.approx(1 + gain * change / 15e3, rel=1e-9)
+    cold, hot = wall.path.held_in(2)
+    assert np.squeeze(hot) == pytest.approx(-15e3 - 60 * gain, rel=1e-9)
+    assert np.squeeze(cold) == pytest.approx(-15e3 + 20 * gain, rel=1e-9)
 
 
 def test_a_joint_without_preload_is_closed_at_proof(tmp_path):

@@ -140,7 +140,13 @@ def ladder(layers, strengths, axial, degrees, clamp=0.0):
 def ladders(layers, strengths, paths=PATHS, clamp=0.0):
     """The ladders of both climates and all load paths, by both."""
     return {
-        (degrees, axial): ladder(tuple(layers), strengths, axial, degrees, clamp)
+        (degrees, axial): ladder(
+            tuple(layers),
+            strengths,
+            axial,
+            degrees,
+            clamp(degrees) if callable(clamp) else clamp,
+        )
         for degrees in (COLD, HOT)
         for axial in paths
     }

@@ -199,12 +199,13 @@ def factors(unit, strengths, paths, cure=CURE, held=0.0):
 
     for degrees in (COLD, HOT):
         change = degrees - cure
+        clamp = held(degrees) if callable(held) else held
         for k, strength in enumerate(strengths):
             allowed = strength(degrees)
             for r in stations(unit.layers, k):
                 if np.ndim(allowed) == 0:
                     cooled = unit.warmth.stresses(k, r) * change
-                    rest = cooled + held * unit.force.stresses(k, r)
+                    rest = cooled + clamp * unit.force.stresses(k, r)
                     note("mismatch", allowed / mises(cooled), k)
                     for axial in paths:
                         load = unit.pressure.stresses(k, r) + axial * unit.force.stresses(k, r)
@@ -214,7 +215,7 @@ def factors(unit, strengths, paths, cure=CURE, held=0.0):
                     continue
                 for sign in (1, -1) if unit.layers[k].balanced else (1,):
                     rest = unit.warmth.ply_stresses(k, r, sign) * change
-                    rest = rest + held * unit.force.ply_stresses(k, r, sign)
+                    rest = rest + clamp * unit.force.ply_stresses(k, r, sign)
                     for axial in paths:
                         load = unit.pressure.ply_stresses(k, r, sign)
                         load = load + axial * unit.force.ply_stresses(k, r, sign)

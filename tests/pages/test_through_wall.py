@@ -91,10 +91,10 @@ def test_profiles_are_in_equilibrium(name):
     found = evaluated(name)
     inner, pressure = found.design.cylinder.bore / 2, found.design.supply.pressure
     radius, path = found.wall.radius, passed(found).wall.path
-    clamp = float(np.squeeze(path.held))
     loads = [(one, pressure, pressure * float(path.per_pressure[one.name][0]))
              for one in found.wall.profiles]  # fmt: skip
-    loads += [(one, 0.0, clamp) for one in found.wall.rest]
+    clamps = [float(np.squeeze(force)) for force in path.held_in(2)]
+    loads += [(one, 0.0, clamp) for one, clamp in zip(found.wall.rest, clamps, strict=True)]
     assert len(loads) == 4
     largest = max(np.max(np.abs(one.hoop)) for one, _, _ in loads)
     for profile, inside, force in loads:

@@ -134,7 +134,9 @@ def compute(
         stretch=solution.axial[FORCE],
         growth_by_force=solution.growth[FORCE],
     )
-    path = load_path(v, design, stock, g, state, swelling)
+    unknown = [layer.name for layer in layers if layer.expansions is None]
+    expansion = None if unknown else solution.axial[WARMTH]
+    path = load_path(v, design, stock, g, state, swelling, expansion)
     free = v["supply.pressure"] * swelling.growth
     driven_growth, force_growth = (
         state.driven_pressure * swelling.growth,
@@ -159,7 +161,6 @@ def compute(
         axial_line_stiffness=1 / (swelling.stretch * pi * (g.inner_radius + g.outer_radius)),
         missing=missing,
     )
-    unknown = [layer.name for layer in layers if layer.expansions is None]
     if unknown:
         wall.why_no_mismatch = f"the thermal expansion of {unknown[0]} is unknown"
         states = tuple(Climate(state.name, 0.0, cold=state.cold) for state in states)
@@ -173,6 +174,11 @@ def compute(
     _ladder(layers, states, g, path, wall, exact=exact)
     _axial_rupture(stock, layers, states, g, path, wall)
     return wall
+
+
+def _held(path: LoadPath, states: Sequence[Climate]) -> Array:
+    """Axial force in the wall at zero pressure, (climates, designs) [N]."""
+    return np.stack([np.atleast_1d(array_of(force)) for force in path.held_in(len(states))])
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,7 +213,7 @@ class _ResidualStress:
             unit = part[:, rows]  # two steps: a list with an integer moves axes
             stress = unit[:, :, WARMTH, None] * change
             if clamped:
-                stress = stress + unit[:, :, FORCE, None] * self.path.held
+                stress = stress + unit[:, :, FORCE, None] * _held(self.path, self.states)
             if self.autofrettage is not None:
                 stress = stress + self.autofrettage.stresses[k][:, rows][:, :, None]
             parts.append(stress[:, :, :, None])
@@ -404,7 +410,7 @@ def _ladder(
         change = np.stack([np.atleast_1d(state.change) for state in states])[:, None]
         arguments["inner_radius"] = g.inner_radius
         arguments["temperature_change"] = change if np.any(real(change)) else 0.0
-        arguments["held_force"] = path.held
+        arguments["held_force"] = _held(path, states)[:, None]
     else:
         arguments["radius"] = (g.inner_radius + g.outer_radius) / 2
     distinct_arguments, of_all = distinct(arguments)

@@ -11,7 +11,7 @@ their share of the separating force. The default preload keeps the joint closed 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field
 from math import pi
 
@@ -20,7 +20,7 @@ import numpy as np
 from ...base.dataclass import dataclass
 from ...base.numeric import Array, array_of, maximum
 from ...design.model import Design
-from ...joints.joint import Clamp
+from ...joints.joint import Clamp, Clamping
 from ...models import barrel, barrel_ends, column, laminate, ply, rod
 from ...models.autofrettage import Autofrettage
 from ...models.layered_tube import layered_tube, ply_stresses_at_faces, tube_state
@@ -62,7 +62,8 @@ class LoadPath:
     A load path is a way in which pressure loads the wall: without axial force, or with the largest
     axial force. `per_pressure` is the force per unit pressure for each load path, (designs,) [m^2].
     `held` is the force at zero pressure [N]. `cases` are the forces in the load cases, including
-    `held`, (cases, designs) [N]. `share` is the barrel's share of a force that separates its ends.
+    `held`, (cases, designs) [N]. `warmed` are the changes of `held` at the lowest and the highest
+    temperature; empty if unknown. `share` is the barrel's share of a force that separates its ends.
     """
 
     per_pressure: dict[str, Array]
@@ -70,6 +71,16 @@ class LoadPath:
     cases: Array
     clamp: Clamp | None = None
     share: Array = 1.0
+    warmed: tuple[Array, ...] = ()
+
+    def held_in(self, count: int) -> Sequence[Array]:
+        """Force at zero pressure in each of `count` climates [N].
+
+        With two climates, these are the lowest and the highest temperature.
+        """
+        if len(self.warmed) != count:
+            return [self.held] * count
+        return [self.held + change for change in self.warmed]
 
 
 def largest_area(design: Design, g: Geometry) -> Array:
@@ -86,8 +97,12 @@ def load_path(
     g: Geometry,
     state: LoadState,
     swelling: Swelling,
+    expansion: Array | None = None,
 ) -> LoadPath:
-    """Axial forces in a design's barrel wall, whose stiffness is given by `swelling`."""
+    """Axial forces in a design's barrel wall, whose stiffness is given by `swelling`.
+
+    `expansion` is its axial thermal expansion [1/K], None if unknown.
+    """
     if design.cylinder.mount.startswith("cap"):
         cases = barrel_ends.axial_force_cap_mounted(
             rod_side_pressure=state.moving_b, rod_side_area=g.area_b, stop_force=0.0
@@ -101,16 +116,14 @@ def load_path(
     worst = {name: zero + largest_area(design, g)}
     if not clamped(design):
         return LoadPath({NONE: zero, **worst}, 0.0, cases)
-    return _clamped(v, design, stock, g, state, swelling, worst, cases)
+    return _clamped(v, design, stock, g, state, swelling, expansion, worst, cases)
 
 
-def clamp_stiffness(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Array:
-    """Axial stiffness of the parts, such as tie rods, that clamp the barrel between both ends."""
+def clamping(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Clamping:
+    """The parts, such as tie rods, that clamp the barrel between both ends."""
     (end_joint,) = joints_of(design)
-    assert end_joint.joint.stiffness is not None
-    return end_joint.joint.stiffness(
-        end_at(design, end_joint, Numbers(v, end_joint.path), g), stock
-    )
+    assert end_joint.joint.clamping is not None
+    return end_joint.joint.clamping(end_at(design, end_joint, Numbers(v, end_joint.path), g), stock)
 
 
 def _clamped(
@@ -120,6 +133,7 @@ def _clamped(
     g: Geometry,
     state: LoadState,
     swelling: Swelling,
+    expansion: Array | None,
     worst: dict[str, Array],
     cases: Array,
 ) -> LoadPath:
@@ -128,10 +142,12 @@ def _clamped(
     `worst` has one entry: the name of the load path with the largest axial force, and the area on
     which pressure separates the ends.
     """
+    rods = clamping(v, design, stock, g)
     springs = {
         "barrel_stiffness": 1 / (swelling.stretch * g.barrel_length),
-        "tie_rod_stiffness": clamp_stiffness(v, design, stock, g),
+        "tie_rod_stiffness": rods.stiffness,
     }
+    changes = _preload_changes(v, design, stock, g, rods, springs, expansion)
     supply = v["supply.pressure"]
     proof = v["supply.proof_ratio"] * supply
     slack = -swelling.shortening * g.barrel_length
@@ -147,15 +163,49 @@ def _clamped(
     preload = v.get("retention.preload", None)
     if preload is None:
         preload = proof * unit
+        for change in changes.values():
+            preload = maximum(preload, proof * unit - change)
+    at = {"at assembly": 0.0, **changes} if changes else {"": 0.0}
+    closed = {place: (preload + change) / (proof * unit) for place, change in at.items()}
     pressure = maximum(state.moving_a, state.moving_b)
     barrel, _ = forces_of(cases, pressure)
     return LoadPath(
         {NONE: relaxed, name: unit},
         -preload,
         barrel - preload,
-        Clamp(preload, supply * (area - unit) + preload, preload / (proof * unit)),
+        Clamp(preload, supply * (area - unit) + preload, closed, tuple(changes.values())),
         springs["barrel_stiffness"] / (springs["barrel_stiffness"] + springs["tie_rod_stiffness"]),
+        tuple(-change for change in changes.values()),
     )
+
+
+def _preload_changes(
+    v: Values,
+    design: Design,
+    stock: MaterialValues,
+    g: Geometry,
+    rods: Clamping,
+    springs: Mapping[str, Array],
+    expansion: Array | None,
+) -> dict[str, Array]:
+    """Changes of the preload at the lowest and the highest temperature [N]; empty if unknown."""
+    plate = stock.get(design.caps.material, "thermal_expansion")
+    if design.environment is None or expansion is None or plate is None or rods.growth is None:
+        return {}
+    start = v["environment.assembly_temperature"]
+    return {
+        word: barrel_ends.preload_change(
+            temperature_change=v[f"environment.temperature_{limit}"] - start,
+            barrel_expansion=expansion,
+            barrel_length=g.barrel_length,
+            plate_expansion=plate,
+            plate_thickness=g.plate,
+            tie_rod_expansion=rods.growth,
+            tie_rod_length=1.0,
+            **springs,
+        )
+        for word, limit in (("cold", "min"), ("hot", "max"))
+    }
 
 
 SEAL_STEP = 0.5
@@ -233,7 +283,8 @@ def metal_swelling(
         stretch=1 / (modulus * area),
         growth_by_force=shortening / (2 * pi * g.inner_radius),
     )
-    path = load_path(v, design, stock, g, state, swelling)
+    alpha = stock.get(name, "thermal_expansion", "thermal_expansion_2")
+    path = load_path(v, design, stock, g, state, swelling, alpha)
     supply = v["supply.pressure"]
     free = supply * swelling.growth
     if as_published:
@@ -258,7 +309,6 @@ def metal_swelling(
         layered=False,
         axial_line_stiffness=modulus * (g.outer_radius - g.inner_radius),
     )
-    alpha = stock.get(name, "thermal_expansion", "thermal_expansion_2")
     if alpha is not None:
         wall.expansion = (alpha, alpha)
     _strengths(stock, name, g, path, supply, wall)
@@ -299,16 +349,22 @@ def _utilisation(
 ) -> Array:
     """Reciprocal of the pressure at which the bore yields.
 
-    If `clamped`, the stress that the preload of tie rods causes at zero pressure is included.
+    If `clamped`, the stress that the preload of tie rods causes at zero pressure is included, at
+    the temperature where it is worst.
     """
     hoop, radial, along = barrel.bore_stresses(pressure=1.0, axial_force=axial, **size)
     zero = 0.0 * hoop
-    residual = None
-    if clamped and path.clamp is not None:
-        _, _, clamp = barrel.bore_stresses(pressure=0.0, axial_force=path.held, **size)
-        residual = (zero, zero, clamp, zero)
     stress = (hoop, radial, along, zero)
-    return yield_utilisation(stress=stress, yield_strength=strength, residual=residual)
+    if not clamped or path.clamp is None:
+        return yield_utilisation(stress=stress, yield_strength=strength)
+    worst: Array = 0.0
+    for change in (0.0, *path.warmed):
+        _, _, clamp = barrel.bore_stresses(pressure=0.0, axial_force=path.held + change, **size)
+        residual = (zero, zero, clamp, zero)
+        worst = maximum(
+            worst, yield_utilisation(stress=stress, yield_strength=strength, residual=residual)
+        )
+    return worst
 
 
 PRESSURE, FORCE, WARMTH = range(3)

@@ -659,9 +659,9 @@ class Envelopes:
         proof = v["supply.proof_ratio"] * supply
         preload = v.get("retention.preload", proof * share)
         largest = supply * (wall.largest_area(design, g) - share) + preload
-        rods = Clamp(preload, largest, preload / (proof * share))
+        rods = Clamp(preload, largest, {"": preload / (proof * share)})
         barrel = 1 / (swelling.stretch * g.barrel_length)
-        total = barrel + wall.clamp_stiffness(v, design, stock, g)
+        total = barrel + wall.clamping(v, design, stock, g).stiffness
         return wall.LoadPath({name: share}, 0.0, 0.0, rods, barrel / total)
 
 
