@@ -20,7 +20,7 @@ from ..models import linkage as crank
 from . import choices, material, seal_faults, wall_faults
 from .kinds import MaterialName
 from .material import ROLES
-from .model import PLAIN_CAP, closed_length
+from .model import PLAIN_CAP, closed_length, spigot_length
 from .structure import FileView, Loc, MaterialLookup, child, leaves
 
 _ROUND = math.radians(0.01)
@@ -52,8 +52,18 @@ def _closed(view: FileView) -> float | None:
     pin = view.number("clevis", "pin_diameter") if view.has("clevis") else 0.0
     if barrel is None or plate is None or extension is None or pin is None:
         return None
+    section, spigot = view.number("seals", "static", "section"), 0.0
+    if section is not None:
+        place, _ = seal_faults.static_places(view)
+        spigot = float(spigot_length(place=place, section=section))
     return float(
-        closed_length(barrel_length=barrel, plate=plate, extension=extension, pin_diameter=pin)
+        closed_length(
+            barrel_length=barrel,
+            plate=plate,
+            spigot=spigot,
+            extension=extension,
+            pin_diameter=pin,
+        )
     )
 
 

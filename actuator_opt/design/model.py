@@ -13,8 +13,9 @@ from pydantic import Field, create_model
 
 from ..base.numeric import Array
 from ..base.quantities import Sense
+from ..joints.joint import LEAST_METAL, StaticPlace
 from ..joints.kinds import JOINTS
-from ..models import mass
+from ..models import gland, mass
 from . import choices
 from .choices import Paper
 from .kinds import (
@@ -182,11 +183,19 @@ class Load(Section):
 
 
 def closed_length(
-    *, barrel_length: Array, plate: Array, extension: Array, pin_diameter: Array
+    *, barrel_length: Array, plate: Array, spigot: Array, extension: Array, pin_diameter: Array
 ) -> Array:
-    """Pin-to-pin length of the retracted actuator [m]."""
+    """Pin-to-pin length of the retracted actuator [m]; `spigot` is the length of the cap's."""
     eye = mass.eye_length(pin_diameter=pin_diameter)
-    return barrel_length + 2 * plate + extension + 2 * eye
+    return barrel_length + 2 * plate + spigot + extension + 2 * eye
+
+
+def spigot_length(*, place: StaticPlace, section: Array) -> Array:
+    """Length of the cap's spigot, with the groove of the static seal and metal beside it [m].
+
+    It is 0 unless the static seal of the cap has the place "bore".
+    """
+    return gland.groove_width(section=section) + 2 * LEAST_METAL if place == "bore" else 0.0
 
 
 class Variable(Section):

@@ -9,6 +9,9 @@ from typing import Any
 from ..base.errors import Fault, InputError, article
 from ..base.quantities import INPUTS, length_text
 from ..friction.kinds import LAWS as FRICTION_LAWS
+from ..joints.joint import StaticPlace
+from ..joints.kinds import JOINTS
+from ..models import gland
 from ..models.elastomer import modulus_gent
 from ..models.seals import LAWS
 from ..seals.contact import GROOVE_WIDTH
@@ -204,6 +207,61 @@ def clearances(view: FileView) -> Iterator[Fault]:
             )
 
 
+def static_places(view: FileView) -> tuple[StaticPlace, StaticPlace]:
+    """Places of the static seals of cap and head, from their joints."""
+    places: list[StaticPlace] = []
+    for end in ("cap", "head"):
+        name = view.text("retention", end, "type") or view.text("retention", "type")
+        places.append(JOINTS[name].static_seal if name is not None and name in JOINTS else "bore")
+    return places[0], places[1]
+
+
+def static_seal(view: FileView) -> Iterator[Fault]:
+    """Check that the groove of the static seal fits into the head, and holds its ring."""
+    loc = ("seals", "static")
+    section, share = view.number(*loc, "section"), view.number(*loc, "squeeze")
+    if not view.has(*loc) or section is None or share is None:
+        return
+    depth, width = section * (1 - share), float(gland.groove_width(section=section))
+    gap = view.number(*loc, "clearance")
+    if gap is not None and gap >= depth:
+        yield Fault(
+            (*loc, "clearance"),
+            f"{length_text(gap)}: not smaller than the depth of the groove ({length_text(depth)})",
+            f"write less than {length_text(depth)}, e.g. 0.02 mm",
+        )
+    places = static_places(view)
+    types = ("retention.type", "retention.cap.type", "retention.head.type")
+    if not any(places) and not any(view.has("choices", path) for path in types):
+        yield Fault(
+            loc,
+            "without effect: cap and head are bonded, and the adhesive seals them",
+            "remove the block, or use another joint (retention.type)",
+            at_key=True,
+        )
+    if places[1] != "bore":
+        return
+    length = view.number("head" if view.has("head") else "piston", "length")
+    if length is not None and width >= length and not view.has("variables", "head.length"):
+        yield Fault(
+            (*loc, "section"),
+            f"its groove of {length_text(width)} does not fit into the head, which is "
+            f"{length_text(length)} long",
+            "increase head.length or use a smaller section",
+        )
+    bore, rod_diameter = view.number("cylinder", "bore"), view.number("rod", "outer_diameter")
+    inner = max((groove[1] for groove in _grooves(view, "rod")), default=None)
+    if bore is None or rod_diameter is None or inner is None:
+        return
+    rest = (bore - rod_diameter) / 2 - inner - depth
+    if rest <= 0 and not view.has("variables", "cylinder.bore"):
+        yield Fault(
+            (*loc, "section"),
+            "its groove and that of the rod seal meet in the head",
+            "use a smaller section, a larger bore or a thinner rod",
+        )
+
+
 def squeeze(view: FileView) -> Iterator[Fault]:
     """Check the nominal squeeze.
 
@@ -349,7 +407,18 @@ def films(view: FileView) -> Iterator[Fault]:
                 )
 
 
-CHECKS = (fields, widths, grooves, clearances, squeeze, shapes, profiles, reach, films)
+CHECKS = (
+    fields,
+    widths,
+    grooves,
+    clearances,
+    static_seal,
+    squeeze,
+    shapes,
+    profiles,
+    reach,
+    films,
+)
 
 
 def _numbers(block: object) -> dict[str, float]:

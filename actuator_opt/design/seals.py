@@ -180,8 +180,38 @@ class Seal(SealElement):
         return [name for name in names if name is not None]
 
 
+class StaticSeal(Section):
+    """Static O-ring at each end of the barrel, in a groove of cap and head, against the bore.
+
+    A plug in the bore has the groove in its rim. Otherwise, the head has it on its outside, and the
+    cap on a spigot, which lengthens the barrel.
+    """
+
+    compound: Annotated[str, MaterialName("seal")]
+    section: Annotated[float, Of("cross_section", "free cross-section of the ring")]
+    squeeze: Annotated[
+        float, Of("squeeze", "nominal squeeze, as a share of the free cross-section")
+    ] = 0.2
+    tolerance: Annotated[float, Of("tolerance", "tolerance of the gland depth")] = 0.0
+    section_tolerance: Annotated[float, Of("tolerance", "tolerance of the free cross-section")] = (
+        0.0
+    )
+    stretch: Annotated[float, Of("stretch", "stretch of the ring in its groove")] = 0.02
+    clearance: Annotated[
+        float, Of("radial_clearance", "radial clearance between cap or head and the bore")
+    ] = 2e-5
+
+    @property
+    def element(self) -> SealElement:
+        """The O-ring as a sealing element, for the models of glands."""
+        return SealElement.model_construct(
+            compound=self.compound, section=self.section, squeeze=self.squeeze
+        )
+
+
 class Seals(Section):
-    """Piston and rod seals."""
+    """Seals of piston and rod, and static seals of the ends."""
 
     piston: Seal
     rod: Seal
+    static: StaticSeal | None = None

@@ -131,6 +131,8 @@ def _o_ring(ring: Ring) -> Iterator[str]:
 
 
 def _housing(ring: Ring) -> Iterator[str]:
+    if ring.name == "static":
+        return
     try:
         standard_housings = housings_for(ring.element.type, ring.name, ring["diameter"])
     except InputError as error:
@@ -170,6 +172,8 @@ def names_of_materials(design: Design) -> list[str]:
         names.append(design.clevis.material)
     for seal in (design.seals.piston, design.seals.rod):
         names += seal.materials()
+    if design.seals.static is not None:
+        names.append(design.seals.static.compound)
     names += [line.material for line in design.lines]
     return list(dict.fromkeys(names))
 

@@ -30,7 +30,7 @@ from ..lubrication import (
 )
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..models.rough_surface import composite_roughness
-from .rings import Place, Ring, seal_contact, static_profile
+from .rings import Ring, RingPlace, seal_contact, static_profile
 
 NODES = 121
 """Number of nodes along the contact. Results on a finer mesh differ by less than 0.3 %."""
@@ -87,7 +87,7 @@ def on_stroke(rings: Sequence[Ring], stroke: Stroke) -> tuple[Ring, ...]:
     return tuple(ring.at(pressure=ring["return_pressure"]) for ring in rings)
 
 
-def of_place(rings: Sequence[Ring], place: Place) -> tuple[Ring, ...]:
+def of_place(rings: Sequence[Ring], place: RingPlace) -> tuple[Ring, ...]:
     """Rings with an oil film on the piston or rod, from the sealed side outwards."""
     return tuple(r for r in rings if r.name == place and r.element.friction_law.film)
 

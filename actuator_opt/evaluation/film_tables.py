@@ -21,7 +21,7 @@ from ..base.numeric import Array, array_of
 from ..base.surrogate import Interpolation, Surrogate, SurrogateAxis, surrogate
 from ..design.model import Design
 from .film import FilmRow, Solved, Stroke, floats, of_place, on_stroke, ring_films, slopes, solve
-from .rings import Place, Ring
+from .rings import Place, Ring, RingPlace
 from .values import Values, of_case
 
 SAMPLES = 64
@@ -40,7 +40,7 @@ design itself."""
 MISSED = 0.005
 """Error of linear extrapolation to the ends of an input's range, as a share of the normal force on
 the asperities. Above this error, the input becomes a candidate for an axis of the table."""
-Key = tuple[Place, int, Stroke]
+Key = tuple[RingPlace, int, Stroke]
 """Location (piston or rod), load case and stroke of a table."""
 
 

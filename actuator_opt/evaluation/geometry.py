@@ -9,14 +9,23 @@ joint (see `joints`); the design states one joint for both ends, or one for each
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import pi
 from typing import Any, Literal, NamedTuple
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, absolute, maximum
+from ..base.numeric import Array, absolute, maximum, minimum
 from ..design.material import Material
-from ..design.model import Design, EndRetention, Ply, closed_length
+from ..design.model import Design, EndRetention, Ply, closed_length, spigot_length
 from ..design.seals import Seal, SealElement
-from ..joints.joint import BarrelLayer, End, EndDimensions, Form, Joint, JointSizes
+from ..joints.joint import (
+    BarrelLayer,
+    End,
+    EndDimensions,
+    Form,
+    Joint,
+    JointSizes,
+    StaticPlace,
+)
 from ..joints.kinds import JOINTS
 from ..models import forces, gland, mass, winding_path
 from .values import Values
@@ -233,6 +242,37 @@ def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[
     return tuple(place_grooves)
 
 
+def static_places(design: Design) -> tuple[StaticPlace, StaticPlace]:
+    """Places of the static seals of cap and head, both empty without static seals."""
+    if design.seals.static is None:
+        return "", ""
+    places = [end.joint.static_seal for end in joints_of(design)] or ["bore"]
+    return places[0], places[-1]
+
+
+def static_grooves(v: Values, design: Design) -> tuple[Groove, ...]:
+    """The groove of the static seal, equal in cap and head; none without static seals."""
+    if design.seals.static is None or not any(static_places(design)):
+        return ()
+    path, compound = "seals.static.", design.seals.static.compound
+    section = v[f"{path}section"]
+    depth = gland.gland_depth(squeeze=v[f"{path}squeeze"], section=section)
+    return (
+        Groove(
+            place="static seal",
+            path=path,
+            role="element",
+            material=compound,
+            section=section,
+            gland_depth=depth,
+            width=gland.groove_width(section=section),
+            ring_width=section,
+            count=1.0,
+            pieces=(GroovePart(compound, pi / 4 * section * section, depth / 2),),
+        ),
+    )
+
+
 def groove_totals(grooves: Sequence[Groove]) -> tuple[Array, Array, Array]:
     """Sum of the axial lengths of all grooves, number of grooves, and largest depth."""
     length: Array = 0.0
@@ -277,12 +317,18 @@ class Geometry:
     closed_length: Array
     piston_grooves: tuple[Groove, ...]
     rod_grooves: tuple[Groove, ...]
+    static_grooves: tuple[Groove, ...]
+    """Groove of the static seal, equal in cap and head; empty without static seals."""
+    static_places: tuple[StaticPlace, ...]
+    """Places of the static seals of cap and head, both empty without static seals."""
+    spigot: Array
+    """Length of the cap's spigot, which has the groove of the static seal; 0 without one."""
     bearing_span: Array
 
     @property
     def wall_length(self) -> Array:
         """Length of the barrel wall, with the parts that enclose the end plates."""
-        return self.barrel_length + self.cap_fit.beyond + self.head_fit.beyond
+        return self.barrel_length + self.spigot + self.cap_fit.beyond + self.head_fit.beyond
 
     @property
     def cap_fit(self) -> EndDimensions:
@@ -329,6 +375,9 @@ def derive(v: Values, design: Design) -> Geometry:
         fits.append(end_joint.joint.fit(end))
     if not fits:
         fits.append(EndDimensions(plate_radius=outer_radius, radius=outer_radius))
+    forms = tuple(end.joint.form for end in joints)
+    static, places = static_grooves(v, design), static_places(design)
+    spigot = spigot_length(place=places[0], section=static[0].section) if static else 0.0
     pin = v["clevis.pin_diameter"] if design.clevis is not None else 0.0
     eye_offset = mass.eye_length(pin_diameter=pin)
     return Geometry(
@@ -350,15 +399,22 @@ def derive(v: Values, design: Design) -> Geometry:
         head_clearance=v["head.clearance"],
         plate=plate,
         fits=tuple(fits),
-        forms=tuple(end.joint.form for end in joints),
+        forms=forms,
         barrel_length=barrel_length,
         eye_offset=eye_offset,
         pin_diameter=pin,
         closed_length=closed_length(
-            barrel_length=barrel_length, plate=plate, extension=extension, pin_diameter=pin
+            barrel_length=barrel_length,
+            plate=plate,
+            spigot=spigot,
+            extension=extension,
+            pin_diameter=pin,
         ),
         piston_grooves=grooves(v, design, "piston"),
         rod_grooves=grooves(v, design, "rod"),
+        static_grooves=static,
+        static_places=places,
+        spigot=spigot,
         bearing_span=(piston_length + head_length + plate) / 2,
     )
 
@@ -379,8 +435,8 @@ def end_at(design: Design, end_joint: EndJoint, sizes: JointSizes, g: Geometry) 
 
 
 STATIC_SEAL = 2.4e-3
-"""Width of a plug's groove for its static O-ring [m]: ISO 3601-2, section 1.78 mm, without back-up
-ring."""
+"""Width of a plug's groove for its static O-ring [m], unless static seals are stated: ISO 3601-2,
+section 1.78 mm, without back-up ring."""
 
 
 def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, Any]:
@@ -393,13 +449,19 @@ def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, 
     head_length, head_count, head_depth = groove_totals(g.rod_grooves)
     bore = {"geometry_rod_bore": g.rod_inner_diameter} if g.rod_thicknesses else {}
     skirted = 2 * g.cap_fit.length if len(g.fits) == 1 else g.cap_fit.length + g.head_fit.length
-    skirts = {"geometry_skirts": g.barrel_length - skirted} if "skirts" in g.forms else {}
+    skirts = {"geometry_skirts": g.wall_length - skirted} if "skirts" in g.forms else {}
+    static_width = g.static_grooves[0].width if g.static_grooves else STATIC_SEAL
     lips = {"cap": g.eye_offset - g.pin_diameter - g.cap_fit.lip} if eyes else {}
     lips["head"] = g.rod_extension - g.head_fit.lip
-    plugs = {"geometry_lip": lips, "geometry_plug": (g.plate - STATIC_SEAL) / 2}
+    plugs = {"geometry_lip": lips, "geometry_plug": (g.plate - static_width) / 2}
+    sealed: dict[str, Any] = {}
+    if g.static_places[1] == "bore":
+        depth = g.inner_radius - g.rod_diameter / 2 - head_depth - g.static_grooves[0].gland_depth
+        sealed = {"geometry_static_seal": minimum(depth, (g.head_length - static_width) / 2)}
     return (
         bore
         | skirts
+        | sealed
         | (plugs if "plugs" in g.forms else {})
         | {
             "geometry_rod_in_bore": g.inner_radius - g.rod_diameter / 2,

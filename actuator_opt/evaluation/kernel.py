@@ -366,6 +366,8 @@ def statics(
     strength.joint_metrics(loaded_joints, out)
     if not g.rod_thicknesses:
         out.skip("geometry_rod_bore", "the rod has no layers")
+    if g.static_places[1] != "bore":
+        out.skip("geometry_static_seal", "no static seal on the outside of the head")
     if "skirts" not in g.forms:
         out.skip("geometry_skirts", "cap and head have no skirts over the barrel")
     if "plugs" not in g.forms:

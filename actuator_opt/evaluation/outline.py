@@ -21,7 +21,7 @@ from ..base.dataclass import dataclass
 from ..base.numeric import Array, maximum
 from ..design.material import Material
 from ..design.model import Design
-from ..joints.joint import EndDimensions, EndSpan, Polygon, rectangle
+from ..joints.joint import LEAST_METAL, EndDimensions, EndSpan, Polygon, rectangle
 from . import geometry as geometry_module
 from .geometry import (
     Geometry,
@@ -69,15 +69,27 @@ def _grooved(
 
     The gland depth is measured from the counterface, the bore or rod on which the seal slides.
     """
-    surface = outer if outside else inner
+    surface, other = (outer, inner) if outside else (inner, outer)
+    edge = _edge(x0, x1, surface, grooves, counterface, outside=outside)
+    return (*edge, (x1, other), (x0, other))
+
+
+def _edge(
+    x0: float,
+    x1: float,
+    surface: float,
+    grooves: Sequence[Groove],
+    counterface: float,
+    *,
+    outside: bool,
+) -> list[tuple[float, float]]:
+    """Edge of a ring from `x0` to `x1`, at radius `surface`, with its grooves."""
     edge = [(x0, surface)]
     for groove, start, end in _grooves(x0, x1 - x0, grooves):
         depth = float(groove.gland_depth)
         floor = counterface - depth if outside else counterface + depth
         edge += [(start, surface), (start, floor), (end, floor), (end, surface)]
-    edge.append((x1, surface))
-    other = inner if outside else outer
-    return (*edge, (x1, other), (x0, other))
+    return [*edge, (x1, surface)]
 
 
 def _eye(centre: float, pin: float, side: int) -> list[Polygon]:
@@ -97,9 +109,13 @@ def _kind(material: Material) -> _Kind:
 
 @dataclass(frozen=True, slots=True)
 class _Stations:
-    """Axial positions of faces and ends, measured from the cap pin, and radii."""
+    """Axial positions of faces and ends, measured from the cap pin, and radii.
+
+    `plate` is the inner face of the cap's plate, and `start` the end of the chamber.
+    """
 
     face: float
+    plate: float
     start: float
     end: float
     head: float
@@ -112,11 +128,13 @@ class _Stations:
 
 def _stations(g: Geometry) -> _Stations:
     face = float(g.eye_offset)
-    start = face + float(g.plate)
+    plate = face + float(g.plate)
+    start = plate + float(g.spigot)
     end = start + float(g.barrel_length)
     rod, bore = float(g.rod_diameter) / 2, float(g.inner_radius)
     return _Stations(
         face=face,
+        plate=plate,
         start=start,
         end=end,
         head=end - float(g.head_length),
@@ -130,8 +148,8 @@ def _stations(g: Geometry) -> _Stations:
 
 def _barrel(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     radius = at.bore
-    start, end = at.start - float(g.cap_fit.beyond), at.end + float(g.head_fit.beyond)
-    ends = (g.cap_fit, at.start, 1), (g.head_fit, at.end, -1)
+    start, end = at.plate - float(g.cap_fit.beyond), at.end + float(g.head_fit.beyond)
+    ends = (g.cap_fit, at.plate, 1), (g.head_fit, at.end, -1)
     for i, (ply, thickness) in enumerate(zip(design.barrel.layup, g.thicknesses, strict=True)):
         outer = radius + float(thickness)
         shape = rectangle(start, end, radius, outer)
@@ -179,13 +197,15 @@ def _turned_down(
 def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     """Cap and head plate with the shapes that their joint adds, and separate parts of the joint."""
     plate = float(g.plate)
+    rims = [place == "rim" for place in g.static_places]
     caps = [
-        rectangle(at.face, at.start, 0.0, float(g.cap_fit.plate_radius)),
-        rectangle(at.end, at.end + plate, at.hole, float(g.head_fit.plate_radius)),
+        _plate(g, (at.face, at.plate), 0.0, g.cap_fit, rims[0]),
+        _plate(g, (at.end, at.end + plate), at.hole, g.head_fit, rims[1]),
+        *_spigot(g, at),
     ]
     others: dict[tuple[str, str, int], list[Polygon]] = {}
     face, back = at.face, at.end + plate
-    spans = {"cap": EndSpan(at.start, 1, face, back), "head": EndSpan(at.end, -1, back, face)}
+    spans = {"cap": EndSpan(at.plate, 1, face, back), "head": EndSpan(at.end, -1, back, face)}
     fits = {"cap": g.cap_fit, "head": g.head_fit}
     for end_joint in joints_of(design):
         end = end_at(design, end_joint, RetentionNumbers(end_joint.section), g)
@@ -201,16 +221,59 @@ def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
         yield part, material, shapes, bars
 
 
+def _plate(
+    g: Geometry, span: tuple[float, float], hole: float, fit: EndDimensions, sealed: bool
+) -> Polygon:
+    """An end plate, with the groove of its static seal if the plate is `sealed` on its rim."""
+    radius = float(fit.plate_radius)
+    if not sealed:
+        return rectangle(*span, hole, radius)
+    return _grooved(*span, hole, radius, g.static_grooves, radius, outside=True)
+
+
+def _spigot(g: Geometry, at: _Stations) -> Iterator[Polygon]:
+    """The spigot of the cap, with the groove of its static seal."""
+    if float(g.spigot) > 0:
+        depth = float(g.static_grooves[0].gland_depth)
+        inner = at.bore - depth - LEAST_METAL
+        yield _grooved(at.plate, at.start, inner, at.bore, g.static_grooves, at.bore, outside=True)
+
+
 def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     """Piston, head plug, rod and seals."""
     radius = at.bore - float(g.piston_clearance)
     piston = _grooved(at.start, at.piston_end, 0.0, radius, g.piston_grooves, at.bore, outside=True)
-    plug = _grooved(at.head, at.end, at.hole, at.bore, g.rod_grooves, at.rod, outside=False)
+    cap_place, head_place = g.static_places
+    length = float(g.head_length)
+    outer = _edge(
+        at.head,
+        at.end,
+        at.bore,
+        g.static_grooves if head_place == "bore" else (),
+        at.bore,
+        outside=True,
+    )
+    inner = _edge(at.head, at.end, at.hole, g.rod_grooves, at.rod, outside=False)
+    plug = (*inner, *reversed(outer))
     yield "piston", design.piston.material, [piston], 0
     yield "glands", design.head.material, [plug], 0
     yield from _rod(design, g, at)
     yield from _rings(at.start, float(g.piston_length), g.piston_grooves, at.bore, -1)
-    yield from _rings(at.head, float(g.head_length), g.rod_grooves, at.rod, 1)
+    yield from _rings(at.head, length, g.rod_grooves, at.rod, 1)
+    beyond = at.end + float(g.plate)
+    spans = {
+        "cap": {"rim": (at.face, at.plate), "bore": (at.plate, at.start)}.get(cap_place),
+        "head": {"rim": (at.end, beyond), "bore": (at.head, at.end)}.get(head_place),
+    }
+    shapes = [
+        shape
+        for span in spans.values()
+        if span is not None
+        for _, _, rings, _ in _rings(span[0], span[1] - span[0], g.static_grooves, at.bore, -1)
+        for shape in rings
+    ]
+    for groove in g.static_grooves:
+        yield groove.place, groove.material, shapes, 0
 
 
 def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
@@ -295,6 +358,7 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
         "head_length": g.head_length,
         "barrel_length": g.barrel_length,
         "plate": g.plate,
+        "spigot": g.spigot,
         "beyond_cap": g.cap_fit.beyond,
         "beyond_head": g.head_fit.beyond,
         "closed_length": g.closed_length,

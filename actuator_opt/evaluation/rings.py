@@ -29,6 +29,7 @@ from .state import LoadState, pressure_law
 from .values import Values
 
 Place = Literal["piston", "rod"]
+RingPlace = Place | Literal["static"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +43,7 @@ class Ring:
     roughness.
     """
 
-    name: Place
+    name: RingPlace
     element: SealElement
     groove: Groove
     numbers: Mapping[str, Array]
@@ -154,6 +155,17 @@ def rings(
     return tuple(sealing_rings)
 
 
+def static_rings(v: Values, design: Design, geometry: Geometry) -> tuple[Ring, ...]:
+    """The static seal of an end; both ends have the same. None if static seals are not stated."""
+    if design.seals.static is None or not geometry.static_grooves:
+        return ()
+    (groove,) = geometry.static_grooves
+    keys = ("section", "squeeze", "tolerance", "section_tolerance", "stretch", "clearance")
+    numbers = {key: v[groove.path + key] for key in keys}
+    numbers |= {"groove_width": groove.width, "gland_depth": groove.gland_depth}
+    return (Ring("static", design.seals.static.element, groove, numbers),)
+
+
 _OWN = ("friction_coefficient", "breakaway_ratio", "stribeck_speed")
 """Keys of a seal whose default is the value of its compound."""
 
@@ -232,7 +244,7 @@ def gland_metrics(
     ring: Ring,
     growth: Array,
 ) -> dict[str, Array]:
-    """Gland metrics of a ring; `growth` is the largest growth of the bore at the ring.
+    """Gland metrics of a ring; `growth` is the largest growth of its bore at the ring.
 
     Squeeze and fill are for the worst tolerances, at the highest and lowest temperature, with rod
     and bore concentric as in gland tables. The extrusion gap includes the effect of a side load: it
@@ -272,6 +284,8 @@ def _fill(ring: Ring) -> Array:
 
 def clearances(geometry: Geometry, state: LoadState, ring: Ring) -> tuple[Array, Array]:
     """Radial clearance behind a ring, and radial shift of rod or piston by the side load."""
+    if ring.name == "static":
+        return ring["clearance"], 0.0
     clearance = geometry.piston_clearance if ring.name == "piston" else geometry.head_clearance
     return clearance, where(real(state.side_load) > 0, 1.0, 0.0) * clearance
 
@@ -306,8 +320,8 @@ def volume_ratio(
     It is 1 if the thermal expansion is unknown.
     """
     expansion = stock.get(ring.element.compound, "volume_expansion")
-    part = design.piston if ring.name == "piston" else design.head
-    housing = stock.get(part.material, "thermal_expansion")
+    parts = {"piston": design.piston.material, "rod": design.head.material}
+    housing = stock.get(parts.get(ring.name, design.caps.material), "thermal_expansion")
     if expansion is None or housing is None:
         return 1.0
     assembly = v["environment.assembly_temperature"] if design.environment is not None else ROOM

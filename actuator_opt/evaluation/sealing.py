@@ -22,7 +22,16 @@ from .film import Stroke, of_place
 from .film_tables import FilmTable, Key, Running, running as films_running
 from .geometry import Geometry, Groove
 from .limits import MaterialValues, MetricArrays
-from .rings import INCOMPRESSIBLE, Place, Ring, face_modulus, gland_metrics, places, seal_contact
+from .rings import (
+    INCOMPRESSIBLE,
+    Place,
+    Ring,
+    face_modulus,
+    gland_metrics,
+    places,
+    seal_contact,
+    static_rings,
+)
 from .state import LoadState, side_reactions
 from .values import Values
 
@@ -67,6 +76,10 @@ def compute(
             rows["film_thickness"] = film.thickness
         total = total + ring_friction
         out.friction_parts[ring.label] = ring_friction.running
+        for metric, value in rows.items():
+            by_metric.setdefault(metric, {})[ring.label] = value
+    for ring in static_rings(v, design, geometry):
+        rows = gland_metrics(v, design, stock, geometry, state, ring, wall.growth)
         for metric, value in rows.items():
             by_metric.setdefault(metric, {})[ring.label] = value
     other_friction = _wipers_and_guides(v, design, geometry, state)

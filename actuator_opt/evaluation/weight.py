@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from ..base.numeric import Array
 from ..design.choices import COMPONENTS
 from ..design.model import Design
-from ..joints.joint import EndDimensions
+from ..joints.joint import LEAST_METAL, EndDimensions
 from ..models import mass
 from .geometry import Geometry, Numbers, end_at, joints_of
 from .limits import MaterialValues
@@ -73,6 +73,8 @@ def _seals(v: Values, g: Geometry) -> Array:
     rings: Array = 0.0
     placed_grooves = [(groove, g.bore, -1) for groove in g.piston_grooves]
     placed_grooves += [(groove, g.rod_diameter, 1) for groove in g.rod_grooves]
+    for place in g.static_places:
+        placed_grooves += [(groove, g.bore, -1) for groove in g.static_grooves if place]
     for groove, counterface, side in placed_grooves:
         for piece in groove.pieces:
             ring = mass.ring_mass(
@@ -82,6 +84,25 @@ def _seals(v: Values, g: Geometry) -> Array:
             )
             rings = rings + groove.count * ring
     return rings
+
+
+def _static_grooves(caps: Array, head: Array, g: Geometry) -> dict[str, Array]:
+    """Mass of the cap's spigot, and of the metal cut for static seals, with a negative sign.
+
+    `caps` and `head` are the densities of caps and head.
+    """
+    if not g.static_grooves:
+        return {}
+    (groove,) = g.static_grooves
+    cut = mass.piston_groove_volume(diameter=g.bore, depth=groove.gland_depth, width=groove.width)
+    wall = groove.gland_depth + LEAST_METAL
+    spigot = mass.layer_area(inner_radius=g.inner_radius - wall, thickness=wall) * g.spigot
+    cap, head_place = g.static_places
+    additions = {"cap": caps * (spigot - cut) if cap else 0.0}
+    if head_place:
+        part, density = ("head", caps) if head_place == "rim" else ("glands", head)
+        additions[part] = -density * cut
+    return additions
 
 
 def _rod_ends(v: Values, design: Design, rod: RodSection) -> Array:
@@ -128,6 +149,9 @@ def parts(
         "fastening": _rod_ends(v, design, rod),
         "clevises": clevises,
     }
+    head = v[f"materials.{design.head.material}.density"]
+    for part, addition in _static_grooves(caps, head, g).items():
+        masses[part] = masses[part] + addition
     for end_joint in joints_of(design):
         end = end_at(design, end_joint, Numbers(v, end_joint.path), g)
         for part, addition in end_joint.joint.mass(end, stock).items():
@@ -155,6 +179,8 @@ def left_out(design: Design) -> tuple[str, ...]:
     A bonded end needs no static seal, since the adhesive seals it.
     """
     stated = {component.kind for component in design.extra_masses}
+    if design.seals.static is not None:
+        stated.add("static_seals")
     joints = joints_of(design)
     if joints and all("adhesive" in end.joint.kinds for end in joints):
         stated.add("static_seals")

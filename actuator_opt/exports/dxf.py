@@ -216,17 +216,18 @@ def _stations(lengths: Mapping[str, float]) -> dict[str, tuple[float, float]]:
     """Start and end position of every axial length, mm."""
     mm = {name: 1000 * value for name, value in lengths.items()}
     face = mm["eye_offset"]
-    start = face + mm["plate"]
+    plate = face + mm["plate"]
+    start = plate + mm["spigot"]
     end = start + mm["barrel_length"]
     piston = start + mm["piston_length"]
     spans = {
-        "plate": (face, start),
+        "plate": (face, plate),
         "piston": (start, piston),
         "stroke": (piston, piston + mm["stroke"]),
         "head": (end - mm["head_length"], end),
         "other plate": (end, end + mm["plate"]),
         "extension": (end + mm["plate"], end + mm["plate"] + mm["extension"]),
-        "barrel": (start - mm["beyond_cap"], end + mm["beyond_head"]),
+        "barrel": (plate - mm["beyond_cap"], end + mm["beyond_head"]),
         "closed length": (mm["pin_cap"], mm["pin_rod"]),
     }
     return {name: span for name, span in spans.items() if span[1] - span[0] > _SMALLEST}

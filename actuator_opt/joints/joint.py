@@ -293,6 +293,9 @@ class Life(NamedTuple):
     factor: Array
 
 
+StaticPlace: TypeAlias = Literal["", "rim", "bore"]
+"""Place of a static seal: none, in the rim of a plug, or inside the barrel on head and spigot."""
+
 Form: TypeAlias = Literal["skirts", "plugs", "plates"]
 
 Thermal = Callable[[Array, bool], Array]
@@ -396,6 +399,13 @@ class Joint:
     warnings: Callable[[Loaded, Mapping[str, Quantity]], Iterable[tuple[str, str]]]
     """Function that yields a pair (metric, sentence) for each warning; its second argument has the
     quantities of all metrics."""
+
+    @property
+    def static_seal(self) -> StaticPlace:
+        """Where the static seal of the end is; an adhesive seals by itself."""
+        if "adhesive" in self.kinds:
+            return ""
+        return "rim" if self.form == "plugs" else "bore"
 
     @property
     def plural(self) -> bool:

@@ -111,8 +111,10 @@ def test_limits_that_contradict_each_other_by_definition():
     Giving up a margin s of the least, or t of the largest, moves squeezes by 0.20 s and 0.18 t:
     the least squeeze is the cheaper one to give up, and either alone is enough.
     """
+    text = STEEL.read_text("utf-8")
+    start = text.index("  static:")  # its squeeze is fixed, and would be a contradiction of its own
     card = best(
-        STEEL,
+        text[:start] + text[text.index("load:\n") :],
         requirements__seal_squeeze__min="20 %",
         requirements__seal_squeeze_max__max="18 %",
         requirements__friction_running__max="2 kN",

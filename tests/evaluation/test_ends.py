@@ -14,6 +14,7 @@ from actuator_opt.optimisation.run import optimise
 
 DESIGNS = Path(__file__).parents[2] / "designs"
 STEEL = (DESIGNS / "steel_baseline.yaml").read_text("utf-8")
+STEEL = STEEL[: STEEL.index("  static:")] + STEEL[STEEL.index("load:\n") :]
 KNEE = (DESIGNS / "knee_bonded.yaml").read_text("utf-8")
 SCREWED = "    type: thread\n    length: 10 mm\n    wall: 2 mm\n    thread: {pitch: 1 mm}\n"
 BONDED = "    type: bond\n    length: 25 mm\n    wall: 1.5 mm\n    material: epoxy_structural\n"

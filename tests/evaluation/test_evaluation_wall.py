@@ -183,7 +183,7 @@ def test_tie_rods_share_the_force_with_the_barrel(tmp_path):
 
 def test_temperature_changes_the_preload_of_tie_rods(tmp_path):
     """Barrel and plates grow against the rods; each temperature has its own factor."""
-    _, values, done = _done(_file(tmp_path, *TIED))
+    _, _, done = _done(_file(tmp_path, *TIED))
     wall, g = done.wall, done.geometry
     assert wall.path.clamp is not None
     barrel = 1 / (wall.swelling.stretch * g.barrel_length)
