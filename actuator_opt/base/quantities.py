@@ -215,6 +215,7 @@ MATERIAL_PROPERTIES = _table("""
  tait_modulus         | K_00   | pressure    | GPa    | 0.5    | 200  | zero-pressure bulk modulus of the Tait law, extrapolated to 0 K
  tait_decay           | c_K    | per_temperature | 1/K | 0     | 0.02 | relative fall of the Tait modulus per kelvin
  tait_coefficient     | B      | ratio       | -      | 1.5    | 30   | coefficient of the Tait law: K' at zero pressure plus 1
+plastic_shear_strain | gamma_p| ratio       | %    | 0      | 300  | plastic shear strain of the adhesive at failure
  bond_thickness       | t_a    | length      | mm     | 0.005  | 5    | bond line thickness
  speed_max            | v_max  | speed       | m/s    | 0.001  | 50   | highest sliding speed
  softening            | b_E    | per_temperature | 1/K | -0.01 | 0.05 | relative fall of the elastomer's modulus per kelvin

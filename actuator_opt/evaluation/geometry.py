@@ -13,7 +13,7 @@ from math import pi
 from typing import Any, Literal, NamedTuple
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, absolute, maximum, minimum
+from ..base.numeric import Array, absolute, maximum
 from ..design.material import Material
 from ..design.model import Design, EndRetention, Ply, closed_length, spigot_length
 from ..design.seals import Seal, SealElement
@@ -456,8 +456,11 @@ def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, 
     plugs = {"geometry_lip": lips, "geometry_plug": (g.plate - static_width) / 2}
     sealed: dict[str, Any] = {}
     if g.static_places[1] == "bore":
-        depth = g.inner_radius - g.rod_diameter / 2 - head_depth - g.static_grooves[0].gland_depth
-        sealed = {"geometry_static_seal": minimum(depth, (g.head_length - static_width) / 2)}
+        depth = g.static_grooves[0].gland_depth
+        sealed["geometry_static_seal"] = {
+            "radial": g.inner_radius - g.rod_diameter / 2 - head_depth - depth,
+            "axial": (g.head_length - static_width) / 2,
+        }
     return (
         bore
         | skirts

@@ -175,6 +175,17 @@ def climates(v: Values, design: Design) -> tuple[Climate, ...]:
     )
 
 
+def warmings(v: Values, design: Design) -> dict[str, Array]:
+    """Temperature changes since assembly, cold and hot [K]; empty without a temperature range."""
+    if design.environment is None:
+        return {}
+    start = v["environment.assembly_temperature"]
+    return {
+        "cold": v["environment.temperature_min"] - start,
+        "hot": v["environment.temperature_max"] - start,
+    }
+
+
 def layers(
     v: Values,
     stock: MaterialValues,

@@ -271,9 +271,7 @@ def thermal(
     for place, factor in bonds.items():
         if isinstance(factor, str):
             continue
-        for word in ("cold", "hot"):
-            limit = "min" if word == "cold" else "max"
-            warming = v[f"environment.temperature_{limit}"] - v["environment.assembly_temperature"]
+        for word, warming in plies.warmings(v, design).items():
             factors[f"{place}, {word}"] = factor(warming, word == "cold")
     if factors:
         out.put(metric, factors)

@@ -19,7 +19,7 @@ from ..joints.kinds import JOINTS
 from ..joints.overlap import Overlap
 from ..models import end_plate, ply, retention, rod
 from ..models.end_bending import ShellLayer
-from . import rod_strength, rods
+from . import plies, rod_strength, rods
 from .barrel import Wall
 from .barrel.wall import largest_area
 from .geometry import (
@@ -143,7 +143,7 @@ def compute(
     out.put("buckling_factor", beam.critical / push)
     rod_strength.compute(design, section, beam, supply, push, pull, out)
     _rod_end(v, stock, design, section, pull, out)
-    thermal = _retention(loaded_joints, out)
+    thermal = _retention(loaded_joints, plies.warmings(v, design), out)
     fittings = rods.fittings(v, stock, design, section)
     _fittings(stock, fittings, push, out)
     thermal["rod fittings"] = fittings if isinstance(fittings, str) else fittings.thermal(stock)
@@ -219,8 +219,12 @@ def _rod_end(
     out.put("thread_factor", strength / stress)
 
 
-def _retention(loaded_joints: Sequence[LoadedJoint], out: MetricArrays) -> dict[str, Thermal | str]:
+def _retention(
+    loaded_joints: Sequence[LoadedJoint], warmings: Mapping[str, Array], out: MetricArrays
+) -> dict[str, Thermal | str]:
     """Compute elastic limit and breaking load of the joints, divided by the largest axial force.
+
+    `warmings` are the temperature changes since assembly, cold and hot [K].
 
     Returns, for each end, the function for its strength under temperature alone, or the reason why
     that strength is unknown.
@@ -240,6 +244,10 @@ def _retention(loaded_joints: Sequence[LoadedJoint], out: MetricArrays) -> dict[
         else:
             working |= end.placed(strength.working)
             burst |= end.placed(strength.burst)
+            if strength.combined is not None:
+                for word, warming in warmings.items():
+                    factor = strength.combined(warming, word == "cold")
+                    burst |= end.placed({f"with temperature, {word}": factor})
             thermal[place] = strength.thermal
     for metric, factors in (("retention_factor", working), ("retention_burst_factor", burst)):
         if unknown:

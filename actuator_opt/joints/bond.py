@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from functools import partial
 
 from ..base.numeric import Array
+from ..base.quantities import Quantity
+from ..models import lap_joint
 from . import overlap
 from .joint import (
     End,
@@ -18,7 +21,13 @@ from .joint import (
     WallPressures,
     nothing,
 )
-from .overlap import Overlap, mismatch
+from .overlap import BOND_THICKNESS, Overlap, mismatch
+
+AT_SKIRT = "bond at the skirt's edge"
+PEEL = "peel of the plies at the skirt's edge"
+TO_YOUNG = 2.6
+"""Young's modulus divided by shear modulus, 2 (1 + nu), of an adhesive that states no Young's
+modulus: Poisson's ratio 0.3, our choice."""
 
 
 def _fit(end: End) -> EndDimensions:
@@ -53,11 +62,52 @@ def _strength(loaded: Loaded) -> Strength | str:
     overlap = _overlap(loaded)
     if isinstance(overlap, str):
         return overlap
+    edges = overlap.edge_factors(loaded.materials, loaded.force)
+    ductile = overlap.ductile(loaded.materials)
     return Strength(
-        overlap.edge_factors(loaded.materials, loaded.force),
+        edges | _peel(loaded, edges[AT_SKIRT]),
         {"": overlap.mean_factor(loaded.materials, loaded.force)},
         overlap.thermal(loaded.materials),
+        partial(overlap.ultimate_factor, loaded.materials, loaded.force) if ductile else None,
     )
+
+
+def _peel(loaded: Loaded, edge: Array) -> dict[str, Array]:
+    """Strength across the outermost plies divided by the peel stress at the skirt's edge.
+
+    `edge` is the bond strength divided by the shear stress there. A metal barrel has no such row,
+    as the peel strength of adhesives is not part of their data.
+    """
+    end, materials = loaded.end, loaded.materials
+    assert end.material is not None
+    ply = end.layers[-1].material
+    strength = materials.allowable(ply, "strength_2_tension")
+    ratio = materials.get(end.cap, "poissons_ratio")
+    if materials.kind(ply) != "ply" or strength is None or ratio is None:
+        return {}
+    shear_modulus = materials.get(end.material, "shear_modulus")
+    peel = lap_joint.edge_peel(
+        shear=materials.allowable(end.material, "bond_strength") / edge,
+        adhesive_modulus=materials.get(
+            end.material, "youngs_modulus", default=TO_YOUNG * shear_modulus
+        ),
+        bond_thickness=materials.get(end.material, "bond_thickness", default=BOND_THICKNESS),
+        skirt_modulus=materials.get(end.cap, "youngs_modulus"),
+        skirt_poissons_ratio=ratio,
+        skirt_thickness=end.sizes["wall"],
+    )
+    return {PEEL: strength / peel}
+
+
+def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
+    """Warn that force and heat are checked apart if the adhesive's data allow no more."""
+    overlap = _overlap(loaded)
+    if not isinstance(overlap, str) and not overlap.ductile(loaded.materials):
+        yield (
+            "retention_burst_factor",
+            "force and temperature act on the bond together, but are checked apart: state "
+            f"plastic_shear_strain of {loaded.end.material} to check both",
+        )
 
 
 def _envelope(loaded: Loaded, burst: Mapping[str, Array]) -> dict[str, Array]:
@@ -110,8 +160,9 @@ JOINT = Joint(
     models={
         ("retention_factor", "bond at the skirt's edge"): "lap_joint.bond_edge_shear",
         ("retention_factor", "bond at the barrel's edge"): "lap_joint.bond_edge_shear",
+        ("retention_factor", PEEL): "lap_joint.edge_peel",
         ("yield_factor", overlap.BESIDE): "end_bending.edge_stresses",
     },
     usual=(),
-    warnings=nothing,
+    warnings=_warnings,
 )

@@ -299,7 +299,7 @@ StaticPlace: TypeAlias = Literal["", "rim", "bore"]
 Form: TypeAlias = Literal["skirts", "plugs", "plates"]
 
 Thermal = Callable[[Array, bool], Array]
-"""Function that returns the strength divided by the load that a temperature change alone causes.
+"""Function that returns the strength divided by the load of a temperature change.
 Its arguments are the change [K], and whether to use the strength at the lowest temperature."""
 
 
@@ -331,12 +331,14 @@ class Strength:
 
     `working` is the elastic limit and `burst` the breaking load, each divided by the largest force;
     both are dicts whose keys are locations. `thermal` is a function for the factor under
-    temperature alone, or the reason why that factor is unknown.
+    temperature alone, or the reason why that factor is unknown. `combined` is a function for the
+    burst factor under the force, after a temperature change; None if it is unknown.
     """
 
     working: Mapping[str, Array]
     burst: Mapping[str, Array]
     thermal: Thermal | str
+    combined: Thermal | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

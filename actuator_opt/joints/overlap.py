@@ -2,7 +2,9 @@
 
 Shear at both edges of the overlap is calculated under force alone, and under temperature alone at
 the lowest and the highest temperature. The two are not added: their elastic sum is too high for an
-adhesive that yields before it breaks. Bonded and screwed joints share the code for skirts.
+adhesive that yields before it breaks. If the plastic shear strain of the adhesive is known, the
+breaking force at each temperature is calculated too, which combines both. Bonded and screwed joints
+share the code for skirts.
 """
 
 from __future__ import annotations
@@ -27,6 +29,9 @@ from .joint import (
     Thermal,
 )
 
+BOND_THICKNESS = 0.15e-3
+"""Thickness of a bond whose adhesive states none [m]. Our choice: glass beads of this size."""
+
 
 @dataclass(frozen=True, slots=True)
 class Overlap:
@@ -50,7 +55,9 @@ class Overlap:
         return {
             "length": self.length,
             "shear_modulus": materials.get(self.adhesive, "shear_modulus"),
-            "bond_thickness": materials.get(self.adhesive, "bond_thickness", default=0.15e-3),
+            "bond_thickness": materials.get(
+                self.adhesive, "bond_thickness", default=BOND_THICKNESS
+            ),
         }
 
     def edge_factors(self, materials: MaterialProperties, force: Array) -> dict[str, Array]:
@@ -82,6 +89,37 @@ class Overlap:
         """Bond strength divided by mean shear stress under a force."""
         strength = materials.allowable(self.adhesive, "bond_strength")
         return strength * (pi * self.diameter * self.length) / force
+
+    def ultimate_factor(
+        self, materials: MaterialProperties, force: Array, warming: Array, cold: bool
+    ) -> Array:
+        """Breaking force of the bond divided by a force, after a temperature change [K].
+
+        It needs the adhesive's plastic shear strain and both thermal expansions.
+        """
+        common = self._adhesive(materials) | {
+            "strength": materials.allowable(self.adhesive, "bond_strength", cold=cold),
+            "plastic_shear_strain": materials.get(self.adhesive, "plastic_shear_strain"),
+        }
+        mismatch = self.mismatch * warming
+        at_metal, at_tube = (
+            lap_joint.ultimate_line_force(
+                strain_difference=difference,
+                membrane_stiffness_loaded=loaded,
+                membrane_stiffness_free=free,
+                **common,
+            )
+            for difference, loaded, free in (
+                (-mismatch, self.tube, self.metal),
+                (mismatch, self.metal, self.tube),
+            )
+        )
+        return minimum(at_metal, at_tube) * (pi * self.diameter) / force
+
+    def ductile(self, materials: MaterialProperties) -> bool:
+        """Whether the data for `ultimate_factor` are known."""
+        strain = materials.get(self.adhesive, "plastic_shear_strain")
+        return strain is not None and self.mismatch is not None
 
     def thermal_factor(self, materials: MaterialProperties, warming: Array, cold: bool) -> Array:
         """Bond strength divided by the shear at the edges that a temperature change causes.

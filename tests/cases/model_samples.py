@@ -402,6 +402,15 @@ SAMPLES = {
         )
     ],
     "lap_joint.least_bond_peak_ratio": {**BOND, "membrane_stiffness": 50e6},
+    "lap_joint.ultimate_line_force": {
+        "strain_difference": 6e-4, "length": 16e-3, "strength": 28e6, "shear_modulus": 1.2e9,
+        "plastic_shear_strain": 0.1, "bond_thickness": 0.15e-3,
+        "membrane_stiffness_loaded": 120e6, "membrane_stiffness_free": 140e6,
+    },
+    "lap_joint.edge_peel": {
+        "shear": 28e6, "adhesive_modulus": 3e9, "bond_thickness": 0.15e-3, "skirt_modulus": 71.7e9,
+        "skirt_poissons_ratio": 0.33, "skirt_thickness": 2e-3,
+    },
     "lap_joint.bond_edge_shear": {
         "force": 1e4, "diameter": 30e-3, **BOND, "membrane_stiffness_loaded": 100e6,
         "membrane_stiffness_free": 50e6,

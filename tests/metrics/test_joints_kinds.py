@@ -26,6 +26,7 @@ from actuator_opt.metrics import METRICS
 
 DESIGNS = Path(__file__).parents[2] / "designs"
 STEEL = (DESIGNS / "steel_baseline.yaml").read_text("utf-8").partition("\nvariables:")[0] + "\n"
+STEEL = STEEL[: STEEL.index("  static:")] + STEEL[STEEL.index("load:\n") :]
 RETENTION = STEEL[STEEL.index("retention:\n") : STEEL.index("\nclevis:")]
 BLOCKS = {
     "bond": "type: bond\n  material: epoxy_structural\n  length: 20 mm\n  wall: 2 mm\n",

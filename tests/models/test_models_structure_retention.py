@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from math import cos, cosh, inf, log, pi, sinh, sqrt, tanh
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
+from scipy.optimize import brentq
 
+import actuator_opt as ao
 from actuator_opt.models import end_plate, endurance, lap_joint, retention
 
 
@@ -174,3 +177,101 @@ def test_fatigue_at_the_ends_of_its_range():
         peak_stress=stress, ultimate_strength=700e6, amplitude_strength=250e6
     )
     assert factor[0] == factor[1] == inf
+
+
+ADHESIVE = {
+    "length": 16e-3,
+    "strength": 28e6,
+    "shear_modulus": 1.2e9,
+    "bond_thickness": 0.15e-3,
+    "membrane_stiffness_loaded": 120e6,
+    "membrane_stiffness_free": 140e6,
+}
+
+
+def test_breaking_force_of_a_ductile_bond_by_the_worked_numbers():
+    """Energy 3.12667 N/mm: 457.209 N/mm alone, 385.209 with a mismatch of 6e-4; cap 448."""
+    ductile = ADHESIVE | {"plastic_shear_strain": 0.1}
+    long = ductile | {"length": 1.0}
+    alone = lap_joint.ultimate_line_force(strain_difference=0.0, **long)
+    assert alone == pytest.approx(457.209e3, rel=1e-5)
+    both = lap_joint.ultimate_line_force(strain_difference=6e-4, **ductile)
+    assert both == pytest.approx(385.209e3, rel=1e-5)
+    capped = lap_joint.ultimate_line_force(strain_difference=0.0, **ductile)
+    assert capped == pytest.approx(448e3, rel=1e-9)
+
+
+@pytest.mark.parametrize("mismatch", [0.0, 4e-4, -3e-4])
+def test_a_brittle_bond_breaks_at_the_sum_of_both_shears(mismatch):
+    """Without plastic strain, the elastic shears of force and mismatch add up to the strength."""
+    size = ADHESIVE | {"length": 80e-3}
+    line = lap_joint.ultimate_line_force(
+        strain_difference=mismatch, plastic_shear_strain=0.0, **size
+    )
+    elastic = {k: size[k] for k in ("length", "shear_modulus", "bond_thickness")}
+    by_force = lap_joint.bond_edge_shear(
+        force=line * pi * 30e-3,
+        diameter=30e-3,
+        membrane_stiffness_loaded=120e6,
+        membrane_stiffness_free=140e6,
+        **elastic,
+    )
+    by_heat = lap_joint.bond_thermal_shear(
+        strain_difference=mismatch,
+        membrane_stiffness_1=120e6,
+        membrane_stiffness_2=140e6,
+        **elastic,
+    )
+    assert by_force + by_heat == pytest.approx(28e6, rel=1e-6)
+
+
+@pytest.mark.parametrize("mismatch", [0.0, 6e-4])
+def test_breaking_force_of_a_ductile_bond_by_shooting(mismatch):
+    """Both walls and the adhesive's curve, integrated along the overlap until the edge breaks."""
+    lag, strong, thick, loaded, free = 1.2e9, 28e6, 0.15e-3, 120e6, 140e6
+    failure, overlap = strong / lag + 0.03, 30e-3
+
+    def along(x, state):
+        gamma, force = state
+        strain = force / loaded + mismatch - (total - force) / free
+        return [strain / thick, np.clip(lag * gamma, -strong, strong)]
+
+    def left(guess):
+        """Force of the loaded wall at its free end; it is 0 if the guessed total is right."""
+        nonlocal total
+        total = guess
+        end = solve_ivp(along, (overlap, 0), [failure, total], rtol=1e-10, atol=1e-12)
+        return end.y[1, -1] / total
+
+    total = 0.0
+    brentq(left, 50e3, 600e3, rtol=1e-10)
+    assert abs(left(total)) < 1e-3
+    line = lap_joint.ultimate_line_force(
+        strain_difference=mismatch,
+        plastic_shear_strain=0.03,
+        **(ADHESIVE | {"length": overlap}),
+    )
+    assert total == pytest.approx(float(line), rel=2e-2)
+
+
+def test_peel_by_the_worked_numbers():
+    """A skirt of 2 mm, and one of 0.5 mm: 0.71 of it."""
+    size = {
+        "shear": 28e6, "adhesive_modulus": 3e9, "bond_thickness": 0.15e-3, "skirt_modulus": 71.7e9,
+        "skirt_poissons_ratio": 0.33,
+    }  # fmt: skip
+    thick, thin = (lap_joint.edge_peel(**size, skirt_thickness=t) for t in (2e-3, 0.5e-3))
+    assert thick == pytest.approx(30.9425e6, rel=1e-5)
+    assert thin == pytest.approx(21.8796e6, rel=1e-5)
+
+
+def test_force_and_heat_on_the_bond_of_a_knee():
+    """With the adhesive's plastic strain stated, each temperature has a row of burst strength."""
+    path = Path(__file__).parents[2] / "designs" / "knee_bonded.yaml"
+    known = {"materials.epoxy_structural.plastic_shear_strain": "10 %"}
+    plain, ductile = ao.evaluate(ao.read(path)), ao.evaluate(ao.read(path, set=known))
+    assert any("checked apart" in text for text in plain.warnings)
+    assert not any("checked apart" in text for text in ductile.warnings)
+    row = ductile.metrics["retention_burst_factor"]
+    assert row.place.startswith("with temperature, ")
+    assert 0 < row.value < plain.metrics["retention_burst_factor"].value

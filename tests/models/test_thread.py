@@ -17,6 +17,7 @@ from actuator_opt.optimisation.choices import possible
 DESIGNS = Path(__file__).parents[2] / "designs"
 KNEE = (DESIGNS / "knee_bonded.yaml").read_text("utf-8")
 STEEL = (DESIGNS / "steel_baseline.yaml").read_text("utf-8")
+STEEL = STEEL[: STEEL.index("  static:")] + STEEL[STEEL.index("load:\n") :]
 SCREWED = KNEE.replace("  type: bond\n", "  type: thread\n  thread: {pitch: 1 mm}\n").replace(
     "  material: epoxy_structural\n", ""
 )

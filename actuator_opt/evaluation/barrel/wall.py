@@ -28,7 +28,7 @@ from ...models.strength import yield_utilisation
 from ...models.strength_modes import Stress
 from ..geometry import Geometry, Numbers, clamped, end_at, joints_of
 from ..limits import MaterialValues
-from ..plies import Layer, stress_of
+from ..plies import Layer, stress_of, warmings
 from ..state import LoadState
 from ..values import Values
 
@@ -190,12 +190,11 @@ def _preload_changes(
 ) -> dict[str, Array]:
     """Changes of the preload at the lowest and the highest temperature [N]; empty if unknown."""
     plate = stock.get(design.caps.material, "thermal_expansion")
-    if design.environment is None or expansion is None or plate is None or rods.growth is None:
+    if expansion is None or plate is None or rods.growth is None:
         return {}
-    start = v["environment.assembly_temperature"]
     return {
         word: barrel_ends.preload_change(
-            temperature_change=v[f"environment.temperature_{limit}"] - start,
+            temperature_change=warming,
             barrel_expansion=expansion,
             barrel_length=g.barrel_length,
             plate_expansion=plate,
@@ -204,7 +203,7 @@ def _preload_changes(
             tie_rod_length=1.0,
             **springs,
         )
-        for word, limit in (("cold", "min"), ("hot", "max"))
+        for word, warming in warmings(v, design).items()
     }
 
 
