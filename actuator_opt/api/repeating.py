@@ -32,7 +32,7 @@ OPTIMISED, EVALUATED = ("optimise", "optimize", "sensitivity"), ("evaluate", "re
 FRONTS = ("pareto",)
 """Commands whose reports can be repeated: optimisations, evaluations and Pareto fronts."""
 _VALUES = ("--algorithm", "--verify-dynamics", "--date")
-_FLAGS = ("--whole-plies", "--standard-sizes", "--certify")
+_FLAGS = ("--whole-plies", "--standard-sizes", "--shop", "--certify")
 _LONGEST = 100_000
 """Maximum length of a command line, below the system's limit for one argument."""
 
@@ -265,6 +265,7 @@ def _again(
         seed=options.seed,
         whole_plies=options.whole_plies,
         standard_sizes=options.standard_sizes,
+        shop=options.shop,
         certify=options.certify,
         yield_target=options.yield_target,
     )

@@ -97,6 +97,14 @@ StandardSizes = Annotated[
         "allowed angles.",
     ),
 ]
+Shop = Annotated[
+    bool,
+    typer.Option(
+        "--shop",
+        help="Also find the best design in steps of 0.1 mm, 1 deg and 1 % squeeze; --write saves "
+        "it for drawings.",
+    ),
+]
 Certify = Annotated[
     bool,
     typer.Option(

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from decimal import Decimal
+from math import pi
 from typing import Any
 
 from ..base import errors
@@ -146,8 +147,13 @@ def _read_list(
             yield Fault((*loc, index), message, "remove it, or widen the bounds")
 
 
+SHOP_STEPS = {"length": 1e-4, "angle": pi / 180, "ratio": 1e-2}
+"""Steps of dimensions in a workshop, by dimension: 0.1 mm, 1 deg, and 1 % for the squeeze of a
+seal. Our choice."""
+
+
 def groups(
-    tree: Any, *, plies: bool = False, standard: bool = False
+    tree: Any, *, plies: bool = False, standard: bool = False, shop: bool = False
 ) -> tuple[tuple[VariableGroup, ...], tuple[Fault, ...]]:
     """Find the variables with discrete sizes; variables that depend on each other share a group.
 
@@ -158,13 +164,18 @@ def groups(
         allowed angles
     standard : whether every variable for which a standard series exists takes only sizes of that
         series
+    shop : whether every other variable takes only multiples of a workshop's step (`SHOP_STEPS`)
 
     Returns
     -------
     groups of variables, and faults of variables that no size suits
     """
     view = FileView(tree)
-    rules = {path: rule for path in _paths(tree) if (rule := _rule(view, path, plies, standard))}
+    rules = {}
+    for path in _paths(tree):
+        rule = _rule(view, path, plies, standard) or (_shop_rule(view, path) if shop else None)
+        if rule is not None:
+            rules[path] = rule
     size_groups, faults = [], []
     for members in _families(rules):
         try:
@@ -217,10 +228,7 @@ def _rule(view: FileView, path: str, plies: bool, standard: bool) -> _Rule | Non
     if isinstance(step, float):
         if (upper - lower) > step * MOST_SIZES:
             return None  # already a fault
-        quantity = resolve(path, view.tree).quantity
-        assert quantity is not None
-        return _Rule(path, f"steps of {quantity.text(step)}", f"multiple of {quantity.text(step)}",
-                     lambda _: _multiples(step, (lower, upper)))  # fmt: skip
+        return _step_rule(view, path, step)
     if isinstance(sizes, (list, tuple)):
         values = sorted(value for value in sizes if isinstance(value, float))
         if not values or len(values) < len(sizes):
@@ -234,6 +242,27 @@ def _rule(view: FileView, path: str, plies: bool, standard: bool) -> _Rule | Non
         if selected and series.paths.fullmatch(path) and series.fault(view, path) is None:
             return _series_rule(series, view, path)
     return None
+
+
+def _step_rule(view: FileView, path: str, step: float) -> _Rule:
+    quantity, bounds = resolve(path, view.tree).quantity, _bounds(view, path)
+    assert quantity is not None
+    return _Rule(path, f"steps of {quantity.text(step)}", f"multiple of {quantity.text(step)}",
+                 lambda _: _multiples(step, bounds))  # fmt: skip
+
+
+def _shop_rule(view: FileView, path: str) -> _Rule | None:
+    """Rule for steps of a workshop, ten times as large while the bounds contain too many of them.
+
+    None for a variable that is no dimension of a part.
+    """
+    quantity, (lower, upper) = resolve(path, view.tree).quantity, _bounds(view, path)
+    step = SHOP_STEPS.get("" if quantity is None else quantity.dimension)
+    if step is None:
+        return None
+    while upper - lower > step * MOST_SIZES:
+        step = 10 * step
+    return _step_rule(view, path, step)
 
 
 def _series_rule(series: SizeSeries, view: FileView, path: str) -> _Rule:

@@ -20,6 +20,7 @@ from ..base.errors import library
 from ..evaluation.outline import notes
 from ..evaluation.result import Evaluation, Outline
 from ..rendering.ink import spread
+from . import fits
 from .step import EYES, Profile, joined, millimetres, title
 
 _CONTROL = re.compile(
@@ -507,6 +508,7 @@ def _words(
         "Rings are drawn as rectangles in their grooves, not with their true sections.",
     ]
     lines += notes(evaluation.design, evaluation.lengths)
+    lines += ["", *fits.notes(evaluation), *_masses(evaluation)]
     x, y = corner
     for index, words in enumerate(lines):
         if words:
@@ -514,6 +516,13 @@ def _words(
             attributes = {"layer": "text", "height": paper.letter, "style": "Standard"}
             place = (x, y - index * 1.7 * paper.letter)
             space.add_text(text, dxfattribs=attributes).set_placement(place)
+
+
+def _masses(evaluation: Evaluation) -> Iterator[str]:
+    """Yield the masses of the parts and their sum."""
+    parts = ((title(part), mass) for part, mass in evaluation.mass_parts.items() if mass)
+    yield "Mass: " + ", ".join(f"{name} {1e3 * mass:.4g} g" for name, mass in parts)
+    yield f"Sum {1e3 * sum(evaluation.mass_parts.values()):.4g} g, without oil."
 
 
 @contextmanager

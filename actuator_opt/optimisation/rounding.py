@@ -246,6 +246,7 @@ class Wanted:
 
     whole_plies: bool = False
     standard: bool = False
+    shop: bool = False
 
 
 @dataclass(frozen=True)
@@ -346,7 +347,9 @@ def sizes_of(
     """
     if requested.whole_plies or requested.standard:
         _require_plies(design, requested, materials)
-    size_groups, faults = groups(design, plies=requested.whole_plies, standard=requested.standard)
+    size_groups, faults = groups(
+        design, plies=requested.whole_plies, standard=requested.standard, shop=requested.shop
+    )
     if faults:
         raise InputError(
             [
@@ -357,7 +360,7 @@ def sizes_of(
                 for conflict in faults
             ]
         )
-    if not size_groups and (requested.whole_plies or requested.standard):
+    if not size_groups and (requested.whole_plies or requested.standard or requested.shop):
         raise InputError(_nothing_to_round(requested))
     place = {path: index for index, path in enumerate(design.variables)}
     listed = tuple(
@@ -408,6 +411,9 @@ def _nothing_to_round(requested: Wanted) -> Diagnostic:
     if requested.standard:
         message = "nothing to round: no variable has standard sizes"
         remedy = "make cylinder.bore or rod.outer_diameter a variable, or give a variable sizes"
+    elif requested.shop and not requested.whole_plies:
+        message = "nothing to round: no variable is a length, an angle or a squeeze"
+        remedy = "make a dimension a variable, or omit --shop"
     else:
         message = (
             "nothing to round: no variable is the thickness of a layer with ply_thickness, or "

@@ -152,6 +152,7 @@ def optimise(
     max_seconds: float | None = None,
     whole_plies: bool = False,
     standard_sizes: bool = False,
+    shop: bool = False,
     certify: bool = False,
     keep_interrupted: bool = False,
     explain: bool = True,
@@ -172,6 +173,7 @@ def optimise(
     whole_plies : whether to find also the best design with whole plies and allowed angles
     standard_sizes : whether to find also the best design with standard sizes for all variables that
         have them
+    shop : whether to find also the best design whose other variables are in steps of a workshop
     certify : whether to prove how far the design is from the best possible design
     explain : whether to explain an infeasible result
     keep_interrupted : whether the best design so far is kept after Ctrl-C; not for designs with
@@ -180,7 +182,7 @@ def optimise(
     """
     began = time.perf_counter()
     deadline = None if max_seconds is None else began + max_seconds
-    requested = Wanted(whole_plies, standard_sizes)
+    requested = Wanted(whole_plies, standard_sizes, shop)
     sizes = sizes_of(subject.design, requested, subject.materials, fault)
     sized: Sized | None = None
     choices: Choices | None = None
