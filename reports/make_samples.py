@@ -20,6 +20,7 @@ STUDIES = (
     "knee_materials",
     "knee_dynamics",
     "knee_seals",
+    "knee_joints",
     "knee_pressure",
     "knee_custom_constraint",
     "course_servo",

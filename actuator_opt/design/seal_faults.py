@@ -254,7 +254,8 @@ def static_seal(view: FileView) -> Iterator[Fault]:
     if bore is None or rod_diameter is None or inner is None:
         return
     rest = (bore - rod_diameter) / 2 - inner - depth
-    if rest <= 0 and not view.has("variables", "cylinder.bore"):
+    free = ("cylinder.bore", "rod.outer_diameter")
+    if rest <= 0 and not any(view.has("variables", path) for path in free):
         yield Fault(
             (*loc, "section"),
             "its groove and that of the rod seal meet in the head",

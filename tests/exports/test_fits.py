@@ -24,9 +24,9 @@ def test_tolerances_by_the_formulas_of_the_standard():
     for below, (largest, seventh, eighth, upper) in zip(lowest, fits.RANGES[1:], strict=False):
         mean = (below * largest) ** 0.5
         unit = 0.45 * mean ** (1 / 3) + 0.001 * mean
-        assert seventh == pytest.approx(16 * unit, rel=0.04, abs=0.6)
-        assert eighth == pytest.approx(25 * unit, rel=0.04, abs=0.6)
-        assert -upper == pytest.approx(5.5 * mean**0.41, rel=0.06, abs=0.6)
+        assert seventh == pytest.approx(16 * unit, rel=0.05, abs=1.0)
+        assert eighth == pytest.approx(25 * unit, rel=0.05, abs=1.0)
+        assert -upper == pytest.approx(5.5 * mean**0.41, rel=0.06, abs=1.0)
     assert all(a[0] < b[0] and a[1] < b[1] for a, b in pairwise(fits.RANGES))
 
 

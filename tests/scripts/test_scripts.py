@@ -45,6 +45,7 @@ def test_every_script_of_the_folder_is_tested() -> None:
         "knee_calibration.py",
         "knee_custom_constraint.py",
         "knee_dynamics.py",
+        "knee_joints.py",
         "knee_pressure.py",
         "knee_seals.py",
         "knee_materials.py",
