@@ -17,6 +17,7 @@ from ..base.errors import Fault, article
 from ..base.quantities import length_text
 from ..joints.joint import Joint
 from ..models import linkage as crank
+from ..models.piston_nut import HEIGHT
 from . import choices, material, seal_faults, wall_faults
 from .kinds import MaterialName
 from .material import ROLES
@@ -318,6 +319,40 @@ def _smaller(
     )
 
 
+def piston_nut(view: FileView) -> Iterator[Fault]:
+    """Check that the rod has a shoulder for the piston, and the piston a web under its nut."""
+    loc = ("piston", "nut")
+    if not view.has(*loc):
+        return
+    if view.items("rod", "layup"):
+        yield Fault(
+            loc,
+            "a laminated rod has no shoulder against which a nut could clamp the piston",
+            "remove the block, or use a rod of one metal",
+            at_key=True,
+        )
+        return
+    diameter, length = view.number(*loc, "diameter"), view.number("piston", "length")
+    rod_diameter = view.number("rod", "outer_diameter")
+    if diameter is None:
+        return
+    if rod_diameter is not None and diameter >= rod_diameter:
+        yield Fault(
+            (*loc, "diameter"),
+            f"{length_text(diameter)}: leaves no shoulder on the rod, which has "
+            f"{length_text(rod_diameter)}",
+            f"write less than {length_text(rod_diameter)}",
+        )
+    height = HEIGHT * diameter
+    if length is not None and height >= length and not view.has("variables", "piston.length"):
+        yield Fault(
+            (*loc, "diameter"),
+            f"the nut, {length_text(height)} high, does not fit into the piston, which is "
+            f"{length_text(length)} long",
+            "use a smaller thread, or increase piston.length",
+        )
+
+
 def rod(view: FileView) -> Iterator[Fault]:
     """Check that the rod fits into the bore, and the rod's own bore and thread into the rod."""
     yield from _smaller(view, ("rod", "outer_diameter"), ("cylinder", "bore"))
@@ -455,6 +490,7 @@ def _case_force(loc: Loc, case: dict[str, Any], *, linked: bool) -> Iterator[Fau
 
 CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
     rod,
+    piston_nut,
     barrel_length,
     wall_faults.skirts,
     supply,

@@ -445,6 +445,14 @@ class Rod(Section):
     fitting: Fitting | None = None
 
 
+class PistonNut(Section):
+    """Nut that clamps the piston on a stud of the rod, in a recess of the piston."""
+
+    diameter: Annotated[float, Of("thread_diameter", "nominal diameter of the thread")]
+    pitch: Annotated[float, Of("thread_pitch", "pitch")]
+    preload: Annotated[float, Of("force", "tension of the stud after tightening")]
+
+
 class Piston(Section):
     """The piston: a disc with the seal grooves."""
 
@@ -457,6 +465,7 @@ class Piston(Section):
     leakage_conductance: Annotated[
         float, Of("conductance", "leakage flow across the piston per pressure difference")
     ] = 0.0
+    nut: PistonNut | None = None
 
 
 class Head(Section):

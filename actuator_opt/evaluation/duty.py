@@ -6,9 +6,8 @@ from collections.abc import Sequence
 
 from ..base.numeric import Array, maximum, where
 from ..design.model import Design
-from ..joints.joint import Life
 from ..models import end_stop, endurance, oil_laws, rod
-from . import rod_strength
+from . import piston_nut, rod_strength
 from .barrel import Wall
 from .geometry import Geometry
 from .limits import MaterialValues, MetricArrays
@@ -42,7 +41,7 @@ def compute(
     """
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
-    _endurance(v, stock, design, wall, section, loaded_joints, supply, push, pull, out)
+    _endurance(v, stock, design, g, wall, section, loaded_joints, supply, push, pull, out)
     _end_stop(v, design, g, state, supply, stop, net, out)
     _trapped(v, stock, design, g, state, wall, supply, out)
     _layers(stock, wall, out)
@@ -55,6 +54,7 @@ def _endurance(
     v: Values,
     stock: MaterialValues,
     design: Design,
+    g: Geometry,
     wall: Wall,
     section: RodSection,
     loaded_joints: Sequence[LoadedJoint],
@@ -71,7 +71,7 @@ def _endurance(
             force=pull, diameter=v["rod.thread.diameter"], pitch=v["rod.thread.pitch"]
         )
         loads.append(("rod thread", section.end_material, stress, stress / 2))
-    lives: dict[str, Life] = {}
+    lives = piston_nut.lives(v, design, stock, g, pull)
     for end in loaded_joints:
         fatigue = end.joint.fatigue(end.loaded)
         loads += [(end.end_joint.placed(place), *load) for place, *load in fatigue.pulsed]

@@ -303,6 +303,8 @@ class Geometry:
     rod_length: Array
     piston_length: Array
     piston_clearance: Array
+    nut: Array
+    """Thread diameter of the nut that clamps the piston; 0 without one."""
     head_length: Array
     head_clearance: Array
     plate: Array
@@ -395,6 +397,7 @@ def derive(v: Values, design: Design) -> Geometry:
         rod_length=barrel_length - piston_length + plate + extension,
         piston_length=piston_length,
         piston_clearance=v["piston.clearance"],
+        nut=0.0 if design.piston.nut is None else v["piston.nut.diameter"],
         head_length=head_length,
         head_clearance=v["head.clearance"],
         plate=plate,

@@ -29,6 +29,7 @@ from . import (
     geometry as geometry_module,
     linkage as joint,
     motion,
+    piston_nut,
     rings as rings_module,
     rod_strength as beam_module,
     rods,
@@ -360,9 +361,14 @@ def statics(
     stop = joint.at_stop(case_state.demands, case_state.push)
     stop = replace(stop, mass=weight.moving(parts, stop.mass))
     duty.compute(v, design, stock, g, case_state, barrel, rod, loaded_joints, stop, net, out)
-    thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
-    for name, value in geometry_module.lands(g, thread / 2, eyes=design.clevis is not None).items():
+    hole = v["rod.thread.diameter"] / 2 if design.rod.thread is not None else g.rod_diameter / 2
+    if design.piston.nut is not None:
+        hole = piston_nut.recess(g)[1]
+    lands = geometry_module.lands(g, hole, eyes=design.clevis is not None)
+    for name, value in (lands | piston_nut.lands(design, g)).items():
         out.put(name, value)
+    if design.piston.nut is None:
+        out.skip("geometry_piston_web", piston_nut.NO_NUT)
     strength.joint_metrics(loaded_joints, out)
     if not g.rod_thicknesses:
         out.skip("geometry_rod_bore", "the rod has no layers")

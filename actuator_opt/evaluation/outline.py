@@ -22,6 +22,7 @@ from ..base.numeric import Array, maximum
 from ..design.material import Material
 from ..design.model import Design
 from ..joints.joint import LEAST_METAL, EndDimensions, EndSpan, Polygon, rectangle
+from ..models.piston_nut import FLATS
 from . import geometry as geometry_module
 from .geometry import (
     Geometry,
@@ -33,6 +34,7 @@ from .geometry import (
     joints_of,
 )
 from .kernel import PreparedDesign
+from .piston_nut import recess
 from .result import Outline
 from .rods import end_material
 
@@ -255,6 +257,12 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     )
     inner = _edge(at.head, at.end, at.hole, g.rod_grooves, at.rod, outside=False)
     plug = (*inner, *reversed(outer))
+    if float(g.nut) > 0:
+        height, corner = (float(size) for size in recess(g))
+        hole = float(g.nut) / 2
+        bottom = at.start + height
+        edge = ((at.piston_end, hole), (bottom, hole), (bottom, corner), (at.start, corner))
+        piston = (*piston[:-2], *edge)
     yield "piston", design.piston.material, [piston], 0
     yield "glands", design.head.material, [plug], 0
     yield from _rod(design, g, at)
@@ -280,8 +288,13 @@ def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     """The rod: a bar or tube, or its layers with the fittings in both ends."""
     bore = float(g.rod_inner_diameter) / 2
     if not design.rod.layup:
-        bar = rectangle(at.piston_end, at.tip, bore, at.rod)
-        yield "rod", design.rod.material, [bar], 0
+        bars = [rectangle(at.piston_end, at.tip, bore, at.rod)]
+        if float(g.nut) > 0:
+            radius, height = float(g.nut) / 2, float(recess(g)[0])
+            bars.append(rectangle(at.start, at.piston_end, 0.0, radius))
+            nut = rectangle(at.start, at.start + height, radius, FLATS * radius)
+            yield "piston nut", design.rod.material, [nut], 0
+        yield "rod", design.rod.material, bars, 0
         return
     radius = bore
     for i, (ply, thickness) in enumerate(zip(design.rod.layup, g.rod_thicknesses, strict=True)):

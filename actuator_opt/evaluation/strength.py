@@ -19,7 +19,7 @@ from ..joints.kinds import JOINTS
 from ..joints.overlap import Overlap
 from ..models import end_plate, ply, retention, rod
 from ..models.end_bending import ShellLayer
-from . import plies, rod_strength, rods
+from . import piston_nut, plies, rod_strength, rods
 from .barrel import Wall
 from .barrel.wall import largest_area
 from .geometry import (
@@ -139,10 +139,11 @@ def compute(
     for end in loaded_joints:
         parts |= end.placed(end.joint.yields(end.loaded))
     parts |= _fitting_yield(v, stock, design, section, push)
+    parts |= piston_nut.yields(v, design, stock, g, push, pull)
     out.put("yield_factor", parts)
     out.put("buckling_factor", beam.critical / push)
     rod_strength.compute(design, section, beam, supply, push, pull, out)
-    _rod_end(v, stock, design, section, pull, out)
+    _threads(v, stock, design, g, section, pull, out)
     thermal = _retention(loaded_joints, plies.warmings(v, design), out)
     fittings = rods.fittings(v, stock, design, section)
     _fittings(stock, fittings, push, out)
@@ -196,14 +197,22 @@ def _fitting_yield(
     return {"rod fitting": strength * rods.fitting_area(v, design, section) / push}
 
 
-def _rod_end(
+def _threads(
     v: Values,
     stock: MaterialValues,
     design: Design,
+    g: Geometry,
     section: RodSection,
     pull: Array,
     out: MetricArrays,
 ) -> None:
+    """Compute the strength of the rod's threads under the pull: at its end and at the piston."""
+    factors = piston_nut.thread_factor(v, design, stock, g, pull)
+    closed = piston_nut.closed(v, design, stock, g, pull)
+    if closed is None:
+        out.skip("piston_nut_factor", piston_nut.NO_NUT)
+    else:
+        out.put("piston_nut_factor", closed)
     strength = stock.allowable(section.end_material, "yield_strength")
     if design.rod.thread is None or strength is None:
         why = (
@@ -211,12 +220,16 @@ def _rod_end(
             if design.rod.thread is None
             else f"{section.end_material} has no yield strength"
         )
-        out.skip("thread_factor", why)
+        if factors:
+            out.put("thread_factor", factors)
+        else:
+            out.skip("thread_factor", why)
         return
     stress = rod.thread_stress(
         force=pull, diameter=v["rod.thread.diameter"], pitch=v["rod.thread.pitch"]
     )
-    out.put("thread_factor", strength / stress)
+    factor = strength / stress
+    out.put("thread_factor", {"rod end": factor, **factors} if factors else factor)
 
 
 def _retention(

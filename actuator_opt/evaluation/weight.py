@@ -9,6 +9,7 @@ from ..design.choices import COMPONENTS
 from ..design.model import Design
 from ..joints.joint import LEAST_METAL, EndDimensions
 from ..models import mass
+from . import piston_nut
 from .geometry import Geometry, Numbers, end_at, joints_of
 from .limits import MaterialValues
 from .rods import RodSection, fitting_hole
@@ -150,8 +151,9 @@ def parts(
         "clevises": clevises,
     }
     head = v[f"materials.{design.head.material}.density"]
-    for part, addition in _static_grooves(caps, head, g).items():
-        masses[part] = masses[part] + addition
+    for additions in (_static_grooves(caps, head, g), piston_nut.masses(v, design, g)):
+        for part, addition in additions.items():
+            masses[part] = masses[part] + addition
     for end_joint in joints_of(design):
         end = end_at(design, end_joint, Numbers(v, end_joint.path), g)
         for part, addition in end_joint.joint.mass(end, stock).items():
@@ -181,6 +183,8 @@ def left_out(design: Design) -> tuple[str, ...]:
     stated = {component.kind for component in design.extra_masses}
     if design.seals.static is not None:
         stated.add("static_seals")
+    if design.piston.nut is not None:
+        stated.add("piston_fastening")
     joints = joints_of(design)
     if joints and all("adhesive" in end.joint.kinds for end in joints):
         stated.add("static_seals")

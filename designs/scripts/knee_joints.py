@@ -56,6 +56,7 @@ RULES = (
     "The bore may grow at the seal by 4 µm at 21.4 mm and 210 bar, in proportion to bore and "
     "pressure; the clearance is always 30 µm.",
     "Rings have sections of 1.78 mm below 28 mm bore, 2.62 mm below 50 mm, and 3.53 mm above.",
+    "The nut of the piston is left out.",
     "Friction, seal extrusion, trapped oil and bearing pressure are not limited, as they depend on "
     "the seals and not on the joint. All other requirements are those of the knee.",
 )
@@ -105,6 +106,7 @@ def scaled(joint: str, pressure: float, bore: float) -> Data:
     for index, layer in enumerate(data["barrel"]["layup"]):
         least = 0.45 if joint == "bond" else 0.3 if index else 2.4
         layer["thickness"] = times(layer["thickness"], strong, least)
+    data["piston"].pop("nut", None)
     _seals(data["seals"], bore)
     for case in data["load_cases"]:
         for key in case.keys() & {"force", "side_load"}:

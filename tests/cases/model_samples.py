@@ -350,6 +350,16 @@ SAMPLES = {
         "outer_diameter": 25e-3, "poissons_ratio": 0.33,
     },
     "thread.spread_stress": {"force": 1e4, "thickness": 2e-3, "engagement": 8e-3},
+    "piston_nut.stud_share": {
+        "diameter": 8e-3, "shoulder_diameter": 11.5e-3, "stud_modulus": 206e9,
+        "piston_modulus": 71.7e9,
+    },
+    "piston_nut.shoulder_area": {"diameter": 8e-3, "shoulder_diameter": 12e-3},
+    "piston_nut.nut_volume": {"diameter": 8e-3},
+    "piston_nut.web_stress": {
+        "force": 5e3, "radius": 5.5e-3, "reach": 1.4e-3, "thickness": 2e-3,
+    },
+    "piston_nut.corner_radius": {"diameter": 8e-3},
     "retaining_ring.groove_area": GROOVE,
     "retaining_ring.lip_shear": {"force": 7e3, "lip_length": 3e-3, **GROOVE},
     "retaining_ring.lip_bending": {"force": 7e3, "lip_length": 3e-3, **GROOVE},

@@ -105,7 +105,7 @@ def test_relaxing_any_active_requirement_of_the_knee_saves_mass(optima) -> None:
 
 def test_the_steel_baseline_has_the_duty_of_the_knee() -> None:
     """Everything that is asked of the knee is asked of the steel cylinder, word for word."""
-    names = ("knee_bonded", "steel_baseline", "knee", "knee_joints")
+    names = ("knee_bonded", "steel_baseline", "knee", "knee_choices")
     knee, steel, held, chosen = (verbs.read(DESIGNS / f"{n}.yaml").design for n in names)
     asked = ("fluid", "supply", "environment", "seals", "load", "load_cases", "requirements")
     for block in (*asked, "waivers", "objective", "clevis"):

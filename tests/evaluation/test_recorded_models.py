@@ -23,7 +23,7 @@ FREE = {
     "huang_110_80_560": "cylinder.stroke: {lower: 300 mm, upper: 700 mm}",
 }
 """A variable for every shipped design without any."""
-DESIGNS = sorted(path.stem for path in ROOT.glob("designs/*.yaml") if path.stem != "knee_joints")
+DESIGNS = sorted(path.stem for path in ROOT.glob("designs/*.yaml") if path.stem != "knee_choices")
 """Shipped designs; the models of a choice of joints are those of its combinations."""
 
 

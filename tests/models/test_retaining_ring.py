@@ -235,7 +235,7 @@ def test_the_composite_knee_beats_steel(changes, saving):
     masses = [one.evaluation.metrics["mass"].value for one in (held, steel)]
     assert masses[0] < (1 - saving) * masses[1]
     if not changes:  # the joint that the optimiser chooses, with plies that only bonds need
-        chosen = best("knee_joints.yaml")
+        chosen = best("knee_choices.yaml")
         assert chosen.choices.combinations[0].values["retention.type"] == "retaining_ring"
         assert chosen.evaluation.metrics["mass"].value == near(masses[0], 0.01)
         paths = {variable.path for variable in chosen.variables}

@@ -1,0 +1,154 @@
+"""The nut that clamps the piston on the rod: strength, fatigue, mass and clearances.
+
+The nut is in a recess of the piston, on a stud of the rod with the same thread. The pull of the
+rod-side pressure loads the stud; the push of the cap-side pressure and the preload press the rod's
+shoulder on the piston.
+"""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Any
+
+from ..base.dataclass import dataclass
+from ..base.numeric import Array, maximum, minimum
+from ..design.model import Design
+from ..joints.joint import Life
+from ..models import endurance, piston_nut
+from ..models.rod import thread_stress
+from .geometry import Geometry
+from .limits import MaterialValues
+from .values import Values
+
+NO_NUT = "no nut of the piston stated: add piston.nut"
+PLACE = "piston nut"
+
+
+@dataclass(frozen=True, slots=True)
+class _Nut:
+    """Sizes and preload of the nut, and the share of a pull that its stud feels."""
+
+    size: dict[str, Array]
+    preload: Array
+    share: Array
+    shoulder: Array
+    stud: str
+
+
+def _nut(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> _Nut | None:
+    """The nut of a design; None if it states none or a modulus is unknown."""
+    if design.piston.nut is None:
+        return None
+    diameter, stud = g.nut, design.rod.material
+    moduli = [stock.get(name, "youngs_modulus") for name in (stud, design.piston.material)]
+    if any(modulus is None for modulus in moduli):
+        return None
+    seat = {"diameter": diameter, "shoulder_diameter": g.rod_diameter}
+    return _Nut(
+        size={"diameter": diameter, "pitch": v["piston.nut.pitch"]},
+        preload=v["piston.nut.preload"],
+        share=piston_nut.stud_share(**seat, stud_modulus=moduli[0], piston_modulus=moduli[1]),
+        shoulder=piston_nut.shoulder_area(**seat),
+        stud=stud,
+    )
+
+
+def thread_factor(
+    v: Values, design: Design, stock: MaterialValues, g: Geometry, pull: Array
+) -> dict[str, Array]:
+    """Yield strength divided by the stress of the stud under preload and pull."""
+    nut = _nut(v, design, stock, g)
+    strength = stock.allowable(design.rod.material, "yield_strength")
+    if nut is None or strength is None:
+        return {}
+    largest = maximum(nut.preload + nut.share * pull, pull)
+    return {PLACE: strength / thread_stress(force=largest, **nut.size)}
+
+
+def closed(
+    v: Values, design: Design, stock: MaterialValues, g: Geometry, pull: Array
+) -> Array | None:
+    """Preload divided by the clamping force that the pull takes away at proof pressure."""
+    nut = _nut(v, design, stock, g)
+    if nut is None:
+        return None
+    return nut.preload / ((1 - nut.share) * v["supply.proof_ratio"] * pull)
+
+
+def yields(
+    v: Values, design: Design, stock: MaterialValues, g: Geometry, push: Array, pull: Array
+) -> dict[str, Array]:
+    """Yield strength divided by stress, of the piston under the shoulder and of its web.
+
+    The push of the ring around the shoulder bends the web at the shoulder, and the pull at the nut.
+    """
+    nut = _nut(v, design, stock, g)
+    strengths = [
+        stock.allowable(name, "yield_strength")
+        for name in (design.rod.material, design.piston.material)
+    ]
+    known = [strength for strength in strengths if strength is not None]
+    if nut is None or not known:
+        return {}
+    pressure = (nut.preload + push) / nut.shoulder
+    weakest = minimum(known[0], known[-1])
+    rows = {"piston under the rod's shoulder": weakest / pressure}
+    piston = strengths[1]
+    if piston is not None:
+        height, corner = recess(g)
+        shoulder, flats = g.rod_diameter / 2, piston_nut.FLATS * g.nut / 2
+        around = 1 - g.rod_diameter * g.rod_diameter / (g.bore * g.bore)
+        stress = maximum(
+            *(
+                piston_nut.web_stress(
+                    force=force,
+                    radius=radius,
+                    reach=maximum(corner - radius, 0.0),
+                    thickness=g.piston_length - height,
+                )
+                for force, radius in ((push * around, shoulder), (pull, flats))
+            )
+        )
+        rows["piston web under the nut"] = piston / stress
+    return rows
+
+
+def lives(
+    v: Values, design: Design, stock: MaterialValues, g: Geometry, pull: Array
+) -> dict[str, Life]:
+    """Fatigue of the stud's thread under the pulsating pull."""
+    nut = _nut(v, design, stock, g)
+    if nut is None:
+        return {}
+    amplitude = thread_stress(force=nut.share * pull / 2, **nut.size)
+    endured = endurance.bolt_endurance_amplitude(diameter=nut.size["diameter"])
+    cycles = endurance.bolt_cycles(amplitude=amplitude, diameter=nut.size["diameter"])
+    return {PLACE: Life(cycles, endured / amplitude)}
+
+
+def masses(v: Values, design: Design, g: Geometry) -> dict[str, Array]:
+    """Mass of nut and stud, and of the metal cut from the piston, with a negative sign."""
+    if design.piston.nut is None:
+        return {}
+    steel = v[f"materials.{design.rod.material}.density"]
+    piston = v[f"materials.{design.piston.material}.density"]
+    height, corner = recess(g)
+    shank = pi / 4 * g.nut * g.nut
+    stud = shank * g.piston_length
+    hole = shank * (g.piston_length - height) + pi * corner * corner * height
+    return {
+        "fastening": steel * (piston_nut.nut_volume(diameter=g.nut) + stud),
+        "piston": -piston * hole,
+    }
+
+
+def recess(g: Geometry) -> tuple[Array, Array]:
+    """Depth and radius of the recess in the piston."""
+    return piston_nut.HEIGHT * g.nut, piston_nut.corner_radius(diameter=g.nut)
+
+
+def lands(design: Design, g: Geometry) -> dict[str, Any]:
+    """Metal of the piston under the nut, which the optimiser keeps."""
+    if design.piston.nut is None:
+        return {}
+    return {"geometry_piston_web": g.piston_length - recess(g)[0]}

@@ -1,0 +1,179 @@
+"""The piston on the rod: clamped between a shoulder of the rod and a nut on its stud."""
+
+from __future__ import annotations
+
+from math import pi
+
+from ..base.numeric import Array, geometry, minimum, sqrt
+
+FLATS, HEIGHT = 1.5, 0.8
+"""Width across flats and height of a hexagon nut, in thread diameters: those of ISO 4032 are 1.5 to
+1.63 and 0.8 to 0.9 from M8 to M64."""
+
+
+@geometry
+def stud_share(
+    *, diameter: Array, shoulder_diameter: Array, stud_modulus: Array, piston_modulus: Array
+) -> Array:
+    """Share of a force on the piston that the stud feels.
+
+    phi = E_s d^2/(E_s d^2 + E_p (D^2 - d^2)): stud and clamped part of the piston are springs of
+    equal length in parallel. The clamped part is a sleeve whose outer diameter D is that of the
+    shoulder, or the nut's width if that is smaller.
+
+    Parameters
+    ----------
+    diameter : d of the stud's thread [m]
+    shoulder_diameter : outer diameter of the rod's shoulder [m]
+    stud_modulus, piston_modulus : Young's moduli E_s and E_p [Pa]
+
+    Returns
+    -------
+    share [-], 0 to 1
+
+    Notes
+    -----
+    Valid: the joint stays closed. The nut's threads and the spread of pressure in the piston are
+    left out; both lower the share, so that the result is an upper bound.
+
+    References
+    ----------
+    [VDI2230] load factor of a bolted joint; [derived] sleeve instead of the pressure cone
+
+    Examples
+    --------
+    >>> share = stud_share(diameter=8e-3, shoulder_diameter=12e-3, stud_modulus=206e9,
+    ...                    piston_modulus=71.7e9)
+    >>> print(f"{share:.4f}")
+    0.6968
+    """
+    width = FLATS * diameter
+    outer = minimum(shoulder_diameter, width)
+    square = diameter * diameter
+    stud = stud_modulus * square
+    return stud / (stud + piston_modulus * (outer * outer - square))
+
+
+@geometry
+def shoulder_area(*, diameter: Array, shoulder_diameter: Array) -> Array:
+    """Area on which the rod's shoulder bears on the piston, pi (D^2 - d^2)/4.
+
+    Parameters
+    ----------
+    diameter : d of the stud, and of the hole in the piston [m]
+    shoulder_diameter : outer diameter D of the shoulder [m]
+
+    Returns
+    -------
+    area [m^2]
+
+    Notes
+    -----
+    Valid: chamfers small compared with the shoulder.
+
+    References
+    ----------
+    [derived] area of an annulus
+
+    Examples
+    --------
+    >>> area = shoulder_area(diameter=8e-3, shoulder_diameter=12e-3)
+    >>> print(f"{area * 1e6:.4f} mm2")
+    62.8319 mm2
+    """
+    return pi / 4 * (shoulder_diameter * shoulder_diameter - diameter * diameter)
+
+
+@geometry
+def nut_volume(*, diameter: Array) -> Array:
+    """Volume of a hexagon nut, (sqrt(3)/2 s^2 - pi d^2/4) m, with s = 1.5 d and m = 0.8 d.
+
+    Parameters
+    ----------
+    diameter : d of the thread [m]
+
+    Returns
+    -------
+    volume [m^3]
+
+    Notes
+    -----
+    Valid: nuts of ISO 4032; its chamfers are left out.
+
+    References
+    ----------
+    [ISO4032] proportions; [derived] hexagon less the thread's nominal cylinder
+
+    Examples
+    --------
+    >>> print(f"{nut_volume(diameter=8e-3) * 1e9:.2f} mm3")
+    476.43 mm3
+    """
+    section = (3**0.5 / 2 * FLATS * FLATS - pi / 4) * diameter * diameter
+    return section * HEIGHT * diameter
+
+
+@geometry
+def corner_radius(*, diameter: Array) -> Array:
+    """Radius over the corners of a hexagon nut, s/sqrt(3), with s = 1.5 d.
+
+    Parameters
+    ----------
+    diameter : d of the thread [m]
+
+    Returns
+    -------
+    radius [m]
+
+    Notes
+    -----
+    Valid: nuts of ISO 4032.
+
+    References
+    ----------
+    [ISO4032] proportions
+
+    Examples
+    --------
+    >>> print(f"{corner_radius(diameter=8e-3) * 1e3:.3f} mm")
+    6.928 mm
+    """
+    return FLATS * diameter / 3**0.5
+
+
+@geometry
+def web_stress(*, force: Array, radius: Array, reach: Array, thickness: Array) -> Array:
+    """Equivalent stress of the piston's web, which carries a force from ring to shoulder or nut.
+
+    sqrt((3 V a/t^2)^2 + 3 (V/t)^2), V = F/(2 pi r): an edge that may not turn at either side
+    carries the moment V a/2, and the shear force V.
+
+    Parameters
+    ----------
+    force : F on the web [N]
+    radius : r at which the web is supported [m]
+    reach : a, radial distance from the support to the ring, not negative [m]
+    thickness : t of the web [m]
+
+    Returns
+    -------
+    stress [Pa]
+
+    Notes
+    -----
+    Valid: a ring and a support that are much stiffer than the web; hoop stress in the web is left
+    out, so that the result is an upper bound of the stress away from notches.
+
+    References
+    ----------
+    [derived] guided beam of the web's thickness; von Mises stress
+
+    Examples
+    --------
+    >>> sigma = web_stress(force=5e3, radius=5.5e-3, reach=1.4e-3, thickness=2e-3)
+    >>> print(f"{sigma / 1e6:.1f} MPa")
+    196.9 MPa
+    """
+    shear = force / (2 * pi * radius) / thickness
+    bending = 3 * shear * reach / thickness
+    return sqrt(bending * bending + 3 * shear * shear)

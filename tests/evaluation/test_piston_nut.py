@@ -1,0 +1,130 @@
+"""The nut that clamps the piston on the rod: rows and masses by hand, refusals, drawing."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+from pathlib import Path
+
+import pytest
+
+import actuator_opt as ao
+from actuator_opt.base.errors import InputError
+from actuator_opt.models import piston_nut
+
+DESIGNS = Path(__file__).parents[2] / "designs"
+NUT = """  nut:                          # clamps the piston on a stud of the rod
+    diameter: 8 mm
+    pitch: 1 mm
+    preload: 8 kN
+"""
+STEEL, ALUMINIUM = 210e9, 71.7e9
+D, P, PRELOAD = 8e-3, 1e-3, 8e3
+
+
+def near(value, rel=1e-6):
+    """Equal up to rounding."""
+    return pytest.approx(value, rel=rel)
+
+
+def pair():
+    """The shipped knee with its nut, and the same without it."""
+    text = (DESIGNS / "knee.yaml").read_text("utf-8")
+    assert NUT in text
+    return ao.evaluate(ao.read(text)), ao.evaluate(ao.read(text.replace(NUT, "")))
+
+
+def test_two_springs_share_a_pull():
+    """A stud and a sleeve of equal length, stretched together, share as their E A."""
+    stud, sleeve = STEEL * D**2, ALUMINIUM * (11.5e-3**2 - D**2)
+    share = piston_nut.stud_share(
+        diameter=D, shoulder_diameter=11.5e-3, stud_modulus=STEEL, piston_modulus=ALUMINIUM
+    )
+    assert share == near(stud / (stud + sleeve))
+    wide = piston_nut.stud_share(
+        diameter=D, shoulder_diameter=30e-3, stud_modulus=STEEL, piston_modulus=ALUMINIUM
+    )
+    assert wide == near(stud / (stud + ALUMINIUM * (12e-3**2 - D**2)))  # no wider than the nut
+
+
+def test_rows_of_the_knee_by_hand():
+    """Clamping force, stress of the stud, and pressure under the shoulder."""
+    found, _ = pair()
+    bore, rod = 21.5e-3, 11.5e-3
+    push, pull = 21e6 * pi / 4 * bore**2, 21e6 * pi / 4 * (bore**2 - rod**2)
+    stud, sleeve = STEEL * D**2, ALUMINIUM * (rod**2 - D**2)
+    share = stud / (stud + sleeve)
+    assert found.metrics["piston_nut_factor"].value == near(PRELOAD / ((1 - share) * 1.5 * pull))
+    area = pi / 4 * (D - 0.9382 * P) ** 2
+    endured = 0.85e6 * (0.150 / D + 45)
+    amplitude = share * pull / 2 / area
+    life = 2e6 * (endured / amplitude) ** 3
+    thick = {"retention.groove_depth": "0.3 mm", "barrel.layup[0].thickness": "5 mm"}
+    alone = ao.evaluate(ao.read(DESIGNS / "knee.yaml", set=thick))
+    assert alone.metrics["cycle_life"].value <= life * (1 + 1e-9)
+    shoulder = pi / 4 * (rod**2 - D**2)
+    pressure = (PRELOAD + push) / shoulder
+    row = found.metrics["yield_factor"]
+    assert row.place == "piston under the rod's shoulder"
+    strength = row.value * pressure
+    assert 0.8 * 503e6 < strength < 503e6  # 7075-T6 after knock-downs
+
+
+def test_masses_by_hand():
+    """Nut and stud weigh, the hole and the recess of the piston do not."""
+    found, bare = pair()
+    length, height, corner = 12.5e-3, 0.8 * D, 1.5 * D / sqrt(3)
+    shank = pi / 4 * D**2
+    nut = (sqrt(3) / 2 * (1.5 * D) ** 2 - shank) * height
+    more = found.mass_parts["fastening"] - bare.mass_parts["fastening"]
+    assert more == near(7850 * (nut + shank * length))
+    less = bare.mass_parts["piston"] - found.mass_parts["piston"]
+    assert less == near(2810 * (shank * (length - height) + pi * corner**2 * height))
+    assert "fastening of the piston to the rod" in bare.mass_leaves_out
+    assert "fastening of the piston to the rod" not in found.mass_leaves_out
+    assert found.metrics["geometry_piston_web"].value == near(length - height)
+    assert "piston nut" in {part.part for part in found.outlines}
+
+
+def test_the_web_by_a_guided_beam():
+    """A strip of the web, clamped at one end and guided at the other, by its end moment."""
+    force, radius, reach, thickness = 5e3, 5.5e-3, 1.4e-3, 2e-3
+    line = force / (2 * pi * radius)
+    moment = line * reach / 2  # a guided end: no rotation at both ends
+    bending, shear = 6 * moment / thickness**2, line / thickness
+    found = piston_nut.web_stress(force=force, radius=radius, reach=reach, thickness=thickness)
+    assert found == near(sqrt(bending**2 + 3 * shear**2))
+
+
+def test_an_optimum_keeps_the_web():
+    """The optimiser shortens the steel piston until its web has no reserve, not further."""
+    best = ao.optimise(ao.read(DESIGNS / "steel_baseline.yaml"), prices=False).evaluation
+    assert best.metrics["yield_factor"].value == near(1.5, 1e-3)
+    assert best.metrics["geometry_piston_web"].value >= 1e-3 * (1 - 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("changes", "path", "said"),
+    [
+        ({"piston.nut.diameter": "12 mm"}, "piston.nut.diameter", "no shoulder"),
+        ({"piston.nut.pitch": "-1 mm"}, "piston.nut.pitch", ""),
+    ],
+)
+def test_a_nut_that_cannot_be_is_refused(changes, path, said):
+    """Each with its place and what to do."""
+    with pytest.raises(InputError) as error:
+        ao.read(DESIGNS / "knee.yaml", set=changes)
+    assert any(one.path == path and said in one.message for one in error.value.diagnostics)
+
+
+def test_a_laminated_rod_has_no_nut():
+    """Its shoulder would crush plies."""
+    text = (DESIGNS / "knee.yaml").read_text("utf-8")
+    layered = "  material: steel_42crmo4\n  outer_diameter: 11.5 mm\n  inner_diameter: 7 mm\n"
+    assert layered in text
+    plies = (
+        "  material: steel_42crmo4\n  outer_diameter: 11.5 mm\n  layup:\n"
+        "    - {material: t700_epoxy, angle: 10 deg, thickness: 2 mm}\n"
+        "  fitting: {adhesive: epoxy_structural, length: 20 mm}\n"
+    )
+    with pytest.raises(InputError, match="no shoulder"):
+        ao.read(text.replace(layered, plies))
