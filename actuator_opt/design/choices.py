@@ -138,6 +138,13 @@ Carrier: TypeAlias = Annotated[
         "end; head: does not move, at the rod end; piston: moves; rod: moves, outside the piston"
     ),
 ]
+Turn: TypeAlias = Annotated[
+    Literal["cut_off", "pins"],
+    Choice(
+        "how a helical winding turns at the ends; cut_off: on the mandrel beyond the barrel, where "
+        "it is cut off as scrap; pins: around a ring of pins at the end, without extra length"
+    ),
+]
 Chamber: TypeAlias = Annotated[
     Literal["a", "b"], Choice("chamber that the line feeds; a: cap side; b: rod side")
 ]

@@ -365,6 +365,7 @@ class Barrel(Section):
     layup: Annotated[tuple[Ply, ...], Field(min_length=1, max_length=MOST_LAYERS)]
     model: choices.WallModel = "auto"
     criterion: choices.Criterion = "max_stress"
+    turn: choices.Turn | None = None
     autofrettage_pressure: Annotated[
         float | None,
         Of("autofrettage_pressure", "pressure applied once before use, to yield the metal liner"),

@@ -489,6 +489,8 @@ def _films(subject: PreparedDesign) -> dict[Key, FilmTable]:
 def _manufacture(v: Values, subject: PreparedDesign, g: Geometry, out: MetricArrays) -> None:
     """Compute the margins to the manufacturing limits of plies, and the turns of windings."""
     turns = geometry_module.turn_lengths(v, subject.design, subject.materials, g)
+    if subject.design.barrel.turn == "pins":
+        turns = {place: x for place, x in turns.items() if not place.startswith("barrel")}
     if turns:
         out.put("turn_length", turns)
     else:

@@ -14,7 +14,7 @@ import numpy as np
 from .. import models as formulas
 from ..base.dataclass import dataclass
 from ..design.material import compatible
-from ..design.model import PLAIN_CAP
+from ..design.model import PLAIN_CAP, Design
 from ..design.paths import quantity_of
 from ..joints.winding import WINDING_EDGE
 from ..metrics import METRICS
@@ -286,7 +286,8 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
         for metric, sentence in end.joint.warnings(end.loaded, METRICS):
             yield metric, end.end_joint.placed(sentence)
     yield from _rod_warnings(subject, run)
-    yield from _winding_warnings(run)
+    yield from _winding_warnings(subject.design, run)
+    yield from _head_warnings(subject.design)
     yield from _bond_warnings(run)
     for part, assumption in (
         ("head", "material and length of the piston"),
@@ -379,18 +380,35 @@ LONG_TURN = 0.2
 """A warning names a winding whose turn takes more than this share of its part. Our choice."""
 
 
-def _winding_warnings(run: ModelRun) -> Iterable[tuple[str, str]]:
-    """Warn of a helical winding that needs much length to turn at its ends."""
+def _head_warnings(design: Design) -> Iterable[tuple[str, str]]:
+    """Warn of a head without wiper, or without bushing for the rod."""
+    if design.seals.rod.wiper is None:
+        yield (
+            "",
+            "the rod has no wiper, so that dirt reaches its seal: add seals.rod.wiper, or a bellows "
+            "under extra_masses",
+        )
+    if design.seals.rod.guide is None and design.head.bearing is None:
+        yield (
+            "",
+            f"the rod has no bushing and runs on {design.head.material}: add seals.rod.guide or "
+            "head.bearing",
+        )
+
+
+def _winding_warnings(design: Design, run: ModelRun) -> Iterable[tuple[str, str]]:
+    """Warn of a helical winding whose turn needs much length, unless the design states the turn."""
     g, text = run.geometry, METRICS["turn_length"].text
     for place, values in run.computed.metrics.get("turn_length", {}).items():
         length = float(np.max(np.real(values)))
         part = float(np.max(np.real(g.wall_length if place.startswith("barrel") else g.rod_length)))
-        if length > LONG_TURN * part:
+        stated = design.barrel.turn is not None and place.startswith("barrel")
+        if length > LONG_TURN * part and not stated:
             yield (
                 "",
                 f"{place}: on a plain mandrel, the winding needs {text(length)} beyond each end to "
-                f"turn (friction {SLIPPAGE:g}), and the part is {text(part)} long; cut it off, or "
-                "turn it over pins or domes",
+                f"turn (friction {SLIPPAGE:g}), and the part is {text(part)} long: state "
+                "barrel.turn, cut_off or pins",
             )
 
 

@@ -15,10 +15,10 @@ DESIGNS = Path(__file__).parents[2] / "designs"
 NUT = """  nut:                          # clamps the piston on a stud of the rod
     diameter: 8 mm
     pitch: 1 mm
-    preload: 8 kN
+    preload: 7 kN
 """
 STEEL, ALUMINIUM = 210e9, 71.7e9
-D, P, PRELOAD = 8e-3, 1e-3, 8e3
+D, P, PRELOAD = 8e-3, 1e-3, 7e3
 
 
 def near(value, rel=1e-6):

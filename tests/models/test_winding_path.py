@@ -44,3 +44,28 @@ def test_a_long_turn_is_a_metric_and_a_warning():
     held = ao.evaluate(ao.read(DESIGNS / "knee.yaml"))
     assert held.metrics["turn_length"].value < 1e-4
     assert not any("to turn" in text for text in held.warnings)
+
+
+@pytest.mark.parametrize("turn", ["cut_off", "pins"])
+def test_a_stated_turn_has_no_warning(turn):
+    """Pins need no length at all; a winding that is cut off needs it on the mandrel only."""
+    plain = ao.evaluate(ao.read(DESIGNS / "knee_bonded.yaml"))
+    stated = ao.evaluate(ao.read(DESIGNS / "knee_bonded.yaml", set={"barrel.turn": turn}))
+    assert any("to turn" in text for text in plain.warnings)
+    assert not any("to turn" in text for text in stated.warnings)
+    length = stated.metrics["turn_length"].value
+    if turn == "cut_off":
+        assert length == plain.metrics["turn_length"].value
+    else:
+        assert length is None
+
+
+def test_a_head_without_wiper_or_bushing_is_named():
+    """Each warning ends when the design states the part."""
+    bare = ao.evaluate(ao.read(DESIGNS / "knee.yaml")).warnings
+    guided = ao.evaluate(
+        ao.read(DESIGNS / "knee.yaml", set={"head.bearing": "guide_ptfe_bronze"})
+    ).warnings
+    assert any("no wiper" in text for text in bare)
+    assert any("no bushing" in text for text in bare)
+    assert not any("no bushing" in text for text in guided)
