@@ -385,8 +385,8 @@ def _head_warnings(design: Design) -> Iterable[tuple[str, str]]:
     if design.seals.rod.wiper is None:
         yield (
             "",
-            "the rod has no wiper, so that dirt reaches its seal: add seals.rod.wiper, or a bellows "
-            "under extra_masses",
+            "the rod has no wiper, so that dirt reaches its seal: add seals.rod.wiper, or a "
+            "bellows under extra_masses",
         )
     if design.seals.rod.guide is None and design.head.bearing is None:
         yield (
