@@ -71,7 +71,7 @@ def _endurance(
             force=pull, diameter=v["rod.thread.diameter"], pitch=v["rod.thread.pitch"]
         )
         loads.append(("rod thread", section.end_material, stress, stress / 2))
-    lives = piston_nut.lives(v, design, stock, g, pull)
+    lives = piston_nut.lives(v, design, stock, g, push, pull)
     for end in loaded_joints:
         fatigue = end.joint.fatigue(end.loaded)
         loads += [(end.end_joint.placed(place), *load) for place, *load in fatigue.pulsed]

@@ -7,6 +7,7 @@ shoulder on the piston.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import pi
 from typing import Any
 
@@ -18,6 +19,7 @@ from ..models import endurance, piston_nut
 from ..models.rod import thread_stress
 from .geometry import Geometry
 from .limits import MaterialValues
+from .plies import warmings
 from .values import Values
 
 NO_NUT = "no nut of the piston stated: add piston.nut"
@@ -26,53 +28,86 @@ PLACE = "piston nut"
 
 @dataclass(frozen=True, slots=True)
 class _Nut:
-    """Sizes and preload of the nut, and the share of a pull that its stud feels."""
+    """Sizes and preload of the nut, and the largest and least share of a force its stud feels.
+
+    `changes` are the changes of the preload, cold and hot [N]; empty without a temperature range or
+    with unknown expansions.
+    """
 
     size: dict[str, Array]
     preload: Array
     share: Array
+    least_share: Array
+    changes: Mapping[str, Array]
     shoulder: Array
-    stud: str
+
+    @property
+    def largest(self) -> Array:
+        """Largest preload at any stated temperature [N]."""
+        largest = self.preload
+        for change in self.changes.values():
+            largest = maximum(largest, self.preload + change)
+        return largest
 
 
 def _nut(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> _Nut | None:
     """The nut of a design; None if it states none or a modulus is unknown."""
     if design.piston.nut is None:
         return None
-    diameter, stud = g.nut, design.rod.material
-    moduli = [stock.get(name, "youngs_modulus") for name in (stud, design.piston.material)]
+    names = design.rod.material, design.piston.material
+    moduli = [stock.get(name, "youngs_modulus") for name in names]
     if any(modulus is None for modulus in moduli):
         return None
-    seat = {"diameter": diameter, "shoulder_diameter": g.rod_diameter}
+    seat = {"diameter": g.nut, "shoulder_diameter": g.rod_diameter}
+    elastic = {"stud_modulus": moduli[0], "piston_modulus": moduli[1]}
+    clamped = {
+        "diameter": g.nut,
+        "piston_diameter": g.bore - 2 * g.piston_clearance,
+        "length": g.piston_length - recess(g)[0],
+        **elastic,
+    }
+    stud, piston = (stock.get(name, "thermal_expansion") for name in names)
+    changes = {}
+    if stud is not None and piston is not None:
+        changes = {
+            word: piston_nut.preload_change(**clamped, strain_difference=(piston - stud) * warming)
+            for word, warming in warmings(v, design).items()
+        }
     return _Nut(
-        size={"diameter": diameter, "pitch": v["piston.nut.pitch"]},
+        size={"diameter": g.nut, "pitch": v["piston.nut.pitch"]},
         preload=v["piston.nut.preload"],
-        share=piston_nut.stud_share(**seat, stud_modulus=moduli[0], piston_modulus=moduli[1]),
+        share=piston_nut.stud_share(**seat, **elastic),
+        least_share=piston_nut.least_stud_share(**clamped),
+        changes=changes,
         shoulder=piston_nut.shoulder_area(**seat),
-        stud=stud,
     )
 
 
 def thread_factor(
     v: Values, design: Design, stock: MaterialValues, g: Geometry, pull: Array
 ) -> dict[str, Array]:
-    """Yield strength divided by the stress of the stud under preload and pull."""
+    """Yield strength divided by the stress of the stud under the largest preload and pull."""
     nut = _nut(v, design, stock, g)
     strength = stock.allowable(design.rod.material, "yield_strength")
     if nut is None or strength is None:
         return {}
-    largest = maximum(nut.preload + nut.share * pull, pull)
+    largest = maximum(nut.largest + nut.share * pull, pull)
     return {PLACE: strength / thread_stress(force=largest, **nut.size)}
 
 
 def closed(
     v: Values, design: Design, stock: MaterialValues, g: Geometry, pull: Array
-) -> Array | None:
-    """Preload divided by the clamping force that the pull takes away at proof pressure."""
+) -> dict[str, Array] | None:
+    """Preload divided by the clamping force that the pull takes away at proof pressure.
+
+    It is given at assembly and, with a temperature range, cold and hot.
+    """
     nut = _nut(v, design, stock, g)
     if nut is None:
         return None
-    return nut.preload / ((1 - nut.share) * v["supply.proof_ratio"] * pull)
+    taken = (1 - nut.least_share) * v["supply.proof_ratio"] * pull
+    at = {"at assembly": 0.0, **nut.changes} if nut.changes else {"": 0.0}
+    return {place: (nut.preload + change) / taken for place, change in at.items()}
 
 
 def yields(
@@ -90,7 +125,7 @@ def yields(
     known = [strength for strength in strengths if strength is not None]
     if nut is None or not known:
         return {}
-    pressure = (nut.preload + push) / nut.shoulder
+    pressure = (nut.largest + push) / nut.shoulder
     weakest = minimum(known[0], known[-1])
     rows = {"piston under the rod's shoulder": weakest / pressure}
     piston = strengths[1]
@@ -114,13 +149,13 @@ def yields(
 
 
 def lives(
-    v: Values, design: Design, stock: MaterialValues, g: Geometry, pull: Array
+    v: Values, design: Design, stock: MaterialValues, g: Geometry, push: Array, pull: Array
 ) -> dict[str, Life]:
-    """Fatigue of the stud's thread under the pulsating pull."""
+    """Fatigue of the stud's thread under alternating pull and push; the push relieves the stud."""
     nut = _nut(v, design, stock, g)
     if nut is None:
         return {}
-    amplitude = thread_stress(force=nut.share * pull / 2, **nut.size)
+    amplitude = thread_stress(force=nut.share * (pull + push) / 2, **nut.size)
     endured = endurance.bolt_endurance_amplitude(diameter=nut.size["diameter"])
     cycles = endurance.bolt_cycles(amplitude=amplitude, diameter=nut.size["diameter"])
     return {PLACE: Life(cycles, endured / amplitude)}

@@ -110,7 +110,8 @@ def _rod_ends(v: Values, design: Design, rod: RodSection) -> Array:
     """Mass of the rod's threaded stud, of the two plugs in its bore, and of its bonded fittings.
 
     A plug closes the bore at each end. A bonded fitting is itself such a plug, or a sleeve around
-    one. Stud and plugs are each one thread diameter long.
+    one. Stud and plugs are each one diameter of the thread there long; at the piston, this is the
+    nut's thread if there is one.
     """
     density = v[f"materials.{rod.end_material}.density"]
     hole, total = rod.inner_diameter, 0.0
@@ -126,7 +127,8 @@ def _rod_ends(v: Values, design: Design, rod: RodSection) -> Array:
         return total
     diameter, pitch = v["rod.thread.diameter"], v["rod.thread.pitch"]
     stud = mass.stud_mass(density=density, diameter=diameter, pitch=pitch, length=diameter)
-    return total + stud + 2 * mass.disc_mass(density=density, diameter=hole, thickness=diameter)
+    plugs = diameter + (diameter if design.piston.nut is None else v["piston.nut.diameter"])
+    return total + stud + mass.disc_mass(density=density, diameter=hole, thickness=plugs)
 
 
 def parts(

@@ -3,7 +3,8 @@
 The end plate is a plug inside the barrel. From the pressure outwards, the barrel holds the plug
 with its static seal, the ring in its groove, and a lip of the barrel. The groove is cut into the
 innermost layer, which must be a metal. This layer carries the whole force at the groove, so the
-layers around it, such as a hoop winding, need no axial strength. The ring is split for assembly.
+layers around it, such as a hoop winding, need no axial strength. The ring has a gap, at which it
+is closed to pass the bore.
 """
 
 from __future__ import annotations
@@ -49,6 +50,9 @@ choice, for a root radius of at least a tenth of the depth; no published value f
 
 LANDS = ("geometry_ring_groove", "geometry_ring_opening")
 """Metrics of the metal left under the groove, and of the clearance between ring and rod."""
+
+ASSEMBLY = "ring_assembly_factor"
+"""Metric of the ring's strength as it passes the bore."""
 
 
 # --- faults of the file ---------------------------------------------------------------------
@@ -146,10 +150,10 @@ def _sizes(end: End) -> dict[str, Array]:
 
 
 def _ring(end: End, force: Array) -> dict[str, Array]:
-    """Arguments of the models of dishing."""
+    """Arguments of the models of dishing; the ring is split, and its groove does not hold it."""
     inner, outer = _radii(end)
     return {
-        "force": force,
+        "force": model.SPLIT * force,
         "lever_length": end.sizes["groove_depth"] / 2 + EDGE_BREAK,
         "inner_radius": inner,
         "outer_radius": outer,
@@ -241,7 +245,7 @@ def _fatigue(loaded: Loaded) -> Fatigue:
     )
 
 
-def _lands(loaded: Loaded) -> Mapping[str, Array]:
+def _lands(loaded: Loaded) -> dict[str, Array]:
     """Metal left under the groove, and clearance of the rod [m]; optimisations limit both."""
     end = loaded.end
     lands = (
@@ -249,6 +253,22 @@ def _lands(loaded: Loaded) -> Mapping[str, Array]:
         _radii(end)[0] - end.rod_radius,
     )
     return dict(zip(LANDS, lands, strict=True))
+
+
+def _own(loaded: Loaded) -> Mapping[str, Array]:
+    """The lands; and yield strength divided by the stress of the ring as it passes the bore."""
+    strengths, end, values = _strengths(loaded), loaded.end, _lands(loaded)
+    assert end.material is not None
+    modulus = loaded.materials.get(end.material, "youngs_modulus")
+    if not isinstance(strengths, str) and modulus is not None:
+        inner, outer = _radii(end)
+        values[ASSEMBLY] = strengths[1][0] / model.springing(
+            groove_depth=end.sizes["groove_depth"],
+            inner_radius=inner,
+            outer_radius=outer,
+            youngs_modulus=modulus,
+        )
+    return values
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
@@ -305,9 +325,9 @@ JOINT = Joint(
     yields=_yields,
     wall=lambda loaded: WallPressures(),
     fatigue=_fatigue,
-    own=_lands,
+    own=_own,
     envelope=None,
-    metrics=dict.fromkeys(LANDS, _ABSENT),
+    metrics=dict.fromkeys((*LANDS, ASSEMBLY), _ABSENT),
     judged=ON_METAL,
     models={
         ("retention_factor", "groove flank"): "retaining_ring.groove_area",

@@ -9,6 +9,9 @@ from ..base.numeric import Array, geometry, minimum, sqrt
 FLATS, HEIGHT = 1.5, 0.8
 """Width across flats and height of a hexagon nut, in thread diameters: those of ISO 4032 are 1.5 to
 1.63 and 0.8 to 0.9 from M8 to M64."""
+THREADS = 0.9
+"""Length of stud that gives as much as the engaged thread and the nut, in thread diameters: 0.5 and
+0.4 [VDI2230]."""
 
 
 @geometry
@@ -34,7 +37,8 @@ def stud_share(
     Notes
     -----
     Valid: the joint stays closed. The nut's threads and the spread of pressure in the piston are
-    left out; both lower the share, so that the result is an upper bound.
+    left out; both lower the share, so that the result is an upper bound. `least_stud_share` is the
+    lower one.
 
     References
     ----------
@@ -52,6 +56,108 @@ def stud_share(
     square = diameter * diameter
     stud = stud_modulus * square
     return stud / (stud + piston_modulus * (outer * outer - square))
+
+
+def _gives(
+    diameter: Array,
+    piston_diameter: Array,
+    length: Array,
+    stud_modulus: Array,
+    piston_modulus: Array,
+) -> tuple[Array, Array]:
+    """Give of stud and clamped piston per force [m/N]; the whole width of the piston is clamped."""
+    square = diameter * diameter
+    stud = 4 / pi * (length + THREADS * diameter) / (stud_modulus * square)
+    clamped = piston_modulus * (piston_diameter * piston_diameter - square)
+    return stud, 4 / pi * length / clamped
+
+
+@geometry
+def least_stud_share(
+    *,
+    diameter: Array,
+    piston_diameter: Array,
+    length: Array,
+    stud_modulus: Array,
+    piston_modulus: Array,
+) -> Array:
+    """Lower bound of the share of a force on the piston that the stud feels.
+
+    phi = delta_p/(delta_s + delta_p), with delta_s = (l + 0.9 d)/(E_s pi d^2/4) of the stud, its
+    engaged thread and the nut, and delta_p = l/(E_p pi (D^2 - d^2)/4) of the piston.
+
+    Parameters
+    ----------
+    diameter : d of the stud's thread [m]
+    piston_diameter : D of the piston, all of which counts as clamped [m]
+    length : l between shoulder and nut [m]
+    stud_modulus, piston_modulus : Young's moduli E_s and E_p [Pa]
+
+    Returns
+    -------
+    share [-], 0 to 1
+
+    Notes
+    -----
+    Valid: the joint stays closed, and the force enters at the shoulder.
+
+    References
+    ----------
+    [VDI2230] load factor, give of thread and nut; [derived] whole piston instead of its cone
+
+    Examples
+    --------
+    >>> share = least_stud_share(diameter=8e-3, piston_diameter=21.4e-3, length=6e-3,
+    ...                          stud_modulus=206e9, piston_modulus=71.7e9)
+    >>> print(f"{share:.4f}")
+    0.1750
+    """
+    stud, piston = _gives(diameter, piston_diameter, length, stud_modulus, piston_modulus)
+    return piston / (stud + piston)
+
+
+@geometry
+def preload_change(
+    *,
+    diameter: Array,
+    piston_diameter: Array,
+    length: Array,
+    stud_modulus: Array,
+    piston_modulus: Array,
+    strain_difference: Array,
+) -> Array:
+    """Change of the nut's preload with temperature, l (e_p - e_s)/(delta_s + delta_p).
+
+    Parameters
+    ----------
+    diameter : d of the stud's thread [m]
+    piston_diameter : D of the piston, all of which counts as clamped [m]
+    length : l between shoulder and nut [m]
+    stud_modulus, piston_modulus : Young's moduli E_s and E_p [Pa]
+    strain_difference : e_p - e_s, free thermal strain of the piston minus that of the stud [-]
+
+    Returns
+    -------
+    force [N], positive for a larger preload
+
+    Notes
+    -----
+    Valid: elastic, one temperature throughout. delta_s and delta_p are those of
+    `least_stud_share`.
+
+    References
+    ----------
+    [VDI2230] thermal change of preload
+
+    Examples
+    --------
+    >>> force = preload_change(diameter=8e-3, piston_diameter=21.4e-3, length=6e-3,
+    ...                        stud_modulus=206e9, piston_modulus=71.7e9, strain_difference=6.6e-4)
+    >>> print(f"{force:.1f} N")
+    2562.7 N
+    """
+    gives = _gives(diameter, piston_diameter, length, stud_modulus, piston_modulus)
+    return length * strain_difference / sum(gives)
 
 
 @geometry

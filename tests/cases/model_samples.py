@@ -354,6 +354,21 @@ SAMPLES = {
         "diameter": 8e-3, "shoulder_diameter": 11.5e-3, "stud_modulus": 206e9,
         "piston_modulus": 71.7e9,
     },
+    "piston_nut.least_stud_share": {
+        "diameter": 8e-3,
+        "piston_diameter": 21e-3,
+        "length": 6e-3,
+        "stud_modulus": 206e9,
+        "piston_modulus": 71.7e9,
+    },
+    "piston_nut.preload_change": {
+        "diameter": 8e-3,
+        "piston_diameter": 21e-3,
+        "length": 6e-3,
+        "stud_modulus": 206e9,
+        "piston_modulus": 71.7e9,
+        "strain_difference": 6e-4,
+    },
     "piston_nut.shoulder_area": {"diameter": 8e-3, "shoulder_diameter": 12e-3},
     "piston_nut.nut_volume": {"diameter": 8e-3},
     "piston_nut.web_stress": {

@@ -48,11 +48,21 @@ def test_ring_and_lip_by_the_worked_numbers():
     assert plastic * 1.5e-3**2 / 4 * 2.3e-3 == near(moment * middle)
 
 
-@pytest.mark.parametrize("lip", [2e-3, 4e-3])
-@pytest.mark.parametrize("winding", [0.0, 1.5e-3, 3e-3])
-def test_metal_under_the_groove_against_finite_elements(lip, winding):
-    """The model's bending is an upper bound: by at most 15 % on bare metal, 60 % under plies."""
-    inner, thickness, depth, width = 10.5, 2.6, 0.6, 1.5
+@pytest.mark.parametrize(
+    ("thickness", "depth", "lip", "winding"),
+    [
+        (2.6, 0.6, 2e-3, 0.0),
+        (2.6, 0.6, 4e-3, 1.5e-3),
+        (2.6, 0.6, 4e-3, 3e-3),
+        (1.534, 0.396, 2e-3, 0.0),
+        (1.534, 0.396, 5.8e-3, 0.0),
+        (1.534, 0.396, 5.8e-3, 2.7e-3),
+        (1.534, 0.396, 8e-3, 0.0),
+    ],
+)
+def test_metal_under_the_groove_against_finite_elements(thickness, depth, lip, winding):
+    """Short lips turn as rings, long lips bend as tubes: at most 7 % below finite elements."""
+    inner, width = 10.5, 1.5
     outer, n, tw = inner + thickness, 1e3 * lip, 1e3 * winding
     metal = shell_oracle.isotropic(71700, 0.33)
     hoop = shell_oracle.orthotropic((9000, 125000, 9000), (0.3, 0.4, 0.3), 3200)
@@ -93,7 +103,7 @@ def test_metal_under_the_groove_against_finite_elements(lip, winding):
     )
     assert axial == near(FORCE / (pi * (outer**2 - (inner + depth) ** 2)) * 1e6)
     bound = (axial + bent) / 1e6 / (mean + bending)
-    assert 1.0 <= bound <= (1.6 if winding else 1.15), (mean, bending, axial, bent)
+    assert 0.93 <= bound <= (1.6 if winding else 1.25), (mean, bending, axial, bent)
 
 
 def test_collapse_of_a_strip_against_its_stress_blocks():
@@ -236,22 +246,24 @@ def test_the_composite_knee_beats_steel(changes, saving):
     assert masses[0] < (1 - saving) * masses[1]
     if not changes:  # the joint that the optimiser chooses, with plies that only bonds need
         chosen = best("knee_choices.yaml")
-        assert chosen.choices.combinations[0].values["retention.type"] == "retaining_ring"
+        assert chosen.choices.combinations[0].values["retention.type"] == "plug_thread"
         assert chosen.evaluation.metrics["mass"].value == near(masses[0], 0.01)
         paths = {variable.path for variable in chosen.variables}
-        assert {"retention.groove_depth", "barrel.layup[2].angle"} <= paths
-        assert "retention.wall" not in paths
+        assert {"retention.wall", "barrel.layup[2].angle"} <= paths
+        assert "retention.groove_depth" not in paths
 
 
-def test_the_rows_of_the_knee_by_hand():
-    """F = 21 MPa on a bore of 21.5 mm; each row from the sizes in the file, in N and mm."""
-    subject = ao.read(DESIGNS / "knee.yaml").subject()
+def test_rows_of_a_knee_by_hand():
+    """F = 21 MPa on a bore of 23 mm; each row from the sizes in the file, in N and mm."""
+    subject = ao.read(held()).subject()
     run = compute(subject, subject.values())
     rows = {
         f"{metric}: {place}": float(np.ravel(value)[0])
-        for metric in ("retention_factor", "retention_burst_factor", "yield_factor")
+        for metric in (
+            "retention_factor", "retention_burst_factor", "yield_factor", "ring_assembly_factor"
+        )
         for place, value in run.computed.metrics[metric].items()
-    }
+    }  # fmt: skip
     stock = run.joints[0].loaded.materials
     wall, torn = (
         float(stock.allowable("al_7075_t6", key)) / 1e6
@@ -261,7 +273,7 @@ def test_the_rows_of_the_knee_by_hand():
         float(stock.allowable("steel_bolt_12_9", key)) / 1e6
         for key in ("yield_strength", "ultimate_strength")
     )
-    bore, h, s, n, b, t = 21.5, 0.4, 1.3, 5.8, 4.2, 1.6
+    bore, h, s, n, b, t = 23.0, 0.5, 1.5, 5.0, 3.0, 2.0
     force = 21 * pi / 4 * bore**2
     groove = bore + 2 * h
     assert rows["retention_factor: groove flank"] == near(
@@ -278,15 +290,18 @@ def test_the_rows_of_the_knee_by_hand():
     assert rows["retention_factor: ring in shear"] == near(ring / 3**0.5 / cut, 1e-9)
     outside = bore / 2 + h
     inside, lever = outside - b, h / 2 + 0.2  # edges broken by 0.2 mm
-    dished = 3 * force * lever / (pi * s**2 * inside * log(outside / inside))
+    dished = 2 * 3 * force * lever / (pi * s**2 * inside * log(outside / inside))
     assert rows["retention_factor: ring in dishing"] == near(ring / dished, 1e-9)
-    plastic = force * lever / (2 * pi) / (s**2 / 4 * b)
+    plastic = 2 * force * lever / (2 * pi) / (s**2 / 4 * b)
     assert rows["retention_burst_factor: ring in dishing"] == near(broken / plastic, 1e-9)
     outer, left, nu = bore / 2 + t, t - h, 0.33
     radius = outer - left / 2
     beta = (3 * (1 - nu**2)) ** 0.25 / (radius * left) ** 0.5
     bent = beta * left**3 / (12 * (1 - nu**2))
-    turned = n**3 * log(outer / (bore / 2)) / (12 * (bore / 2 + t / 2))
+    middle = bore / 2 + t / 2
+    turned = n**3 * log(outer / (bore / 2)) / (12 * middle)
+    along = (3 * (1 - nu**2)) ** 0.25 / (middle * t) ** 0.5 * t**3 / (12 * (1 - nu**2))
+    turned = 1 / (1 / turned + 1 / along)
     moment = force * t / 2 / (2 * pi * radius) * bent / (bent + turned)
     axial = force / (pi * (outer**2 - outside**2))
     bending = 6 * moment / left**2
@@ -295,3 +310,6 @@ def test_the_rows_of_the_knee_by_hand():
     collapse = 2 / (small + (small**2 + 4 * large**2) ** 0.5)
     assert rows["retention_burst_factor: barrel under the groove"] == near(collapse, 1e-9)
     assert axial + bending > 100  # MPa: none of these is a row of nothing
+    closed = outside - b / 2 - h  # middle radius of the ring as it passes the bore
+    strain = b / 2 * (1 / closed - 1 / (closed + h)) * (closed + h) / inside
+    assert rows["ring_assembly_factor: "] == near(ring / (206e3 * strain), 1e-9)
