@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from ..base.quantities import Quantity
+from ..design import assembly
 from ..design.paths import get, quantity_of
 from ..evaluation import result
 from ..evaluation.result import Check, Evaluation, Requirement
@@ -115,7 +116,7 @@ def page(
         blocks += optimum.robust_tables(optimisation)
         blocks += [masses(evaluation)] if optimisation.variables else []
     blocks += [block for study in seals for block in seal.blocks(study)]
-    blocks += [*wall.wall_blocks(evaluation), *checks(evaluation)]
+    blocks += [*wall.wall_blocks(evaluation), *checks(evaluation), *order_of_assembly(evaluation)]
     blocks += _remarks(evaluation, optimisation)
     blocks += extra_tables
     return replace(first, blocks=[*blocks, *_appendix(evaluation)])
@@ -618,6 +619,13 @@ def _open_checks(evaluation: Evaluation, title: str) -> Block:
         cells: list[Cell] = [Status(check.state, " "), *_check_values(evaluation, check), why]
         rows.append(Row(cells, check.state))
     return Table(title, columns, rows, on="terminal")
+
+
+def order_of_assembly(evaluation: Evaluation) -> Iterator[Block]:
+    """How the actuator is put together, derived from its joints."""
+    if lines := assembly.order(evaluation.design):
+        steps = [f"{k}. {line}" for k, line in enumerate(lines, 1)]
+        yield Notes("Order of assembly", steps, on="paper")
 
 
 # ---- remarks and appendix ----
