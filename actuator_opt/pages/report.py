@@ -116,7 +116,8 @@ def page(
         blocks += optimum.robust_tables(optimisation)
         blocks += [masses(evaluation)] if optimisation.variables else []
     blocks += [block for study in seals for block in seal.blocks(study)]
-    blocks += [*wall.wall_blocks(evaluation), *checks(evaluation), *order_of_assembly(evaluation)]
+    blocks += [*wall.wall_blocks(evaluation), *reasons(evaluation), *checks(evaluation)]
+    blocks += order_of_assembly(evaluation)
     blocks += _remarks(evaluation, optimisation)
     blocks += extra_tables
     return replace(first, blocks=[*blocks, *_appendix(evaluation)])
@@ -619,6 +620,25 @@ def _open_checks(evaluation: Evaluation, title: str) -> Block:
         cells: list[Cell] = [Status(check.state, " "), *_check_values(evaluation, check), why]
         rows.append(Row(cells, check.state))
     return Table(title, columns, rows, on="terminal")
+
+
+def reasons(evaluation: Evaluation) -> Iterator[Block]:
+    """Why each requirement is what it is, in the words of the author."""
+    stated = evaluation.design.requirements
+    rows: list[list[Cell]] = []
+    for row in evaluation.requirements:
+        limit = stated.get(row.metric)
+        if limit is not None and limit.reason:
+            quantity = text.metric(row.metric)
+            shown = text.limit_text(quantity, row.sense, row.limit)
+            rows.append([row.name, shown, soft(text.pretty(limit.reason))])
+    if rows:
+        columns = [
+            Column("requirement", "left", 1.0, breaks=22, mono=True, least=16),
+            Column("limit", "right"),
+            Column("reason", "left", 3.0),
+        ]
+        yield Table("Why these limits", columns, rows, on="paper")
 
 
 def order_of_assembly(evaluation: Evaluation) -> Iterator[Block]:
