@@ -644,8 +644,7 @@ def reasons(evaluation: Evaluation) -> Iterator[Block]:
 def order_of_assembly(evaluation: Evaluation) -> Iterator[Block]:
     """How the actuator is put together, derived from its joints."""
     if lines := assembly.order(evaluation.design):
-        steps = [f"{k}. {line}" for k, line in enumerate(lines, 1)]
-        yield Notes("Order of assembly", steps, on="paper")
+        yield Notes("Order of assembly", lines, on="paper")
 
 
 # ---- remarks and appendix ----
