@@ -18,7 +18,7 @@ from ..base.quantities import length_text
 from ..joints.joint import Joint
 from ..models import linkage as crank
 from ..models.piston_nut import HEIGHT
-from . import choices, material, seal_faults, wall_faults
+from . import assembly, choices, material, seal_faults, wall_faults
 from .kinds import MaterialName
 from .material import ROLES
 from .model import PLAIN_CAP, closed_length, spigot_length
@@ -502,6 +502,7 @@ CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
     *LINKAGE_CHECKS,
     *wall_faults.CHECKS,
     wall_faults.values,
+    assembly.faults,
 )
 
 

@@ -257,7 +257,9 @@ def json_schema(
         "measured": lambda: _measured(definitions),
         "uncertainty": lambda: _uncertainty(definitions),
         "choices": _choices,
-        "requirements": lambda: _requirements(metrics, definitions),
+        "requirements": lambda: _requirements(
+            entries(root)["requirements"].section, metrics, definitions
+        ),
         "objective": lambda: _objective(metrics),
         "waivers": lambda: _waivers(metrics),
         "materials": lambda: _materials(materials),
@@ -451,8 +453,16 @@ def _choices() -> Schema:
     return {"description": help} | _by_path(lists)
 
 
-def _requirements(metrics: Mapping[str, Quantity], definitions: Schema) -> Schema:
+def _requirements(
+    section: type[Section] | None, metrics: Mapping[str, Quantity], definitions: Schema
+) -> Schema:
     properties: Schema = {}
+    texts: Schema = {}
+    if section is not None:
+        for key, entry in entries(section).items():
+            if isinstance(entry.kind, Text):
+                definitions[key] = entry_schema(entry, None)
+                texts[key] = {"$ref": f"#/definitions/{key}"}
     for name, metric in metrics.items():
         kind = f"limit_{metric.dimension}_{metric.unit}".translate(_REFERENCE)
         quantity = replace(
@@ -466,7 +476,8 @@ def _requirements(metrics: Mapping[str, Quantity], definitions: Schema) -> Schem
             "type": "object",
             "additionalProperties": False,
             "minProperties": 1,
-            "properties": {key: {"$ref": f"#/definitions/{kind}"} for key in ("min", "max")},
+            "properties": texts
+            | {key: {"$ref": f"#/definitions/{kind}"} for key in ("min", "max")},
         }
     return {
         "description": "Limits that metrics must meet in the worst load case.",

@@ -19,6 +19,7 @@ import numpy as np
 
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, maximum
+from ..design import assembly
 from ..design.material import Material
 from ..design.model import Design
 from ..joints.joint import LEAST_METAL, EndDimensions, EndSpan, Polygon, rectangle
@@ -384,8 +385,13 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
     return {name: float(value) for name, value in values.items()}
 
 
+def numbered(design: Design) -> list[str]:
+    """Numbered sentences on the order of assembly."""
+    return [f"Assembly {k}. {line}" for k, line in enumerate(assembly.order(design), 1)]
+
+
 def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
-    """Sentences about details of the joints that the drawn section does not show."""
+    """Details of the joints that the drawn section does not show, and the order of assembly."""
     sentences = []
     for end_joint in joints_of(design):
         end = end_of(
@@ -400,7 +406,7 @@ def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
             rod_radius=lengths["rod"] / 2,
         )
         sentences += [end_joint.placed(sentence) for sentence in end_joint.joint.notes(end)]
-    return sentences
+    return [*sentences, *numbered(design)]
 
 
 MOST = 24

@@ -19,7 +19,7 @@ from ..joints.kinds import JOINTS
 from ..joints.overlap import Overlap
 from ..models import end_plate, ply, retention, rod
 from ..models.end_bending import ShellLayer
-from . import piston_nut, plies, rod_strength, rods
+from . import beside, piston_nut, plies, rod_strength, rods
 from .barrel import Wall
 from .barrel.wall import largest_area
 from .geometry import (
@@ -133,7 +133,11 @@ def compute(
         joint_walls = end.joint.wall(end.loaded)
         yields = {**yields, **end.placed(joint_walls.yields)}
         bursts = {**bursts, **end.placed(joint_walls.bursts)}
-    _pressure_factors(v, wall, supply, yields, bursts, out)
+    first_ply = dict(wall.first_ply_pressure)
+    for i, end in enumerate(loaded_joints):
+        rows = beside.first_ply(end.end_joint, end.loaded, g.fits[i], wall, supply)
+        first_ply |= end.placed(rows)
+    _pressure_factors(v, wall, supply, yields, first_ply, bursts, out)
     parts = {place: p / supply for place, p in yields.items()}
     parts |= rod_strength.yields(stock, design, g, state, section, beam)
     for end in loaded_joints:
@@ -159,14 +163,15 @@ def _pressure_factors(
     wall: Wall,
     supply: Array,
     yields: Mapping[str, Array],
+    first_ply: Mapping[str, Array],
     bursts: Mapping[str, Array],
     out: MetricArrays,
 ) -> None:
     """Compute the barrel's safety factors against yield, first-ply failure and burst.
 
     A factor is the failure pressure divided by supply pressure or, in the proof check, by proof
-    pressure. `yields` and `bursts` are the yield and burst pressures by location, in barrel and
-    joint.
+    pressure. `yields`, `first_ply` and `bursts` are the pressures at yield, first-ply failure and
+    burst by location, in barrel and joint.
     """
     proof = v["supply.proof_ratio"] * supply
     liner = {place: p / supply for place, p in wall.yield_pressure.items()}
@@ -174,13 +179,13 @@ def _pressure_factors(
     for name, factors in (
         ("liner_yield_factor", liner),
         ("burst_factor", {place: p / supply for place, p in bursts.items()}),
-        ("first_ply_factor", {place: p / supply for place, p in wall.first_ply_pressure.items()}),
+        ("first_ply_factor", {place: p / supply for place, p in first_ply.items()}),
     ):
         if factors:
             out.put(name, factors)
         else:
             out.skip(name, "the wall has no plies" if name == "first_ply_factor" else why)
-    both = {**yields, **wall.first_ply_pressure}
+    both = {**yields, **first_ply}
     if both:
         out.put("proof_factor", {place: p / proof for place, p in both.items()})
     else:

@@ -13,6 +13,7 @@ import numpy as np
 
 from .. import models as formulas
 from ..base.dataclass import dataclass
+from ..design import assembly
 from ..design.material import compatible
 from ..design.model import PLAIN_CAP, Design
 from ..design.paths import quantity_of
@@ -288,6 +289,7 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
     yield from _rod_warnings(subject, run)
     yield from _winding_warnings(subject.design, run)
     yield from _head_warnings(subject.design)
+    yield from (("", text) for text in assembly.warnings(subject.design))
     yield from _bond_warnings(run)
     for part, assumption in (
         ("head", "material and length of the piston"),

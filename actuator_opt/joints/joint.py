@@ -341,6 +341,21 @@ class Strength:
     combined: Thermal | None = None
 
 
+class Opening(NamedTuple):
+    """How parts enter the barrel at an end, and how the end is closed.
+
+    An end `opens` "again" at any time, "once" if it is closed for good, as by a bond, or "never" if
+    it is made with the barrel. `closing` is a sentence with the word {end} for cap or head.
+    `diameter` is the narrowest place before the bore [m], None if the bore is the narrowest.
+    `crossed` are name and axial width [m] of a recess that seals pass on their way; or None.
+    """
+
+    opens: Literal["again", "once", "never"]
+    closing: str
+    diameter: float | None = None
+    crossed: tuple[str, float] | None = None
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Joint:
     """A joint of the barrel ends.
@@ -365,6 +380,8 @@ class Joint:
     """Function that yields errors in the values of a design file."""
     material_faults: Callable[[StatedValues, KnownMaterials], Iterable[Fault]]
     """Function that yields errors in a design file that depend on material properties."""
+    opening: Callable[[StatedValues], Opening]
+    """Function that describes how parts enter the barrel at this end."""
     form: Form
     """Form of the caps: skirts over the outside of the barrel, plugs in its bore, or plates."""
     fit: Callable[[End], EndDimensions]

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 from math import pi
+from typing import NamedTuple
 
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, maximum, minimum
@@ -174,6 +175,15 @@ BESIDE = "barrel beside the skirt"
 """Location where the barrel leaves a skirt and bends."""
 
 
+class EdgeBeside(NamedTuple):
+    """The wall of the barrel, its edge beside a joint, and growth and line force far from it."""
+
+    wall: end_bending.Shell
+    edge: end_bending.Edge
+    growth: Array
+    line_force: Array
+
+
 def _beside(loaded: Loaded) -> tuple[tuple[str, Array], ...]:
     """Equivalent stress of each metal layer of the barrel beside a skirt; the result is cached.
 
@@ -188,10 +198,42 @@ def _beside(loaded: Loaded) -> tuple[tuple[str, Array], ...]:
 
 
 def _bent(loaded: Loaded) -> Iterator[tuple[str, Array]]:
+    end, materials, step = loaded.end, loaded.materials, edge_beside(loaded)
+    if step is None:
+        return
+    start: Array = 0.0
+    for layer, shell in zip(end.layers, loaded.shells, strict=True):
+        if materials.kind(layer.material) == "metal":
+            inner, outer = end_bending.edge_stresses(
+                layer=shell,
+                start=start,
+                wall=step.wall,
+                edge=step.edge,
+                line_force=step.line_force,
+            )
+            yield (
+                layer.material,
+                maximum(
+                    von_mises(hoop=inner[1], radial=-loaded.pressure, axial=inner[0]),
+                    von_mises(hoop=outer[1], radial=0.0, axial=outer[0]),
+                ),
+            )
+        start = start + layer.thickness
+
+
+def edge_beside(loaded: Loaded) -> EdgeBeside | None:
+    """The edge of the barrel beside a skirt; None if an elastic constant is unknown."""
+    if "edge beside" not in loaded.end.cache:
+        loaded.end.cache["edge beside"] = _edge_beside(loaded)
+    edge: EdgeBeside | None = loaded.end.cache["edge beside"]
+    return edge
+
+
+def _edge_beside(loaded: Loaded) -> EdgeBeside | None:
     end, materials = loaded.end, loaded.materials
     modulus, ratio = (materials.get(end.cap, key) for key in ("youngs_modulus", "poissons_ratio"))
     if not loaded.shells or modulus is None or ratio is None:
-        return
+        return None
     stiffness = modulus / (1 - ratio * ratio)
     skirt = end_bending.ShellLayer(
         end.sizes["wall"], stiffness, stiffness, ratio * stiffness, modulus / (2 * (1 + ratio))
@@ -217,20 +259,7 @@ def _bent(loaded: Loaded) -> Iterator[tuple[str, Array]]:
         right_growth=free,
         offset_moment=line_force * (barrel.centre - whole.centre),
     )
-    start: Array = 0.0
-    for layer, shell in zip(end.layers, loaded.shells, strict=True):
-        if materials.kind(layer.material) == "metal":
-            inner, outer = end_bending.edge_stresses(
-                layer=shell, start=start, wall=barrel, edge=edge, line_force=line_force
-            )
-            yield (
-                layer.material,
-                maximum(
-                    von_mises(hoop=inner[1], radial=-loaded.pressure, axial=inner[0]),
-                    von_mises(hoop=outer[1], radial=0.0, axial=outer[0]),
-                ),
-            )
-        start = start + layer.thickness
+    return EdgeBeside(barrel, edge, free, line_force)
 
 
 def beside_yields(loaded: Loaded) -> dict[str, Array]:

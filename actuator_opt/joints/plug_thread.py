@@ -28,6 +28,7 @@ from .joint import (
     KnownMaterials,
     Loaded,
     MaterialProperties,
+    Opening,
     Pulsed,
     StatedValues,
     Strength,
@@ -96,6 +97,16 @@ def _material_faults(view: StatedValues, materials: KnownMaterials) -> Iterator[
             f"{name}: the plug's thread needs a metal",
             "choose a metal, or use another joint (retention.type)",
         )
+
+
+def _opening(view: StatedValues) -> Opening:
+    """The minor diameter of the thread in the barrel, and its length."""
+    sizes, length = _stated(view), view.number("retention", "length")
+    closing = "Screw the {end} into the bore."
+    if sizes is None or length is None:
+        return Opening("again", closing)
+    _, pitch, diameter = sizes
+    return Opening("again", closing, diameter - MINOR * pitch, ("thread", length))
 
 
 # --- dimensions and mass --------------------------------------------------------------------
@@ -302,6 +313,7 @@ JOINT = Joint(
     },
     faults=_faults,
     material_faults=_material_faults,
+    opening=_opening,
     form="plugs",
     fit=_fit,
     clamping=None,

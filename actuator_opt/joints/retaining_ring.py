@@ -28,6 +28,7 @@ from .joint import (
     KnownMaterials,
     Loaded,
     MaterialProperties,
+    Opening,
     Pulsed,
     StatedValues,
     Strength,
@@ -75,6 +76,14 @@ def _material_faults(view: StatedValues, materials: KnownMaterials) -> Iterator[
     depth = view.number("retention", "groove_depth")
     varied = ("barrel.layup[0].thickness", "retention.groove_depth")
     yield from innermost_faults(view, materials, "the groove of the retaining ring", depth, varied)
+
+
+def _opening(view: StatedValues) -> Opening:
+    """The groove, which is as wide as the ring is thick."""
+    width = view.number("retention", "ring_thickness")
+    crossed = None if width is None else ("groove", width)
+    closing = "Push the {end} into the bore and set its split ring into the groove."
+    return Opening("again", closing, crossed=crossed)
 
 
 # --- dimensions and mass --------------------------------------------------------------------
@@ -315,6 +324,7 @@ JOINT = Joint(
     without={},
     faults=_faults,
     material_faults=_material_faults,
+    opening=_opening,
     form="plugs",
     fit=_fit,
     clamping=None,

@@ -32,6 +32,12 @@ Wall = Literal["layered", "thin_laminate"]
 CRITERION = "criterion"
 """Stands for the model's name where the model is the failure criterion that the design selects."""
 
+AT_ENDS = {
+    "*, beside *": "end_bending.strain_changes",
+    "interlaminar shear*": "end_bending.interlaminar_shear",
+}
+"""Models of first-ply failure where the barrel bends beside a joint, by location."""
+
 
 @dataclass(frozen=True, slots=True)
 class CheckLine:
@@ -296,7 +302,8 @@ ROWS = table((
               worst="min", model="barrel.von_mises", feeds=("wall",),
               check=CheckLine("2.2", "proof pressure (yield or first ply)", 1.0,
                           "ISO 10100 practice: proof 1.5 x working pressure"),
-              by_wall={"layered": CRITERION, "thin_laminate": CRITERION}),
+              by_wall={"layered": CRITERION, "thin_laminate": CRITERION},
+              at=AT_ENDS),
     MetricRow("burst_factor", "S_b", "ratio", "",
               "barrel burst pressure divided by working pressure",
               worst="min", model="barrel.burst_pressure_thick", feeds=("wall", "own"),
@@ -311,7 +318,8 @@ ROWS = table((
               worst="min", model="strength_modes.max_stress_modes", feeds=("wall", "own"),
               check=CheckLine("2.4", "first-ply (leak) pressure", 1.5,
                           "our choice: no matrix cracks up to proof pressure"),
-              by_wall={"layered": CRITERION, "thin_laminate": CRITERION}),
+              by_wall={"layered": CRITERION, "thin_laminate": CRITERION},
+              at=AT_ENDS),
     MetricRow("yield_factor", "S_y", "ratio", "",
               "yield strength divided by working stress, metal parts",
               worst="min", model="barrel.von_mises", feeds=("wall",),

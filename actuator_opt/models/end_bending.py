@@ -9,9 +9,10 @@ shear stiffness S. Distances z are from the bore. The bending decays within a fe
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import exp, pi
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, geometry, sqrt
+from ..base.numeric import Array, absolute, geometry, maximum, minimum, sqrt
 
 
 @dataclass(frozen=True, slots=True)
@@ -309,3 +310,122 @@ def edge_stresses(
             )
         )
     return faces[0], faces[1]
+
+
+def groove_shear(*, wall: Shell, growth: Array, groove_moment: Array) -> Array:
+    """Upper bound of the shear force in a wall that holds a plug in a groove or thread of its bore.
+
+    Pressure ends at the plug's seal: k w/(4 a). The plug's force enters at the bore, with the
+    moment N e: at most sqrt 2 e^(-pi/4) beta N e. The bound is their sum.
+
+    Parameters
+    ----------
+    wall : from `shell`
+    growth : w, radial growth inside the pressurised length [m]
+    groove_moment : N e of the line force and its distance from the stiffness centre [N]
+
+    Returns
+    -------
+    shear force per circumference [N/m]
+
+    Notes
+    -----
+    Valid: as `shell`; both parts peak at different places. Shear compliance lowers the second one.
+
+    References
+    ----------
+    [Timoshenko1959] long cylindrical shell, pressure on one half, and moment at a free end;
+    [derived] shear compliance, a as for `clamped`
+
+    Examples
+    --------
+    >>> wall = Shell(20.0, 320e9, 1e12, 1e-3, 1e-2, 1e8, 3e7)
+    >>> print(f"{groove_shear(wall=wall, growth=4e-6, groove_moment=50.0):.1f}")
+    9380.0
+    """
+    middle = sqrt(wall.foundation * wall.bending)
+    beta2 = middle / (2 * wall.bending)
+    step = wall.foundation * growth / (4 * sqrt(beta2 + wall.foundation / (4 * wall.shear)))
+    return step + 2**0.5 * exp(-pi / 4) * sqrt(beta2) * groove_moment
+
+
+def strain_changes(*, place: Array, wall: Shell, edge: Edge, growth: Array) -> tuple[Array, Array]:
+    """Axial and hoop strain at the edge of a wall, minus those far from it.
+
+    de_t = (w_edge - w)/R; de_z = -A_zt de_t/A_zz + M (z_n - z)/D.
+
+    Parameters
+    ----------
+    place : z, distance from the bore [m]
+    wall : from `shell`
+    edge : from `clamped` or `stepped`
+    growth : w, radial growth far from the edge [m]
+
+    Returns
+    -------
+    de_z, de_t [-]
+
+    Notes
+    -----
+    Valid: as `shell`; the axial force is the same at the edge and far from it.
+
+    References
+    ----------
+    [derived] plane sections of the bent wall
+
+    Examples
+    --------
+    >>> wall = Shell(20.0, 320e9, 1e12, 1e-3, 1e-2, 1e8, 3e7)
+    >>> axial, hoop = strain_changes(place=0.0, wall=wall, edge=Edge(0.0, 50.0, 0.0), growth=4e-6)
+    >>> print(f"{axial:.5f} {hoop:.5f}")
+    0.00262 -0.00040
+    """
+    around = (edge.growth - growth) / wall.radius
+    bent = edge.moment * (wall.centre - place) / wall.bending
+    return bent - wall.coupling * around / wall.axial, around
+
+
+def interlaminar_shear(
+    *, layers: Sequence[ShellLayer], wall: Shell, force: Array
+) -> tuple[Array, ...]:
+    """Largest shear stress through the thickness of each layer.
+
+    tau = |Q g|/D, g = int_0^z Q_zz (z - z_n) dz, at the point of the layer nearest to z_n; 1.5 Q/t
+    in a homogeneous wall.
+
+    Parameters
+    ----------
+    layers : layers from the bore outwards, as for `shell`
+    wall : from `shell`
+    force : Q, transverse shear force per circumference [N/m]
+
+    Returns
+    -------
+    tau [Pa], by layer
+
+    Notes
+    -----
+    Valid: as `shell`; singular peaks at corners are not included.
+
+    References
+    ----------
+    [Timoshenko1959] shear flow of a bent section; [derived] layers
+
+    Examples
+    --------
+    >>> metal = ShellLayer(2e-3, 80e9, 80e9, 26e9, 27e9)
+    >>> wall = shell(layers=[metal], inner_radius=10e-3)
+    >>> shear, = interlaminar_shear(layers=[metal], wall=wall, force=1e4)
+    >>> print(f"{shear / 1e6:.3f}")
+    7.500
+    """
+    stresses = []
+    carried, place = 0.0, 0.0
+    for layer in layers:
+        low, high = place - wall.centre, place + layer.thickness - wall.centre
+        nearest = minimum(maximum(low, 0.0), high)
+        flow = carried + layer.axial * (nearest * nearest - low * low) / 2
+        stresses.append(absolute(force * flow) / wall.bending)
+        carried = carried + layer.axial * (high * high - low * low) / 2
+        place = place + layer.thickness
+    return tuple(stresses)

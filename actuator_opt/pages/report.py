@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from ..base.quantities import Quantity
+from ..design import assembly
 from ..design.paths import get, quantity_of
 from ..evaluation import result
 from ..evaluation.result import Check, Evaluation, Requirement
@@ -115,7 +116,8 @@ def page(
         blocks += optimum.robust_tables(optimisation)
         blocks += [masses(evaluation)] if optimisation.variables else []
     blocks += [block for study in seals for block in seal.blocks(study)]
-    blocks += [*wall.wall_blocks(evaluation), *checks(evaluation)]
+    blocks += [*wall.wall_blocks(evaluation), *reasons(evaluation), *checks(evaluation)]
+    blocks += order_of_assembly(evaluation)
     blocks += _remarks(evaluation, optimisation)
     blocks += extra_tables
     return replace(first, blocks=[*blocks, *_appendix(evaluation)])
@@ -618,6 +620,31 @@ def _open_checks(evaluation: Evaluation, title: str) -> Block:
         cells: list[Cell] = [Status(check.state, " "), *_check_values(evaluation, check), why]
         rows.append(Row(cells, check.state))
     return Table(title, columns, rows, on="terminal")
+
+
+def reasons(evaluation: Evaluation) -> Iterator[Block]:
+    """Why each requirement is what it is, in the words of the author."""
+    stated = evaluation.design.requirements
+    rows: list[list[Cell]] = []
+    for row in evaluation.requirements:
+        limit = stated.get(row.metric)
+        if limit is not None and limit.reason:
+            quantity = text.metric(row.metric)
+            shown = text.limit_text(quantity, row.sense, row.limit)
+            rows.append([row.name, shown, soft(text.pretty(limit.reason))])
+    if rows:
+        columns = [
+            Column("requirement", "left", 1.0, breaks=22, mono=True, least=16),
+            Column("limit", "right"),
+            Column("reason", "left", 3.0),
+        ]
+        yield Table("Why these limits", columns, rows, on="paper")
+
+
+def order_of_assembly(evaluation: Evaluation) -> Iterator[Block]:
+    """How the actuator is put together, derived from its joints."""
+    if lines := assembly.order(evaluation.design):
+        yield Notes("Order of assembly", lines, on="paper")
 
 
 # ---- remarks and appendix ----

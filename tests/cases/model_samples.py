@@ -406,6 +406,11 @@ SAMPLES = {
         "layer": SHELL_LAYER, "start": 0.0, "wall": SHELL, "line_force": 1e5,
         "edge": end_bending.Edge(5e-6, 80.0, 4e4),
     },
+    "end_bending.groove_shear": {"wall": SHELL, "growth": 5e-6, "groove_moment": 60.0},
+    "end_bending.strain_changes": {
+        "place": 2e-4, "wall": SHELL, "edge": end_bending.Edge(5e-6, 80.0, 4e4), "growth": 9e-6,
+    },
+    "end_bending.interlaminar_shear": {"layers": [SHELL_LAYER], "wall": SHELL, "force": 4e4},
     "winding_path.turn_length": {"radius": 14e-3, "angle": 0.4},
     "tube_burst.axial_rupture_pressure": {
         "areas": [1e-4, 2e-4], "strengths": [5e8, 2e9], "angles": [0.0, 1.2],

@@ -177,3 +177,73 @@ def test_step_at_a_skirt_against_finite_elements():
     )
     assert (axial - outside) / 2e6 == near(bending, 0.25)
     assert (axial + outside) / 2e6 == near(mean, 0.1)
+
+
+def test_shear_through_the_thickness_by_quadrature():
+    """Shear is Q int_z Q_zz (z - z_n) dz/D: 1.5 Q/t in one layer, largest at a ply's face."""
+    layers = [metal(1.6e-3), hoop(2.7e-3)]
+    wall = end_bending.shell(layers=layers, inner_radius=10.75e-3)
+    z = np.linspace(0, 4.3e-3, 430_001)
+    modulus = np.where(z < 1.6e-3, layers[0].axial, layers[1].axial)
+    slope = modulus * (z - wall.centre)
+    flow = np.concatenate([[0], np.cumsum((slope[1:] + slope[:-1]) / 2 * np.diff(z))])
+    shear = np.abs(flow) * 12e3 / wall.bending
+    stresses = end_bending.interlaminar_shear(layers=layers, wall=wall, force=12e3)
+    assert stresses[0] == near(shear[z < 1.6e-3].max(), 1e-4)
+    assert stresses[1] == near(shear[z > 1.6e-3].max(), 1e-4)
+    assert stresses[1] < stresses[0]  # the stiffness centre is in the metal
+    one = [metal(1.5e-3)]
+    single = end_bending.shell(layers=one, inner_radius=16e-3)
+    (stress,) = end_bending.interlaminar_shear(layers=one, wall=single, force=-1e5)
+    assert stress == near(1.5 * 1e5 / 1.5e-3)
+
+
+def test_shear_at_a_groove_against_the_equation_of_the_shell():
+    """Largest shear force of a pressure step, and of a moment at a free end, each alone."""
+    wall = end_bending.shell(layers=[metal(1.6e-3), hoop(2.7e-3)], inner_radius=10.75e-3)
+    bending, shear, foundation = 1e3 * wall.bending, 1e-3 * wall.shear, 1e-9 * wall.foundation
+    ends = grid((-60, -0.1, 600), (-0.1, 0.1, 400), (0.1, 60, 600))
+
+    def slopes(x, y, step):
+        w, force, turn, curve = y
+        free = 4e-3 * step / (1 + np.exp(np.clip(-x / 0.004, -700, 700)))
+        return np.stack([force / shear - turn, foundation * (w - free), curve, force / bending])
+
+    step = solve_bvp(
+        lambda x, y: slopes(x, y, 1.0),
+        lambda a, b: [a[0], a[2], b[0] - 4e-3, b[2]],
+        ends, np.zeros((4, len(ends))), tol=1e-6, max_nodes=100_000,
+    )  # fmt: skip
+    assert step.success
+    bound = end_bending.groove_shear(wall=wall, growth=4e-6, groove_moment=0.0)
+    assert np.abs(step.sol(ends)[1]).max() * 1e3 == near(bound, 5e-3)
+    half = np.linspace(0, 60, 601)
+    turned = solve_bvp(
+        lambda x, y: slopes(x, y, 0.0),
+        lambda a, b: [a[1], bending * a[3] - 80.0, b[0], b[2]],
+        half, np.zeros((4, len(half))), tol=1e-6, max_nodes=100_000,
+    )  # fmt: skip
+    assert turned.success
+    bound = end_bending.groove_shear(wall=wall, growth=0.0, groove_moment=80.0)
+    assert 0.8 * bound <= np.abs(turned.sol(half)[1]).max() * 1e3 <= bound
+
+
+def test_strain_changes_by_the_stresses_of_the_edge():
+    """Hooke's law with the changes of strain gives the changes of `edge_stresses`."""
+    layers = [metal(0.9e-3), hoop(2.9e-3)]
+    wall = end_bending.shell(layers=layers, inner_radius=10.5e-3)
+    edge = end_bending.Edge(3e-6, 60.0, 0.0)
+    at_edge, far = (
+        end_bending.edge_stresses(
+            layer=layers[1], start=0.9e-3, wall=wall, edge=state, line_force=9e4
+        )
+        for state in (edge, end_bending.Edge(7e-6, 0.0, 0.0))
+    )
+    for face, place in enumerate((0.9e-3, 3.8e-3)):
+        axial, hoop_strain = end_bending.strain_changes(
+            place=place, wall=wall, edge=edge, growth=7e-6
+        )
+        change = layers[1].coupling * axial + layers[1].hoop * hoop_strain
+        assert change == near(at_edge[face][1] - far[face][1])
+        change = layers[1].axial * axial + layers[1].coupling * hoop_strain
+        assert change == near(at_edge[face][0] - far[face][0])

@@ -39,6 +39,7 @@ def test_every_script_of_the_folder_is_tested() -> None:
     """No shipped script is left out of this file."""
     assert {p.name for p in SCRIPTS.glob("*.py")} == {
         "aalto_rig.py",
+        "aerospace_ends.py",
         "composite_saving.py",
         "course_servo.py",
         "custom_metric.py",

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
+from functools import reduce
 from math import pi
 from typing import Any
 
@@ -37,6 +38,7 @@ from .wall import (
     WARMTH,
     Cycle,
     LoadPath,
+    Plies,
     Swelling,
     Wall,
     WallSolution,
@@ -276,8 +278,17 @@ def _strengths(
     brittle = [i for i, layer in enumerate(layers) if layer.strengths]
     if brittle:
         load = _load(residual.solution, brittle, axial)
+        held = residual.of(brittle)
+        wall.plies = Plies(
+            criterion=design.barrel.criterion,
+            layers=layers,
+            rows=brittle,
+            climates=residual.states,
+            load=plies.stress_of(part[:, :, :, -1:] for part in load),
+            residual=held,
+        )
         modes = plies.utilisations(
-            design.barrel.criterion, [layers[i] for i in brittle], load, residual.of(brittle)
+            design.barrel.criterion, [layers[i] for i in brittle], load, held
         )
         amplitude = plies.worst(load[0], (0, 2)) * supply / 2
         for group, utilisation in plies.grouped(modes).items():
@@ -294,6 +305,23 @@ def _strengths(
         if layer.yields:
             load = _load(residual.solution, [i], axial)
             _metal(layer, load, residual.of([i]), residual.states, supply, paths, wall)
+
+
+def first_ply_changed(known: Plies, change: Stress) -> Iterator[tuple[str, Array]]:
+    """Pressures at first-ply failure, by layer and climate, of a wall that bends.
+
+    `change` is the change of stress per unit pressure, with the axes of `Plies.load`. It has no
+    radial stress, so modes of radial stress alone are left out.
+    """
+    load = plies.stress_of(a + b for a, b in zip(known.load, change, strict=True))
+    modes = plies.utilisations(
+        known.criterion, [known.layers[i] for i in known.rows], load, known.residual
+    )
+    highest = reduce(maximum, [m for name, m in modes.items() if not name.startswith("radial")])
+    pressures = load_multiplier(plies.worst(highest, (0,)))
+    for k, i in enumerate(known.rows):
+        for place, pressure in _rows(known.climates, ("",), pressures[k]):
+            yield ", ".join(x for x in (known.layers[i].label, place) if x), pressure
 
 
 def _rows(

@@ -28,7 +28,7 @@ from ...models.strength import yield_utilisation
 from ...models.strength_modes import Stress
 from ..geometry import Geometry, Numbers, clamped, end_at, joints_of
 from ..limits import MaterialValues
-from ..plies import Layer, stress_of, warmings
+from ..plies import Climate, Layer, stress_of, warmings
 from ..state import LoadState
 from ..values import Values
 
@@ -221,6 +221,23 @@ class Cycle:
     mean: Array
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plies:
+    """Plies of the wall under its largest axial load, as input of a failure criterion.
+
+    `layers` are all layers of the wall, and `rows` the indices of plies with known strengths.
+    `load` is their stress per unit pressure, `residual` that at zero pressure, None if there is
+    none; both are (faces, plies, climates, load paths, designs) or have axes of length 1.
+    """
+
+    criterion: str
+    layers: Sequence[Layer]
+    rows: Sequence[int]
+    climates: Sequence[Climate]
+    load: Stress
+    residual: Stress | None
+
+
 @dataclass(slots=True)
 class Wall:
     """The wall of a design.
@@ -234,7 +251,8 @@ class Wall:
     axial force of the load cases. `case_growth` is the growth at the pressures of the load cases.
     `missing` names unknown strengths. `axial_line_stiffness` is axial modulus times thickness of
     the wall, N/m. After cool-down from cure, `mismatch` is yield strength divided by stress of the
-    liner, and `bond` is bond strength divided by the tension between liner and plies.
+    liner, and `bond` is bond strength divided by the tension between liner and plies. `plies` is
+    None for a wall without plies of known strength.
     """
 
     swelling: Swelling
@@ -255,6 +273,7 @@ class Wall:
     cycles: dict[str, Cycle] = field(default_factory=dict)
     ply_fatigue: dict[str, Array] = field(default_factory=dict)
     autofrettage: Autofrettage | None = None
+    plies: Plies | None = None
     why_no_mismatch: str = "the wall has a single material"
     missing: list[str] = field(default_factory=list)
 
