@@ -246,7 +246,6 @@ JOINT = Joint(
     faults=_faults,
     material_faults=nothing,
     form="skirts",
-    inner_skirt=True,
     fit=_fit,
     clamping=None,
     mass=_mass,

@@ -377,8 +377,6 @@ class Joint:
     """Function that yields errors in a design file that depend on material properties."""
     form: Form
     """Form of the caps: skirts over the outside of the barrel, plugs in its bore, or plates."""
-    inner_skirt: bool = False
-    """Whether the caps also have a skirt in the bore, as long as `length`."""
     fit: Callable[[End], EndDimensions]
     clamping: Callable[[End, MaterialProperties], Clamping] | None
     """Function that describes the parts that clamp the barrel; None if none do."""
@@ -413,6 +411,11 @@ class Joint:
     warnings: Callable[[Loaded, Mapping[str, Quantity]], Iterable[tuple[str, str]]]
     """Function that yields a pair (metric, sentence) for each warning; its second argument has the
     quantities of all metrics."""
+
+    @property
+    def inner_skirt(self) -> bool:
+        """Whether the caps also have a skirt in the bore, as long as `length`."""
+        return any(field.key == "inner_wall" for field in self.fields)
 
     @property
     def static_seal(self) -> StaticPlace:

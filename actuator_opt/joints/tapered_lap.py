@@ -11,8 +11,10 @@ from collections.abc import Iterator, Mapping
 from functools import partial
 from math import pi
 
+import numpy as np
+
 from ..base.errors import Fault
-from ..base.numeric import Array, absolute, minimum, sqrt
+from ..base.numeric import Array, absolute, maximum, minimum, sqrt
 from ..base.quantities import Quantity, length_text
 from ..models import lap_joint
 from ..models.strength_modes import load_multiplier
@@ -39,6 +41,7 @@ from .overlap import Overlap
 AT_TIP = "tapered bond at the skirt's tip"
 AT_TUBE = "tapered bond at the barrel's edge"
 PEEL = "peel of the plies at the skirt's tip"
+TAPER = "taper of the skirt"
 
 REST = "geometry_taper"
 """Metric of the length of the skirt that does not taper."""
@@ -113,6 +116,29 @@ def _shear(loaded: Loaded, bond: Overlap, force: Array, strain: Array) -> lap_jo
     )
 
 
+def _loaded_edges(loaded: Loaded, bond: Overlap) -> lap_joint.TaperedLap:
+    """Shear under the largest force; the result is cached."""
+    cache = loaded.end.cache
+    if "tapered_lap" not in cache:
+        cache["tapered_lap"] = _shear(loaded, bond, loaded.force, 0.0)
+    edges: lap_joint.TaperedLap = cache["tapered_lap"]
+    return edges
+
+
+def _yields(loaded: Loaded) -> dict[str, Array]:
+    """Yield strength divided by stress, of the skirt, its taper, and the barrel beside it.
+
+    Shear is largest at an edge, so that N_s <= tau x at a distance x from the tip. The stress of
+    the taper is thus at most tau l/t, with its length l and the full wall t.
+    """
+    bond, end = overlap.of_skirt(loaded), loaded.end
+    strength = loaded.materials.allowable(end.cap, "yield_strength")
+    if isinstance(bond, str) or strength is None:
+        return overlap.yields(loaded)
+    stress = maximum(*_loaded_edges(loaded, bond)) * end.sizes["taper_length"] / end.sizes["wall"]
+    return overlap.yields(loaded) | {TAPER: strength / stress}
+
+
 def _thermal_factor(loaded: Loaded, bond: Overlap, warming: Array, cold: bool) -> Array:
     """Bond strength divided by the larger shear that a temperature change causes at the edges."""
     strength = loaded.materials.allowable(bond.adhesive, "bond_strength", cold=cold)
@@ -128,7 +154,7 @@ def _strength(loaded: Loaded) -> Strength | str:
     if isinstance(bond, str):
         return bond
     strength = materials.allowable(bond.adhesive, "bond_strength")
-    edges = _shear(loaded, bond, loaded.force, 0.0)
+    edges = _loaded_edges(loaded, bond)
     at_tip = strength / edges.at_tip
     sizes = loaded.end.sizes
     plies = overlap.peel(loaded, PEEL, at_tip, thickness=sizes["tip"] * sizes["wall"])
@@ -155,14 +181,21 @@ def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tu
     sizes = loaded.end.sizes
     common = overlap.lag(loaded.materials, bond.adhesive, sizes["length"])
     flex = 1 / bond.metal + 1 / bond.tube
-    decay = 1 / sqrt(common["shear_modulus"] / common["bond_thickness"] * flex)
-    rest = float(sizes["length"] - sizes["taper_length"])
-    if rest < LONG * float(decay) * (1 - ROUNDING):
+    needed = LONG / sqrt(common["shear_modulus"] / common["bond_thickness"] * flex)
+    length, rest, full = (
+        float(np.min(np.real(size)))
+        for size in (sizes["length"], sizes["length"] - sizes["taper_length"], needed)
+    )
+    if rest < full * (1 - ROUNDING):
+        remedy = (
+            f"write a taper_length of at most {length_text(length - full)}"
+            if length > full
+            else "no taper is short enough for this length"
+        )
         yield (
             "retention_burst_factor",
-            f"force and temperature together are checked for a skirt of full wall at the barrel's "
-            f"edge, but it tapers within {length_text(LONG * float(decay))} of this edge: write a "
-            f"taper_length of at most {length_text(max(float(sizes['length'] - LONG * decay), 0))}",
+            "force and temperature together are checked for a skirt of full wall at the barrel's "
+            f"edge, but it tapers within {length_text(full)} of this edge: {remedy}",
         )
 
 
@@ -204,7 +237,7 @@ JOINT = Joint(
     outline=_outline,
     notes=_notes,
     strength=_strength,
-    yields=overlap.yields,
+    yields=_yields,
     wall=lambda loaded: WallPressures(),
     fatigue=lambda loaded: Fatigue(overlap.beside_pulsed(loaded)),
     own=lambda loaded: {REST: loaded.end.sizes["length"] - loaded.end.sizes["taper_length"]},
@@ -215,6 +248,7 @@ JOINT = Joint(
         ("retention_factor", AT_TIP): "lap_joint.tapered_lap",
         ("retention_factor", AT_TUBE): "lap_joint.tapered_lap",
         ("retention_factor", PEEL): "lap_joint.edge_peel",
+        ("yield_factor", TAPER): "lap_joint.tapered_lap",
     },
     usual=(),
     warnings=_warnings,
