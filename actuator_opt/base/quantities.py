@@ -82,6 +82,7 @@ INPUTS = _table("""
  bore                 | D      | length      | mm   | 2     | 1000  | bore diameter
  stroke               | s      | length      | mm   | 1     | 10000 | stroke
  wall_thickness       | t      | length      | mm   | 0.01  | 200   | thickness
+ thickness_ratio      | t/t_0  | ratio       | -    | 0.01  | 1     | thickness, as a share of another
  winding_angle        | theta  | angle       | deg  | -90   | 90    | winding angle from the tube axis
  rod_diameter         | d      | length      | mm   | 1     | 900   | rod outer diameter
  rod_inner_diameter   | d_i    | length      | mm   | 0     | 890   | rod inner diameter

@@ -57,6 +57,9 @@ def _closed(view: FileView) -> float | None:
     if section is not None:
         place, _ = seal_faults.static_places(view)
         spigot = float(spigot_length(place=place, section=section))
+    cap = wall_faults.ends(view)[0]
+    if cap.joint is not None and cap.joint.inner_skirt:
+        spigot += cap.number("retention", "length") or 0.0
     return float(
         closed_length(
             barrel_length=barrel,

@@ -25,7 +25,8 @@ _DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d")
 _NAME = re.compile(r"(?!\d+$)[^\W_][\w .+-]*", re.UNICODE)
 
 EXAMPLES = {
-    "bore": "25 mm", "stroke": "110 mm", "wall_thickness": "1.2 mm", "winding_angle": "55 deg",
+    "bore": "25 mm", "stroke": "110 mm", "wall_thickness": "1.2 mm", "thickness_ratio": "0.2",
+    "winding_angle": "55 deg",
     "allowed_angle": "45 deg", "ply_thickness": "0.2 mm", "autofrettage_pressure": "400 bar",
     "rod_diameter": "12 mm", "rod_inner_diameter": "6 mm", "length": "50 mm",
     "part_length": "20 mm", "stop_travel": "0.5 mm", "radial_clearance": "0.03 mm",

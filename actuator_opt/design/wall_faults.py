@@ -286,6 +286,11 @@ class EndView(FileView):
         )
 
     @property
+    def at_head(self) -> bool:
+        """Whether the joint holds the head, alone or as well as the cap."""
+        return self.at[-1] != "cap"
+
+    @property
     def joint(self) -> Joint | None:
         """The joint that the file names; None if unknown."""
         return JOINTS.get(self.text(_BLOCK, "type") or "")

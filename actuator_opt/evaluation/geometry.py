@@ -123,6 +123,7 @@ def end_of(
     barrel_length: Array,
     plate: Array,
     rod_radius: Array,
+    head_length: Array,
 ) -> End:
     """Describe an end of the barrel; `thicknesses` are those of the barrel's layers."""
     layers = zip(design.barrel.layup, thicknesses, strict=True)
@@ -136,6 +137,7 @@ def end_of(
         barrel_length=barrel_length,
         plate=plate,
         rod_radius=rod_radius,
+        head_length=None if end_joint.name == "cap" else head_length,
     )
 
 
@@ -324,7 +326,8 @@ class Geometry:
     static_places: tuple[StaticPlace, ...]
     """Places of the static seals of cap and head, both empty without static seals."""
     spigot: Array
-    """Length of the cap's spigot, which has the groove of the static seal; 0 without one."""
+    """Length of the cap's spigot, which has the groove of the static seal or is its skirt in the
+    bore; 0 without one."""
     bearing_span: Array
 
     @property
@@ -336,6 +339,11 @@ class Geometry:
     def cap_fit(self) -> EndDimensions:
         """Dimensions of the cap that follow from its joint."""
         return self.fits[0]
+
+    @property
+    def plug_radius(self) -> Array:
+        """Outer radius of the head's plug in the barrel."""
+        return self.inner_radius - self.head_fit.inset
 
     @property
     def head_fit(self) -> EndDimensions:
@@ -373,6 +381,7 @@ def derive(v: Values, design: Design) -> Geometry:
             barrel_length=barrel_length,
             plate=plate,
             rod_radius=rod / 2,
+            head_length=head_length,
         )
         fits.append(end_joint.joint.fit(end))
     if not fits:
@@ -380,6 +389,7 @@ def derive(v: Values, design: Design) -> Geometry:
     forms = tuple(end.joint.form for end in joints)
     static, places = static_grooves(v, design), static_places(design)
     spigot = spigot_length(place=places[0], section=static[0].section) if static else 0.0
+    spigot = spigot + fits[0].inner_length
     pin = v["clevis.pin_diameter"] if design.clevis is not None else 0.0
     eye_offset = mass.eye_length(pin_diameter=pin)
     return Geometry(
@@ -434,6 +444,7 @@ def end_at(design: Design, end_joint: EndJoint, sizes: JointSizes, g: Geometry) 
         barrel_length=g.barrel_length,
         plate=g.plate,
         rod_radius=g.rod_diameter / 2,
+        head_length=g.head_length,
     )
 
 
@@ -475,7 +486,7 @@ def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, 
             "geometry_piston_groove": (g.piston_length - piston_length) / (piston_count + 1),
             "geometry_piston_core": g.inner_radius - piston_depth - thread_radius,
             "geometry_head_groove": (g.head_length - head_length) / (head_count + 1),
-            "geometry_head_wall": g.inner_radius - g.rod_diameter / 2 - head_depth,
+            "geometry_head_wall": g.plug_radius - g.rod_diameter / 2 - head_depth,
         }
     )
 

@@ -236,7 +236,7 @@ def _plate(
 
 def _spigot(g: Geometry, at: _Stations) -> Iterator[Polygon]:
     """The spigot of the cap, with the groove of its static seal."""
-    if float(g.spigot) > 0:
+    if g.static_places[0] == "bore":
         depth = float(g.static_grooves[0].gland_depth)
         inner = at.bore - depth - LEAST_METAL
         yield _grooved(at.plate, at.start, inner, at.bore, g.static_grooves, at.bore, outside=True)
@@ -251,7 +251,7 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     outer = _edge(
         at.head,
         at.end,
-        at.bore,
+        float(g.plug_radius),
         g.static_grooves if head_place == "bore" else (),
         at.bore,
         outside=True,
@@ -404,6 +404,7 @@ def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
             barrel_length=lengths["barrel_length"],
             plate=lengths["plate"],
             rod_radius=lengths["rod"] / 2,
+            head_length=lengths["head_length"],
         )
         sentences += [end_joint.placed(sentence) for sentence in end_joint.joint.notes(end)]
     return [*sentences, *numbered(design)]
@@ -590,6 +591,8 @@ def _changed_fit(fit: EndDimensions, change: _Change) -> EndDimensions:
         wall=change(fit.wall),
         beyond=change(fit.beyond),
         lip=change(fit.lip),
+        inner_length=change(fit.inner_length),
+        inset=change(fit.inset),
         groove=tuple(change(size) for size in fit.groove),
         own=tuple(change(size) for size in fit.own),
     )

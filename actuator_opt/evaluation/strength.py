@@ -305,6 +305,8 @@ def _caps(
 ) -> None:
     """Compute the bending of the end plates; plate and plug of the head are one turned part.
 
+    A skirt in the bore stands clear of the plug, which then does not thicken the plate.
+
     While the piston is at the head end, the joint supports the cap plate against the pressure. On a
     clevis, the neck of the eye carries the push, and the pressure bends the plate around the neck.
     The neck also carries the pull, which enters the plate at the skirt.
@@ -333,10 +335,11 @@ def _caps(
         stresses["cap, pull on its neck"] = end_plate.hub_plate_stress(
             pressure=0.0, edge_force=supply * g.area_b, edge_radius=support, **hub
         )
+    slotted = any(end.joint.inner_skirt for end in joints_of(design)[-1:])
     head = end_plate.end_plate_stress(
         pressure=supply,
         radius=g.inner_radius,
-        thickness=g.plate + g.head_length,
+        thickness=g.plate if slotted else g.plate + g.head_length,
         poissons_ratio=ratio,
     )
     stresses["head"] = HOLE * head

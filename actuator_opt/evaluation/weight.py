@@ -65,7 +65,7 @@ def _gland(v: Values, design: Design, g: Geometry) -> Array:
         for groove in g.rod_grooves
     )
     plug = mass.tube_mass(
-        density=density, inner_diameter=hole, outer_diameter=g.bore, length=g.head_length
+        density=density, inner_diameter=hole, outer_diameter=2 * g.plug_radius, length=g.head_length
     )
     return plug - density * groove_volume
 

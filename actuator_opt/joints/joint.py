@@ -86,6 +86,11 @@ class StatedValues(Protocol):
         """The entries of the list at a path in the file."""
         ...
 
+    @property
+    def at_head(self) -> bool:
+        """Whether the joint holds the head, alone or as well as the cap."""
+        ...
+
 
 class KnownMaterials(Protocol):
     """Material data for the materials that a design file names."""
@@ -157,6 +162,8 @@ class End:
     """Thickness of the end plate."""
     rod_radius: Array
     """Radius of the rod, which passes through the head."""
+    head_length: Array | None
+    """Length of the head's plug in the barrel; None at the end of the cap alone."""
     cache: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
     """Intermediate results that the joint's functions store here to use again, under any key."""
 
@@ -169,7 +176,8 @@ class EndDimensions:
     larger outer radius is turned down to this radius. A barrel that encloses the end plate extends
     by `beyond` past the chamber, and by `lip` past the plate. `groove` is the groove in its bore:
     distance from the chamber, axial width and radial depth. `own` are further dimensions for the
-    drawing of the joint.
+    drawing of the joint. A skirt in the bore has the length `inner_length`; that of the
+    cap lengthens the barrel. The outside of the head's plug is then `inset` from the bore.
     """
 
     plate_radius: Array
@@ -178,6 +186,8 @@ class EndDimensions:
     wall: Array = 0.0
     beyond: Array = 0.0
     lip: Array = 0.0
+    inner_length: Array = 0.0
+    inset: Array = 0.0
     groove: tuple[Array, ...] = ()
     own: tuple[Array, ...] = ()
 
@@ -418,6 +428,11 @@ class Joint:
     warnings: Callable[[Loaded, Mapping[str, Quantity]], Iterable[tuple[str, str]]]
     """Function that yields a pair (metric, sentence) for each warning; its second argument has the
     quantities of all metrics."""
+
+    @property
+    def inner_skirt(self) -> bool:
+        """Whether the caps also have a skirt in the bore, as long as `length`."""
+        return any(field.key == "inner_wall" for field in self.fields)
 
     @property
     def static_seal(self) -> StaticPlace:

@@ -10,6 +10,8 @@ JOINTS: Kinds[Joint] = kinds_in(
     __package__,
     "JOINT",
     "bond",
+    "double_lap",
+    "tapered_lap",
     "thread",
     "plug_thread",
     "retaining_ring",

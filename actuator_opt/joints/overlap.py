@@ -9,7 +9,7 @@ share the code for skirts.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
 from math import pi
 from typing import NamedTuple
@@ -33,6 +33,10 @@ from .joint import (
 BOND_THICKNESS = 0.15e-3
 """Thickness of a bond whose adhesive states none [m]. Our choice: glass beads of this size."""
 
+TO_YOUNG = 2.6
+"""Young's modulus divided by shear modulus, 2 (1 + nu), of an adhesive that states no Young's
+modulus: Poisson's ratio 0.3, our choice."""
+
 
 @dataclass(frozen=True, slots=True)
 class Overlap:
@@ -53,13 +57,7 @@ class Overlap:
 
     def _adhesive(self, materials: MaterialProperties) -> dict[str, Array]:
         """Keyword arguments that all lap-joint models share: bond length, thickness and modulus."""
-        return {
-            "length": self.length,
-            "shear_modulus": materials.get(self.adhesive, "shear_modulus"),
-            "bond_thickness": materials.get(
-                self.adhesive, "bond_thickness", default=BOND_THICKNESS
-            ),
-        }
+        return lag(materials, self.adhesive, self.length)
 
     def edge_factors(self, materials: MaterialProperties, force: Array) -> dict[str, Array]:
         """Bond strength divided by the elastic peak shear stress under a force, at both edges."""
@@ -149,6 +147,86 @@ def mismatch(materials: MaterialProperties, metal: str, tube: Array) -> Array:
     return None if metal_expansion is None or tube is None else metal_expansion - tube
 
 
+def lag(materials: MaterialProperties, adhesive: str, length: Array) -> dict[str, Array]:
+    """Keyword arguments that all lap-joint models share: bond length, thickness and modulus."""
+    return {
+        "length": length,
+        "shear_modulus": materials.get(adhesive, "shear_modulus"),
+        "bond_thickness": materials.get(adhesive, "bond_thickness", default=BOND_THICKNESS),
+    }
+
+
+def of_skirt(loaded: Loaded) -> Overlap | str:
+    """The bonded overlap of skirt and barrel, or the reason why it cannot be assessed."""
+    end, materials = loaded.end, loaded.materials
+    if end.material is None:
+        return "a bond needs an adhesive: add retention.material"
+    modulus = materials.get(end.cap, "youngs_modulus")
+    adhesive = (materials.get(end.material, key) for key in ("bond_strength", "shear_modulus"))
+    if any(value is None for value in (modulus, *adhesive)):
+        return "the adhesive has no bond strength or shear modulus, or the caps have no modulus"
+    around = 2 * pi * end.outer_radius
+    skirt = mass.layer_area(inner_radius=end.outer_radius, thickness=end.sizes["wall"])
+    return Overlap(
+        adhesive=end.material,
+        diameter=2 * end.outer_radius,
+        length=end.sizes["length"],
+        tube=loaded.line_stiffness * pi * (end.inner_radius + end.outer_radius) / around,
+        metal=modulus * skirt / around,
+        mismatch=mismatch(materials, end.cap, loaded.expansion),
+        names=("barrel", "skirt"),
+    )
+
+
+def peel(
+    loaded: Loaded, place: str, edge: Array, *, layer: int = -1, thickness: Array = None
+) -> dict[str, Array]:
+    """Strength across the plies of a layer divided by the peel stress at a skirt's edge, by place.
+
+    `edge` is the bond strength divided by the shear stress there, and `thickness` that of the
+    skirt's edge, by default that of the outer skirt. A metal layer has no such row, as the peel
+    strength of adhesives is not part of their data.
+    """
+    end, materials = loaded.end, loaded.materials
+    assert end.material is not None
+    bonded = end.layers[layer].material
+    strength = materials.allowable(bonded, "strength_2_tension")
+    ratio = materials.get(end.cap, "poissons_ratio")
+    if materials.kind(bonded) != "ply" or strength is None or ratio is None:
+        return {}
+    shear_modulus = materials.get(end.material, "shear_modulus")
+    stress = lap_joint.edge_peel(
+        shear=materials.allowable(end.material, "bond_strength") / edge,
+        adhesive_modulus=materials.get(
+            end.material, "youngs_modulus", default=TO_YOUNG * shear_modulus
+        ),
+        bond_thickness=materials.get(end.material, "bond_thickness", default=BOND_THICKNESS),
+        skirt_modulus=materials.get(end.cap, "youngs_modulus"),
+        skirt_poissons_ratio=ratio,
+        skirt_thickness=end.sizes["wall"] if thickness is None else thickness,
+    )
+    return {place: strength / stress}
+
+
+def mean_envelope(loaded: Loaded, burst: Mapping[str, Array]) -> dict[str, Array]:
+    """Upper bound of a bond's safety factor: the largest shear is at least the mean shear.
+
+    The first row of `burst` is that of the mean shear.
+    """
+    return {"mean shear of the bond": next(iter(burst.values()))} if burst else {}
+
+
+def apart(loaded: Loaded) -> Iterator[tuple[str, str]]:
+    """Warn that force and heat are checked apart if the adhesive's data allow no more."""
+    bond = of_skirt(loaded)
+    if not isinstance(bond, str) and not bond.ductile(loaded.materials):
+        yield (
+            "retention_burst_factor",
+            "force and temperature act on the bond together, but are checked apart: state "
+            f"plastic_shear_strain of {loaded.end.material} to check both",
+        )
+
+
 def fit(end: End, radius: Array) -> EndDimensions:
     """Dimensions of a skirt with this inner radius over the end of the barrel."""
     wall = end.sizes["wall"]
@@ -188,8 +266,9 @@ def _beside(loaded: Loaded) -> tuple[tuple[str, Array], ...]:
     """Equivalent stress of each metal layer of the barrel beside a skirt; the result is cached.
 
     Skirt and barrel are one wall up to the skirt's edge, where the force passes from one to the
-    other. This changes growth and middle of the wall, so that the barrel bends. Residual stresses
-    of cure and autofrettage are not included.
+    other. This changes growth and middle of the wall, so that the barrel bends. A skirt in the
+    bore is part of this wall too, and a tapered one counts with its full wall, which is an upper
+    bound. Residual stresses of cure and autofrettage are not included.
     """
     if "beside" not in loaded.end.cache:
         loaded.end.cache["beside"] = tuple(_bent(loaded))
@@ -235,21 +314,29 @@ def _edge_beside(loaded: Loaded) -> EdgeBeside | None:
     if not loaded.shells or modulus is None or ratio is None:
         return None
     stiffness = modulus / (1 - ratio * ratio)
-    skirt = end_bending.ShellLayer(
-        end.sizes["wall"], stiffness, stiffness, ratio * stiffness, modulus / (2 * (1 + ratio))
-    )
-    barrel, whole = (
-        end_bending.shell(layers=layers, inner_radius=end.inner_radius)
-        for layers in (loaded.shells, (*loaded.shells, skirt))
+
+    def skirt(thickness: Array) -> tuple[end_bending.ShellLayer, ...]:
+        return (
+            end_bending.ShellLayer(
+                thickness, stiffness, stiffness, ratio * stiffness, modulus / (2 * (1 + ratio))
+            ),
+        )
+
+    inner = end.sizes.get("inner_wall", None)
+    inside, within = (0.0, ()) if inner is None else (inner, skirt(inner))
+    bore = end.inner_radius if inner is None else end.inner_radius - inner
+    barrel = end_bending.shell(layers=loaded.shells, inner_radius=end.inner_radius)
+    whole = end_bending.shell(
+        layers=(*within, *loaded.shells, *skirt(end.sizes["wall"])), inner_radius=bore
     )
     free, under = (
         end_bending.free_growth(
             wall=wall,
             pressure=loaded.pressure,
-            bore_radius=end.inner_radius,
+            bore_radius=radius,
             line_force=loaded.force / (2 * pi * wall.radius),
         )
-        for wall in (barrel, whole)
+        for wall, radius in ((barrel, end.inner_radius), (whole, bore))
     )
     line_force = loaded.force / (2 * pi * barrel.radius)
     edge = end_bending.stepped(
@@ -257,7 +344,7 @@ def _edge_beside(loaded: Loaded) -> EdgeBeside | None:
         right=barrel,
         left_growth=under,
         right_growth=free,
-        offset_moment=line_force * (barrel.centre - whole.centre),
+        offset_moment=line_force * (barrel.centre + inside - whole.centre),
     )
     return EdgeBeside(barrel, edge, free, line_force)
 

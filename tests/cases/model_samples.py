@@ -111,6 +111,11 @@ COLUMN = {
     "bending_stiffness_1": 5000.0, "length_1": 0.2, "bending_stiffness_2": 1200.0,
     "length_2": 0.18,
 }  # fmt: skip
+TAPERED = {
+    "line_force": 8e4, "strain_difference": -3e-4, "length": 16e-3, "tip": 0.2,
+    "shear_modulus": 1.2e9, "bond_thickness": 0.15e-3, "skirt_stiffness": 1.4e8,
+    "tube_stiffness": 1.2e8,
+}  # fmt: skip
 BOND = {"length": 20e-3, "shear_modulus": 1e9, "bond_thickness": 0.2e-3}
 WALLS = {"membrane_stiffness_1": 100e6, "membrane_stiffness_2": 50e6}
 LAMINA = {
@@ -441,6 +446,14 @@ SAMPLES = {
         "shear": 28e6, "adhesive_modulus": 3e9, "bond_thickness": 0.15e-3, "skirt_modulus": 71.7e9,
         "skirt_poissons_ratio": 0.33, "skirt_thickness": 2e-3,
     },
+    "lap_joint.double_lap": {
+        "force": 7e3, "strain_difference": 3e-4, "length": 12e-3, "outer_bond_diameter": 28e-3,
+        "inner_bond_diameter": 21e-3, "shear_modulus": 1.2e9, "bond_thickness": 0.15e-3,
+        "tube_stiffness": 1e7, "outer_stiffness": 8e6, "inner_stiffness": 5e6,
+    },
+    "lap_joint.tapered_lap": [
+        {**TAPERED, "taper_length": length} for length in (8e-3, 16e-3)
+    ],
     "lap_joint.bond_edge_shear": {
         "force": 1e4, "diameter": 30e-3, **BOND, "membrane_stiffness_loaded": 100e6,
         "membrane_stiffness_free": 50e6,

@@ -31,6 +31,10 @@ RETENTION = STEEL[STEEL.index("retention:\n") : STEEL.index("\nclevis:")]
 BLOCKS = {
     "bond": "type: bond\n  material: epoxy_structural\n  length: 20 mm\n  wall: 2 mm\n",
     "thread": "type: thread\n  length: 10 mm\n  wall: 2 mm\n  thread:\n    pitch: 1 mm\n",
+    "double_lap": "type: double_lap\n  material: epoxy_structural\n  length: 14 mm\n"
+    "  wall: 2 mm\n  inner_wall: 1.5 mm\n",
+    "tapered_lap": "type: tapered_lap\n  material: epoxy_structural\n  length: 20 mm\n"
+    "  wall: 2 mm\n  tip: 0.3\n  taper_length: 8 mm\n",
     "tie_rods": "type: tie_rods\n  material: steel_bolt_12_9\n  length: 8 mm\n  count: 6\n"
     "  preload: 40 kN\n  thread:\n    diameter: 6 mm\n    pitch: 1 mm\n",
     "plug_thread": "type: plug_thread\n  length: 8 mm\n  wall: 1.5 mm\n"
@@ -172,12 +176,12 @@ def test_its_metrics(joint):
 
 @each
 def test_its_mass(joint):
-    """It adds mass. Lighter are at most the barrel, and caps that the barrel encloses."""
+    """It adds mass. Lighter are at most the barrel, caps in it, and a plug in an inner skirt."""
     evaluation = ao.evaluate(ao.read(text_of(BLOCKS[joint.name])))
     bare = ao.evaluate(ao.read(BARE))
     gained = {part: evaluation.mass_parts[part] - bare.mass_parts[part] for part in bare.mass_parts}
     assert sum(gained.values()) > 0
-    enclosed = {"caps"} if gained["barrel"] > 0 else set()
+    enclosed = {"glands"} if joint.inner_skirt else {"caps"} if gained["barrel"] > 0 else set()
     assert all(gain >= 0 for part, gain in gained.items() if part not in {"barrel", *enclosed})
 
 
@@ -190,16 +194,24 @@ def volume(polygon):
     return abs(np.pi * turned / 3)
 
 
+def moved_to_origin(outline):
+    """Part, material and rounded polygons of an outline, moved along the axis to start at 0."""
+    start = min(x for polygon in outline.polygons for x, _ in polygon)
+    shapes = [[(round(x - start, 12), round(r, 12)) for x, r in one] for one in outline.polygons]
+    return outline.part, outline.material, shapes
+
+
 @each
 def test_its_outline(joint):
     """The section shows the joint, and its turned parts and bars weigh what the mass model says."""
     found = ao.read(text_of(BLOCKS[joint.name]))
     evaluation, bare = ao.evaluate(found), ao.evaluate(ao.read(BARE))
-    drawn = [one for one in evaluation.outlines if one not in bare.outlines]
+    known = [moved_to_origin(one) for one in bare.outlines]
+    drawn = [one for one in evaluation.outlines if moved_to_origin(one) not in known]
     assert drawn
     numbers = found.subject().numbers
     names = {one.part: "fastening" for one in drawn}
-    names |= {"caps": "caps", "layup[0]": "barrel"}
+    names |= {"caps": "caps", "glands": "glands", "layup[0]": "barrel"}
     for outline in drawn:
         part = names[outline.part]
         if outline.bars:
