@@ -130,7 +130,7 @@ class _Stations:
 
 
 def _stations(g: Geometry) -> _Stations:
-    face = float(g.eye_offset)
+    face = float(g.eye_offset + g.neck)
     plate = face + float(g.plate)
     start = plate + float(g.spigot)
     end = start + float(g.barrel_length)
@@ -338,7 +338,10 @@ def _rings(
 def _eyes(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     if design.clevis is not None:
         pin, name = float(g.pin_diameter), design.clevis.material
-        yield "cap eye", name, _eye(0.0, pin, 1), 0, False
+        cap = _eye(0.0, pin, 1)
+        if float(g.neck) > 0:
+            cap.append(rectangle(float(g.eye_offset), at.face, 0.0, pin / 2))
+        yield "cap eye", name, cap, 0, False
         yield "rod eye", name, _eye(at.tip + float(g.eye_offset), pin, -1), 0, False
 
 
@@ -382,7 +385,8 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
         "closed_length": g.closed_length,
         "pin_cap": 0.0,
         "pin_rod": g.closed_length,
-        "eye_offset": g.eye_offset,
+        "eye_offset": g.eye_offset + g.neck,
+        "neck": g.neck,
         "pin": g.pin_diameter,
         "extension": g.rod_extension,
     }

@@ -1,10 +1,10 @@
 """Plugs in the barrel's end, each held by radial pins through the laminate.
 
-The end plate is a plug in the bore, whose rim has the static seal. The innermost layer of the barrel
-is a liner and ends at the plate. Outside it, a skirt of the plug fills the other layers, which must
-be plies. Pins in one row or two go through the plies into this skirt, so that neither liner nor
-chamber is pierced. The plies carry the whole force there. They must be close to quasi-isotropic, as
-only such laminates hold pins.
+The end plate is a plug in the bore, whose rim has the static seal. The innermost layer of the
+barrel is a liner and ends at the plate. Outside it, a skirt of the plug fills the other layers,
+which must be plies. Pins in one row or two go through the plies into this skirt, so that neither
+liner nor chamber is pierced. The plies carry the whole force there. They must be close to
+quasi-isotropic, as only such laminates hold pins.
 """
 
 from __future__ import annotations
@@ -82,30 +82,36 @@ def _plies(share: Array, angle: Array) -> dict[str, Array]:
 
 
 def _pattern(
-    sizes: Mapping[str, Array], radius: Array, layers: Sequence[tuple[Array, Array]]
+    sizes: Mapping[str, Array],
+    radius: Array,
+    layers: Sequence[tuple[Array, Array]],
+    *,
+    spaced: bool,
 ) -> dict[str, Array]:
     """Each ratio of a pattern divided by its limit; the formulas are valid from 1 on.
 
-    `radius` is the middle radius of the laminate, and `layers` are thickness and angle of its plies.
+    `radius` is the middle radius of the laminate, and `layers` are thickness and angle of its
+    plies. With `spaced`, the design states the distance of two rows.
     """
     diameter, thickness = sizes["diameter"], sum(layer[0] for layer in layers)
     inboard = sizes["length"] - sizes["edge"] - (sizes["rows"] - 1) * sizes["spacing"]
     ratios = {
         "edge distance": sizes["edge"] / (LEAST_EDGE * diameter),
         "pitch": 2 * pi * radius / (sizes["count"] * LEAST_PITCH * diameter),
-        "distance of the rows": where(
-            sizes["rows"] > 1.5,
-            sizes["spacing"] / (LEAST_PITCH * diameter),
-            1.0 + 0 * sizes["spacing"],
-        ),
         "thin laminate": 2 * thickness / diameter,
         "thick laminate": diameter / thickness,
         "distance from the plate": inboard / diameter,
     }
+    if spaced:
+        ratios["distance of the rows"] = where(
+            sizes["rows"] > 1.5,
+            sizes["spacing"] / (LEAST_PITCH * diameter),
+            1.0 + 0 * sizes["spacing"],
+        )
     for direction, least in LEAST_SHARES.items():
-        ratios[direction] = sum(
-            _plies(part / thickness, angle)[direction] for part, angle in layers
-        ) / least
+        ratios[direction] = (
+            sum(_plies(part / thickness, angle)[direction] for part, angle in layers) / least
+        )
     return ratios
 
 
@@ -123,7 +129,9 @@ def _faults(view: StatedValues) -> Iterator[Fault]:
     if _varied(view, "retention.rows"):
         return
     if rows not in (None, 1.0, 2.0):
-        yield Fault(("retention", "rows"), f"{rows:g}: pins stand in one row or two", "write 1 or 2")
+        yield Fault(
+            ("retention", "rows"), f"{rows:g}: pins stand in one row or two", "write 1 or 2"
+        )
     spacing = view.number("retention", "spacing")
     if rows == 2.0 and spacing is None:
         yield Fault(
@@ -189,6 +197,8 @@ def _material_faults(view: StatedValues, materials: KnownMaterials) -> Iterator[
     known = [thickness for thickness in thicknesses if thickness is not None]
     if bore is None or len(known) < len(layup) or len(numbers) < len(SIZES):
         return
+    if numbers["rows"] not in (1.0, 2.0) or (numbers["rows"] == 2.0 and not numbers["spacing"]):
+        return
     yield from _pattern_faults(view, numbers, bore, list(zip(known, angles, strict=True)))
 
 
@@ -219,9 +229,10 @@ def _pattern_faults(
                                     "plate", length_text(inboard),
                                     ("retention.edge", "retention.rows", "retention.spacing")),
     }  # fmt: skip
-    ratios = _pattern(sizes, radius, layers[1:])
+    spaced = view.has("retention", "spacing")
+    ratios = _pattern(sizes, radius, layers[1:], spaced=spaced)
     for place, (key, message, number, others) in places.items():
-        if ratios[place] >= 1 - ROUNDING or _varied(
+        if ratios.get(place, 1.0) >= 1 - ROUNDING or _varied(
             view, f"retention.{key}", "retention.diameter", *others
         ):
             continue
@@ -313,9 +324,9 @@ def _notes(end: End) -> Iterator[str]:
     sizes = _sizes(end)
     rows = "two rows of" if float(sizes["rows"]) > 1.5 else "one row of"
     yield (
-        f"Pins at each end: {rows} {round(float(sizes['count']))}, {1e3 * sizes['diameter']:.4g} mm "
-        "diameter, pressed into the plug; their holes in plies and plug are not drawn. Chamfer the "
-        "laminate's end, which the seals of plug and piston pass at assembly."
+        f"Pins at each end: {rows} {round(float(sizes['count']))}, "
+        f"{1e3 * sizes['diameter']:.4g} mm diameter, pressed into the plug; their holes in plies "
+        "and plug are not drawn. Chamfer the liner's end, which the seals pass at assembly."
     )
 
 
@@ -397,9 +408,7 @@ def _stresses(loaded: Loaded, layers: Sequence[model.FibreLayer]) -> dict[str, A
     count, diameter, edge = sizes["count"], sizes["diameter"], sizes["edge"]
     row = {"force": force, "count": count}
     lever = thickness / 2
-    hole = model.elastic_hole_factor(
-        diameter=diameter, pitch=2 * pi * radius / count, edge=edge
-    )
+    hole = model.elastic_hole_factor(diameter=diameter, pitch=2 * pi * radius / count, edge=edge)
     net = model.net_section_stress(
         force=loaded.force, count=count, diameter=diameter, thickness=thickness, radius=radius
     )
@@ -536,7 +545,8 @@ def _own(loaded: Loaded) -> Mapping[str, Mapping[str, Array]]:
     ]
     if not layers:
         return {SKIRT: skirt}
-    return {PATTERN: _pattern(_sizes(end), (end.outer_radius + outer) / 2, layers), SKIRT: skirt}
+    radius, spaced = (end.outer_radius + outer) / 2, "spacing" in end.sizes
+    return {PATTERN: _pattern(_sizes(end), radius, layers, spaced=spaced), SKIRT: skirt}
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:

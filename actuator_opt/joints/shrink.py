@@ -8,7 +8,6 @@ and temperature change the contact pressure, which the exact layered tube gives.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import pi
 
 import numpy as np
 
@@ -41,8 +40,8 @@ from .joint import (
 )
 
 FRICTION = 0.12
-"""Friction coefficient of dry metal on carbon plies, unless stated. Published values are 0.1 to 0.2;
-the choice in this range is ours."""
+"""Friction coefficient of dry metal on carbon plies, unless stated. Published values are 0.1 to
+0.2; the choice in this range is ours."""
 
 RELAXATION = 0.6
 """Share of the grip that remains in service, unless stated: the matrix creeps across the plies. Our
@@ -199,10 +198,8 @@ def _contact_of(loaded: Loaded) -> Contact | str:
     end, materials, tube = loaded.end, loaded.materials, loaded.tube()
     if end.material is None:
         return "a shrunk ring needs a metal: add retention.material"
-    ring = {
-        key: materials.get(end.material, key) for key in ("youngs_modulus", "poissons_ratio")
-    }
-    if tube is None or None in ring.values():
+    ring = {key: materials.get(end.material, key) for key in ("youngs_modulus", "poissons_ratio")}
+    if tube is None or any(value is None for value in ring.values()):
         return "the elastic constants of barrel or ring are unknown"
     give = {
         "tube_give": -model.outer_growth(tube=tube, outer_pressure=1.0),

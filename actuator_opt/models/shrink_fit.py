@@ -92,9 +92,7 @@ def bore_stress(*, tube: LayeredTube) -> Array:
     """
     state = tube_state(tube=tube, outer_pressure=1.0)
     axial, hoop, radial, _ = tube_stresses(tube=tube, state=state)
-    return von_mises(
-        hoop=hoop[0, 0, ...], radial=radial[0, 0, ...], axial=axial[0, 0, ...]
-    )
+    return von_mises(hoop=hoop[0, 0, ...], radial=radial[0, 0, ...], axial=axial[0, 0, ...])
 
 
 @geometry
