@@ -104,7 +104,7 @@ def _pattern(
     }
     if spaced:
         ratios["distance of the rows"] = where(
-            sizes["rows"] > 1.5,
+            real(sizes["rows"]) > 1.5,
             sizes["spacing"] / (LEAST_PITCH * diameter),
             1.0 + 0 * sizes["spacing"],
         )
@@ -126,12 +126,8 @@ def _sizes(end: End) -> dict[str, Array]:
 def _faults(view: StatedValues) -> Iterator[Fault]:
     """Report two rows without spacing, or a spacing of one row."""
     rows = view.number("retention", "rows")
-    if _varied(view, "retention.rows"):
+    if _varied(view, "retention.rows") or (rows is None and view.has("retention", "rows")):
         return
-    if rows not in (None, 1.0, 2.0):
-        yield Fault(
-            ("retention", "rows"), f"{rows:g}: pins stand in one row or two", "write 1 or 2"
-        )
     spacing = view.number("retention", "spacing")
     if rows == 2.0 and spacing is None:
         yield Fault(
@@ -395,7 +391,7 @@ def _row_force(loaded: Loaded, layers: Sequence[model.FibreLayer]) -> Array:
         sleeve_give=sizes["spacing"] / sleeve,
         loaded_together=True,
     )
-    force = loaded.force * where(sizes["rows"] > 1.5, share, 1.0 + 0 * share)
+    force = loaded.force * where(real(sizes["rows"]) > 1.5, share, 1.0 + 0 * share)
     end.cache["row_force"] = force
     return force
 

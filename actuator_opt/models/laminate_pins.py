@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from math import pi
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, absolute, geometry, maximum, minimum, namespace, sqrt, where
+from ..base.numeric import Array, absolute, geometry, maximum, minimum, namespace, real, sqrt, where
 from . import laminate, ply
 
 QUASI_ISOTROPIC = 0.27
@@ -166,7 +166,7 @@ def elastic_hole_factor(*, diameter: Array, pitch: Array, edge: Array) -> Array:
     2.39169
     """
     wide = pitch / diameter
-    close = where(edge < pitch, 1.5 - 0.5 * pitch / edge, 1.0 + 0 * edge)
+    close = where(real(edge) < real(pitch), 1.5 - 0.5 * pitch / edge, 1.0 + 0 * edge)
     return 1 + wide - 1.5 * close * (wide - 1) / (wide + 1)
 
 
