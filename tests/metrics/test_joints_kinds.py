@@ -56,6 +56,8 @@ VALUES = {
     "count": "7",
     "preload": "5 kN",
     "thread": "{diameter: 6 mm, pitch: 1 mm}",
+    "edge": "12 mm",
+    "interference": "10 um",
 }
 """A value of every key that some joint does not use, none of them a default."""
 
