@@ -131,7 +131,7 @@ def test_radial_pins_go_through_the_plies():
         "  count: 7\n  rows: 2\n  diameter: 3.6 mm\n  spacing: 11 mm\n  edge: 11 mm\n"
     )
     text = text.replace(layup, liner + plies).replace(retention, pins)
-    evaluation, densities, read = exported(ao.read(text))
+    evaluation, _, read = exported(ao.read(text))
     solids = read.solids()
     names = [f"pin, row {row}" for row in range(1, 5)]
     by_hand = math.pi / 4 * 3.6**2 * (6 + 3.5)
