@@ -546,7 +546,10 @@ def _own(loaded: Loaded) -> Mapping[str, Mapping[str, Array]]:
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
-    """Warn of a pattern outside its valid range, and of too little metal."""
+    """Warn of a pattern outside its valid range, too little metal, and unknown fatigue."""
+    name = loaded.end.material
+    if name is not None and loaded.materials.get(name, "fatigue_strength") is None:
+        yield "fatigue_factor", f"fatigue of the pins is not assessed: {name} has no such strength"
     own = _own(loaded)
     for place, ratio in own.get(PATTERN, {}).items():
         least = float(np.min(np.real(ratio)))

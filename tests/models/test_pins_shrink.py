@@ -343,6 +343,65 @@ def _pulled():
     return laminate_pins.fibre_strengths(layers=layers)[0]
 
 
+def test_neck_of_the_cap_eye():
+    """20 mm of neck, as thick as the pin, lengthen the actuator and weigh what they hold."""
+    long, short = (
+        ao.evaluate(ao.read(text)) for text in (PINNED, PINNED.replace("20 mm\n", "0 mm\n", 1))
+    )
+    assert long.lengths["closed_length"] - short.lengths["closed_length"] == pytest.approx(20e-3)
+    gained = long.mass_parts["clevises"] - short.mass_parts["clevises"]
+    assert gained == pytest.approx(7850 * pi / 4 * 8e-3**2 * 20e-3, rel=1e-9)
+    assert plain(computed(PINNED)[0]["geometry_lip"]["cap"]) == pytest.approx(
+        (16 + 20 - 8 - 26) * 1e-3
+    )
+
+
+def test_fatigue_of_pins_and_plies():
+    """The plies hold a quarter of their static strength; the pins bend between no load and all."""
+    metrics, _ = computed(PINNED)
+    static = plain(metrics["retention_factor"]["bearing of the plies"])
+    assert plain(metrics["fatigue_factor"]["plies at the pins"]) == pytest.approx(static / 4)
+    cycles = plain(metrics["cycle_life"]["plies at the pins"])
+    assert log(cycles) == pytest.approx(log(1e6) * (1 - 1 / static) / 0.75)
+    assert "pins" not in metrics["fatigue_factor"]
+    assert any("fatigue of the pins" in text for text in ao.evaluate(ao.read(PINNED)).warnings)
+    tough = PINNED.replace(
+        "type: pins\n  material: steel_bolt_12_9", "type: pins\n  material: steel_42crmo4"
+    )
+    metrics, _ = computed(tough)
+    strength = ao.read(tough).subject().numbers
+    yielding = 750e6 / plain(metrics["retention_factor"]["pins in bending"])  # range of the stress
+    limit, ultimate = (strength[f"materials.steel_42crmo4.{key}"]
+                       for key in ("fatigue_strength", "ultimate_strength"))  # fmt: skip
+    goodman = 1 / (yielding / 2 / limit + yielding / 2 / ultimate)
+    assert plain(metrics["fatigue_factor"]["pins"]) == pytest.approx(goodman, rel=1e-9)
+
+
+def test_the_liner_gives_its_force_to_the_plies():
+    """At equal force, the shear is that of a plug held by the liner, by K_l/K_w of the stiffnesses.
+
+    K_w of thin layers, which differs from that of the exact wall by a few percent.
+    """
+    ring = (
+        "retention:\n  type: retaining_ring\n  material: steel_bolt_12_9\n  length: 5 mm\n"
+        "  groove_depth: 0.4 mm\n  ring_thickness: 1.3 mm\n  ring_width: 4.2 mm\n"
+    )
+    pinned, ringed = (computed(text)[0] for text in (PINNED, PINNED.replace(PINS, ring)))
+    ratio = plain(pinned["retention_factor"]["edge of the liner"]) / plain(
+        ringed["retention_factor"]["edge of the winding"]
+    )
+    stiffness = ply.ply_stiffness(
+        youngs_modulus_1=135e9, youngs_modulus_2=8.5e9, poissons_ratio_12=0.3,
+        shear_modulus_12=4.3e9,
+    )  # fmt: skip
+    layers = [
+        laminate_pins.FibreLayer(thickness, radians(angle), stiffness, 1.0, 1.0)
+        for thickness, angle in ((1.4e-3, 88), (1.6e-3, 45), (0.5e-3, 0))
+    ]
+    plies = laminate_pins.axial_modulus(layers=layers) * 3.5 * (10.75 + 1.6 + 1.75)
+    assert ratio == pytest.approx(plies / (71.7e9 * 1.6 * (10.75 + 0.8)), rel=0.08)
+
+
 def fault_of(text):
     """The only fault of a file, as path and sentence."""
     with pytest.raises(InputError) as error:
