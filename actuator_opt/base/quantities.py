@@ -100,6 +100,9 @@ INPUTS = _table("""
  ring_width           | b      | length      | mm   | 0.2   | 200   | radial width of a ring
  seal_count           | n      | count       | -    | 0     | 8     | number of seals
  bolt_count           | n      | count       | -    | 2     | 48    | number of bolts or tie rods
+ pin_rows             | m      | count       | -    | 1     | 2     | number of rows of pins
+ interference         | delta  | length      | um   | 0.1   | 1000  | interference of radii
+ relaxation           | c      | ratio       | -    | 0.05  | 1     | share that remains in service
  thread_diameter      | d_t    | length      | mm   | 1     | 500   | nominal thread diameter
  thread_pitch         | P      | length      | mm   | 0.2   | 12    | thread pitch
  diameter             | d      | length      | mm   | 0.5   | 1000  | diameter
@@ -201,6 +204,7 @@ MATERIAL_PROPERTIES = _table("""
  pressure_max         | p_max  | pressure    | bar    | 1     | 2000  | highest pressure without back-up ring
  bond_strength        | tau    | pressure    | MPa    | 0.5   | 200   | adhesive shear strength
  bearing_strength     | p_b    | pressure    | MPa    | 0.5   | 500   | allowable bearing pressure
+ pin_bearing_strength | sigma_b| pressure    | MPa    | 1     | 2000  | strength of a laminate against the pins in its holes
  fatigue_cycles       | N_w    | ratio       | -      | 1      | 1e12 | number of cycles to which the fatigue strength applies
  fatigue_stress_ratio | R      | ratio       | -      | -1     | 0.99 | stress ratio of the fatigue strength: lowest stress divided by highest
  shear_strength       | tau_m  | pressure    | MPa    | 0.5    | 3000 | ultimate shear strength

@@ -51,6 +51,7 @@ def _closed(view: FileView) -> float | None:
     plate = view.number("caps", "thickness") if view.has("caps") else plain
     extension = view.number("rod", "extension")
     pin = view.number("clevis", "pin_diameter") if view.has("clevis") else 0.0
+    neck = view.number("clevis", "neck") if view.has("clevis") else 0.0
     if barrel is None or plate is None or extension is None or pin is None:
         return None
     section, spigot = view.number("seals", "static", "section"), 0.0
@@ -67,6 +68,7 @@ def _closed(view: FileView) -> float | None:
             spigot=spigot,
             extension=extension,
             pin_diameter=pin,
+            neck=neck or 0.0,
         )
     )
 

@@ -183,11 +183,17 @@ class Load(Section):
 
 
 def closed_length(
-    *, barrel_length: Array, plate: Array, spigot: Array, extension: Array, pin_diameter: Array
+    *,
+    barrel_length: Array,
+    plate: Array,
+    spigot: Array,
+    extension: Array,
+    pin_diameter: Array,
+    neck: Array,
 ) -> Array:
-    """Pin-to-pin length of the retracted actuator [m]; `spigot` is the length of the cap's."""
+    """Pin-to-pin length of the retracted actuator [m]; `spigot` and `neck` are those of the cap."""
     eye = mass.eye_length(pin_diameter=pin_diameter)
-    return barrel_length + 2 * plate + spigot + extension + 2 * eye
+    return barrel_length + 2 * plate + spigot + extension + 2 * eye + neck
 
 
 def spigot_length(*, place: StaticPlace, section: Array) -> Array:
@@ -489,8 +495,8 @@ class Caps(Section):
 
 _OVERLAP = Of(
     "part_length",
-    "length of the skirt over the barrel, of the barrel's lip outside a retaining ring, or of the "
-    "engaged thread of the tie rods",
+    "length of the skirt over the barrel, of the barrel's lip outside a retaining ring, of the "
+    "barrel outside a pinned plug's plate, or of the engaged thread of the tie rods",
 )
 
 
@@ -499,9 +505,11 @@ class _EndRetention(Section):
 
     type: choices.RetentionType
     length: Annotated[float, _OVERLAP]
-    wall: Annotated[float, Of("wall_thickness", "thickness of the skirt")] = 1.5e-3
+    wall: Annotated[float, Of("wall_thickness", "thickness of the skirt, or of a shrunk ring")] = (
+        1.5e-3
+    )
     material: Annotated[str | None, MaterialName("fastening")] = None
-    count: Annotated[float, Of("bolt_count", "number of tie rods")] = 4.0
+    count: Annotated[float, Of("bolt_count", "number of tie rods, or of pins in a row")] = 4.0
     thread: RetentionThread | None = None
     preload: Annotated[
         float | None, Of("force", "total tension of all tie rods without pressure")
@@ -560,6 +568,9 @@ class Clevis(Section):
 
     material: Annotated[str, MaterialName("structural")]
     pin_diameter: Annotated[float, Of("diameter", "diameter of the pins")]
+    neck: Annotated[
+        float, Of("length", "additional length of the cap eye's neck, past a barrel around it")
+    ] = 0.0
 
 
 class Stiffness(Section):

@@ -423,6 +423,13 @@ class _EndMaterials:
             return known_numbers(self._view, self._materials, name)
         return ()
 
+    def numbers(self, name: str) -> Mapping[str, float]:
+        """Stated properties, and all elastic constants of a ply; empty if unreadable."""
+        if not isinstance(self._materials, Properties) or name not in self._materials:
+            return {}
+        stated = known_numbers(self._view, self._materials, name)
+        return {**stated, **ply_constants(stated)}
+
 
 def of_end_materials(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     """Yield the faults of the joint that depend on the material library."""

@@ -317,6 +317,8 @@ class Geometry:
     """Forms of cap and head; one entry if their joints are the same."""
     barrel_length: Array
     eye_offset: Array
+    neck: Array
+    """Additional length of the neck of the cap's eye."""
     pin_diameter: Array
     closed_length: Array
     piston_grooves: tuple[Groove, ...]
@@ -392,6 +394,7 @@ def derive(v: Values, design: Design) -> Geometry:
     spigot = spigot + fits[0].inner_length
     pin = v["clevis.pin_diameter"] if design.clevis is not None else 0.0
     eye_offset = mass.eye_length(pin_diameter=pin)
+    neck = v["clevis.neck"] if design.clevis is not None else 0.0
     return Geometry(
         bore=bore,
         inner_radius=inner_radius,
@@ -415,6 +418,7 @@ def derive(v: Values, design: Design) -> Geometry:
         forms=forms,
         barrel_length=barrel_length,
         eye_offset=eye_offset,
+        neck=neck,
         pin_diameter=pin,
         closed_length=closed_length(
             barrel_length=barrel_length,
@@ -422,6 +426,7 @@ def derive(v: Values, design: Design) -> Geometry:
             spigot=spigot,
             extension=extension,
             pin_diameter=pin,
+            neck=neck,
         ),
         piston_grooves=grooves(v, design, "piston"),
         rod_grooves=grooves(v, design, "rod"),
@@ -465,7 +470,7 @@ def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, 
     skirted = 2 * g.cap_fit.length if len(g.fits) == 1 else g.cap_fit.length + g.head_fit.length
     skirts = {"geometry_skirts": g.wall_length - skirted} if "skirts" in g.forms else {}
     static_width = g.static_grooves[0].width if g.static_grooves else STATIC_SEAL
-    lips = {"cap": g.eye_offset - g.pin_diameter - g.cap_fit.lip} if eyes else {}
+    lips = {"cap": g.eye_offset + g.neck - g.pin_diameter - g.cap_fit.lip} if eyes else {}
     lips["head"] = g.rod_extension - g.head_fit.lip
     plugs = {"geometry_lip": lips, "geometry_plug": (g.plate - static_width) / 2}
     sealed: dict[str, Any] = {}

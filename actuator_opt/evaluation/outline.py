@@ -39,8 +39,9 @@ from .piston_nut import recess
 from .result import Outline
 from .rods import end_material
 
-_Part: TypeAlias = tuple[str, str, list[Polygon], int]
-"""Name of a part, material, polygons, and number of round bars (0 for a turned part)."""
+_Part: TypeAlias = tuple[str, str, list[Polygon], int, bool]
+"""Name of a part, material, polygons, number of round bars (0 for a turned part), and whether these
+are radial."""
 
 _Kind: TypeAlias = Literal["metal", "composite", "polymer", "seal", "oil"]
 
@@ -130,7 +131,7 @@ class _Stations:
 
 
 def _stations(g: Geometry) -> _Stations:
-    face = float(g.eye_offset)
+    face = float(g.eye_offset + g.neck)
     plate = face + float(g.plate)
     start = plate + float(g.spigot)
     end = start + float(g.barrel_length)
@@ -155,12 +156,15 @@ def _barrel(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     ends = (g.cap_fit, at.plate, 1), (g.head_fit, at.end, -1)
     for i, (ply, thickness) in enumerate(zip(design.barrel.layup, g.thicknesses, strict=True)):
         outer = radius + float(thickness)
-        shape = rectangle(start, end, radius, outer)
+        first, last = start, end
+        if i == 0:
+            first, last = start + float(g.cap_fit.short), end - float(g.head_fit.short)
+        shape = rectangle(first, last, radius, outer)
         if i == len(g.thicknesses) - 1:
             shape = _turned_down(shape, (g.cap_fit, g.head_fit), min(outer, float(g.outer_radius)))
         if i == 0:
-            shape = (*_bore_edge(ends, start, end, radius), *shape[2:])
-        yield f"layup[{i}]", ply.material, [shape], 0
+            shape = (*_bore_edge(ends, first, last, radius), *shape[2:])
+        yield f"layup[{i}]", ply.material, [shape], 0, False
         radius = outer
 
 
@@ -206,7 +210,7 @@ def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
         _plate(g, (at.end, at.end + plate), at.hole, g.head_fit, rims[1]),
         *_spigot(g, at),
     ]
-    others: dict[tuple[str, str, int], list[Polygon]] = {}
+    others: dict[tuple[str, str, int, bool], list[Polygon]] = {}
     face, back = at.face, at.end + plate
     spans = {"cap": EndSpan(at.plate, 1, face, back), "head": EndSpan(at.end, -1, back, face)}
     fits = {"cap": g.cap_fit, "head": g.head_fit}
@@ -217,11 +221,11 @@ def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
                 if piece.part == "caps":
                     caps.append(piece.shape)
                 else:
-                    key = (piece.part, piece.material, piece.bars)
+                    key = (piece.part, piece.material, piece.bars, piece.radial)
                     others.setdefault(key, []).append(piece.shape)
-    yield "caps", design.caps.material, caps, 0
-    for (part, material, bars), shapes in others.items():
-        yield part, material, shapes, bars
+    yield "caps", design.caps.material, caps, 0, False
+    for (part, material, bars, radial), shapes in others.items():
+        yield part, material, shapes, bars, radial
 
 
 def _plate(
@@ -264,8 +268,8 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
         bottom = at.start + height
         edge = ((at.piston_end, hole), (bottom, hole), (bottom, corner), (at.start, corner))
         piston = (*piston[:-2], *edge)
-    yield "piston", design.piston.material, [piston], 0
-    yield "glands", design.head.material, [plug], 0
+    yield "piston", design.piston.material, [piston], 0, False
+    yield "glands", design.head.material, [plug], 0, False
     yield from _rod(design, g, at)
     yield from _rings(at.start, float(g.piston_length), g.piston_grooves, at.bore, -1)
     yield from _rings(at.head, length, g.rod_grooves, at.rod, 1)
@@ -278,11 +282,11 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
         shape
         for span in spans.values()
         if span is not None
-        for _, _, rings, _ in _rings(span[0], span[1] - span[0], g.static_grooves, at.bore, -1)
+        for _, _, rings, *_ in _rings(span[0], span[1] - span[0], g.static_grooves, at.bore, -1)
         for shape in rings
     ]
     for groove in g.static_grooves:
-        yield groove.place, groove.material, shapes, 0
+        yield groove.place, groove.material, shapes, 0, False
 
 
 def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
@@ -294,14 +298,14 @@ def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
             radius, height = float(g.nut) / 2, float(recess(g)[0])
             bars.append(rectangle(at.start, at.piston_end, 0.0, radius))
             nut = rectangle(at.start, at.start + height, radius, FLATS * radius)
-            yield "piston nut", design.rod.material, [nut], 0
-        yield "rod", design.rod.material, bars, 0
+            yield "piston nut", design.rod.material, [nut], 0, False
+        yield "rod", design.rod.material, bars, 0, False
         return
     radius = bore
     for i, (ply, thickness) in enumerate(zip(design.rod.layup, g.rod_thicknesses, strict=True)):
         outer = radius + float(thickness)
         shape = rectangle(at.piston_end, at.tip, radius, outer)
-        yield f"rod.layup[{i}]", ply.material, [shape], 0
+        yield f"rod.layup[{i}]", ply.material, [shape], 0, False
         radius = outer
     fitting = design.rod.fitting
     if fitting is not None:
@@ -314,6 +318,7 @@ def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
                 rectangle(at.tip - fitting.length, at.tip, hole, bore),
             ],
             0,
+            False,
         )
 
 
@@ -328,14 +333,17 @@ def _rings(
         shape = rectangle(middle - half, middle + half, min(near, far), max(near, far))
         shapes.setdefault((groove.place, groove.material), []).append(shape)
     for (place, material), polygons in shapes.items():
-        yield place, material, polygons, 0
+        yield place, material, polygons, 0, False
 
 
 def _eyes(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     if design.clevis is not None:
         pin, name = float(g.pin_diameter), design.clevis.material
-        yield "cap eye", name, _eye(0.0, pin, 1), 0
-        yield "rod eye", name, _eye(at.tip + float(g.eye_offset), pin, -1), 0
+        cap = _eye(0.0, pin, 1)
+        if float(g.neck) > 0:
+            cap.append(rectangle(float(g.eye_offset), at.face, 0.0, pin / 2))
+        yield "cap eye", name, cap, 0, False
+        yield "rod eye", name, _eye(at.tip + float(g.eye_offset), pin, -1), 0, False
 
 
 def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tuple[Outline, ...]:
@@ -352,8 +360,8 @@ def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tup
     return (
         oil,
         *(
-            Outline(part, name, tuple(polygons), _kind(materials[name]), bars)
-            for part, name, polygons, bars in parts
+            Outline(part, name, tuple(polygons), _kind(materials[name]), bars, radial)
+            for part, name, polygons, bars, radial in parts
             if polygons
         ),
     )
@@ -378,7 +386,8 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
         "closed_length": g.closed_length,
         "pin_cap": 0.0,
         "pin_rod": g.closed_length,
-        "eye_offset": g.eye_offset,
+        "eye_offset": g.eye_offset + g.neck,
+        "neck": g.neck,
         "pin": g.pin_diameter,
         "extension": g.rod_extension,
     }
@@ -594,6 +603,7 @@ def _changed_fit(fit: EndDimensions, change: _Change) -> EndDimensions:
         inner_length=change(fit.inner_length),
         inset=change(fit.inset),
         groove=tuple(change(size) for size in fit.groove),
+        short=change(fit.short),
         own=tuple(change(size) for size in fit.own),
     )
 

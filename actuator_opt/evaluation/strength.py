@@ -19,6 +19,7 @@ from ..joints.kinds import JOINTS
 from ..joints.overlap import Overlap
 from ..models import end_plate, ply, retention, rod
 from ..models.end_bending import ShellLayer
+from ..models.layered_tube import LayeredTube, layered_tube
 from . import beside, piston_nut, plies, rod_strength, rods
 from .barrel import Wall
 from .barrel.wall import largest_area
@@ -94,6 +95,13 @@ def joints_under_load(
         for i, layer in enumerate(layers)
         if known
     )
+
+    def tube() -> LayeredTube | None:
+        if not known:
+            return None
+        walls = plies.layers(v, stock, design.barrel.layup, "barrel.layup", (), [])
+        return layered_tube(layers=[one.as_tube() for one in walls], inner_radius=g.inner_radius)
+
     return tuple(
         LoadedJoint(
             end_joint,
@@ -107,6 +115,9 @@ def joints_under_load(
                 clamp=wall.path.clamp,
                 shells=shells,
                 pressure=v["supply.pressure"],
+                angles=tuple(v[f"barrel.layup[{i}].angle"] for i in range(len(layers))),
+                tube=tube,
+                warmings=plies.warmings(v, design),
             ),
         )
         for end_joint in joints_of(design)
@@ -281,7 +292,8 @@ def joint_metrics(loaded_joints: Sequence[LoadedJoint], out: MetricArrays) -> No
     for end in loaded_joints:
         for name, value in end.joint.own(end.loaded).items():
             if end.end_joint.name:
-                metrics.setdefault(name, {})[end.end_joint.name] = value
+                parts = value if isinstance(value, Mapping) else {"": value}
+                metrics.setdefault(name, {}).update(end.placed(parts))
             else:
                 metrics[name] = value
     for joint in JOINTS.values():

@@ -141,6 +141,9 @@ def parts(
     if design.clevis is not None:
         density = v[f"materials.{design.clevis.material}.density"]
         clevises = 2 * density * mass.eye_volume(pin_diameter=g.pin_diameter)
+        clevises = clevises + mass.disc_mass(
+            density=density, diameter=g.pin_diameter, thickness=g.neck
+        )
     masses = {
         "barrel": _barrel(v, design, g),
         "rod": rod.mass_per_length * g.rod_length,

@@ -395,14 +395,14 @@ def _halves(profile: Profile) -> list[list[_Corner]]:
     return [_straight((*upper, *((x, -r) for x, r in reversed(upper))))]
 
 
-def _eye(centre: float, pin: float, side: int) -> list[list[_Corner]]:
+def _eye(centre: float, pin: float, side: int, neck: float) -> list[list[_Corner]]:
     """Outlines of an eye seen along its pin: the lug with its neck, and the hole.
 
-    The shape is that of `mass.eye_volume`.
+    The shape is that of `mass.eye_volume`, with a neck longer by `neck`.
     """
     foot, half = centre + side * sqrt(0.75) * pin, pin / 2
     arc = -side * tan(radians(300 / 4))
-    end = centre + side * 2 * pin
+    end = centre + side * (2 * pin + neck)
     lug = [(foot, half, 0.0), (end, half, 0.0), (end, -half, 0.0), (foot, -half, arc)]
     return [lug, [(centre - half, 0.0, 1.0), (centre + half, 0.0, 1.0)]]
 
@@ -416,7 +416,8 @@ def _cut(evaluation: Evaluation, outline: Outline) -> list[list[_Corner]]:
     if outline.part in EYES:
         at, side = ("pin_cap", 1) if outline.part == "cap eye" else ("pin_rod", -1)
         lengths = evaluation.lengths
-        return _eye(1000 * lengths[at], 1000 * lengths["pin"], side)
+        neck = 1000 * lengths["neck"] if outline.part == "cap eye" else 0.0
+        return _eye(1000 * lengths[at], 1000 * lengths["pin"], side, neck)
     lines = [half for profile in _profiles(outline) for half in _halves(profile)]
     if outline.bars % 2:
         return [line for line in lines if line[0][1] > 0]  # no bar lies opposite the first

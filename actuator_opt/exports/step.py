@@ -43,7 +43,8 @@ class SolidBody:
     """A body of revolution about the x axis; lengths in mm.
 
     `profile` is the half-section, with x = 0 at the body's first end; `places` are the positions of
-    that origin in the assembly, one per copy of the body.
+    that origin in the assembly, one per copy of the body. `axes` are the directions of the body's x
+    axis there; empty if all are along x.
     """
 
     name: str
@@ -51,6 +52,7 @@ class SolidBody:
     material: str
     profile: Profile
     places: tuple[tuple[float, float, float], ...]
+    axes: tuple[tuple[float, float, float], ...] = ()
 
 
 def title(part: str) -> str:
@@ -208,6 +210,24 @@ def _bars(outline: Outline) -> SolidBody:
     )
 
 
+def _pins(outline: Outline) -> Iterator[SolidBody]:
+    """The radial bars of an outline: for each row, one body, placed evenly around the axis."""
+    for index, polygon in enumerate(outline.polygons, 1):
+        profile = tidy(millimetres(polygon))
+        (first, low), (last, high) = profile[0], max(profile)
+        turns = [2 * pi * k / outline.bars for k in range(outline.bars)]
+        axes = tuple((0.0, cos(turn), sin(turn)) for turn in turns)
+        length, radius = high - low, (last - first) / 2
+        yield SolidBody(
+            name=f"{outline.part.removesuffix('s')}, row {index}",
+            part=outline.part,
+            material=outline.material,
+            profile=((0.0, 0.0), (length, 0.0), (length, radius), (0.0, radius)),
+            places=tuple(((first + last) / 2, low * y, low * z) for _, y, z in axes),
+            axes=axes,
+        )
+
+
 def _bodies(outline: Outline) -> Iterator[SolidBody]:
     part = outline.part
     label = title(part)
@@ -231,7 +251,9 @@ def bodies(evaluation: Evaluation) -> list[SolidBody]:
     """
     solid_bodies: list[SolidBody] = []
     for outline in evaluation.outlines:
-        if outline.bars:
+        if outline.radial:
+            solid_bodies += _pins(outline)
+        elif outline.bars:
             solid_bodies.append(_bars(outline))
         elif outline.part not in NOT_TURNED:
             solid_bodies += _bodies(outline)
@@ -306,13 +328,23 @@ class Records:
         axis, zero = self.direction(along, 0.0), self.direction(0.0, 1.0)
         return self.shared(f"AXIS2_PLACEMENT_3D('',{origin},{axis},{zero})")
 
-    def place(self, at: tuple[float, float, float]) -> str:
-        """Add a coordinate system that is shifted but not rotated.
+    def place(
+        self,
+        at: tuple[float, float, float],
+        along: tuple[float, float, float] = (1.0, 0.0, 0.0),
+    ) -> str:
+        """Add a coordinate system that is shifted, and rotated only for a radial body.
 
-        All CAD programs read such a coordinate system in the same way.
+        All CAD programs read a coordinate system that is not rotated in the same way. `along` is
+        the direction of its x axis: that of the assembly, or a radial one.
         """
-        axis, zero = self.direction(0.0, 0.0, 1.0), self.direction(1.0, 0.0)
+        axis, zero = self.direction(*_across(along)), self.direction(*along)
         return self.shared(f"AXIS2_PLACEMENT_3D('',{self.point(*at)},{axis},{zero})")
+
+
+def _across(along: tuple[float, float, float]) -> tuple[float, float, float]:
+    """Direction of the z axis of a coordinate system, from that of its x axis."""
+    return (0.0, 0.0, 1.0) if along[0] else (1.0, 0.0, 0.0)
 
 
 def listed(numbers: Iterable[str]) -> str:
@@ -487,7 +519,12 @@ def step(bodies: Sequence[SolidBody], *, name: str, program: str, date: str | No
     parts = [_Product(r, body.name, body.material, contexts) for body in bodies]
     for body, part in zip(bodies, parts, strict=True):
         part.shaped("ADVANCED_BREP_SHAPE_REPRESENTATION", (home, solid(r, body.name, body.profile)))
-    places = [[r.place(place) for place in body.places] for body in bodies]
+    ahead = (1.0, 0.0, 0.0)
+    places = [
+        [r.place(place, along) for place, along in zip(body.places, axes, strict=True)]
+        for body in bodies
+        for axes in [body.axes or (ahead,) * len(body.places)]
+    ]
     frames = dict.fromkeys([home, *(frame for frames in places for frame in frames)])
     whole.shaped("SHAPE_REPRESENTATION", frames)
     for body, part, frames_of in zip(bodies, parts, places, strict=True):

@@ -16,6 +16,7 @@ from ..base.errors import Fault
 from ..base.numeric import Array, real, where
 from ..base.quantities import Quantity
 from ..models.end_bending import ShellLayer
+from ..models.layered_tube import LayeredTube
 
 LEAST_METAL = 1e-3
 """Smallest permitted dimension of a turned part [m]. It applies to walls beside or under a groove
@@ -103,6 +104,13 @@ class KnownMaterials(Protocol):
         """Names of the properties stated for a material; empty if its data are unreadable."""
         ...
 
+    def numbers(self, name: str) -> Mapping[str, float]:
+        """Properties of a material in SI, of a ply with all its elastic constants.
+
+        Empty if its data are unreadable.
+        """
+        ...
+
 
 class JointField(NamedTuple):
     """A key of `retention` that a joint uses.
@@ -175,9 +183,10 @@ class EndDimensions:
     A skirt has `length`, `wall` thickness and an inner `radius`. Over this length, a barrel with a
     larger outer radius is turned down to this radius. A barrel that encloses the end plate extends
     by `beyond` past the chamber, and by `lip` past the plate. `groove` is the groove in its bore:
-    distance from the chamber, axial width and radial depth. `own` are further dimensions for the
-    drawing of the joint. A skirt in the bore has the length `inner_length`; that of the
-    cap lengthens the barrel. The outside of the head's plug is then `inset` from the bore.
+    distance from the chamber, axial width and radial depth. The innermost layer ends by `short`
+    before the others. A skirt in the bore has the length `inner_length`; that of the cap lengthens
+    the barrel. The outside of the head's plug is then `inset` from the bore. `own` are further
+    dimensions for the drawing of the joint.
     """
 
     plate_radius: Array
@@ -189,6 +198,7 @@ class EndDimensions:
     inner_length: Array = 0.0
     inset: Array = 0.0
     groove: tuple[Array, ...] = ()
+    short: Array = 0.0
     own: tuple[Array, ...] = ()
 
 
@@ -228,13 +238,14 @@ def rectangle(start: float, stop: float, low: float, high: float) -> Polygon:
 class DrawnPart(NamedTuple):
     """A part as drawn in the half-section: a turned part, or a set of equal round bars.
 
-    `bars` is the number of bars, 0 for a turned part.
+    `bars` is the number of bars, 0 for a turned part. They are parallel to the axis, or `radial`.
     """
 
     part: str
     material: str
     shape: Polygon
     bars: int = 0
+    radial: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -285,6 +296,12 @@ class Loaded:
     """Stiffness of the barrel's layers against bending; empty if an elastic constant is unknown."""
     pressure: Array
     """Supply pressure [Pa]."""
+    angles: tuple[Array, ...]
+    """Winding angles of the barrel's layers [rad]."""
+    tube: Callable[[], LayeredTube | None]
+    """The barrel as an exact layered tube; None if an elastic constant is unknown."""
+    warmings: Mapping[str, Array]
+    """Temperature changes since assembly, cold and hot [K]; empty without a temperature range."""
 
 
 class Pulsed(NamedTuple):

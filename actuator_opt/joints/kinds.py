@@ -16,6 +16,8 @@ JOINTS: Kinds[Joint] = kinds_in(
     "plug_thread",
     "retaining_ring",
     "tie_rods",
+    "pins",
+    "shrink",
 )
 
 OWN_KEYS = tuple(field.key for joint in JOINTS.values() for field in joint.fields if field.quantity)

@@ -19,6 +19,7 @@ import samples_dynamics
 import samples_film
 import samples_fluid
 import samples_gland
+import samples_joints
 import samples_liner
 import samples_lines
 import samples_machines
@@ -493,6 +494,7 @@ for _group in (
     samples_film,
     samples_fluid,
     samples_gland,
+    samples_joints,
     samples_liner,
     samples_lines,
     samples_machines,

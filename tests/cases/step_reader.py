@@ -199,7 +199,12 @@ class StepFile:
         }
 
     def occurrences(self):
-        """(product, place) of everything in the assembly."""
+        """(product, place) of everything in the assembly, none of it turned."""
+        assert all(axis == (1.0, 0.0, 0.0) for _, _, axis in self.placed())
+        return [(name, place) for name, place, _ in self.placed()]
+
+    def placed(self):
+        """(product, place, direction of its x axis) of everything in the assembly."""
         found = []
         for use in self.of("CONTEXT_DEPENDENT_SHAPE_REPRESENTATION"):
             relation, shape = self.records[use][1]
@@ -209,13 +214,18 @@ class StepFile:
             (move,) = next(part[1] for part in parts if part[0] in names)
             _, _, home, place = self.get(move, "ITEM_DEFINED_TRANSFORMATION")
             frames = [self.get(one, "AXIS2_PLACEMENT_3D") for one in (home, place)]
-            assert frames[0][2:] == frames[1][2:]  # moved, not turned
+            ahead, axes = (
+                [tuple(self.get(one, "DIRECTION")[1]) for one in frame[2:]] for frame in frames
+            )
+            assert ahead == [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0)]
+            assert sum(a * b for a, b in zip(*axes, strict=True)) == 0.0
             assert self.point(frames[0][1]) == (0.0, 0.0, 0.0)
             owner = self.get(shape, "PRODUCT_DEFINITION_SHAPE")[2]
             part = self.get(owner, "NEXT_ASSEMBLY_USAGE_OCCURRENCE")[4]
             formation = self.get(part, "PRODUCT_DEFINITION")[2]
             product = self.get(formation, "PRODUCT_DEFINITION_FORMATION")[2]
-            found.append((self.get(product, "PRODUCT")[0][1:-1], self.point(frames[1][1])))
+            name = self.get(product, "PRODUCT")[0][1:-1]
+            found.append((name, self.point(frames[1][1]), axes[1]))
         return found
 
 

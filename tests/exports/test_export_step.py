@@ -116,6 +116,38 @@ def test_tie_rods_stand_around_the_barrel():
     assert turns == pytest.approx([k * math.tau / 6 for k in range(6)], abs=1e-9)
 
 
+def test_radial_pins_go_through_the_plies():
+    """Two rows of pins: each pin starts in the plug, points outwards, and ends at the outside."""
+    text = (DESIGNS / "knee.yaml").read_text("utf-8").partition("\nvariables:")[0] + "\n"
+    layup = text[text.index("  layup:") : text.index("\nrod:")]
+    retention = text[text.index("retention:\n") : text.index("\nclevis:")]
+    plies = "".join(
+        f"    - {{material: t700_epoxy, angle: {angle} deg, thickness: {thickness} mm}}\n"
+        for angle, thickness in ((88, 1.4), (45, 1.6), (0, 0.5))
+    )
+    liner = "  layup:\n    - {material: al_7075_t6, thickness: 1.6 mm}\n"
+    pins = (
+        "retention:\n  type: pins\n  material: steel_bolt_12_9\n  length: 26 mm\n  wall: 6 mm\n"
+        "  count: 7\n  rows: 2\n  diameter: 3.6 mm\n  spacing: 11 mm\n  edge: 11 mm\n"
+    )
+    text = text.replace(layup, liner + plies).replace(retention, pins)
+    evaluation, _, read = exported(ao.read(text))
+    solids = read.solids()
+    names = [f"pin, row {row}" for row in range(1, 5)]
+    by_hand = math.pi / 4 * 3.6**2 * (6 + 3.5)
+    assert [volume(solids[name]) for name in names] == pytest.approx([by_hand] * 4, rel=1e-9)
+    outer = 1000 * evaluation.lengths["barrel_outer_diameter"] / 2
+    face, end = 1000 * evaluation.lengths["eye_offset"], []
+    for name, (x, y, z), axis in read.placed():
+        if name in names:
+            low = math.hypot(y, z)
+            assert low == pytest.approx(outer - 9.5)
+            assert axis == pytest.approx((0.0, y / low, z / low), abs=1e-9)
+            end.append(x)
+    assert len(end) == 28
+    assert sorted(set(end))[:2] == pytest.approx([face - 15.0, face - 4.0])
+
+
 def test_a_rod_of_layers_with_fittings():
     """Every layer is a solid, and so are the two sleeves; the plugs have no place and stay out."""
     evaluation, densities, read = exported(ao.read(bench((block("rod"), FITTED_ROD))))

@@ -39,17 +39,29 @@ BLOCKS = {
     "  preload: 40 kN\n  thread:\n    diameter: 6 mm\n    pitch: 1 mm\n",
     "plug_thread": "type: plug_thread\n  length: 8 mm\n  wall: 1.5 mm\n"
     "  thread:\n    pitch: 0.75 mm\n",
+    "pins": "type: pins\n  material: steel_bolt_12_9\n  length: 36 mm\n  wall: 8 mm\n  count: 6\n"
+    "  diameter: 4 mm\n  edge: 14 mm\n  rows: 2\n  spacing: 14 mm\n",
+    "shrink": "type: shrink\n  material: steel_42crmo4\n  length: 30 mm\n  wall: 3 mm\n"
+    "  interference: 10 um\n  friction_coefficient: 0.15\n  relaxation: 0.8\n",
     "retaining_ring": "type: retaining_ring\n  material: steel_bolt_12_9\n  length: 4 mm\n"
     "  groove_depth: 0.5 mm\n  ring_thickness: 2 mm\n  ring_width: 2 mm\n",
 }
 """A retention of each kind on a steel cylinder."""
-BARE = STEEL.replace(RETENTION, "")
+LAYUP = STEEL[STEEL.index("  layup:") : STEEL.index("\nrod:")]
+WOUND = "  layup:\n    - {material: al_7075_t6, thickness: 1.5 mm}\n" + "".join(
+    f"    - {{material: t700_epoxy, angle: {angle} deg, thickness: {thickness} mm}}\n"
+    for angle, thickness in ((88, 0.5), (45, 2), (0, 1))
+)
+LAYUPS = {"pins": WOUND}
+"""The barrel of joints that a steel barrel cannot have."""
 VALUES = {
     "wall": "3 mm",
     "material": "steel_42crmo4",
     "count": "7",
     "preload": "5 kN",
     "thread": "{diameter: 6 mm, pitch: 1 mm}",
+    "edge": "12 mm",
+    "interference": "10 um",
 }
 """A value of every key that some joint does not use, none of them a default."""
 
@@ -57,8 +69,14 @@ each = pytest.mark.parametrize("joint", JOINTS.values(), ids=JOINTS.names)
 
 
 def text_of(block):
-    """The steel cylinder with another retention."""
-    return STEEL.replace(RETENTION, f"retention:\n  {block}")
+    """The steel cylinder with another retention, and the barrel that this needs."""
+    text = STEEL.replace(RETENTION, f"retention:\n  {block}")
+    return text.replace(LAYUP, LAYUPS.get(block.partition("\n")[0].removeprefix("type: "), LAYUP))
+
+
+def bare_of(joint):
+    """The cylinder of a joint without retention."""
+    return STEEL.replace(RETENTION, "").replace(LAYUP, LAYUPS.get(joint.name, LAYUP))
 
 
 def faults(text):
@@ -178,7 +196,7 @@ def test_its_metrics(joint):
 def test_its_mass(joint):
     """It adds mass. Lighter are at most the barrel, caps in it, and a plug in an inner skirt."""
     evaluation = ao.evaluate(ao.read(text_of(BLOCKS[joint.name])))
-    bare = ao.evaluate(ao.read(BARE))
+    bare = ao.evaluate(ao.read(bare_of(joint)))
     gained = {part: evaluation.mass_parts[part] - bare.mass_parts[part] for part in bare.mass_parts}
     assert sum(gained.values()) > 0
     enclosed = {"glands"} if joint.inner_skirt else {"caps"} if gained["barrel"] > 0 else set()
@@ -205,22 +223,26 @@ def moved_to_origin(outline):
 def test_its_outline(joint):
     """The section shows the joint, and its turned parts and bars weigh what the mass model says."""
     found = ao.read(text_of(BLOCKS[joint.name]))
-    evaluation, bare = ao.evaluate(found), ao.evaluate(ao.read(BARE))
+    evaluation, bare = ao.evaluate(found), ao.evaluate(ao.read(bare_of(joint)))
     known = [moved_to_origin(one) for one in bare.outlines]
     drawn = [one for one in evaluation.outlines if moved_to_origin(one) not in known]
     assert drawn
     numbers = found.subject().numbers
-    names = {one.part: "fastening" for one in drawn}
-    names |= {"caps": "caps", "glands": "glands", "layup[0]": "barrel"}
+    names = {one.part: "fastening" for one in drawn} | {"caps": "caps", "glands": "glands"}
+    names |= {one.part: "barrel" for one in drawn if one.part.startswith("layup")}
+    weights = dict.fromkeys(names.values(), 0.0)
     for outline in drawn:
-        part = names[outline.part]
-        if outline.bars:
-            (polygon,) = outline.polygons
+        size = 0.0
+        for polygon in outline.polygons:
             xs, rs = zip(*polygon, strict=True)
-            size = np.pi / 4 * (max(rs) - min(rs)) ** 2 * (max(xs) - min(xs)) * outline.bars
-        else:
-            size = sum(volume(polygon) for polygon in outline.polygons)
-        weight = size * numbers[f"materials.{outline.material}.density"]
+            length, height = max(xs) - min(xs), max(rs) - min(rs)
+            if outline.radial:
+                length, height = height, length
+            bars = np.pi / 4 * height**2 * length * outline.bars
+            size += bars if outline.bars else volume(polygon)
+        density = numbers[f"materials.{outline.material}.density"]
+        weights[names[outline.part]] += size * density
+    for part, weight in weights.items():
         own = evaluation.mass_parts[part] - (bare.mass_parts[part] if part == "fastening" else 0.0)
         assert weight == pytest.approx(own, rel=1e-9)
 

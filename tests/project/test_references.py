@@ -25,7 +25,7 @@ SECTIONS = ["Parameters", "Returns", "Notes", "References", "Examples"]
 UNITLESS = {
     "bool", "Ends", "PlyStrength", "Sequence[WallLayer]", "tuple[str, str]", "Sequence[TubeLayer]",
     "LayeredTube", "TubeState", "LineEnd", "Side", "LinearActuator", "PositionOpenLoop",
-    "Chamber", "ShellLayer", "Shell", "Edge", "Sequence[ShellLayer]",
+    "Chamber", "ShellLayer", "Shell", "Edge", "Sequence[ShellLayer]", "Sequence[FibreLayer]",
 }  # fmt: skip
 """Annotations of arguments that carry no unit of their own."""
 WALKS = {"model_samples.py", "test_models_laws.py", "test_references.py"}
