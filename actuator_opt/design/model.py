@@ -489,8 +489,8 @@ class Caps(Section):
 
 _OVERLAP = Of(
     "part_length",
-    "length of the skirt over the barrel, of the barrel's lip outside a retaining ring, or of the "
-    "engaged thread of the tie rods",
+    "length of the skirt over the barrel, of the barrel's lip outside a retaining ring, of the "
+    "crest before a cone, or of the engaged thread of the tie rods",
 )
 
 
@@ -499,7 +499,10 @@ class _EndRetention(Section):
 
     type: choices.RetentionType
     length: Annotated[float, _OVERLAP]
-    wall: Annotated[float, Of("wall_thickness", "thickness of the skirt")] = 1.5e-3
+    wall: Annotated[
+        float,
+        Of("wall_thickness", "thickness of the skirt, or of the plug in the bore before a cone"),
+    ] = 1.5e-3
     material: Annotated[str | None, MaterialName("fastening")] = None
     count: Annotated[float, Of("bolt_count", "number of tie rods")] = 4.0
     thread: RetentionThread | None = None

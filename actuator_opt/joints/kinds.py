@@ -13,6 +13,7 @@ JOINTS: Kinds[Joint] = kinds_in(
     "thread",
     "plug_thread",
     "retaining_ring",
+    "cone",
     "tie_rods",
 )
 

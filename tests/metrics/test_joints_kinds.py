@@ -37,8 +37,11 @@ BLOCKS = {
     "  thread:\n    pitch: 0.75 mm\n",
     "retaining_ring": "type: retaining_ring\n  material: steel_bolt_12_9\n  length: 4 mm\n"
     "  groove_depth: 0.5 mm\n  ring_thickness: 2 mm\n  ring_width: 2 mm\n",
+    "cone": "type: cone\n  length: 3 mm\n  wall: 3 mm\n  angle: 45 deg\n  depth: 3 mm\n"
+    "  crest_radius: 3 mm\n  hoop_thickness: 2 mm\n  hoop_width: 2 mm\n",
 }
 """A retention of each kind on a steel cylinder."""
+HELICAL = "    - material: t700_epoxy\n      angle: 30 deg\n      thickness: 1 mm\n"
 BARE = STEEL.replace(RETENTION, "")
 VALUES = {
     "wall": "3 mm",
@@ -52,9 +55,22 @@ VALUES = {
 each = pytest.mark.parametrize("joint", JOINTS.values(), ids=JOINTS.names)
 
 
+def barrel_of(text, block):
+    """A file whose barrel has helical plies if the joint in the block holds by them."""
+    metal = "      thickness: 2 mm\n"
+    assert metal in text
+    wound = block.startswith("type: cone")
+    return text.replace(metal, metal + HELICAL, 1) if wound else text
+
+
 def text_of(block):
     """The steel cylinder with another retention."""
-    return STEEL.replace(RETENTION, f"retention:\n  {block}")
+    return barrel_of(STEEL.replace(RETENTION, f"retention:\n  {block}"), block)
+
+
+def bare_of(joint):
+    """The cylinder of a joint without retention."""
+    return ao.evaluate(ao.read(barrel_of(BARE, BLOCKS[joint.name])))
 
 
 def faults(text):
@@ -174,7 +190,7 @@ def test_its_metrics(joint):
 def test_its_mass(joint):
     """It adds mass. Lighter are at most the barrel, and caps that the barrel encloses."""
     evaluation = ao.evaluate(ao.read(text_of(BLOCKS[joint.name])))
-    bare = ao.evaluate(ao.read(BARE))
+    bare = bare_of(joint)
     gained = {part: evaluation.mass_parts[part] - bare.mass_parts[part] for part in bare.mass_parts}
     assert sum(gained.values()) > 0
     enclosed = {"caps"} if gained["barrel"] > 0 else set()
@@ -194,21 +210,23 @@ def volume(polygon):
 def test_its_outline(joint):
     """The section shows the joint, and its turned parts and bars weigh what the mass model says."""
     found = ao.read(text_of(BLOCKS[joint.name]))
-    evaluation, bare = ao.evaluate(found), ao.evaluate(ao.read(BARE))
+    evaluation, bare = ao.evaluate(found), bare_of(joint)
     drawn = [one for one in evaluation.outlines if one not in bare.outlines]
     assert drawn
     numbers = found.subject().numbers
-    names = {one.part: "fastening" for one in drawn}
-    names |= {"caps": "caps", "layup[0]": "barrel"}
+    weights = {}
     for outline in drawn:
-        part = names[outline.part]
+        wound = outline.part.startswith("layup") or "plies" in outline.part
+        part = "barrel" if wound else {"caps": "caps"}.get(outline.part, "fastening")
         if outline.bars:
             (polygon,) = outline.polygons
             xs, rs = zip(*polygon, strict=True)
             size = np.pi / 4 * (max(rs) - min(rs)) ** 2 * (max(xs) - min(xs)) * outline.bars
         else:
             size = sum(volume(polygon) for polygon in outline.polygons)
-        weight = size * numbers[f"materials.{outline.material}.density"]
+        density = numbers[f"materials.{outline.material}.density"]
+        weights[part] = weights.get(part, 0.0) + size * density
+    for part, weight in weights.items():
         own = evaluation.mass_parts[part] - (bare.mass_parts[part] if part == "fastening" else 0.0)
         assert weight == pytest.approx(own, rel=1e-9)
 
