@@ -131,9 +131,11 @@ def end_of(
     barrel_length: Array,
     plate: Array,
     rod_radius: Array,
+    static: Sequence[Groove] = (),
 ) -> End:
     """Describe an end of the barrel; `thicknesses` and `angles` are those of its layers."""
     layers = zip(design.barrel.layup, thicknesses, angles, strict=True)
+    joint = end_joint.joint
     return End(
         sizes=sizes,
         material=end_joint.section.material,
@@ -147,6 +149,7 @@ def end_of(
         barrel_length=barrel_length,
         plate=plate,
         rod_radius=rod_radius,
+        seal_depth=static[0].gland_depth if static and joint.static_seal == "rim" else 0.0,
     )
 
 
@@ -374,6 +377,7 @@ def derive(v: Values, design: Design) -> Geometry:
     barrel_length = v.get("barrel.length", needed)
     plate = v["caps.thickness"]
     extension = v["rod.extension"]
+    static = static_grooves(v, design)
     joints, fits = joints_of(design), []
     forms = tuple(end.joint.form for end in joints)
     angles = tuple(
@@ -392,11 +396,12 @@ def derive(v: Values, design: Design) -> Geometry:
             barrel_length=barrel_length,
             plate=plate,
             rod_radius=rod / 2,
+            static=static,
         )
         fits.append(end_joint.joint.fit(end))
     if not fits:
         fits.append(EndDimensions(plate_radius=outer_radius, radius=outer_radius))
-    static, places = static_grooves(v, design), static_places(design)
+    places = static_places(design)
     spigot = spigot_length(place=places[0], section=static[0].section) if static else 0.0
     pin = v["clevis.pin_diameter"] if design.clevis is not None else 0.0
     eye_offset = mass.eye_length(pin_diameter=pin)
@@ -454,6 +459,7 @@ def end_at(design: Design, end_joint: EndJoint, sizes: JointSizes, g: Geometry) 
         barrel_length=g.barrel_length,
         plate=g.plate,
         rod_radius=g.rod_diameter / 2,
+        static=g.static_grooves,
     )
 
 

@@ -319,7 +319,7 @@ def _outline(end: End, fit: EndDimensions, span: EndSpan) -> Iterator[DrawnPart]
     for part, material, profile in (
         ("caps", end.cap, trap.plug()),
         (f"layup[{index}]", plies, trap.band()),
-        ("hoop plies of the cones", plies, trap.hoops()),
+        ("hoop plies of the cone", plies, trap.hoops()),
     ):
         shape = tuple((span.outside - span.inwards * float(x), float(r)) for x, r in profile)
         yield DrawnPart(part, material, shape)
@@ -583,6 +583,7 @@ def _own(loaded: Loaded) -> dict[str, Array]:
             "crest": trap.edge - arc,
             "flank": depth / xp.sin(angle) - 2 * arc,
             "metal under the valley": trap.valley - trap.bore,
+            "neck under the groove of the seal": sizes["wall"] - end.seal_depth,
             "opening beside the rod": trap.bore - end.rod_radius,
             "valley above the turn of the fibres": trap.valley
             - trap.crest * namespace(turned).sin(turned),

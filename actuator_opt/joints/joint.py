@@ -168,6 +168,8 @@ class End:
     """Thickness of the end plate."""
     rod_radius: Array
     """Radius of the rod, which passes through the head."""
+    seal_depth: Array = 0.0
+    """Depth of the groove for the static seal in the rim of the end plate; 0 without one."""
     cache: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
     """Intermediate results that the joint's functions store here to use again, under any key."""
 

@@ -11,10 +11,12 @@ import numpy as np
 import pytest
 import shell_oracle
 from scipy.integrate import quad
+from step_reader import StepFile, volume
 
 import actuator_opt as ao
 from actuator_opt.base.errors import InputError
 from actuator_opt.evaluation import compute
+from actuator_opt.exports.step import bodies, step
 from actuator_opt.models import fibre_trap, mass, winding_path
 
 DESIGNS = Path(__file__).parents[2] / "designs"
@@ -271,6 +273,34 @@ def test_the_knee_by_hand():
     assert lengths["cap: crest"] == near(2.5e-3 - 2.4e-3 * tan(pi / 8), 1e-9)
     assert lengths["cap: flank"] == near(2e-3 / sin(pi / 4) - 4.8e-3 * tan(pi / 8), 1e-9)
     assert lengths["cap: metal under the valley"] == near(11.3e-3 - 9e-3, 1e-9)
+    assert lengths["cap: neck under the groove of the seal"] == near(2.5e-3, 1e-9)
+
+
+def test_the_neck_runs_under_the_groove_of_the_static_seal():
+    """A groove of 1.78 mm section with 20 % squeeze is 1.424 mm deep; the neck's rest is 1.076."""
+    static = "  static:\n    compound: nbr_90\n    section: 1.78 mm\n    squeeze: 20 %\n"
+    subject = ao.read(changed(("\nload:\n", f"{static}\nload:\n"))).subject()
+    lengths = compute(subject, subject.values()).computed.metrics["geometry_trap"]
+    neck = float(np.squeeze(lengths["cap: neck under the groove of the seal"]))
+    assert neck == near(2.5e-3 - 1.424e-3, 1e-9)
+
+
+def test_solids_weigh_what_the_mass_model_says():
+    """Plug, band with its layer, and hoop plies are closed solids; volumes read back from STEP."""
+    actuator = ao.read(KNEE)
+    evaluation, subject = ao.evaluate(actuator), actuator.subject()
+    made = bodies(evaluation)
+    solids = StepFile(step(made, name="knee", program="test")).solids()
+    weights = {}
+    for body in made:
+        density = subject.materials[body.material].numbers["density"]
+        weight = volume(solids[body.name]) * 1e-9 * density
+        weights[body.name] = weights.get(body.name, 0.0) + weight
+    wound = [name for name in weights if name.startswith("barrel") or "hoop plies" in name]
+    assert len(wound) == 4
+    assert sum(weights[name] for name in wound) == near(evaluation.mass_parts["barrel"], 1e-9)
+    caps = sum(weight for name, weight in weights.items() if name.startswith("cap,"))
+    assert caps == near(evaluation.mass_parts["caps"], 1e-9)
 
 
 def test_the_cone_adds_compliance():
