@@ -344,16 +344,14 @@ def _notes(end: End) -> Iterator[str]:
 # --- strength -------------------------------------------------------------------------------
 
 
-def _ply_strengths(loaded: Loaded) -> tuple[Array, Array] | str:
-    """Strength of band and hoop plies along the fibres in tension, and across in compression."""
+def _ply_strengths(loaded: Loaded) -> tuple[Array, Array, Array] | str:
+    """Strength of band and hoop plies: tension along, compression across the fibres, and shear."""
     name = loaded.end.layers[_band(loaded.end)].material
-    strengths = [
-        loaded.materials.allowable(name, key)
-        for key in ("strength_1_tension", "strength_2_compression")
-    ]
-    if any(strength is None for strength in strengths):
-        return f"{name} has no strength_1_tension or strength_2_compression"
-    return strengths[0], strengths[1]
+    keys = ("strength_1_tension", "strength_2_compression", "strength_12")
+    first, second, third = (loaded.materials.allowable(name, key) for key in keys)
+    if first is None or second is None or third is None:
+        return f"{name} has no {' or '.join(keys)}"
+    return first, second, third
 
 
 def _hoops(end: End) -> tuple[Array, Array, Array]:
@@ -498,7 +496,7 @@ def _strength(loaded: Loaded) -> Strength | str:
             return reason
     assert not isinstance(plies, str)
     assert not isinstance(metals, str)
-    (fibre, across), ((plug, plug_ultimate),) = plies, metals
+    (fibre, across, along), ((plug, plug_ultimate),) = plies, metals
     trap, angle, radius = _trap(end), end.sizes["angle"], end.sizes["crest_radius"]
     line_force = force / (2 * pi * (trap.crest + trap.thick / 2))
     shear = fibre_trap.crest_shear(force=force, valley_radius=trap.valley, length=trap.foot)
@@ -520,6 +518,8 @@ def _strength(loaded: Loaded) -> Strength | str:
         "band over the crest": fibre / band,
         "hoop plies": fibre * _hoops(end)[2] / tension,
         "hoop plies within their reach": fibre * _reached(end, loaded.materials) / tension,
+        "hoop plies sliding off the flank": along
+        / fibre_trap.flank_shear(pressure=flank, angle=angle),
         "crest in shear": plug_ultimate / sqrt(3) / shear,
         f"{UNDER}, outside": retaining_ring.collapse_factor(
             axial=axial, bending=bending, strength=plug_ultimate
@@ -700,7 +700,7 @@ JOINT = Joint(
     metrics=dict.fromkeys((LENGTHS, CREST, GRIP), _ABSENT),
     judged=(
         "first damage of the plies at a cone",
-        "fibre failure at a cone",
+        "rupture of the plies at a cone",
     ),
     models={
         ("retention_factor", "plies on the flank"): "fibre_trap.flank_pressure",
@@ -710,6 +710,7 @@ JOINT = Joint(
         ("retention_burst_factor", "band over the crest"): "fibre_trap.band_stress",
         ("retention_burst_factor", "hoop plies"): "fibre_trap.hoop_force",
         ("retention_burst_factor", "hoop plies within their reach"): "fibre_trap.hoop_reach",
+        ("retention_burst_factor", "hoop plies sliding off the flank"): "fibre_trap.flank_shear",
         ("retention_burst_factor", "crest in shear"): "fibre_trap.crest_shear",
         ("retention_burst_factor", f"{UNDER}, bore"): "retaining_ring.collapse_factor",
         ("retention_burst_factor", f"{UNDER}, outside"): "retaining_ring.collapse_factor",

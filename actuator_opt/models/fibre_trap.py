@@ -168,6 +168,38 @@ def compliance(
 
 
 @geometry
+def flank_shear(*, pressure: Array, angle: Array) -> Array:
+    """Shear between band and hoop plies on the flank, which keeps them there: p sin(2 psi)/2.
+
+    The band presses the hoop plies outwards by p cos(psi) per slant area. They take no axial force,
+    so the normal stress q cos(psi) and the shear q sin(psi) on the slope, q = p cos(psi), balance.
+
+    Parameters
+    ----------
+    pressure : p between flank and band [Pa]
+    angle : psi, of the flank to the axis [rad]
+
+    Returns
+    -------
+    stress [Pa]
+
+    Notes
+    -----
+    Valid: no friction on the metal, and hoop plies on the flank only.
+
+    References
+    ----------
+    [derived] equilibrium of the hoop plies
+
+    Examples
+    --------
+    >>> print(f"{flank_shear(pressure=30.3639e6, angle=0.5235987755982988) / 1e6:.4f}")
+    13.1480
+    """
+    return pressure * namespace(angle).sin(2 * angle) / 2
+
+
+@geometry
 def hoop_section(*, thickness: Array, width: Array, rise: Array, run: Array) -> Array:
     """Section of hoop plies with a flat top: floor of the valley, and wedge on the flank.
 

@@ -35,6 +35,7 @@ SAMPLES: dict = {
     "fibre_trap.hoop_force": {"force": 7e3, "angle": 0.6, "friction_coefficient": 0.1},
     "fibre_trap.radial_give": {"hoop_force": 1600.0, **HOOPS},
     "fibre_trap.compliance": {**HOOPS, "angle": 0.6, "friction_coefficient": 0.1},
+    "fibre_trap.flank_shear": {"pressure": 3e7, "angle": 0.6},
     "fibre_trap.hoop_section": [
         {"thickness": t, "width": 4e-3, "rise": 2e-3, "run": 2.5e-3} for t in (1e-3, 3e-3)
     ],

@@ -75,6 +75,17 @@ def test_friction_by_the_forces_on_the_flank():
         assert tension == near(radial / (2 * pi), 1e-12)
 
 
+def test_hoop_plies_on_the_slope_by_their_equilibrium():
+    """Normal and shear stress on the slope give no axial force, and the flank's radial force."""
+    pressure, angle = 30e6, 0.8
+    shear = fibre_trap.flank_shear(pressure=pressure, angle=angle)
+    normal, radial = np.linalg.solve(
+        [[sin(angle), 0.0], [cos(angle), -1.0]], [shear * cos(angle), -shear * sin(angle)]
+    )
+    assert radial == near(pressure * cos(angle), 1e-12)
+    assert normal == near(pressure * cos(angle) ** 2, 1e-12)
+
+
 @pytest.mark.parametrize("thickness", [1.2e-3, 2e-3, 3.1e-3])
 def test_hoop_section_by_integration(thickness):
     """Area between the band, which rises 2 mm over 2.5 mm, and a flat top, up to the crest."""
