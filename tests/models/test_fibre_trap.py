@@ -380,6 +380,16 @@ def test_refused(pair, path, words):
     assert fault.remedy
 
 
+def test_a_variable_angle_that_would_stick_is_refused():
+    """The lower bound of the flank's angle, too, must be above twice the angle of friction."""
+    bounds = "variables:\n  retention.cap.angle:\n    lower: {} deg\n    upper: 60 deg\n"
+    text = KNEE + bounds + "objective:\n  minimise: mass\n"
+    ao.read(text.format(34))
+    with pytest.raises(InputError, match="sticks") as error:
+        ao.read(text.format(30))
+    assert [x.path for x in error.value.diagnostics] == ["variables.retention.cap.angle.lower"]
+
+
 def test_warnings():
     """The play when cold by hand; both ends wound in; a flank without a straight part."""
     evaluation = ao.evaluate(ao.read(KNEE))
