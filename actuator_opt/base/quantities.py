@@ -96,6 +96,7 @@ INPUTS = _table("""
  stretch              | e      | ratio       | %    | 0     | 25    | seal stretch
  groove_width         | g      | length      | mm   | 0.5   | 60    | groove width
  groove_depth         | h      | length      | mm   | 0.05  | 30    | radial depth of a groove
+ flank_angle          | psi    | angle       | deg  | 5     | 85    | angle of a flank to the axis
  ring_thickness       | s      | length      | mm   | 0.2   | 100   | axial thickness of a ring
  ring_width           | b      | length      | mm   | 0.2   | 200   | radial width of a ring
  seal_count           | n      | count       | -    | 0     | 8     | number of seals

@@ -496,7 +496,8 @@ class Caps(Section):
 _OVERLAP = Of(
     "part_length",
     "length of the skirt over the barrel, of the barrel's lip outside a retaining ring, of the "
-    "barrel outside a pinned plug's plate, or of the engaged thread of the tie rods",
+    "barrel outside a pinned plug's plate, of the crest before a cone, or of the engaged thread of "
+    "the tie rods",
 )
 
 
@@ -505,9 +506,13 @@ class _EndRetention(Section):
 
     type: choices.RetentionType
     length: Annotated[float, _OVERLAP]
-    wall: Annotated[float, Of("wall_thickness", "thickness of the skirt, or of a shrunk ring")] = (
-        1.5e-3
-    )
+    wall: Annotated[
+        float,
+        Of(
+            "wall_thickness",
+            "thickness of the skirt, of a shrunk ring, or of the plug in the bore before a cone",
+        ),
+    ] = 1.5e-3
     material: Annotated[str | None, MaterialName("fastening")] = None
     count: Annotated[float, Of("bolt_count", "number of tie rods, or of pins in a row")] = 4.0
     thread: RetentionThread | None = None

@@ -164,14 +164,16 @@ def number_of(value: object) -> float | None:
 def value_at(tree: Any, loc: Loc, section: type[Section] = Design) -> Any:
     """Value at a location of a block or its tree; if not stated, the default of its key."""
     node, default = tree, None
+    known = True
     for key in loc:
         node = child(node, key)
         if isinstance(key, int):
             default = None
             continue
-        entry = entries(section).get(key)
-        if entry is None:
-            return node
+        entry = entries(section).get(key) if known else None
+        if entry is None:  # such as a PATH under `variables`
+            known, default = False, None
+            continue
         default = entry.default
         section = entry.section or section
     return default if node is None else node

@@ -18,6 +18,8 @@ from ..design.material import Material
 from ..design.model import Design, EndRetention, Ply, closed_length, spigot_length
 from ..design.seals import Seal, SealElement
 from ..joints.joint import (
+    ENCLOSED,
+    HELICAL,
     BarrelLayer,
     End,
     EndDimensions,
@@ -112,6 +114,11 @@ def clamped(design: Design) -> bool:
     return any(end.joint.clamping is not None for end in joints_of(design))
 
 
+def _helical(ply: Ply) -> bool:
+    """Whether a layer is wound at a stated angle that can carry the axial force of an end."""
+    return 0.0 < abs(ply.angle) <= HELICAL
+
+
 def end_of(
     design: Design,
     end_joint: EndJoint,
@@ -120,24 +127,31 @@ def end_of(
     inner_radius: Array,
     outer_radius: Array,
     thicknesses: Sequence[Array],
+    angles: Sequence[Array],
     barrel_length: Array,
     plate: Array,
     rod_radius: Array,
     head_length: Array,
+    static: Sequence[Groove] = (),
 ) -> End:
-    """Describe an end of the barrel; `thicknesses` are those of the barrel's layers."""
-    layers = zip(design.barrel.layup, thicknesses, strict=True)
+    """Describe an end of the barrel; `thicknesses` and `angles` are those of its layers."""
+    layers = zip(design.barrel.layup, thicknesses, angles, strict=True)
+    joint = end_joint.joint
     return End(
         sizes=sizes,
         material=end_joint.section.material,
         cap=design.caps.material,
-        layers=tuple(BarrelLayer(ply.material, thickness) for ply, thickness in layers),
+        layers=tuple(
+            BarrelLayer(ply.material, thickness, angle, _helical(ply))
+            for ply, thickness, angle in layers
+        ),
         inner_radius=inner_radius,
         outer_radius=outer_radius,
         barrel_length=barrel_length,
         plate=plate,
         rod_radius=rod_radius,
         head_length=None if end_joint.name == "cap" else head_length,
+        seal_depth=static[0].gland_depth if static and joint.static_seal == "rim" else 0.0,
     )
 
 
@@ -295,6 +309,8 @@ class Geometry:
     inner_radius: Array
     outer_radius: Array
     thicknesses: tuple[Array, ...]
+    angles: tuple[Array, ...]
+    """Winding angles of the barrel's layers; those of helical layers may be arrays."""
     stroke: Array
     area_a: Array
     area_b: Array
@@ -371,7 +387,13 @@ def derive(v: Values, design: Design) -> Geometry:
     barrel_length = v.get("barrel.length", needed)
     plate = v["caps.thickness"]
     extension = v["rod.extension"]
+    static = static_grooves(v, design)
     joints, fits = joints_of(design), []
+    forms = tuple(end.joint.form for end in joints)
+    angles = tuple(
+        v[f"barrel.layup[{i}].angle"] if "wound" in forms and _helical(ply) else ply.angle
+        for i, ply in enumerate(design.barrel.layup)
+    )
     for end_joint in joints:
         end = end_of(
             design,
@@ -380,16 +402,17 @@ def derive(v: Values, design: Design) -> Geometry:
             inner_radius=inner_radius,
             outer_radius=outer_radius,
             thicknesses=thicknesses,
+            angles=angles,
             barrel_length=barrel_length,
             plate=plate,
             rod_radius=rod / 2,
             head_length=head_length,
+            static=static,
         )
         fits.append(end_joint.joint.fit(end))
     if not fits:
         fits.append(EndDimensions(plate_radius=outer_radius, radius=outer_radius))
-    forms = tuple(end.joint.form for end in joints)
-    static, places = static_grooves(v, design), static_places(design)
+    places = static_places(design)
     spigot = spigot_length(place=places[0], section=static[0].section) if static else 0.0
     spigot = spigot + fits[0].inner_length
     pin = v["clevis.pin_diameter"] if design.clevis is not None else 0.0
@@ -400,6 +423,7 @@ def derive(v: Values, design: Design) -> Geometry:
         inner_radius=inner_radius,
         outer_radius=outer_radius,
         thicknesses=thicknesses,
+        angles=angles,
         stroke=stroke,
         area_a=forces.piston_area(bore=bore),
         area_b=forces.annulus_area(bore=bore, rod_diameter=rod),
@@ -446,10 +470,12 @@ def end_at(design: Design, end_joint: EndJoint, sizes: JointSizes, g: Geometry) 
         inner_radius=g.inner_radius,
         outer_radius=g.outer_radius,
         thicknesses=g.thicknesses,
+        angles=g.angles,
         barrel_length=g.barrel_length,
         plate=g.plate,
         rod_radius=g.rod_diameter / 2,
         head_length=g.head_length,
+        static=g.static_grooves,
     )
 
 
@@ -484,7 +510,7 @@ def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, 
         bore
         | skirts
         | sealed
-        | (plugs if "plugs" in g.forms else {})
+        | (plugs if set(ENCLOSED) & set(g.forms) else {})
         | {
             "geometry_rod_in_bore": g.inner_radius - g.rod_diameter / 2,
             "geometry_rod_wall": (g.rod_diameter - g.rod_inner_diameter) / 2,

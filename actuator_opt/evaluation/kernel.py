@@ -18,6 +18,7 @@ from ..base.quantities import Quantity, Sense
 from ..design.material import Material
 from ..design.model import Design
 from ..friction.law import Friction
+from ..joints.joint import ENCLOSED
 from ..metrics.table import AT_STOPS
 from ..models import damping, elements, forces, lines, transmission_line
 from . import (
@@ -349,7 +350,9 @@ def statics(
     out.put("mass", sum(parts.values()))
     out.put("mass_oil", weight.oil(v, design, g))
     branches = circuit.branches(v, design, case_state)
-    budget = springs.springs(v, design, g, case_state, barrel, rod, friction.breakaway, branches)
+    budget = springs.springs(
+        v, design, stock, g, case_state, barrel, rod, friction.breakaway, branches
+    )
     damping = compute_damping(g, case_state, friction, out)
     leakage = compute_leakage(v, design, g, case_state, drive_films.get("piston seal"), out)
     compute_flow(v, design, g, case_state, out)
@@ -376,7 +379,7 @@ def statics(
         out.skip("geometry_static_seal", "no static seal on the outside of the head")
     if "skirts" not in g.forms:
         out.skip("geometry_skirts", "cap and head have no skirts over the barrel")
-    if "plugs" not in g.forms:
+    if not set(ENCLOSED) & set(g.forms):
         for name in ("geometry_lip", "geometry_plug"):
             out.skip(name, "no plug in the bore")
     _manufacture(v, subject, g, out)
@@ -453,7 +456,15 @@ def _at_stops(
         stop_state = state.holding(v, design, basis.stock, basis.geometry, s, end)
         branches = circuit.branches(v, design, stop_state)
         budget = springs.springs(
-            v, design, basis.geometry, stop_state, basis.wall, rod, breakaway, branches
+            v,
+            design,
+            basis.stock,
+            basis.geometry,
+            stop_state,
+            basis.wall,
+            rod,
+            breakaway,
+            branches,
         )
         stop_metrics = MetricArrays()
         springs.compute(budget, weight.moving(parts, s.demands[end].mass), stop_metrics)

@@ -346,6 +346,15 @@ def _eyes(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
         yield "rod eye", name, _eye(at.tip + float(g.eye_offset), pin, -1), 0, False
 
 
+def _merged(parts: Iterable[_Part]) -> Iterator[_Part]:
+    """Parts, where pieces of the same part form one part, such as a layer that a joint goes on."""
+    merged: dict[tuple[str, str, int, bool], list[Polygon]] = {}
+    for part, material, shapes, bars, radial in parts:
+        merged.setdefault((part, material, bars, radial), []).extend(shapes)
+    for (part, material, bars, radial), shapes in merged.items():
+        yield part, material, shapes, bars, radial
+
+
 def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tuple[Outline, ...]:
     """All parts as closed polygons of (axial position from the cap pin, radius) in m."""
     at = _stations(g)
@@ -356,7 +365,7 @@ def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tup
         "oil",
     )
     groups = (_barrel, _ends, _inside, _eyes)
-    parts = [part for group in groups for part in group(design, g, at)]
+    parts = _merged(part for group in groups for part in group(design, g, at))
     return (
         oil,
         *(
@@ -410,6 +419,7 @@ def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
             inner_radius=lengths["bore"] / 2,
             outer_radius=lengths["barrel_outer_diameter"] / 2,
             thicknesses=[ply.thickness for ply in design.barrel.layup],
+            angles=[ply.angle for ply in design.barrel.layup],
             barrel_length=lengths["barrel_length"],
             plate=lengths["plate"],
             rod_radius=lengths["rod"] / 2,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from math import pi
 from typing import NamedTuple
 
@@ -14,8 +14,8 @@ from ..design.model import Design
 from ..models import dynamics, lugre, stiffness, stiffness_published as published
 from .barrel import Wall
 from .circuit import Chamber, ChamberLines
-from .geometry import Geometry
-from .limits import MetricArrays
+from .geometry import Geometry, Numbers, end_at, joints_of
+from .limits import MaterialValues, MetricArrays
 from .rods import RodSection
 from .state import LoadState
 from .values import Values
@@ -176,20 +176,33 @@ class Springs:
         return 1 / (sum(self._by_energy(position).values()) + self.series_compliance())
 
 
-def _stretch(design: Design, g: Geometry, wall: Wall, extra: Array) -> Give:
-    """Compliance by axial stretch of the barrel, which the pressure of one chamber causes.
+def _joints(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Iterator[Array]:
+    """Yield the axial compliance of each joint of the barrel ends that states one [m/N]."""
+    for end_joint in joints_of(design):
+        give = end_joint.joint.give
+        if give is not None:
+            end = end_at(design, end_joint, Numbers(v, end_joint.path), g)
+            yield end_joint.count * give(end, stock)
+
+
+def _stretch(
+    design: Design, g: Geometry, wall: Wall, extra: Array, joints: Iterable[Array]
+) -> Give:
+    """Compliance by axial stretch of barrel and joints, which the pressure of one chamber causes.
 
     With a cap mount, the axial force is N = p_B A_B along the whole barrel length L. The head moves
     by e_N L N + e_p (x p_A + y p_B), and N reduces the volume of both chambers by e_p N per unit
     length. Here e_N is the axial strain per unit axial force, and e_p that per unit pressure. The
     piston position is x, and y is the wetted length of chamber B: the rest of the stroke and the
     extra length of the barrel (`extra`). With a head mount, N = p_A A_A. Tie rods carry their share
-    of N.
+    of N. The compliances of the `joints` add to that of the barrel.
     """
     shortening = wall.swelling.shortening * wall.path.share
     cap = design.cylinder.mount.startswith("cap")
     area = g.area_b if cap else g.area_a
     barrel_stretch = area * area * wall.swelling.stretch * wall.path.share * g.wall_length
+    for give in joints:
+        barrel_stretch = barrel_stretch + area * area * give
     twice, once = 2 * shortening * area, shortening * area
     if cap:
         return Give(b0=barrel_stretch + twice * extra, b1=twice, c1=once)
@@ -199,6 +212,7 @@ def _stretch(design: Design, g: Geometry, wall: Wall, extra: Array) -> Give:
 def springs(
     v: Values,
     design: Design,
+    stock: MaterialValues,
     geometry: Geometry,
     state: LoadState,
     wall: Wall,
@@ -224,7 +238,7 @@ def springs(
         in_a, in_b = branches["a"].volume / oil_a, branches["b"].volume / oil_b
         chambers["oil in lines"] = Give(a0=in_a, b0=in_b)
     chambers["barrel"] = Give(a1=swelling, b0=swelling * extra, b1=swelling)
-    chambers["stretch"] = _stretch(design, g, wall, extra)
+    chambers["stretch"] = _stretch(design, g, wall, extra, _joints(v, design, stock, g))
     kinds = {line.type for line in design.lines if not line.rigid}
     if "pipe" in kinds:
         chambers["pipes"] = Give(a0=branches["a"].pipes, b0=branches["b"].pipes)

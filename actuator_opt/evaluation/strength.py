@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import sqrt
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, namespace, real, where
@@ -102,6 +102,8 @@ def joints_under_load(
         walls = plies.layers(v, stock, design.barrel.layup, "barrel.layup", (), [])
         return layered_tube(layers=[one.as_tube() for one in walls], inner_radius=g.inner_radius)
 
+    climates = plies.climates(v, design)
+    since_cure = tuple(climate.change for climate in climates) if len(climates) > 1 else ()
     return tuple(
         LoadedJoint(
             end_joint,
@@ -115,9 +117,9 @@ def joints_under_load(
                 clamp=wall.path.clamp,
                 shells=shells,
                 pressure=v["supply.pressure"],
-                angles=tuple(v[f"barrel.layup[{i}].angle"] for i in range(len(layers))),
                 tube=tube,
                 warmings=plies.warmings(v, design),
+                since_cure=since_cure,
             ),
         )
         for end_joint in joints_of(design)
@@ -288,14 +290,11 @@ def _retention(
 
 def joint_metrics(loaded_joints: Sequence[LoadedJoint], out: MetricArrays) -> None:
     """Compute the metrics of the joints; those of other joint types are missing, with a reason."""
-    metrics: dict[str, Any] = {}
+    metrics: dict[str, dict[str, Array]] = {}
     for end in loaded_joints:
         for name, value in end.joint.own(end.loaded).items():
-            if end.end_joint.name:
-                parts = value if isinstance(value, Mapping) else {"": value}
-                metrics.setdefault(name, {}).update(end.placed(parts))
-            else:
-                metrics[name] = value
+            rows = value if isinstance(value, Mapping) else {"": value}
+            metrics.setdefault(name, {}).update(end.placed(rows))
     for joint in JOINTS.values():
         for name, absent in joint.metrics.items():
             if name in metrics:

@@ -17,6 +17,7 @@ from ..design import assembly
 from ..design.material import compatible
 from ..design.model import PLAIN_CAP, Design
 from ..design.paths import quantity_of
+from ..joints.cone import LAYER_EDGE
 from ..joints.winding import WINDING_EDGE
 from ..metrics import METRICS
 from ..metrics.table import CRITERION, OWN, ROWS, WALL_FED
@@ -286,6 +287,12 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
     for end in run.joints:
         for metric, sentence in end.joint.warnings(end.loaded, METRICS):
             yield metric, end.end_joint.placed(sentence)
+    if run.joints and all(end.joint.form == "wound" for end in run.joints):
+        yield (
+            "",
+            "both ends are wound into the barrel, so piston, rod and seals must be inside during "
+            "winding and cure: hold one end by another joint (retention.cap, retention.head)",
+        )
     yield from _rod_warnings(subject, run)
     yield from _winding_warnings(subject.design, run)
     yield from _head_warnings(subject.design)
@@ -445,7 +452,11 @@ def _bond_warnings(run: ModelRun) -> Iterable[tuple[str, str]]:
     bonds = {"rod fittings": ("fitting_factor", "bond", "bond of the rod fittings")}
     for end in run.joints:
         name = end.end_joint.name or "caps"
-        for edge, words in (("bond", "bond of the"), (WINDING_EDGE, "end of the winding at the")):
+        for edge, words in (
+            ("bond", "bond of the"),
+            (WINDING_EDGE, "end of the winding at the"),
+            (LAYER_EDGE, "end of the inner layers at the"),
+        ):
             start = end.end_joint.placed(edge)
             if any(at.startswith(start) for at in metrics.get("retention_factor", {})):
                 bonds[name] = ("retention_factor", start, f"{words} {name}")

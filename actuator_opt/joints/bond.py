@@ -90,6 +90,7 @@ JOINT = Joint(
     form="skirts",
     fit=_fit,
     clamping=None,
+    give=None,
     mass=_mass,
     outline=overlap.outline,
     notes=nothing,

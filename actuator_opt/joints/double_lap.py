@@ -253,6 +253,7 @@ JOINT = Joint(
     mass=_mass,
     outline=_outline,
     notes=_notes,
+    give=None,
     strength=_strength,
     yields=_yields,
     wall=lambda loaded: WallPressures(),

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
+from math import radians
 from typing import Any, Literal, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
@@ -144,11 +145,21 @@ class Usual(NamedTuple):
     number: Callable[[End], Array]
 
 
+HELICAL = radians(70.0)
+"""Largest winding angle of a layer whose fibres can carry the axial force of an end [rad]. Our
+choice: from there on, less than an eighth of the fibre strength acts along the axis."""
+
+
 class BarrelLayer(NamedTuple):
-    """A layer of the barrel."""
+    """A layer of the barrel, with its winding angle [rad].
+
+    A `helical` layer states an angle up to `HELICAL`, but not 0.
+    """
 
     material: str
     thickness: Array
+    angle: Array = 0.0
+    helical: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -172,6 +183,8 @@ class End:
     """Radius of the rod, which passes through the head."""
     head_length: Array | None
     """Length of the head's plug in the barrel; None at the end of the cap alone."""
+    seal_depth: Array = 0.0
+    """Depth of the groove for the static seal in the rim of the end plate; 0 without one."""
     cache: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
     """Intermediate results that the joint's functions store here to use again, under any key."""
 
@@ -296,12 +309,12 @@ class Loaded:
     """Stiffness of the barrel's layers against bending; empty if an elastic constant is unknown."""
     pressure: Array
     """Supply pressure [Pa]."""
-    angles: tuple[Array, ...]
-    """Winding angles of the barrel's layers [rad]."""
     tube: Callable[[], LayeredTube | None]
     """The barrel as an exact layered tube; None if an elastic constant is unknown."""
     warmings: Mapping[str, Array]
     """Temperature changes since assembly, cold and hot [K]; empty without a temperature range."""
+    since_cure: tuple[Array, ...]
+    """Temperature changes since cure, cold and hot [K]; empty without a temperature of cure."""
 
 
 class Pulsed(NamedTuple):
@@ -323,7 +336,12 @@ class Life(NamedTuple):
 StaticPlace: TypeAlias = Literal["", "rim", "bore"]
 """Place of a static seal: none, in the rim of a plug, or inside the barrel on head and spigot."""
 
-Form: TypeAlias = Literal["skirts", "plugs", "plates"]
+Form: TypeAlias = Literal["skirts", "plugs", "wound", "plates"]
+"""Form of a cap: a skirt over the barrel, a plug in its bore, a plug that the barrel is wound over,
+or a plate."""
+
+ENCLOSED: tuple[Form, ...] = ("plugs", "wound")
+"""Forms of caps that the barrel encloses."""
 
 Thermal = Callable[[Array, bool], Array]
 """Function that returns the strength divided by the load of a temperature change.
@@ -410,10 +428,11 @@ class Joint:
     opening: Callable[[StatedValues], Opening]
     """Function that describes how parts enter the barrel at this end."""
     form: Form
-    """Form of the caps: skirts over the outside of the barrel, plugs in its bore, or plates."""
     fit: Callable[[End], EndDimensions]
     clamping: Callable[[End, MaterialProperties], Clamping] | None
     """Function that describes the parts that clamp the barrel; None if none do."""
+    give: Callable[[End, MaterialProperties], Array] | None
+    """Axial compliance of the joint at one end [m/N]; None if it is neglected."""
     mass: Callable[[End, MaterialProperties], Mapping[str, Array]]
     """Mass [kg] of the joint at one end, by part: barrel, caps or fastening."""
     outline: Callable[[End, EndDimensions, EndSpan], Iterable[DrawnPart]]
@@ -456,7 +475,7 @@ class Joint:
         """Where the static seal of the end is; an adhesive seals by itself."""
         if "adhesive" in self.kinds:
             return ""
-        return "rim" if self.form == "plugs" else "bore"
+        return "rim" if self.form in ENCLOSED else "bore"
 
     @property
     def plural(self) -> bool:

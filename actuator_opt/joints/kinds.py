@@ -15,6 +15,7 @@ JOINTS: Kinds[Joint] = kinds_in(
     "thread",
     "plug_thread",
     "retaining_ring",
+    "cone",
     "tie_rods",
     "pins",
     "shrink",

@@ -343,7 +343,7 @@ def _fibre_layers(loaded: Loaded) -> tuple[model.FibreLayer, ...] | str:
     layers = []
     if len(end.layers) == 1:
         return "pins need plies around a liner"
-    for layer, angle in zip(end.layers[1:], loaded.angles[1:], strict=True):
+    for layer in end.layers[1:]:
         keys = ("youngs_modulus_1", "youngs_modulus_2", "poissons_ratio_12", "shear_modulus_12")
         elastic = {key: materials.get(layer.material, key) for key in keys}
         strengths = [
@@ -356,7 +356,11 @@ def _fibre_layers(loaded: Loaded) -> tuple[model.FibreLayer, ...] | str:
                 return f"{layer.material} has no {key}: state it under materials.{layer.material}"
         layers.append(
             model.FibreLayer(
-                layer.thickness, angle, ply.ply_stiffness(**elastic), strengths[0], strengths[1]
+                layer.thickness,
+                layer.angle,
+                ply.ply_stiffness(**elastic),
+                strengths[0],
+                strengths[1],
             )
         )
     return tuple(layers)
@@ -536,10 +540,7 @@ def _own(loaded: Loaded) -> Mapping[str, Mapping[str, Array]]:
     end = loaded.end
     inner, outer = _skirt(end)
     skirt = {"inside the liner": end.inner_radius - inner, "around the rod": inner - end.rod_radius}
-    layers = [
-        (layer.thickness, angle)
-        for layer, angle in zip(end.layers[1:], loaded.angles[1:], strict=True)
-    ]
+    layers = [(layer.thickness, layer.angle) for layer in end.layers[1:]]
     if not layers:
         return {SKIRT: skirt}
     radius, spaced = (end.outer_radius + outer) / 2, "spacing" in end.sizes
@@ -606,6 +607,7 @@ JOINT = Joint(
     mass=_mass,
     outline=_outline,
     notes=_notes,
+    give=None,
     strength=_strength,
     yields=_yields,
     wall=lambda loaded: WallPressures(),

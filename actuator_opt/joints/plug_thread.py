@@ -317,6 +317,7 @@ JOINT = Joint(
     form="plugs",
     fit=_fit,
     clamping=None,
+    give=None,
     mass=_mass,
     outline=_outline,
     notes=_notes,

@@ -491,6 +491,7 @@ JOINT = Joint(
     form="skirts",
     fit=_fit,
     clamping=None,
+    give=None,
     mass=_mass,
     outline=overlap.outline,
     notes=_notes,

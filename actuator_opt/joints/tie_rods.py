@@ -170,6 +170,7 @@ JOINT = Joint(
     form="plates",
     fit=_fit,
     clamping=_clamping,
+    give=None,
     mass=_mass,
     outline=_outline,
     notes=_notes,

@@ -15,6 +15,7 @@ from typing import Literal, get_args
 from ..base.dataclass import dataclass
 from ..base.quantities import INFINITY, Quantity, Sense
 from ..base.units import BASE, unit
+from ..joints.cone import LEAST_CREST, LEAST_GRIP
 from ..joints.joint import LEAST_METAL, judged_on, models_at
 from ..joints.kinds import JOINTS
 from ..models.thread import LEAST_OVERLAP
@@ -634,6 +635,19 @@ ROWS = table((
     MetricRow("geometry_ring_opening", "-", "length", "mm",
               "radial clearance between the retaining ring and the rod",
               worst="min", model=None, feeds=(), check=None, least=_LEAST_WALL),
+    MetricRow("geometry_trap", "-", "length", "mm",
+              "length or wall that remains at the trap of a cone",
+              worst="min", model=None, feeds=(), check=None, least=_LEAST_WALL),
+    MetricRow("geometry_trap_crest", "-", "ratio", "",
+              "crest radius of a cone divided by the thickness of its band",
+              worst="min", model=None, feeds=(), check=None,
+              least=Least(LEAST_CREST, "our choice: least radius over which a winder lays tows, "
+                          "in band thicknesses")),
+    MetricRow("geometry_trap_grip", "-", "ratio", "",
+              "depth of the valley of a cone divided by the radial give of its hoop plies",
+              worst="min", model="fibre_trap.radial_give", feeds=(), check=None,
+              least=Least(LEAST_GRIP, "our choice: with a give above 2 % of the depth, the band "
+                          "climbs over the crest")),
     MetricRow("geometry_lip", "-", "length", "mm",
               "clearance between the barrel's end, which encloses the plug, and the eyes",
               worst="min", model=None, feeds=(), check=None, least=_LEAST_WALL),

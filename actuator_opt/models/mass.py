@@ -6,8 +6,9 @@ Masses are density times volume; `oil_mass` is reported apart from the dry mass.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
-from ..base.numeric import Array, geometry
+from ..base.numeric import Array, absolute, geometry
 
 
 @geometry
@@ -69,6 +70,37 @@ def layer_area(*, inner_radius: Array, thickness: Array) -> Array:
     138.23 mm^2
     """
     return math.pi * (thickness * (2 * inner_radius + thickness))
+
+
+def turned_volume(*, profile: Sequence[tuple[Array, Array]]) -> Array:
+    """Volume of a polygon turned about the axis, |(pi/3) sum (x_2 - x_1)(r_1^2 + r_1 r_2 + r_2^2)|.
+
+    Parameters
+    ----------
+    profile : corners (axial position x, radius r) in order [m]
+
+    Returns
+    -------
+    volume [m^3]
+
+    Notes
+    -----
+    Valid: edges that do not cross, r >= 0.
+
+    References
+    ----------
+    [derived] sum of frustums of cones
+
+    Examples
+    --------
+    >>> cone = [(0.0, 0.0), (0.3, 0.0), (0.3, 0.1)]
+    >>> print(f"{turned_volume(profile=cone) * 1e3:.5f} l")
+    3.14159 l
+    """
+    total: Array = 0.0
+    for (x1, r1), (x2, r2) in zip(profile, [*profile[1:], profile[0]], strict=True):
+        total = total + (x2 - x1) * (r1 * r1 + r1 * r2 + r2 * r2)
+    return absolute((math.pi / 3) * total)
 
 
 @geometry

@@ -26,7 +26,35 @@ CHAMBERS = {
     "wall_b": 1.5e-15, "stretch": 5e-16,
 }  # fmt: skip
 
+FLANK = {"crest_radius": 16.5e-3, "valley_radius": 14e-3, "angle": 0.6}
+HOOPS = {"radius": 18e-3, "modulus": 135e9, "section": 20e-6}
+GEODESIC = {"angle": 0.4, "start_radius": 16e-3, "radius": 14e-3}
+
 SAMPLES: dict = {
+    "fibre_trap.flank_pressure": {"force": 7e3, **FLANK, "friction_coefficient": 0.1},
+    "fibre_trap.hoop_force": {"force": 7e3, "angle": 0.6, "friction_coefficient": 0.1},
+    "fibre_trap.radial_give": {"hoop_force": 1600.0, **HOOPS},
+    "fibre_trap.compliance": {**HOOPS, "angle": 0.6, "friction_coefficient": 0.1},
+    "fibre_trap.flank_shear": {"pressure": 3e7, "angle": 0.6},
+    "fibre_trap.hoop_section": [
+        {"thickness": t, "width": 4e-3, "rise": 2e-3, "run": 2.5e-3} for t in (1e-3, 3e-3)
+    ],
+    "fibre_trap.hoop_reach": {
+        "radius": 15e-3, "thickness": 2e-3, "modulus": 135e9, "axial_modulus": 8.5e9,
+    },
+    "fibre_trap.band_stress": {"line_force": 1e5, "thickness": 8e-4, "angle": 0.4},
+    "fibre_trap.crest_factor": {"thickness": 8e-4, "crest_radius": 3e-3},
+    "fibre_trap.crest_pressure": {"line_force": 1e5, "crest_radius": 3e-3, "angle": 0.6},
+    "fibre_trap.crest_shear": {"force": 7e3, "valley_radius": 14e-3, "length": 4e-3},
+    "fibre_trap.neck_stresses": {
+        "force": 7e3, **FLANK, "outer_radius": 11e-3, "wall": 2e-3, "flank_distance": 3e-3,
+    },
+    "fibre_trap.cooling_play": {
+        "expansion_difference": 24e-6, "cooling": 120.0, "radius": 16e-3, "angle": 0.6,
+    },
+    "winding_path.geodesic_angle": GEODESIC,
+    "winding_path.geodesic_thickness_ratio": GEODESIC,
+    "mass.turned_volume": [{"profile": [(0.0, 8e-3), (5e-3, 8e-3), (4e-3, 12e-3), (0.0, 12e-3)]}],
     "rod.free_modulus": {"wall": PLY},
     "trial_motion.buckled_mode": {"critical_load": 1.3e5, **BENT},
     "trial_motion.trial_mode_load": {"mode": TrialMode(0.5, 0.6, 1.2, 1.1), **BENT},

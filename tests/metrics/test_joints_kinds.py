@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import json
 import pkgutil
+import re
 from dataclasses import MISSING, fields, replace
 from pathlib import Path
 
@@ -45,6 +46,8 @@ BLOCKS = {
     "  interference: 10 um\n  friction_coefficient: 0.15\n  relaxation: 0.8\n",
     "retaining_ring": "type: retaining_ring\n  material: steel_bolt_12_9\n  length: 4 mm\n"
     "  groove_depth: 0.5 mm\n  ring_thickness: 2 mm\n  ring_width: 2 mm\n",
+    "cone": "type: cone\n  length: 3 mm\n  wall: 3 mm\n  angle: 45 deg\n  depth: 3 mm\n"
+    "  crest_radius: 3 mm\n  hoop_thickness: 2 mm\n  hoop_width: 2 mm\n",
 }
 """A retention of each kind on a steel cylinder."""
 LAYUP = STEEL[STEEL.index("  layup:") : STEEL.index("\nrod:")]
@@ -52,7 +55,8 @@ WOUND = "  layup:\n    - {material: al_7075_t6, thickness: 1.5 mm}\n" + "".join(
     f"    - {{material: t700_epoxy, angle: {angle} deg, thickness: {thickness} mm}}\n"
     for angle, thickness in ((88, 0.5), (45, 2), (0, 1))
 )
-LAYUPS = {"pins": WOUND}
+HELICAL = LAYUP + "    - {material: t700_epoxy, angle: 30 deg, thickness: 1 mm}\n"
+LAYUPS = {"pins": WOUND, "cone": HELICAL}
 """The barrel of joints that a steel barrel cannot have."""
 VALUES = {
     "wall": "3 mm",
@@ -229,8 +233,8 @@ def test_its_outline(joint):
     assert drawn
     numbers = found.subject().numbers
     names = {one.part: "fastening" for one in drawn} | {"caps": "caps", "glands": "glands"}
-    names |= {one.part: "barrel" for one in drawn if one.part.startswith("layup")}
-    weights = dict.fromkeys(names.values(), 0.0)
+    names |= {one.part: "barrel" for one in drawn if re.match("layup|.*plies", one.part)}
+    weights = dict.fromkeys((names[one.part] for one in drawn), 0.0)
     for outline in drawn:
         size = 0.0
         for polygon in outline.polygons:
