@@ -27,6 +27,7 @@ from ..joints.joint import (
     StaticPlace,
 )
 from ..joints.kinds import JOINTS
+from ..joints.sleeve import in_sleeve
 from ..models import forces, gland, mass, winding_path
 from .values import Values
 
@@ -102,7 +103,12 @@ def joints_of(design: Design) -> tuple[EndJoint, ...]:
     if design.retention is None:
         return ()
     return tuple(
-        EndJoint(name, f"retention.{name}" if name else "retention", JOINTS[end.type], end)
+        EndJoint(
+            name,
+            f"retention.{name}" if name else "retention",
+            JOINTS[end.type] if end.sleeve is None else in_sleeve(JOINTS[end.type]),
+            end,
+        )
         for name, end in design.retention.ends.items()
     )
 
@@ -136,6 +142,7 @@ def end_of(
         barrel_length=barrel_length,
         plate=plate,
         rod_radius=rod_radius,
+        sleeve=None if end_joint.section.sleeve is None else end_joint.section.sleeve.material,
     )
 
 
@@ -468,6 +475,7 @@ def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, 
         bore
         | skirts
         | sealed
+        | _sleeve_lands(g)
         | (plugs if "plugs" in g.forms else {})
         | {
             "geometry_rod_in_bore": g.inner_radius - g.rod_diameter / 2,
@@ -478,6 +486,22 @@ def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, 
             "geometry_head_wall": g.inner_radius - g.rod_diameter / 2 - head_depth,
         }
     )
+
+
+def _sleeve_lands(g: Geometry) -> dict[str, dict[str, Array]]:
+    """Lengths that must not be negative: lift of the winding, its cover, and between sleeves."""
+    lands: dict[str, Array] = {}
+    between = g.wall_length
+    for name, fit in zip(("cap", "head") if len(g.fits) > 1 else ("",), g.fits, strict=True):
+        if fit.sleeve is not None:
+            own = {
+                "lift": fit.sleeve.lift,
+                "beyond the tip": fit.sleeve.inner - fit.sleeve.ramp,
+            }
+            lands |= {": ".join(filter(None, (name, key))): x for key, x in own.items()}
+            sleeves = 1 if name else 2
+            between = between - sleeves * (fit.sleeve.bare + fit.sleeve.inner)
+    return {"geometry_sleeve": lands | {"between": between}} if lands else {}
 
 
 def manufacture_margins(

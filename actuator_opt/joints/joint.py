@@ -157,8 +157,25 @@ class End:
     """Thickness of the end plate."""
     rod_radius: Array
     """Radius of the rod, which passes through the head."""
+    sleeve: str | None = None
+    """Metal of the sleeve into which the joint is cut; None without one."""
     cache: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
     """Intermediate results that the joint's functions store here to use again, under any key."""
+
+
+class SleeveFit(NamedTuple):
+    """Dimensions of a sleeve and of the winding on it [m].
+
+    The sleeve extends from the end of the barrel, `bare` outside the winding and `inner` under it.
+    At its tip, it is conical over the length `ramp`, which lifts the winding by `lift`. It takes
+    the place of the innermost layer if it is `liner` and sleeve in one piece.
+    """
+
+    bare: Array
+    inner: Array
+    ramp: Array
+    lift: Array
+    liner: bool
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -180,6 +197,8 @@ class EndDimensions:
     lip: Array = 0.0
     groove: tuple[Array, ...] = ()
     own: tuple[Array, ...] = ()
+    sleeve: SleeveFit | None = None
+    """The sleeve that has the joint, with its groove or turned-down outside."""
 
 
 class EndSpan(NamedTuple):

@@ -187,15 +187,24 @@ def _beside(loaded: Loaded) -> tuple[tuple[str, Array], ...]:
     return stresses
 
 
+def metal_shell(
+    materials: MaterialProperties, name: str, thickness: Array
+) -> end_bending.ShellLayer | None:
+    """Stiffness of a metal layer against bending; None if an elastic constant is unknown."""
+    modulus, ratio = (materials.get(name, key) for key in ("youngs_modulus", "poissons_ratio"))
+    if modulus is None or ratio is None:
+        return None
+    stiffness = modulus / (1 - ratio * ratio)
+    return end_bending.ShellLayer(
+        thickness, stiffness, stiffness, ratio * stiffness, modulus / (2 * (1 + ratio))
+    )
+
+
 def _bent(loaded: Loaded) -> Iterator[tuple[str, Array]]:
     end, materials = loaded.end, loaded.materials
-    modulus, ratio = (materials.get(end.cap, key) for key in ("youngs_modulus", "poissons_ratio"))
-    if not loaded.shells or modulus is None or ratio is None:
+    skirt = metal_shell(materials, end.cap, end.sizes["wall"])
+    if not loaded.shells or skirt is None:
         return
-    stiffness = modulus / (1 - ratio * ratio)
-    skirt = end_bending.ShellLayer(
-        end.sizes["wall"], stiffness, stiffness, ratio * stiffness, modulus / (2 * (1 + ratio))
-    )
     barrel, whole = (
         end_bending.shell(layers=layers, inner_radius=end.inner_radius)
         for layers in (loaded.shells, (*loaded.shells, skirt))

@@ -292,6 +292,7 @@ JOINT = Joint(
         ),
         JointField("thread.diameter"),
         JointField("thread.pitch"),
+        JointField("sleeve"),
     ),
     kinds=(),
     without={
