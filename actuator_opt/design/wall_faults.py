@@ -13,8 +13,8 @@ from typing import Any
 from ..base import quantities
 from ..base.errors import Fault, InputError
 from ..base.quantities import length_text
-from ..joints.joint import Joint
 from ..joints import sleeve
+from ..joints.joint import Joint
 from ..joints.kinds import JOINTS
 from .material import PLY_CONSTANTS, PLY_REQUIRED, compliance_determinant, ply_constants
 from .model import EndRetention, Ply

@@ -10,7 +10,7 @@ reproduces its outlines; without such a template, it is not drawn.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from math import cos, pi, sin
 from typing import Any, Literal, TypeAlias

@@ -351,13 +351,15 @@ class Strength:
     `working` is the elastic limit and `burst` the breaking load, each divided by the largest force;
     both are dicts whose keys are locations. `thermal` is a function for the factor under
     temperature alone, or the reason why that factor is unknown. `combined` is a function for the
-    burst factor under the force, after a temperature change; None if it is unknown.
+    burst factor under the force, after a temperature change; None if it is unknown. `cured` is
+    whether `thermal` counts the change since the cure of the winding, and not since assembly.
     """
 
     working: Mapping[str, Array]
     burst: Mapping[str, Array]
     thermal: Thermal | str
     combined: Thermal | None = None
+    cured: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -97,7 +97,7 @@ def faults(view: StatedValues) -> Iterator[Fault]:
     if ramp < 0:
         yield Fault(
             _WALL,
-            f"{length_text(wall)}: thinner than the liner ({length_text(liner)}), which it thickens",
+            f"{length_text(wall)}: thinner than the liner of {length_text(liner)} that it thickens",
             f"write at least {length_text(liner)}, or remove the block {KEY}",
         )
     elif ramp > inner * (1 + ROUNDING):
@@ -358,6 +358,7 @@ def _strength(joint: Joint, loaded: Loaded) -> Strength | str:
         {**strength.working, **factors, PLIES: bends.plies},
         {**strength.burst, BARE: collapse},
         thermal,
+        cured=True,
     )
 
 
@@ -456,9 +457,7 @@ def _step(
     )
 
 
-def _equivalent(
-    faces: tuple[tuple[Array, Array], tuple[Array, Array]], pressure: Array
-) -> Array:
+def _equivalent(faces: tuple[tuple[Array, Array], tuple[Array, Array]], pressure: Array) -> Array:
     """The larger equivalent stress of both faces of a metal layer, with pressure on the inner."""
     inner, outer = faces
     return maximum(

@@ -94,7 +94,7 @@ def tapered_ring_volume(
 
     References
     ----------
-    [geometry] ring and cone
+    [derived] ring and frustum of a cone
 
     Examples
     --------
