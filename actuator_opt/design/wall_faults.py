@@ -325,8 +325,14 @@ class SleeveView(EndView):
 
     def _text(self, text: str) -> str:
         place = f"{_BLOCK}.{sleeve.KEY}"
-        text = text.replace("barrel.layup[0].thickness", f"{place}.wall")
-        return super()._text(text.replace("barrel.layup[0]", place))
+        for name, here in (
+            ("barrel.layup[0].thickness", f"{place}.wall"),
+            ("barrel.layup[0]", place),
+            ("the innermost layer", "the sleeve"),
+            ("the outermost layer of the barrel", "the sleeve"),
+        ):
+            text = text.replace(name, here)
+        return super()._text(text)
 
 
 def ends(view: FileView) -> tuple[EndView, ...]:

@@ -80,7 +80,7 @@ def _shell_layer(
     cosine = namespace(angle).cos(angle)
     share = cosine * cosine
     shear = share * c["shear_modulus_13"] + (1 - share) * c["shear_modulus_23"]
-    return ShellLayer(thickness, axial, hoop, coupling, shear)
+    return ShellLayer(thickness, axial, hoop, coupling, shear, angle)
 
 
 def joints_under_load(

@@ -110,21 +110,20 @@ def faults(view: StatedValues) -> Iterator[Fault]:
 
 
 def material_faults(view: StatedValues, materials: KnownMaterials) -> Iterator[Fault]:
-    """Report a sleeve that is not of metal, or has no winding that could hold it."""
+    """Report a sleeve without a winding that could hold it."""
     loc = ("retention", KEY, "material")
     name, liner = view.text(*loc), view.text(*_LINER, "material")
     kind, inside = (None if one is None else materials.kind(one) for one in (name, liner))
     if name is None or kind is None or inside is None:
         return
-    layers = range(len(view.items("barrel", "layup")))
-    plies = []
-    for layer in layers:
-        material = view.text("barrel", "layup", layer, "material")
-        if material is not None and materials.kind(material) == "ply":
-            plies.append(layer)
+    names = (
+        view.text("barrel", "layup", layer, "material")
+        for layer in range(len(view.items("barrel", "layup")))
+    )
+    plies = [i for i, one in enumerate(names) if one and materials.kind(one) == "ply"]
     if kind != "metal":
-        yield Fault(loc, f"{name}: a sleeve needs a metal", "write e.g. al_7075_t6")
-    elif not plies:
+        return  # the joint in the sleeve reports it
+    if not plies:
         yield Fault(
             ("retention", KEY),
             "without effect: no winding runs over the sleeve, as the barrel has no plies",
@@ -251,7 +250,11 @@ def _outline(joint: Joint, end: End, fit: EndDimensions, span: EndSpan) -> Itera
 def _notes(joint: Joint, end: End) -> Iterator[str]:
     yield from joint.notes(inside(end))
     wall, inner = (1e3 * end.sizes[f"{KEY}.{key}"] for key in ("wall", "inner_length"))
-    piece = "one piece with the liner" if _merged(end) else "clean and roughened before winding"
+    piece = (
+        "one piece with the liner"
+        if _merged(end)
+        else "roughened before winding, the bore finished after it: the tip leaves a seam"
+    )
     yield (
         f"Sleeve of {end.sleeve}, {wall:.3g} mm thick, {inner:.4g} mm of it under the winding, "
         f"{piece}; conical tip 1:{RAMP:g}."

@@ -46,6 +46,7 @@ VALUES = {
     "count": "7",
     "preload": "5 kN",
     "thread": "{diameter: 6 mm, pitch: 1 mm}",
+    "sleeve": "{material: al_7075_t6, wall: 3 mm, inner_length: 20 mm}",
 }
 """A value of every key that some joint does not use, none of them a default."""
 

@@ -99,7 +99,9 @@ def test_step_against_the_equations_of_both_shells(soft):
 
     def slopes(x, y):
         out = []
-        for (bending, shear, foundation), free, part in zip(walls, far, np.split(y, 2), strict=True):
+        for (bending, shear, foundation), free, part in zip(
+            walls, far, np.split(y, 2), strict=True
+        ):
             w, force, turn, curve = part
             out += [force / shear - turn, foundation * (w - free), curve, force / bending]
         return np.stack(out)
