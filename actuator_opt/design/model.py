@@ -501,7 +501,7 @@ class Sleeve(Section):
     winding by the part outside the plug, or under the skirt.
     """
 
-    material: Annotated[str, MaterialName("isotropic")]
+    material: Annotated[str, MaterialName("structural")]
     wall: Annotated[float, Of("wall_thickness", "thickness of the sleeve")]
     inner_length: Annotated[
         float, Of("part_length", "length of the sleeve under the winding, with its conical tip")
