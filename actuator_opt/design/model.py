@@ -501,6 +501,20 @@ _OVERLAP = Of(
 )
 
 
+class Sleeve(Section):
+    """Metal sleeve under the end of the winding, into which the joint is cut.
+
+    If it is of the metal of the innermost layer, it is one piece with it. It extends beyond the
+    winding by the part outside the plug, or under the skirt.
+    """
+
+    material: Annotated[str, MaterialName("structural")]
+    wall: Annotated[float, Of("wall_thickness", "thickness of the sleeve")]
+    inner_length: Annotated[
+        float, Of("part_length", "length of the sleeve under the winding, with its conical tip")
+    ]
+
+
 class _EndRetention(Section):
     """Joint of one end of the barrel, of the cap or of the head; keys as in `retention`."""
 
@@ -519,6 +533,7 @@ class _EndRetention(Section):
     preload: Annotated[
         float | None, Of("force", "total tension of all tie rods without pressure")
     ] = None
+    sleeve: Sleeve | None = None
 
 
 def _own_keys() -> dict[str, Any]:

@@ -13,6 +13,7 @@ from typing import Any
 from ..base import quantities
 from ..base.errors import Fault, InputError
 from ..base.quantities import length_text
+from ..joints import sleeve
 from ..joints.joint import Joint
 from ..joints.kinds import JOINTS
 from .material import PLY_CONSTANTS, PLY_REQUIRED, compliance_determinant, ply_constants
@@ -295,6 +296,49 @@ class EndView(FileView):
         """The joint that the file names; None if unknown."""
         return JOINTS.get(self.text(_BLOCK, "type") or "")
 
+    @property
+    def sleeved(self) -> bool:
+        """Whether the joint is cut into a sleeve."""
+        return self.has(_BLOCK, sleeve.KEY) and self.joint is not None and _uses_sleeve(self.joint)
+
+    @property
+    def cut(self) -> EndView:
+        """The view of the part into which the joint is cut: the sleeve instead of the barrel."""
+        return SleeveView(FileView(self.tree, self.root), *self.at) if self.sleeved else self
+
+
+def _uses_sleeve(joint: Joint) -> bool:
+    return sleeve.KEY in _keys([joint])
+
+
+class SleeveView(EndView):
+    """Reads a file in which the sleeve of an end is the only layer of the barrel."""
+
+    _LAYER, _KEYS = ("barrel", "layup", 0), ("wall", "material")
+
+    def value(self, *loc: str | int) -> Any:
+        """Value at a location; if not stated, its default."""
+        if loc == self._LAYER[:2]:
+            return [super().value(*self.at, sleeve.KEY)]
+        return super().value(*loc)
+
+    def _placed(self, loc: Loc) -> Loc:
+        if loc[:3] == self._LAYER:
+            keys = ("wall" if key == "thickness" else key for key in loc[3:])
+            return (*self.at, sleeve.KEY, *keys)
+        return super()._placed(loc)
+
+    def _text(self, text: str) -> str:
+        place = f"{_BLOCK}.{sleeve.KEY}"
+        for name, here in (
+            ("barrel.layup[0].thickness", f"{place}.wall"),
+            ("barrel.layup[0]", place),
+            ("the innermost layer", "the sleeve"),
+            ("the outermost layer of the barrel", "the sleeve"),
+        ):
+            text = text.replace(name, here)
+        return super()._text(text)
+
 
 def ends(view: FileView) -> tuple[EndView, ...]:
     """The view of each end, or one view if both ends have the same joint."""
@@ -404,7 +448,9 @@ def values(view: FileView) -> Iterator[Fault]:
     """Yield the faults that the modules of the joints find in the file's values."""
     for end in ends(view):
         if (joint := end.joint) is not None:
-            yield from map(end.located, joint.faults(end))
+            yield from map(end.cut.located, joint.faults(end.cut))
+            if end.sleeved:
+                yield from map(end.located, sleeve.faults(end))
 
 
 class _EndMaterials:
@@ -436,5 +482,7 @@ def of_end_materials(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     view = FileView(tree)
     for end in ends(view):
         if (joint := end.joint) is not None:
-            faults = joint.material_faults(end, _EndMaterials(view, materials))
-            yield from map(end.located, faults)
+            known = _EndMaterials(view, materials)
+            yield from map(end.cut.located, joint.material_faults(end.cut, known))
+            if end.sleeved:
+                yield from map(end.located, sleeve.material_faults(end, known))

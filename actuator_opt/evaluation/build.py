@@ -168,6 +168,7 @@ def names_of_materials(design: Design) -> list[str]:
     if design.retention is not None:
         joints = design.retention.ends.values()
         names += [joint.material for joint in joints if joint.material is not None]
+        names += [joint.sleeve.material for joint in joints if joint.sleeve is not None]
     if design.clevis is not None:
         names.append(design.clevis.material)
     for seal in (design.seals.piston, design.seals.rod):
@@ -225,7 +226,7 @@ def spec_hash(subject: PreparedDesign) -> str:
         if not design[key]:  # unset fields are left out: hashes of older designs stay valid
             del design[key]
     for block in _blocks(design["retention"]):
-        for key in ("cap", "head", *OWN_KEYS):
+        for key in ("cap", "head", "sleeve", *OWN_KEYS):
             if key in block and block[key] is None:
                 del block[key]
     content = {

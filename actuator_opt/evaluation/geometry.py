@@ -29,6 +29,7 @@ from ..joints.joint import (
     StaticPlace,
 )
 from ..joints.kinds import JOINTS
+from ..joints.sleeve import in_sleeve
 from ..models import forces, gland, mass, winding_path
 from .values import Values
 
@@ -104,7 +105,12 @@ def joints_of(design: Design) -> tuple[EndJoint, ...]:
     if design.retention is None:
         return ()
     return tuple(
-        EndJoint(name, f"retention.{name}" if name else "retention", JOINTS[end.type], end)
+        EndJoint(
+            name,
+            f"retention.{name}" if name else "retention",
+            JOINTS[end.type] if end.sleeve is None else in_sleeve(JOINTS[end.type]),
+            end,
+        )
         for name, end in design.retention.ends.items()
     )
 
@@ -152,6 +158,7 @@ def end_of(
         rod_radius=rod_radius,
         head_length=None if end_joint.name == "cap" else head_length,
         seal_depth=static[0].gland_depth if static and joint.static_seal == "rim" else 0.0,
+        sleeve=None if end_joint.section.sleeve is None else end_joint.section.sleeve.material,
     )
 
 
@@ -510,6 +517,7 @@ def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, 
         bore
         | skirts
         | sealed
+        | _sleeve_lands(g)
         | (plugs if set(ENCLOSED) & set(g.forms) else {})
         | {
             "geometry_rod_in_bore": g.inner_radius - g.rod_diameter / 2,
@@ -520,6 +528,22 @@ def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, 
             "geometry_head_wall": g.plug_radius - g.rod_diameter / 2 - head_depth,
         }
     )
+
+
+def _sleeve_lands(g: Geometry) -> dict[str, dict[str, Array]]:
+    """Lengths that must not be negative: lift of the winding, its cover, and between sleeves."""
+    lands: dict[str, Array] = {}
+    between = g.wall_length
+    for name, fit in zip(("cap", "head") if len(g.fits) > 1 else ("",), g.fits, strict=True):
+        if fit.sleeve is not None:
+            own = {
+                "lift": fit.sleeve.lift,
+                "beyond the tip": fit.sleeve.inner - fit.sleeve.ramp,
+            }
+            lands |= {": ".join(filter(None, (name, key))): x for key, x in own.items()}
+            sleeves = 1 if name else 2
+            between = between - sleeves * (fit.sleeve.bare + fit.sleeve.inner)
+    return {"geometry_sleeve": lands | {"between": between}} if lands else {}
 
 
 def manufacture_margins(

@@ -379,6 +379,8 @@ def statics(
         out.skip("geometry_static_seal", "no static seal on the outside of the head")
     if "skirts" not in g.forms:
         out.skip("geometry_skirts", "cap and head have no skirts over the barrel")
+    if all(fit.sleeve is None for fit in g.fits):
+        out.skip("geometry_sleeve", "no sleeve under the winding")
     if not set(ENCLOSED) & set(g.forms):
         for name in ("geometry_lip", "geometry_plug"):
             out.skip(name, "no plug in the bore")

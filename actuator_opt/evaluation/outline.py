@@ -153,52 +153,56 @@ def _stations(g: Geometry) -> _Stations:
 def _barrel(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     radius = at.bore
     start, end = at.plate - float(g.cap_fit.beyond), at.end + float(g.head_fit.beyond)
-    ends = (g.cap_fit, at.plate, 1), (g.head_fit, at.end, -1)
+    sides = (g.cap_fit, start, at.plate, 1), (g.head_fit, end, at.end, -1)
+    last = len(g.thicknesses) - 1
     for i, (ply, thickness) in enumerate(zip(design.barrel.layup, g.thicknesses, strict=True)):
         outer = radius + float(thickness)
-        first, last = start, end
-        if i == 0:
-            first, last = start + float(g.cap_fit.short), end - float(g.head_fit.short)
-        shape = rectangle(first, last, radius, outer)
-        if i == len(g.thicknesses) - 1:
-            shape = _turned_down(shape, (g.cap_fit, g.head_fit), min(outer, float(g.outer_radius)))
-        if i == 0:
-            shape = (*_bore_edge(ends, first, last, radius), *shape[2:])
-        yield f"layup[{i}]", ply.material, [shape], 0, False
+        outside = min(outer, float(g.outer_radius)) if i == last else outer
+        edges = []
+        for r, bore, turned in ((radius, i == 0, False), (outside, False, i == last)):
+            cap, head = (
+                _edge_points(*side, r, liner=i == 0, bore=bore, turned=turned) for side in sides
+            )
+            edges.append([*cap, *reversed(head)])
+        yield f"layup[{i}]", ply.material, [(*edges[0], *reversed(edges[1]))], 0, False
         radius = outer
 
 
-def _bore_edge(
-    ends: Iterable[tuple[EndDimensions, float, int]], start: float, end: float, radius: float
+def _edge_points(
+    fit: EndDimensions,
+    end: float,
+    face: float,
+    inwards: int,
+    radius: float,
+    *,
+    liner: bool,
+    bore: bool,
+    turned: bool,
 ) -> Polygon:
-    """Inner edge of the barrel from `start` to `end`, with the grooves outside the chamber."""
-    corners = [(start, radius)]
-    for fit, face, inwards in ends:
-        if fit.groove:
-            near, width, depth = (float(size) for size in fit.groove)
-            sides = sorted(face - inwards * place for place in (near, near + width))
-            floor = radius + depth
-            corners += [
-                (sides[0], radius),
-                (sides[0], floor),
-                (sides[1], floor),
-                (sides[1], radius),
-            ]
-    return (*corners, (end, radius))
+    """Points of a layer's edge at one end of the barrel, from there inwards.
 
-
-def _turned_down(
-    shape: Polygon, fits: tuple[EndDimensions, EndDimensions], outer: float
-) -> Polygon:
-    """A ring turned down at an end whose skirt has a radius below `outer`."""
-    (x0, r0), _, (x1, r1), _ = shape
-    corners = [(x0, r0), (x1, r0)]
-    for fit, face, inwards in ((fits[1], x1, -1), (fits[0], x0, 1)):
-        radius, step = float(fit.radius), face + inwards * float(fit.length)
-        turned = float(fit.length) > 0 and radius < outer
-        end = [(face, radius), (step, radius), (step, r1)] if turned else [(face, r1)]
-        corners += end if inwards < 0 else end[::-1]
-    return tuple(corners)
+    `end` is the axial position of the end, and `face` that of the inner face of the plate. `liner`
+    is whether the layer is the innermost. The edge is the `bore` with the groove outside the
+    chamber, or the outside, which may be `turned` down to the radius of a skirt. On a sleeve, which
+    has groove and skirt itself, the winding is lifted, and a liner ends at the tip.
+    """
+    if fit.sleeve is not None:
+        bare, inner, ramp, lift = (float(size) for size in fit.sleeve[:4])
+        tip = (end + inwards * (bare + inner), radius)
+        if liner and fit.sleeve.liner:
+            return (tip,)
+        lifted = radius + lift
+        return (end + inwards * bare, lifted), (tip[0] - inwards * ramp, lifted), tip
+    if liner:
+        end = end + inwards * float(fit.short)
+    if bore and fit.groove:
+        near, width, depth = (float(size) for size in fit.groove)
+        far, near, floor = face - inwards * (near + width), face - inwards * near, radius + depth
+        return (end, radius), (far, radius), (far, floor), (near, floor), (near, radius)
+    low, step = float(fit.radius), end + inwards * float(fit.length)
+    if turned and float(fit.length) > 0 and low < radius:
+        return (end, low), (step, low), (step, radius)
+    return ((end, radius),)
 
 
 def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:

@@ -125,7 +125,7 @@ def _skirt(path: str, of: Callable[[EndDimensions], Array]) -> Ratio:
 def _joint_ratio(path: str, joint: Joint, number: Callable[[End], Array]) -> Ratio:
     def ratio(v: Values, design: Design, g: Geometry) -> Array | None:
         for end in joints_of(design):
-            if end.path == path and end.joint is joint:
+            if end.path == path and end.joint.name == joint.name:
                 return number(end_at(design, end, Numbers(v, path), g))
         return None
 

@@ -81,7 +81,7 @@ def _shell_layer(
     cosine = namespace(angle).cos(angle)
     share = cosine * cosine
     shear = share * c["shear_modulus_13"] + (1 - share) * c["shear_modulus_23"]
-    return ShellLayer(thickness, axial, hoop, coupling, shear)
+    return ShellLayer(thickness, axial, hoop, coupling, shear, angle)
 
 
 def joints_under_load(
@@ -161,7 +161,7 @@ def compute(
     out.put("buckling_factor", beam.critical / push)
     rod_strength.compute(design, section, beam, supply, push, pull, out)
     _threads(v, stock, design, g, section, pull, out)
-    thermal = _retention(loaded_joints, plies.warmings(v, design), out)
+    thermal = _retention(v, design, loaded_joints, out)
     fittings = rods.fittings(v, stock, design, section)
     _fittings(stock, fittings, push, out)
     thermal["rod fittings"] = fittings if isinstance(fittings, str) else fittings.thermal(stock)
@@ -250,12 +250,22 @@ def _threads(
     out.put("thread_factor", {"rod end": factor, **factors} if factors else factor)
 
 
+def _since_cure(v: Values, design: Design, thermal: Thermal | str) -> Thermal | str:
+    """The function `thermal` of the change since cure, as one of the change since assembly.
+
+    Without a cure temperature, winding and metal are free of stress at assembly.
+    """
+    environment = design.environment
+    if isinstance(thermal, str) or environment is None or environment.cure_temperature is None:
+        return thermal
+    since = v["environment.assembly_temperature"] - v["environment.cure_temperature"]
+    return lambda warming, cold: thermal(warming + since, cold)
+
+
 def _retention(
-    loaded_joints: Sequence[LoadedJoint], warmings: Mapping[str, Array], out: MetricArrays
+    v: Values, design: Design, loaded_joints: Sequence[LoadedJoint], out: MetricArrays
 ) -> dict[str, Thermal | str]:
     """Compute elastic limit and breaking load of the joints, divided by the largest axial force.
-
-    `warmings` are the temperature changes since assembly, cold and hot [K].
 
     Returns, for each end, the function for its strength under temperature alone, or the reason why
     that strength is unknown.
@@ -276,10 +286,12 @@ def _retention(
             working |= end.placed(strength.working)
             burst |= end.placed(strength.burst)
             if strength.combined is not None:
-                for word, warming in warmings.items():
+                for word, warming in plies.warmings(v, design).items():
                     factor = strength.combined(warming, word == "cold")
                     burst |= end.placed({f"with temperature, {word}": factor})
-            thermal[place] = strength.thermal
+            thermal[place] = (
+                _since_cure(v, design, strength.thermal) if strength.cured else strength.thermal
+            )
     for metric, factors in (("retention_factor", working), ("retention_burst_factor", burst)):
         if unknown:
             out.skip(metric, unknown)

@@ -185,8 +185,25 @@ class End:
     """Length of the head's plug in the barrel; None at the end of the cap alone."""
     seal_depth: Array = 0.0
     """Depth of the groove for the static seal in the rim of the end plate; 0 without one."""
+    sleeve: str | None = None
+    """Metal of the sleeve into which the joint is cut; None without one."""
     cache: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
     """Intermediate results that the joint's functions store here to use again, under any key."""
+
+
+class SleeveFit(NamedTuple):
+    """Dimensions of a sleeve and of the winding on it [m].
+
+    The sleeve extends from the end of the barrel, `bare` outside the winding and `inner` under it.
+    At its tip, it is conical over the length `ramp`, which lifts the winding by `lift`. It takes
+    the place of the innermost layer if it is `liner` and sleeve in one piece.
+    """
+
+    bare: Array
+    inner: Array
+    ramp: Array
+    lift: Array
+    liner: bool
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -213,6 +230,8 @@ class EndDimensions:
     groove: tuple[Array, ...] = ()
     short: Array = 0.0
     own: tuple[Array, ...] = ()
+    sleeve: SleeveFit | None = None
+    """The sleeve that has the joint, with its groove or turned-down outside."""
 
 
 class EndSpan(NamedTuple):
@@ -377,13 +396,15 @@ class Strength:
     `working` is the elastic limit and `burst` the breaking load, each divided by the largest force;
     both are dicts whose keys are locations. `thermal` is a function for the factor under
     temperature alone, or the reason why that factor is unknown. `combined` is a function for the
-    burst factor under the force, after a temperature change; None if it is unknown.
+    burst factor under the force, after a temperature change; None if it is unknown. `cured` is
+    whether `thermal` counts the change since the cure of the winding, and not since assembly.
     """
 
     working: Mapping[str, Array]
     burst: Mapping[str, Array]
     thermal: Thermal | str
     combined: Thermal | None = None
+    cured: bool = False
 
 
 class Opening(NamedTuple):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..base.kinds import Kinds, kinds_in
 from .joint import Joint, check
+from .sleeve import KEY, in_sleeve
 
 JOINTS: Kinds[Joint] = kinds_in(
     "joint",
@@ -20,6 +21,11 @@ JOINTS: Kinds[Joint] = kinds_in(
     "pins",
     "shrink",
 )
+
+SLEEVED = tuple(
+    in_sleeve(joint) for joint in JOINTS.values() if KEY in {field.key for field in joint.fields}
+)
+"""The joints that can be cut into a sleeve, as they are there."""
 
 OWN_KEYS = tuple(field.key for joint in JOINTS.values() for field in joint.fields if field.quantity)
 """Keys of `retention` that only one joint has, all of them optional."""

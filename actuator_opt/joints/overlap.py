@@ -276,6 +276,19 @@ def _beside(loaded: Loaded) -> tuple[tuple[str, Array], ...]:
     return stresses
 
 
+def metal_shell(
+    materials: MaterialProperties, name: str, thickness: Array
+) -> end_bending.ShellLayer | None:
+    """Stiffness of a metal layer against bending; None if an elastic constant is unknown."""
+    modulus, ratio = (materials.get(name, key) for key in ("youngs_modulus", "poissons_ratio"))
+    if modulus is None or ratio is None:
+        return None
+    stiffness = modulus / (1 - ratio * ratio)
+    return end_bending.ShellLayer(
+        thickness, stiffness, stiffness, ratio * stiffness, modulus / (2 * (1 + ratio))
+    )
+
+
 def _bent(loaded: Loaded) -> Iterator[tuple[str, Array]]:
     end, materials, step = loaded.end, loaded.materials, edge_beside(loaded)
     if step is None:
@@ -309,26 +322,15 @@ def edge_beside(loaded: Loaded) -> EdgeBeside | None:
 
 
 def _edge_beside(loaded: Loaded) -> EdgeBeside | None:
-    end, materials = loaded.end, loaded.materials
-    modulus, ratio = (materials.get(end.cap, key) for key in ("youngs_modulus", "poissons_ratio"))
-    if not loaded.shells or modulus is None or ratio is None:
+    end, inner = loaded.end, loaded.end.sizes.get("inner_wall", None)
+    outside = metal_shell(loaded.materials, end.cap, end.sizes["wall"])
+    if not loaded.shells or outside is None:
         return None
-    stiffness = modulus / (1 - ratio * ratio)
-
-    def skirt(thickness: Array) -> tuple[end_bending.ShellLayer, ...]:
-        return (
-            end_bending.ShellLayer(
-                thickness, stiffness, stiffness, ratio * stiffness, modulus / (2 * (1 + ratio))
-            ),
-        )
-
-    inner = end.sizes.get("inner_wall", None)
-    inside, within = (0.0, ()) if inner is None else (inner, skirt(inner))
-    bore = end.inner_radius if inner is None else end.inner_radius - inner
+    within = None if inner is None else metal_shell(loaded.materials, end.cap, inner)
+    inside, bore = (0.0, end.inner_radius) if within is None else (inner, end.inner_radius - inner)
     barrel = end_bending.shell(layers=loaded.shells, inner_radius=end.inner_radius)
-    whole = end_bending.shell(
-        layers=(*within, *loaded.shells, *skirt(end.sizes["wall"])), inner_radius=bore
-    )
+    layers = [*loaded.shells, outside] if within is None else [within, *loaded.shells, outside]
+    whole = end_bending.shell(layers=layers, inner_radius=bore)
     free, under = (
         end_bending.free_growth(
             wall=wall,

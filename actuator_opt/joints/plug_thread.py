@@ -303,6 +303,7 @@ JOINT = Joint(
         ),
         JointField("thread.diameter"),
         JointField("thread.pitch"),
+        JointField("sleeve"),
     ),
     kinds=(),
     without={

@@ -319,6 +319,7 @@ JOINT = Joint(
             quantity="ring_width",
             help="radial width of the retaining ring",
         ),
+        JointField("sleeve"),
     ),
     kinds=("metal",),
     without={},

@@ -477,6 +477,7 @@ JOINT = Joint(
         JointField("thread", "missing: required by a thread", 'add a block "thread:" with pitch'),
         JointField("thread.diameter"),
         JointField("thread.pitch"),
+        JointField("sleeve"),
     ),
     kinds=(),
     without={

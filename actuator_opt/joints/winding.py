@@ -9,7 +9,7 @@ from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, minimum
 from ..models import liner_transfer
 from ..models.strength_modes import load_multiplier
-from .joint import NOT_BONDED, Loaded, MaterialProperties, Strength, Thermal
+from .joint import NOT_BONDED, BarrelLayer, Loaded, MaterialProperties, Strength, Thermal
 
 WINDING_EDGE = "edge of the winding"
 """Location of the shear in rows of strength."""
@@ -30,7 +30,7 @@ class WindingEdge:
     mismatch: Array
     stiffness: dict[str, Array]
 
-    def _strength(self, *, cold: bool = False) -> Array:
+    def strength(self, *, cold: bool = False) -> Array:
         """Least interlaminar shear strength of the plies."""
         least: Array = None
         for name in self.plies:
@@ -45,7 +45,7 @@ class WindingEdge:
         shear = liner_transfer.edge_shear(
             line_force=self.line_force, strain_difference=0.0, **self.stiffness
         )
-        return self._strength() / shear
+        return self.strength() / shear
 
     def thermal(self) -> Thermal | str:
         """Shear strength divided by the shear of a temperature change, as a function of it."""
@@ -57,19 +57,24 @@ class WindingEdge:
         shear = liner_transfer.edge_shear(
             line_force=0.0, strain_difference=self.mismatch * warming, **self.stiffness
         )
-        return load_multiplier(absolute(shear) / self._strength(cold=cold))
+        return load_multiplier(absolute(shear) / self.strength(cold=cold))
 
 
-def winding_edge(loaded: Loaded) -> WindingEdge | str | None:
-    """The end of the winding; None for a wall of one layer, or the reason why it is unknown.
+def winding_edge(
+    loaded: Loaded, sleeve: BarrelLayer | None = None, *, liners: int = 1
+) -> WindingEdge | str | None:
+    """The end of the winding; None without a winding, or the reason why it is unknown.
 
-    The winding's stiffness is that of the whole wall less that of the liner. The mean expansion of
-    the wall weighs both by their stiffness, which gives the expansion of the winding.
+    The winding is on a sleeve or, without one, on the innermost layer. The innermost layers that do
+    not belong to it are `liners` in number, at most one. The winding's stiffness is that of the
+    whole wall less that of the liner. The mean expansion of the wall weighs both by their
+    stiffness, which gives the expansion of the winding.
     """
     end, materials = loaded.end, loaded.materials
-    if len(end.layers) < 2:
+    around = end.layers[liners:]
+    if not around:
         return None
-    liner, around = end.layers[0], end.layers[1:]
+    liner = end.layers[0] if sleeve is None else sleeve
     modulus, ratio = (
         materials.get(liner.material, k) for k in ("youngs_modulus", "poissons_ratio")
     )
@@ -86,12 +91,16 @@ def winding_edge(loaded: Loaded) -> WindingEdge | str | None:
         give, thickness = give + layer.thickness / shear, thickness + layer.thickness
     interface = 2 * pi * (end.inner_radius + liner.thickness)
     area = pi * liner.thickness * (2 * end.inner_radius + liner.thickness)
+    inside: Array = 0.0
+    for layer in end.layers[:liners]:
+        inside = pi * layer.thickness * (2 * end.inner_radius + layer.thickness)
     whole = loaded.line_stiffness * pi * (end.inner_radius + end.outer_radius)
     of_liner = modulus * area / interface
-    of_winding = (whole - modulus * area) / interface
+    of_winding = (whole - modulus * inside) / interface
     expansion, mismatch = materials.get(liner.material, "thermal_expansion"), None
     if expansion is not None and loaded.expansion is not None:
-        mismatch = (expansion - loaded.expansion) * (of_liner + of_winding) / of_winding
+        of_wall = modulus * inside / interface + of_winding
+        mismatch = (expansion - loaded.expansion) * of_wall / of_winding
     return WindingEdge(
         materials=materials,
         plies=tuple(plies),

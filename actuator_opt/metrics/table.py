@@ -17,7 +17,7 @@ from ..base.quantities import INFINITY, Quantity, Sense
 from ..base.units import BASE, unit
 from ..joints.cone import LEAST_CREST, LEAST_GRIP
 from ..joints.joint import LEAST_METAL, judged_on, models_at
-from ..joints.kinds import JOINTS
+from ..joints.kinds import JOINTS, SLEEVED
 from ..models.thread import LEAST_OVERLAP
 
 Feed = Literal["wall", "oil", "own"]
@@ -170,6 +170,8 @@ def fed_by(feed: Feed, rows: Mapping[str, MetricRow]) -> Iterator[str]:
 
 
 _LEAST_WALL = Least(LEAST_METAL, "our choice: at least 1 mm")
+
+_ALL_JOINTS = (*JOINTS.values(), *SLEEVED)
 
 # fmt: off
 ROWS = table((
@@ -329,7 +331,7 @@ ROWS = table((
               by_wall={"layered": "strength.yield_utilisation",
                        "thin_laminate": "strength.yield_utilisation"},
               at={"rod": "column.amplified_moment",
-                  **models_at(JOINTS.values(), "yield_factor")}),
+                  **models_at(_ALL_JOINTS, "yield_factor")}),
     MetricRow("fatigue_factor", "S_f", "ratio", "", "fatigue strength divided by stress amplitude",
               worst="min", model="endurance.fatigue_factor", feeds=(),
               check=CheckLine("10.2", "fatigue strength")),
@@ -363,13 +365,13 @@ ROWS = table((
               worst="min", model="lap_joint.bond_edge_shear", feeds=(),
               check=CheckLine("4.1", "cap retention", 1.5,
                           f"our choice: 1.5 on {judged_on(JOINTS.values(), 0)}"),
-              at=models_at(JOINTS.values(), "retention_factor")),
+              at=models_at(_ALL_JOINTS, "retention_factor")),
     MetricRow("retention_burst_factor", "S_rb", "ratio", "",
               "ultimate strength of cap retention divided by its load",
               worst="min", model=None, feeds=(),
               check=CheckLine("4.2", "cap retention at burst pressure", 4.0,
                           f"as for barrel burst: 4:1 on {judged_on(JOINTS.values(), 1)}"),
-              at=models_at(JOINTS.values(), "retention_burst_factor")),
+              at=models_at(_ALL_JOINTS, "retention_burst_factor")),
     MetricRow("cap_factor", "S_c", "ratio", "",
               "yield strength divided by bending stress of the end caps",
               worst="min", model="end_plate.hub_plate_stress", feeds=(),
@@ -648,6 +650,11 @@ ROWS = table((
               worst="min", model="fibre_trap.radial_give", feeds=(), check=None,
               least=Least(LEAST_GRIP, "our choice: with a give above 2 % of the depth, the band "
                           "climbs over the crest")),
+    MetricRow("geometry_sleeve", "-", "length", "mm",
+              "lift of the winding by a sleeve, its cover beyond the tip, and barrel between sleeves",
+              worst="min", model=None, feeds=(), check=None,
+              least=Least(0.0, "a sleeve is at least as thick as the liner; its tip, and the other "
+                               "sleeve, must fit")),
     MetricRow("geometry_lip", "-", "length", "mm",
               "clearance between the barrel's end, which encloses the plug, and the eyes",
               worst="min", model=None, feeds=(), check=None, least=_LEAST_WALL),

@@ -19,7 +19,8 @@ from ..base.numeric import Array, absolute, geometry, maximum, minimum, sqrt
 class ShellLayer:
     """A layer: thickness [m], and plane-stress stiffness in the axes of the wall [Pa].
 
-    Q_zz is axial, Q_tt in the hoop direction, Q_zt couples both; `shear` is G_rz.
+    Q_zz is axial, Q_tt in the hoop direction, Q_zt couples both; `shear` is G_rz. `angle` is the
+    winding angle of plies [rad], 0 for a metal.
     """
 
     thickness: Array
@@ -27,6 +28,7 @@ class ShellLayer:
     hoop: Array
     coupling: Array
     shear: Array
+    angle: Array = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,18 +207,28 @@ def clamped(*, wall: Shell, growth: Array) -> Edge:
 
 
 def stepped(
-    *, left: Shell, right: Shell, left_growth: Array, right_growth: Array, offset_moment: Array
+    *,
+    left: Shell,
+    right: Shell,
+    left_growth: Array,
+    right_growth: Array,
+    offset_moment: Array,
+    sheared: bool = False,
 ) -> Edge:
     """Edge of the right wall where two long walls meet.
 
     Each wall has K = D [[4 beta^3, -+2 beta^2], [-+2 beta^2, 2 beta]] for displacement and slope of
     its edge, upper sign on the left. (K_1 + K_2) (w, theta) = K_1 (w_1, 0) + K_2 (w_2, 0) - (0, m).
+    With shear, K = D/(1 + sqrt(k D)/S) [[4 a beta^2, -+2 beta^2], [-+2 beta^2, 2 a]], where
+    a^2 = beta^2 + k/(4 S) and theta is the rotation of the section.
 
     Parameters
     ----------
     left, right : walls, from `shell`
     left_growth, right_growth : w_1 and w_2, free growth far from the step [m]
     offset_moment : m = N (R_2 - R_1) of the line force N at the middles of both walls [N]
+    sheared : whether the shear stiffness S of the walls counts; without it, the moment in a wound
+        wall is too high
 
     Returns
     -------
@@ -224,11 +236,11 @@ def stepped(
 
     Notes
     -----
-    Valid: as `shell`; each wall longer than 3/beta; shear compliance ignored.
+    Valid: as `shell`; each wall longer than 3/beta.
 
     References
     ----------
-    [Timoshenko1959] edge stiffness of a long cylindrical shell; [derived] continuity
+    [Timoshenko1959] edge stiffness of a long cylindrical shell; [derived] continuity, shear
 
     Examples
     --------
@@ -239,7 +251,7 @@ def stepped(
     >>> print(f"{edge.growth * 1e6:.5f} {edge.moment:.4f}")
     9.02837 65.5957
     """
-    first, second = _edge(left), _edge(right)
+    first, second = _edge(left, sheared), _edge(right, sheared)
     stiff, cross, turn = first[0] + second[0], second[1] - first[1], first[2] + second[2]
     push = first[0] * left_growth + second[0] * right_growth
     twist = second[1] * right_growth - first[1] * left_growth - offset_moment
@@ -254,9 +266,14 @@ def stepped(
     )
 
 
-def _edge(wall: Shell) -> tuple[Array, Array, Array]:
-    """4 D beta^3, 2 D beta^2 and 2 D beta of a wall."""
+def _edge(wall: Shell, sheared: bool) -> tuple[Array, Array, Array]:
+    """4 D beta^3, 2 D beta^2 and 2 D beta of a wall, with the effect of shear if `sheared`."""
     middle = sqrt(wall.foundation * wall.bending)  # 2 D beta^2
+    if sheared:
+        beta2 = middle / (2 * wall.bending)
+        root = sqrt(beta2 + wall.foundation / (4 * wall.shear))
+        share = 1 / (1 + middle / wall.shear)
+        return 2 * middle * root * share, middle * share, 2 * wall.bending * root * share
     beta = sqrt(middle / (2 * wall.bending))
     return 2 * middle * beta, middle, 2 * wall.bending * beta
 

@@ -92,3 +92,38 @@ def edge_shear(
     """
     strain = line_force / liner_stiffness + strain_difference
     return strain * sqrt(interface_stiffness / (1 / liner_stiffness + 1 / winding_stiffness))
+
+
+@geometry
+def fading_length(
+    *, interface_stiffness: Array, liner_stiffness: Array, winding_stiffness: Array
+) -> Array:
+    """Overlap of liner and winding over which the shear of both edges fades, L = 6/lambda.
+
+    Parameters
+    ----------
+    interface_stiffness : k [Pa/m]
+    liner_stiffness, winding_stiffness : axial E t of both walls, K_l and K_w [N/m]
+
+    Returns
+    -------
+    length [m]
+
+    Notes
+    -----
+    Valid: as `edge_shear`.
+
+    Each edge passes 95 % of its load within ln(20)/lambda, which is 3/lambda.
+
+    References
+    ----------
+    [Volkersen1938] shear lag of two bars; [derived] decay
+
+    Examples
+    --------
+    >>> length = fading_length(interface_stiffness=3937.26e9, liner_stiffness=107.55e6,
+    ...                        winding_stiffness=21.5e6)
+    >>> print(f"{1e3 * length:.4f}")
+    12.7997
+    """
+    return 6 / sqrt(interface_stiffness * (1 / liner_stiffness + 1 / winding_stiffness))

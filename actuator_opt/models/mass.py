@@ -104,6 +104,43 @@ def turned_volume(*, profile: Sequence[tuple[Array, Array]]) -> Array:
 
 
 @geometry
+def tapered_ring_volume(
+    *, inner_radius: Array, tip_radius: Array, outer_radius: Array, length: Array, taper: Array
+) -> Array:
+    """Volume of a ring whose outside is a cone at one end.
+
+    V = pi [(b^2 - r^2)(L - T) + ((a^2 + a b + b^2)/3 - r^2) T].
+
+    Parameters
+    ----------
+    inner_radius, tip_radius, outer_radius : r, a at the tip and b [m]
+    length, taper : L, and T of the cone [m]
+
+    Returns
+    -------
+    volume [m^3]
+
+    Notes
+    -----
+    Valid: 0 <= T <= L.
+
+    References
+    ----------
+    [derived] ring and frustum of a cone
+
+    Examples
+    --------
+    >>> volume = tapered_ring_volume(inner_radius=10e-3, tip_radius=11e-3, outer_radius=12e-3,
+    ...                              length=20e-3, taper=5e-3)
+    >>> print(f"{1e9 * volume:.1f}")
+    2581.3
+    """
+    a, b, inner = tip_radius, outer_radius, inner_radius * inner_radius
+    cone = (a * a + a * b + b * b) / 3 - inner
+    return math.pi * ((b * b - inner) * (length - taper) + cone * taper)
+
+
+@geometry
 def disc_mass(*, density: Array, diameter: Array, thickness: Array) -> Array:
     """Mass of a solid disc (piston, cap), rho pi D^2 t/4.
 

@@ -225,6 +225,10 @@ SAMPLES = {
     "mass.tube_mass": {
         "density": 7850.0, "inner_diameter": 6e-3, "outer_diameter": 0.012, "length": 0.15,
     },
+    "mass.tapered_ring_volume": {
+        "inner_radius": 10e-3, "tip_radius": 11e-3, "outer_radius": 13e-3, "length": 0.03,
+        "taper": 8e-3,
+    },
     "mass.disc_mass": {"density": 2700.0, "diameter": 0.03, "thickness": 8e-3},
     "mass.piston_groove_volume": {"diameter": 0.025, "depth": 1.7e-3, "width": 2.4e-3},
     "mass.rod_groove_volume": {"diameter": 0.012, "depth": 1.7e-3, "width": 2.4e-3},
@@ -398,6 +402,9 @@ SAMPLES = {
     "liner_transfer.edge_shear": {
         "line_force": 1e5, "strain_difference": 2e-4, "interface_stiffness": 4e12,
         "liner_stiffness": 1.1e8, "winding_stiffness": 2.2e7,
+    },
+    "liner_transfer.fading_length": {
+        "interface_stiffness": 4e12, "liner_stiffness": 1.1e8, "winding_stiffness": 2.2e7,
     },
     "end_bending.shell": {"layers": [SHELL_LAYER], "inner_radius": 10e-3},
     "end_bending.free_growth": {

@@ -66,6 +66,7 @@ VALUES = {
     "thread": "{diameter: 6 mm, pitch: 1 mm}",
     "edge": "12 mm",
     "interference": "10 um",
+    "sleeve": "{material: al_7075_t6, wall: 3 mm, inner_length: 20 mm}",
 }
 """A value of every key that some joint does not use, none of them a default."""
 

@@ -89,6 +89,43 @@ def test_clamp_against_the_equation_of_the_shell():
     assert w == near(1e3 * edge.growth)
 
 
+@pytest.mark.parametrize("soft", [1e15, 20e6])
+def test_step_against_the_equations_of_both_shells(soft):
+    """Both walls as in the test of the clamp, joined with w, psi and Q equal and M apart by N e."""
+    left = Shell(20.0, 400e9, soft, 0.0, 1e-2, 1e8, 3e7)
+    right = Shell(160.0, 800e9, 2 * soft, 0.0, 1e-2, 2e8, 6e7)
+    far, offset = (10e-3, 5e-3), 82.5  # growths in mm, moment in N
+    walls = [(1e3 * w.bending, 1e-3 * w.shear, 1e-9 * w.foundation) for w in (left, right)]
+
+    def slopes(x, y):
+        out = []
+        for (bending, shear, foundation), free, part in zip(
+            walls, far, np.split(y, 2), strict=True
+        ):
+            w, force, turn, curve = part
+            out += [force / shear - turn, foundation * (w - free), curve, force / bending]
+        return np.stack(out)
+
+    def ends(a, b):
+        (w1, q1, t1, c1), (w2, q2, t2, c2) = a[:4], a[4:]
+        jump = walls[1][0] * c2 - walls[0][0] * c1
+        rest = [b[0] - far[0], b[2], b[4] - far[1], b[6]]
+        return np.array([w1 - w2, t1 + t2, q1 + q2, jump + offset, *rest])
+
+    x, guess = np.linspace(0, 60, 400), np.zeros((8, 400))
+    guess[0], guess[4] = far
+    answer = solve_bvp(slopes, ends, x, guess, tol=1e-6, max_nodes=100_000)
+    assert answer.success
+    edge = end_bending.stepped(
+        left=left, right=right, left_growth=1e-3 * far[0], right_growth=1e-3 * far[1],
+        offset_moment=offset, sheared=True,
+    )  # fmt: skip
+    w, force, _, curve = answer.sol(0.0)[4:]
+    assert w == near(1e3 * edge.growth, 1e-4)
+    assert abs(curve) * walls[1][0] == near(abs(edge.moment), 1e-4)
+    assert abs(force) * 1e3 == near(abs(edge.force), 1e-4)
+
+
 def grid(*parts):
     """Points of several intervals (start, stop, cells)."""
     points = [np.linspace(start, stop, cells + 1) for start, stop, cells in parts]
@@ -247,3 +284,49 @@ def test_strain_changes_by_the_stresses_of_the_edge():
         assert change == near(at_edge[face][1] - far[face][1])
         change = layers[1].axial * axial + layers[1].coupling * hoop_strain
         assert change == near(at_edge[face][0] - far[face][0])
+
+
+def test_sleeve_at_the_end_of_its_winding_against_finite_elements():
+    """Aluminium of 2 mm, bare and under 3 mm of helical plies, pulled: bending is an upper bound.
+
+    The step takes up the winding at once, but its force enters over several millimetres.
+    """
+    inner, thick, wound, end = 10.75, 2.0, 3.0, 15.0
+    outer = inner + thick
+    line = FORCE / (pi * (outer**2 - inner**2))
+    plies = shell_oracle.orthotropic((9000, 40000, 75000), (0.1, 0.3, 0.4), 3800)
+    wall = shell_oracle.solved(
+        radii=grid((inner, outer, 8), (outer, outer + wound, 8)),
+        stations=grid((0, 10, 10), (10, end, 25), (end, 22, 25), (22, 50, 15)),
+        layers=[(lambda r, z: 1.0 * (r < outer), METAL), (lambda r, z: 1.0 * (r > outer), plies)],
+        absent=lambda r, z: (r > outer) & (z < end),
+        loads=[(lambda r, z: abs(z) < 1e-6, lambda r, z: (0 * r, 0 * r - line))],
+        fixed_z=lambda r, z: abs(z - 50) < 1e-6,
+    )
+    mean, bending = wall.through(end - 0.3, inner, outer)
+    factor = 1 - 0.4**2 * 40 / 75  # nu_zt = 0.4, from E_z = 75 GPa and E_t = 40 GPa
+    coupled = 0.4 * 40e9 / factor
+    own = metal(1e-3 * thick)
+    around = ShellLayer(1e-3 * wound, 75e9 / factor, 40e9 / factor, coupled, 3.8e9)
+    bare, whole = (
+        end_bending.shell(layers=layers, inner_radius=1e-3 * inner)
+        for layers in ([own], [own, around])
+    )
+    along = FORCE / (2 * pi * bare.radius)
+    growths = [
+        end_bending.free_growth(
+            wall=one, pressure=0.0, bore_radius=1e-3 * inner,
+            line_force=FORCE / (2 * pi * one.radius),
+        )
+        for one in (whole, bare)
+    ]  # fmt: skip
+    edge = end_bending.stepped(
+        left=whole, right=bare, left_growth=growths[0], right_growth=growths[1],
+        offset_moment=along * (bare.centre - whole.centre), sheared=True,
+    )  # fmt: skip
+    (axial, _), (outside, _) = end_bending.edge_stresses(
+        layer=own, start=0.0, wall=bare, edge=edge, line_force=along
+    )
+    assert (axial + outside) / 2e6 == near(mean, 0.1)
+    assert 1.0 <= (axial - outside) / 2e6 / bending <= 2.5
+    assert 1.0 <= outside / 1e6 / (mean - bending) <= 1.5

@@ -132,6 +132,10 @@ def test_liner_transfer_by_worked_numbers_and_its_equation():
     assert force == near(7.53388e6)
     cold = liner_transfer.edge_shear(line_force=0.0, strain_difference=5.4e-6 * 100, **of)
     assert cold == near(4.53562e6)
+    root = liner_transfer.fading_length(**of) / 6
+    assert 1 / root == near(468.761)
+    assert np.log(20) * root == near(6.39074e-3)  # 95 % of the force has passed
+    assert walls["winding_stiffness"] / sum(walls.values()) == near(0.166602)
     length, mismatch = 40e-3, 2e-4
 
     cells = 20_000  # slip of the interface, from bars between which each cell of adhesive shears
