@@ -272,7 +272,7 @@ def preload_change(
 
     Notes
     -----
-    Valid: one temperature in all parts, rigid plates, linear elastic, joint closed.
+    Valid: the same temperature in every part, rigid plates, linear elastic, joint closed.
 
     References
     ----------

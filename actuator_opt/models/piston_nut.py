@@ -36,9 +36,10 @@ def stud_share(
 
     Notes
     -----
-    Valid: the joint stays closed. The nut's threads and the spread of pressure in the piston are
-    left out; both lower the share, so that the result is an upper bound. `least_stud_share` is the
-    lower one.
+    Valid: the joint stays closed; an upper bound.
+
+    The nut's threads and the spread of pressure in the piston are left out; both lower the share.
+    `least_stud_share` is a lower bound.
 
     References
     ----------
@@ -267,8 +268,9 @@ def web_stress(*, force: Array, radius: Array, reach: Array, thickness: Array) -
 
     Notes
     -----
-    Valid: a ring and a support that are much stiffer than the web; hoop stress in the web is left
-    out, so that the result is an upper bound of the stress away from notches.
+    Valid: ring and support much stiffer than the web; an upper bound away from notches.
+
+    Hoop stress in the web, which carries a part of the load, is left out.
 
     References
     ----------

@@ -182,8 +182,10 @@ def ring_dishing(
 
     Notes
     -----
-    Valid: elastic, a section that keeps its shape, and a closed ring. In a split ring that nothing
-    else supports, the moment opposite its gap is twice as large: `SPLIT`.
+    Valid: elastic, a section that keeps its shape, and a closed ring.
+
+    In a split ring that nothing else supports, the moment opposite its gap is twice as large:
+    `SPLIT`.
 
     References
     ----------
@@ -224,8 +226,10 @@ def springing(
 
     Notes
     -----
-    Valid: one ring with a gap, free of stress in its groove, bent to a circle. The neutral fibre is
-    taken at r_c; it is nearer to the inner edge, so that the stress is an upper bound.
+    Valid: one ring with a gap, free of stress in its groove, bent to a circle.
+
+    The neutral fibre is taken at r_c. It is nearer to the inner edge, so that the stress is an upper
+    bound.
 
     References
     ----------
