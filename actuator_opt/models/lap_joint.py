@@ -328,7 +328,7 @@ def double_lap(
 
     Returns
     -------
-    shear at all four edges, positive as tension causes it, and forces in the skirts
+    shear at all four edges [Pa], positive as tension causes it, and forces in the skirts [N]
 
     Notes
     -----
@@ -447,7 +447,7 @@ def tapered_lap(
 
     Returns
     -------
-    shear at the skirt's tip and at the tube's edge
+    shear at the skirt's tip and at the tube's edge [Pa]
 
     Notes
     -----
