@@ -453,7 +453,7 @@ def tapered_lap(
     -----
     Valid: as `bond_edge_shear`; tip at least 0.05, taper up to 14 sqrt(K t_a/G).
 
-    In this range, 1/K = 1/K_s + 1/K_b, the error is below 0.1 %. Shear is largest at an edge. The
+    With 1/K = 1/K_s + 1/K_b, the error is then below 0.1 %. Shear is largest at an edge. The
     taper has `CELLS` cells whose lengths grow with the square root of the thickness, as the
     decay length does. With N_s = sqrt(x_t) phi, phi'' = (x_t^2 g + 3/4 (x_tt/x_t)^2) phi - f is
     solved by Numerov's method, of fourth order. Beyond the taper, the solution is exact.
