@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from fnmatch import fnmatchcase
 from functools import cache
 from importlib import import_module
+from math import pi
 from typing import cast
 
 import numpy as np
@@ -297,6 +298,7 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
     yield from _winding_warnings(subject.design, run)
     yield from _head_warnings(subject.design)
     yield from (("", text) for text in assembly.warnings(subject.design))
+    yield from _skirt_oil_warnings(subject.design, run)
     yield from _bond_warnings(run)
     for part, assumption in (
         ("head", "material and length of the piston"),
@@ -403,6 +405,22 @@ def _head_warnings(design: Design) -> Iterable[tuple[str, str]]:
             f"the rod has no bushing and runs on {design.head.material}: add seals.rod.guide or "
             "head.bearing",
         )
+
+
+def _skirt_oil_warnings(design: Design, run: ModelRun) -> Iterable[tuple[str, str]]:
+    """Warn of a dead volume that is smaller than the oil in the bore of the cap's inner skirt."""
+    for cap in run.joints[:1]:
+        if cap.joint.inner_skirt:
+            end = cap.loaded.end
+            radius = end.inner_radius - end.sizes["inner_wall"]
+            volume = float(np.max(np.real(pi * radius * radius * end.sizes["length"])))
+            if design.cylinder.dead_volume_a < volume:
+                yield (
+                    "stiffness_min",
+                    f"the bore of the cap's inner skirt encloses {1e6 * volume:.2g} ml of oil, "
+                    f"more than the stated {1e6 * design.cylinder.dead_volume_a:.2g} ml: add it to "
+                    "cylinder.dead_volume_a",
+                )
 
 
 def _winding_warnings(design: Design, run: ModelRun) -> Iterable[tuple[str, str]]:

@@ -2,9 +2,10 @@
 
 Both skirts are equally long, and carry the force together. The skirt in the bore stands beyond the
 chamber: that of the cap lengthens the barrel, and that of the head stands around the head's plug,
-with a slot between them. Its inside is filled with oil, so that the pressure closes its bond. The
-energy criterion for force and temperature together is not used: it needs the shares of both bonds
-in the energy, which only equal skirts have in closed form.
+with a slot between them. Its inside is filled with oil, so that the pressure closes the bond of a
+thin skirt; a skirt so thick that the barrel grows more than it is warned of. The energy
+criterion for force and temperature together is not used: it needs the shares of both bonds in the
+energy, which only equal skirts have in closed form.
 """
 
 from __future__ import annotations
@@ -13,10 +14,12 @@ from collections.abc import Iterator, Mapping
 from functools import partial
 from math import pi
 
+import numpy as np
+
 from ..base.errors import Fault
 from ..base.numeric import Array, absolute, minimum
 from ..base.quantities import Quantity, length_text
-from ..models import lap_joint, mass
+from ..models import end_bending, lap_joint, mass
 from ..models.strength_modes import load_multiplier
 from . import overlap
 from .joint import (
@@ -212,8 +215,34 @@ def _own(loaded: Loaded) -> dict[str, Array]:
     return {} if head is None else {OVERHANG: head - loaded.end.sizes["length"]}
 
 
+def _opened(loaded: Loaded) -> bool:
+    """Whether the pressure in an inner skirt is too low to make it follow the barrel beside it.
+
+    Pressure widens the skirt alone by p r^2/(E t), with its middle radius r, and the barrel beside
+    it by w. If w is larger, the barrel pulls at the bond. The adhesive's give and the outer skirt,
+    which both help, are left out.
+    """
+    end, modulus = loaded.end, loaded.materials.get(loaded.end.cap, "youngs_modulus")
+    if not loaded.shells or modulus is None:
+        return False
+    wall = end_bending.shell(layers=loaded.shells, inner_radius=end.inner_radius)
+    beside = end_bending.free_growth(
+        wall=wall, pressure=loaded.pressure, bore_radius=end.inner_radius, line_force=0.0
+    )
+    thickness = end.sizes["inner_wall"]
+    middle = end.inner_radius - thickness / 2
+    alone = loaded.pressure * middle * middle / (modulus * thickness)
+    return bool(np.any(np.real(alone) < np.real(beside)))
+
+
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
-    """Warn that force and heat are checked apart."""
+    """Warn that force and heat are checked apart, and of a bond that the pressure opens."""
+    if _opened(loaded):
+        yield (
+            "retention_factor",
+            "the pressure opens the bond of the inner skirt, which is not checked: the barrel "
+            "grows more than the skirt. Write a smaller inner_wall or a thicker barrel",
+        )
     if not isinstance(overlap.of_skirt(loaded), str):
         yield (
             "retention_burst_factor",

@@ -328,7 +328,7 @@ def double_lap(
 
     Returns
     -------
-    shear at all four edges, positive as tension causes it, and forces in the skirts
+    shear at all four edges [Pa], positive as tension causes it, and forces in the skirts [N]
 
     Notes
     -----
@@ -447,14 +447,14 @@ def tapered_lap(
 
     Returns
     -------
-    shear at the skirt's tip and at the tube's edge
+    shear at the skirt's tip and at the tube's edge [Pa]
 
     Notes
     -----
-    Valid: as `bond_edge_shear`; within 0.1 % for a tip of at least 0.05 and a taper of up to 14
-    decay lengths sqrt(K t_a/G), 1/K = 1/K_s + 1/K_b. Shear is largest at an edge.
+    Valid: as `bond_edge_shear`; tip at least 0.05, taper up to 14 sqrt(K t_a/G).
 
-    The taper has `CELLS` cells whose lengths grow with the square root of the thickness, as the
+    With 1/K = 1/K_s + 1/K_b, the error is then below 0.1 %. Shear is largest at an edge. The
+    taper has `CELLS` cells whose lengths grow with the square root of the thickness, as the
     decay length does. With N_s = sqrt(x_t) phi, phi'' = (x_t^2 g + 3/4 (x_tt/x_t)^2) phi - f is
     solved by Numerov's method, of fourth order. Beyond the taper, the solution is exact.
 

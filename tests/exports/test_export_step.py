@@ -289,3 +289,19 @@ def test_a_section_that_bounds_no_solid_is_named():
     (fault,) = caught.value.diagnostics
     assert fault.message.startswith("piston: the outline of its section crosses itself")
     assert fault.remedy
+
+
+@pytest.mark.parametrize(
+    "joint",
+    [
+        "type: double_lap\n  length: 12 mm\n  inner_wall: 1 mm",
+        "type: tapered_lap\n  length: 20 mm\n  tip: 0.25\n  taper_length: 8 mm",
+        "type: tapered_lap\n  length: 20 mm\n  tip: 0.25\n  taper_length: 20 mm",
+    ],
+)
+def test_bonded_skirts_in_the_bore_and_tapered(joint):
+    """Caps with both forms of skirts are solids of the mass model's weight."""
+    text = (DESIGNS / "knee_bonded.yaml").read_text("utf-8").partition("\nvariables:")[0] + "\n"
+    text = text.replace("type: bond", joint).replace("  length: 20 mm\n  wall: 1.5", "  wall: 1.5")
+    found = check_masses(*exported(text))
+    assert found["caps"] > 0

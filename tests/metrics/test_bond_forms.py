@@ -169,6 +169,34 @@ def test_an_inner_skirt_that_does_not_fit_is_refused():
     assert path == "retention.length"
 
 
+def test_pressure_opens_the_bond_of_a_thick_inner_skirt():
+    """Skirt alone: p r^2/(E t). Barrel of aluminium: p r_i R (1 - nu^2)/(E s (1 - nu^2)).
+
+    Bore radius 11.5 mm, barrel of 2 mm, R 12.5 mm: the limit is r^2/t = r_i R/s, or t 1.57 mm.
+    """
+    start = KNEE.index("    - material: al_7075_t6")
+    metal = KNEE[:start] + "    - material: al_7075_t6\n      thickness: 2 mm\n"
+    metal += KNEE[KNEE.index("\nrod:\n") :]
+    warned = []
+    for wall in ("1.5 mm", "1.65 mm"):
+        block = DOUBLE.replace("inner_wall: 1 mm", f"inner_wall: {wall}")
+        evaluation = ao.evaluate(ao.read(metal.replace(BOND, block)))
+        warned.append(any("pressure opens" in warning for warning in evaluation.warnings))
+    assert warned == [False, True]
+
+
+def test_oil_in_the_bore_of_the_inner_skirt():
+    """Pi 10.5 mm^2 x 12 mm = 4.16 ml must be within the dead volume of chamber A."""
+    text = text_of(DOUBLE)
+    small, large = (
+        [line for line in ao.evaluate(ao.read(one)).warnings if "encloses" in line]
+        for one in (text, text.replace("dead_volume_a: 3 ml", "dead_volume_a: 4.2 ml"))
+    )
+    assert len(small) == 1
+    assert "4.2 ml" in small[0]
+    assert large == []
+
+
 @pytest.mark.parametrize("form", ["bond", "double_lap", "tapered_lap"])
 def test_a_choice_among_the_forms(form):
     """`choices: retention.type` lists all forms, whose keys stand together; a PATH picks one."""
