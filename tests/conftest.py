@@ -21,7 +21,7 @@ settings.register_profile(
     "house",
     deadline=None,
     derandomize=SAME_EVERY_TIME,
-    max_examples=40 if SAME_EVERY_TIME else 100,
+    max_examples=25 if SAME_EVERY_TIME else 50,
 )
 settings.load_profile("house")
 
