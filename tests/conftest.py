@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 
+import pytest
 from hypothesis import settings
 
 # Each core runs a worker; linear algebra on all of them at once would only make them wait.
@@ -20,13 +21,27 @@ settings.register_profile(
     "house",
     deadline=None,
     derandomize=SAME_EVERY_TIME,
-    max_examples=40 if SAME_EVERY_TIME else 100,
+    max_examples=25 if SAME_EVERY_TIME else 50,
 )
 settings.load_profile("house")
 
 # No test writes into a person's own folders, nor does a process that a test starts.
 _RUNS = tempfile.TemporaryDirectory(prefix="actuator-opt-runs-")
 os.environ["ACTUATOR_OPT_RUNS"] = _RUNS.name
-_PROGRAMS = tempfile.TemporaryDirectory(prefix="actuator-opt-programs-")
-os.environ["ACTUATOR_OPT_PROGRAMS"] = _PROGRAMS.name
+if "PYTEST_XDIST_WORKER" not in os.environ:  # workers share the recorded models of their master
+    _PROGRAMS = tempfile.TemporaryDirectory(prefix="actuator-opt-programs-")
+    os.environ["ACTUATOR_OPT_PROGRAMS"] = _PROGRAMS.name
 os.environ.pop("ACTUATOR_OPT_NO_RECORD", None)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def coarse_images():
+    """Images of sheets at a fifth of their resolution: drawing them is half the time of a report.
+
+    What a process of its own writes keeps the resolution of the package.
+    """
+    from actuator_opt.rendering import paper
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(paper, "PIXELS_PER_INCH", paper.PIXELS_PER_INCH / 5)
+        yield

@@ -8,7 +8,7 @@ import shlex
 
 import pytest
 from cli_runner import BENCH, run
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 
 import actuator_opt as ao
 from actuator_opt import cli
@@ -204,7 +204,6 @@ def test_other_programs_may_have_saved_it(reports, tmp_path):
             assert words in result.errors[0]["message"]
 
 
-@settings(max_examples=60)
 @given(st.data())
 def test_no_damage_leads_to_a_traceback(reports, data):
     """Any bytes changed or lost: read to the letter, or refused with a sentence."""

@@ -80,7 +80,7 @@ def test_a_record_holds_the_whole_run(folder, design):
 def test_its_report_is_the_report_of_the_command(folder, design, tmp_path, options, monkeypatch):
     """The same bytes, and nothing is solved."""
     made, again = tmp_path / "made", tmp_path / "again"
-    optimised(design, "--report", "--out", made, *options)
+    optimised(design, "--starts", 1, "--report", "--out", made, *options)
     design.unlink()
     monkeypatch.setattr("actuator_opt.optimisation.run.solve", None)
     result = run("report", "last", "--out", again)
@@ -103,7 +103,7 @@ def test_infeasible_and_chosen_designs_are_reported_again(folder, tmp_path):
     for name, text in cases.items():
         path = tmp_path / f"{name}.yaml"
         path.write_text(text)
-        code = optimised(path, "--report", "--out", tmp_path / name / "a").code
+        code = optimised(path, "--starts", 1, "--report", "--out", tmp_path / name / "a").code
         assert run("report", "last", "--out", tmp_path / name / "b").code == code
         assert run("runs", "list", "--json").json["runs"][0]["met"] == (code == 0)
         assert files(tmp_path / name / "a") == files(tmp_path / name / "b")
@@ -117,7 +117,7 @@ def test_own_metrics_come_back_where_their_file_is_named(folder, design, tmp_pat
         "def own(v):\n    return v['cylinder.stroke'] / v['cylinder.bore']\n"
     )
     plugin.write_text(text)
-    optimised(design, "--plugin", plugin, "--report", "--out", tmp_path / "a")
+    optimised(design, "--plugin", plugin, "--starts", 1, "--report", "--out", tmp_path / "a")
     refused = run("report", "last", "--out", tmp_path / "b", "--json")
     assert refused.code == 3
     assert refused.errors[0]["message"].startswith(f"its custom metrics came from {plugin}")

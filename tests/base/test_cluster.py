@@ -32,7 +32,7 @@ def quasi_random(**cluster):
 
 def front(**cluster):
     """A front whose designs go to the workers in two groups, and its checks."""
-    return ao.pareto(KNEE, ["mass:min", "stiffness_min:max"], n=20, **cluster)
+    return ao.pareto(KNEE, ["mass:min", "stiffness_min:max"], n=10, **cluster)
 
 
 def choices(**cluster):

@@ -66,7 +66,6 @@ def test_every_operation(device):
 
 
 @given(steps=STEPS, points=st.lists(st.tuples(*[SIZED] * 3), min_size=1, max_size=5))
-@settings(max_examples=60, deadline=None)
 def test_random_programs(folder, steps, points):
     """Chains of operations whose slots are used again, for one and for several designs."""
     _, made = recorded(

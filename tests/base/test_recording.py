@@ -6,7 +6,7 @@ from contextlib import suppress
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 
 from actuator_opt.base.numeric import STEP, absolute, positive, real, sqrt, where
 from actuator_opt.base.polynomial import moved_root, root_parts, roots
@@ -48,7 +48,6 @@ BINARY = (
 
 @pytest.mark.parametrize("ufunc", UNARY, ids=lambda u: u.__name__)
 @given(value=VALUES)
-@settings(max_examples=60, deadline=None)
 def test_a_function_of_one_number_is_that_of_numpy(ufunc, value):
     """NaN and infinity included; libraries may round the last digit differently."""
     _, made = recorded(lambda x: ufunc(x), np.array([0.5]))
@@ -60,7 +59,6 @@ def test_a_function_of_one_number_is_that_of_numpy(ufunc, value):
 
 @pytest.mark.parametrize("ufunc", BINARY, ids=lambda u: u.__name__)
 @given(first=VALUES, second=VALUES)
-@settings(max_examples=60, deadline=None)
 def test_a_function_of_two_numbers_is_that_of_numpy(ufunc, first, second):
     """NaN, infinity and the sign of zero included."""
     _, made = recorded(lambda x: ufunc(x[:1], x[1:]), np.array([0.5, 0.7]))
@@ -103,7 +101,6 @@ def grown(steps, inputs):
 
 
 @given(steps=STEPS, values=st.lists(SIZED.filter(bool), min_size=3, max_size=3))
-@settings(max_examples=150, deadline=None)
 def test_random_programs_agree_with_numpy_and_the_complex_step(steps, values):
     """The same bits, NaN in the same places, and slopes as those of the complex step."""
     _, made = recorded(
@@ -147,7 +144,6 @@ def test_any_number_of_directions(directions):
 
 
 @given(st.lists(SIZED, min_size=1, max_size=9))
-@settings(max_examples=150, deadline=None)
 def test_roots_of_polynomials(found):
     """The machine's roots of a polynomial have a residual as small as those of NumPy."""
     coefficients = np.poly(found)[::-1].copy()
@@ -313,7 +309,6 @@ def test_results_agree_only_with_equal_nan():
 
 
 @given(st.data())
-@settings(max_examples=200, deadline=None)
 def test_a_damaged_program_is_refused_or_harmless(data):
     """Programs may come from files: no place in memory outside the slots is touched."""
     _, made = recorded(

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import assume, example, given, settings, strategies as st
+from hypothesis import assume, example, given, strategies as st
 from model_samples import called, cases, leaves, public_functions
 
 import actuator_opt.simulation.components
@@ -241,7 +241,6 @@ def plain(tree, point):
     return value if usual and all(one == 0 or abs(one) > 1e-100 for one in [value, *seen]) else None
 
 
-@settings(max_examples=300)
 @given(tree=TREES, points=st.lists(POINTS, min_size=4, max_size=4))
 @example(tree=("where", "<", ("*", "x", "x"), 0.0, 1.0, 2.0), points=[dict.fromkeys(NAMES, 0.0)])
 @example(tree=("max", ("-", "x", "y"), 0.0), points=[{"x": 1.0, "y": 3.0, "z": 0.0}])
@@ -277,7 +276,6 @@ def _parts(tree, point):
     return seen
 
 
-@settings(max_examples=150)
 @given(tree=TREES, point=POINTS)
 def test_jacobian_of_any_expression_is_a_difference(tree, point):
     """Where an expression is smooth its derivatives are its central differences."""

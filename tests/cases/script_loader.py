@@ -7,11 +7,14 @@ import json
 import os
 import subprocess
 import sys
-from io import BytesIO
+from contextlib import redirect_stdout
+from io import BytesIO, StringIO
 from pathlib import Path
 from typing import Any
 
 import pytest
+
+import actuator_opt as ao
 
 SCRIPTS = Path(__file__).parents[2] / "designs" / "scripts"
 
@@ -42,6 +45,21 @@ def ran(name: str, folder: Path) -> tuple[str, Path]:
     )
     assert done.returncode == 0, done.stderr
     return done.stdout, folder / f"{name}.pdf"
+
+
+def ran_here(name: str, folder: Path, *options: str | Path) -> str:
+    """What a script prints when its `main` runs in this process; each search has one start."""
+    module, optimise, printed = script(name), ao.optimise, StringIO()
+
+    def from_one_start(*arguments: Any, **more: Any) -> Any:
+        return optimise(*arguments, **more | {"starts": 1})
+
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(printed):
+        patch.setattr(ao, "optimise", from_one_start)
+        patch.setattr(sys, "argv", [f"{name}.py", *map(str, options)])
+        patch.chdir(folder)
+        module.main()
+    return printed.getvalue()
 
 
 def text_of(pdf: bytes) -> str:

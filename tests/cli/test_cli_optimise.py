@@ -317,7 +317,8 @@ def test_the_knee_end_to_end(tmp_path):
 def test_a_certificate_is_proven_and_repeats():
     """The steel knee is within 1.1 % of the best possible; the same input gives the same proof."""
     steel = Path(__file__).parents[2] / "designs" / "steel_baseline.yaml"
-    first, again = (run("optimise", steel, "--certify", "--json").json for _ in range(2))
+    words = ("optimise", steel, "--certify", "--json", "--starts", "2")
+    first, again = (run(*words).json for _ in range(2))
     found, value = first["certificate"], first["objective"]["value"]
     assert found == again["certificate"]
     assert 0 < found["gap"] < 0.011

@@ -8,7 +8,7 @@ import time
 
 import pytest
 from fuzz import WORDS as ODD
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import read_design
@@ -50,7 +50,6 @@ def outcome(text, **options):
             assert lines[fault.line - 1].replace("\t", " ") == fault.source
 
 
-@settings(max_examples=150, deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(CODE), st.sampled_from(ODD)), min_size=1, max_size=4))
 def test_odd_values(changes):
     """Any value replaced by any odd one."""
@@ -61,7 +60,6 @@ def test_odd_values(changes):
     outcome("".join(lines))
 
 
-@settings(max_examples=150, deadline=None)
 @given(
     st.lists(
         st.tuples(
@@ -92,7 +90,6 @@ def test_shuffled_lines(changes):
     outcome("".join(lines))
 
 
-@settings(max_examples=150, deadline=None)
 @given(st.integers(0, len(GOOD)), st.text(max_size=5), st.integers(0, 20))
 def test_random_characters(position, inserted, removed):
     """Any characters typed anywhere over the file."""
@@ -142,7 +139,6 @@ TREES = st.recursive(
 )
 
 
-@settings(max_examples=150, deadline=None)
 @given(
     st.dictionaries(
         st.sampled_from(
@@ -215,7 +211,6 @@ LAYERS = st.lists(
 )
 
 
-@settings(max_examples=150, deadline=None)
 @given(LAYERS, LAYERS)
 def test_any_layers(barrel, rod):
     """Any entries for the walls of barrel and rod, compact or not, among good and bad ones."""
@@ -232,7 +227,6 @@ def test_any_layers(barrel, rod):
     )
 
 
-@settings(max_examples=150, deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(PATHS), st.sampled_from(ODD)), max_size=3), st.booleans())
 def test_odd_overrides(overrides, whole):
     """Any --set over a whole file, or over one that lacks what it names."""

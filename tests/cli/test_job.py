@@ -17,9 +17,25 @@ from actuator_opt.base.errors import ExitCode, UsageError
 from actuator_opt.cli.app import COMMANDS, HIDDEN
 
 DATE = "2026-03-04"
-SCENARIO = DESIGNS / "scenarios" / "knee_step.yaml"
+SCENARIO = Path("step.yaml")
 RECORD = DESIGNS / "records" / "knee_bench.csv"
 KNEE = DESIGNS / "knee_bonded.yaml"
+STEP = f"""
+name: step
+design: {DESIGNS / "servo_knee.yaml"}
+duration: 0.3 s
+sample_time: 1 ms
+initial: {{position: 45 mm}}
+load:
+  force:
+    - {{shape: constant, value: 2 kN}}
+control:
+  position:
+    - {{shape: step, value: 10 mm, start: 0.1 s}}
+requirements:
+  overshoot: {{max: 5 %}}
+  peak_pressure: {{max: 315 bar}}
+"""
 PIECES = ("text", "report", "csv", "record", "data")
 FRONT = ["mass:min", "stiffness_min:max"]
 
@@ -31,6 +47,7 @@ def place(tmp_path, monkeypatch):
     monkeypatch.setenv("ACTUATOR_OPT_RUNS", str(tmp_path / "runs"))
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
     Path("bench.yaml").write_text(BENCH)
+    Path("step.yaml").write_text(STEP, encoding="utf-8")
     rows = "".join(f"{k / 1000:g},{45 + k / 200:g}\n" for k in range(1000))
     Path("record.csv").write_text(f"t [s],x [mm]\n{rows}")
 

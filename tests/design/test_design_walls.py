@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import LoadedDesign, get, numbers, read_design, with_values
@@ -280,7 +280,6 @@ def smallest_eigenvalue(e1, e2, e3, nu12, nu13, nu23):
     return np.linalg.eigvalsh(compliance / np.outer(scale, scale))[0]
 
 
-@settings(deadline=None, max_examples=60)
 @given(
     st.floats(1, 200), st.floats(1, 200), st.floats(1, 200),
     st.floats(0, 0.7), st.floats(0, 0.7), st.floats(0, 0.9),

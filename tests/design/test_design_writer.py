@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 
 from actuator_opt.base import quantities, units
 from actuator_opt.design import FileSource, LoadedDesign, read_design, with_values
@@ -108,7 +108,6 @@ def test_removed_values_are_written_anew():
 QUANTITIES = [*quantities.INPUTS.values(), *quantities.MATERIAL_PROPERTIES.values()]
 
 
-@settings(max_examples=300, deadline=None)
 @given(st.sampled_from(QUANTITIES), st.floats(0, 1), st.randoms(use_true_random=False))
 def test_exact_text_of_every_quantity_and_unit(quantity, share, chance):
     """A number in range, written in any unit of its quantity, is read back bit for bit.

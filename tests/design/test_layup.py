@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import groupby
 
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import get, read_design, with_values
@@ -139,7 +139,6 @@ def test_any_text_is_layers_or_one_fault(text):
         assert fault.remedy.isprintable()
 
 
-@settings(deadline=None, max_examples=60)
 @given(st.text("0123456789+-/[]_s ", max_size=20) | st.text(max_size=12).filter(str.isprintable))
 def test_any_text_in_a_file_is_a_design_or_placed_faults(text):
     """Whatever stands for plies: a design, or faults at its line (too many layers: the list's)."""

@@ -272,7 +272,7 @@ def element(draw, tandem=True, film=None):
     return ", ".join(f"{name}: {value}" for name, value in fields.items() if value is not None)
 
 
-@settings(max_examples=50, suppress_health_check=list(HealthCheck))
+@settings(suppress_health_check=list(HealthCheck))
 @given(piston=element(), rod=element(), wall=size(0.1, 4), bore=size(20, 60), load=st.booleans())
 def test_random_seals_give_numbers_or_reasons(piston, rod, wall, bore, load):
     """Read or refused in plain lines; every metric is a finite number or says why not."""

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.signal import sosfilt
 
@@ -573,7 +573,6 @@ def test_a_record_without_position_is_refused():
     assert line == 'r.csv: no column x, the position; name it with --column "x=..."'
 
 
-@settings(max_examples=150)
 @given(data=st.data())
 def test_any_record_is_read_or_refused(data):
     """Whatever befalls a record, its motion is finite, or one line says why there is none."""

@@ -248,14 +248,14 @@ def test_one_speed_is_a_level_at_that_speed():
 
 
 def test_bounds_hold_the_truth():
-    """Of 8 short records the 95 % bounds of identifiable parameters hold the truth.
+    """Of 5 short records the 95 % bounds of identifiable parameters hold the truth.
 
-    At a coverage of 95 % one parameter of 8 records misses 3 or more with probability 0.6 %
-    (binomial), any of four with 2.3 %; at 70 % one would with 45 %. Coverage over 200 records is
+    At a coverage of 95 % one parameter of 5 records misses 2 or more with probability 2.3 %
+    (binomial), any of four with 8.7 %; at 70 % one would with 47 %. Coverage over 200 records is
     in the benchmarks.
     """
     misses = dict.fromkeys(BANDS, 0)
-    for seed in range(8):
+    for seed in range(5):
         rng = np.random.default_rng(seed)
         low = rng.uniform(100, 250)
         truth = replace(
@@ -267,4 +267,4 @@ def test_bounds_hold_the_truth():
             one = found.parameters[name]
             if one.identifiable:
                 misses[name] += not one.lower <= getattr(truth, name) <= one.upper
-    assert max(misses.values()) <= 2, misses
+    assert max(misses.values()) <= 1, misses

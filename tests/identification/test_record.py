@@ -9,7 +9,7 @@ import contextlib
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings, strategies as st
+from hypothesis import example, given, strategies as st
 
 from actuator_opt.base.errors import InputError
 from actuator_opt.identification.record import CHANNELS, decode_record, parse_record
@@ -310,7 +310,6 @@ def spoilt(draw):
     return text
 
 
-@settings(max_examples=600)
 @given(text=st.one_of(spoilt(), st.text(max_size=200), st.lists(WORDS, max_size=40).map("".join)))
 @example('"')
 @example('t [s],"x [mm]\n0,"1\n')
@@ -392,7 +391,6 @@ def tables(draw):
     return text, means, places
 
 
-@settings(max_examples=300)
 @given(table=tables())
 def test_any_table_in_any_dialect_reads_to_its_si_numbers(table):
     """What is written is what is read, in SI, sample by sample and line by line."""

@@ -20,7 +20,7 @@ from actuator_opt.models.solid_ply import (
 
 AGREEMENT = 1e-8
 """Largest difference, as a share of the largest value of the same kind in the wall."""
-SLOW = settings(max_examples=60, suppress_health_check=list(HealthCheck))
+SLOW = settings(max_examples=40, suppress_health_check=list(HealthCheck))
 
 
 def oracle_fields(whole, layers, radius, loads):
@@ -197,7 +197,6 @@ def test_derivatives_with_respect_to_everything(data):
 
 
 @given(oracle.layers())
-@settings(max_examples=60)
 def test_ply_as_a_solid_by_the_tensor_law(layer):
     """Stiffness, rotation and thermal loads of a ply are those of the turned tensor."""
     ply, angle = layer.ply, layer.angle
@@ -232,7 +231,6 @@ def test_ply_as_a_solid_by_the_tensor_law(layer):
 
 
 @given(oracle.layers(), st.lists(st.floats(-0.01, 0.01), min_size=4, max_size=4))
-@settings(max_examples=60)
 def test_ply_stresses_by_the_tensor_law(layer, strains):
     """Ply stresses of a strain state, free strains off, are C (e - e_free) in the ply's axes."""
     ply, angle = layer.ply, layer.angle

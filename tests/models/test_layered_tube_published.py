@@ -8,7 +8,7 @@ from math import pi, radians
 import numpy as np
 import pytest
 import tube_oracle as oracle
-from hypothesis import assume, given, settings, strategies as st
+from hypothesis import assume, given, strategies as st
 
 from actuator_opt.models.laminate import membrane
 from actuator_opt.models.layered_tube import ply_stresses_at_faces, tube_state, tube_stresses
@@ -223,7 +223,6 @@ def test_membrane_of_kaw_from_the_solid():
 
 
 @given(st.floats(1.01, 3.0), st.floats(0.0, 0.499), st.floats(0, 80e6), st.floats(-0.5, 1.5))
-@settings(max_examples=60)
 def test_isotropic_tube_is_lame(ratio, poisson, outer_pressure, share):
     """Lamé: any wall to r_o/r_i 3, pressure inside and outside, any share of closed ends."""
     youngs, inner, pressure = 71.7e9, 16 * MM, 28e6
@@ -292,7 +291,6 @@ def lekhnitskii(ply, inner, outer, r, *, p, q, axial_force=0.0, heating=0.0):
     st.floats(-2e4, 4e4),
     st.floats(-150, 150),
 )
-@settings(max_examples=80)
 def test_orthotropic_tube_is_lekhnitskii(ratio, hoop_modulus, radial_modulus, q, force, heating):
     """One orthotropic layer, pressures, axial force and temperature, off the isotropic limit."""
     ply = oracle.Ply(

@@ -181,7 +181,6 @@ def test_decay_of_a_layered_wall_of_one_layer():
 
 
 @given(st.floats(-0.2, 0.2))
-@settings(max_examples=60, deadline=None)
 def test_pressure_step_factor_bounds(distance):
     """The factor is antisymmetric about one half and overshoots by at most 3.4 %.
 

@@ -256,7 +256,6 @@ def _ladder(plies, radius, axial):
     ),
     st.floats(0.0, 1.0),
 )
-@settings(max_examples=60, deadline=None)
 def test_burst_agrees_with_a_plain_ladder(plies, share):
     """Masks and arrays give what the algorithm written out step by step gives.
 

@@ -6,7 +6,7 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 
 from actuator_opt.models import barrel, endurance, stiffness, strength
 
@@ -39,7 +39,6 @@ def test_mises_product_without_shear_is_the_barrel_s():
 
 
 @given(stresses, stresses)
-@settings(max_examples=200)
 def test_yield_ends_where_the_total_stress_yields(load, held):
     """Residual + SR load lies on the von Mises surface; without residual SR = yield/mises."""
     yield_strength = 400e6

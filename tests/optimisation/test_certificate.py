@@ -33,7 +33,12 @@ ROUNDING = 1e-9
 """Relative rounding of traced values."""
 
 
-LONG = {"knee of free pressure", "steel of free pressure", "knee sized by growth"}
+LONG = {
+    "knee of free pressure",
+    "steel of free pressure",
+    "knee sized by growth",
+    "knee of 90 mm, sized by stiffness",
+}
 """Slow cases; ``-m long`` runs them."""
 
 

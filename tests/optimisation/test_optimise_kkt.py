@@ -3,7 +3,7 @@
 import numpy as np
 import problems
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from scipy.optimize import nnls as reference_nnls
 
 from actuator_opt.optimisation import kkt
@@ -12,7 +12,6 @@ from actuator_opt.optimisation.problem import BoxProblem, PointValues
 
 
 @given(st.integers(0, 10**6), st.integers(1, 8), st.integers(1, 14), st.booleans())
-@settings(max_examples=150, deadline=None)
 def test_nnls_matches_scipy(seed, height, width, dependent):
     """Our non-negative least squares reaches SciPy's residual, copies of columns included."""
     generator = np.random.default_rng(seed)
@@ -34,7 +33,6 @@ def test_nnls_ignores_zero_columns():
 
 
 @given(st.integers(0, 10**6), st.integers(1, 6), st.integers(0, 12))
-@settings(max_examples=100, deadline=None)
 def test_quadratic_programme_is_optimal(seed, n, rows):
     """Solutions of feasible quadratic programmes meet their optimality conditions."""
     generator = np.random.default_rng(seed)

@@ -3,7 +3,7 @@
 import numpy as np
 import problems
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from hypothesis.extra.numpy import arrays
 
 from actuator_opt.optimisation import prices as price_table
@@ -269,7 +269,6 @@ def test_equality_prices():
     steps=arrays(float, (30, 4), elements=st.floats(-1, 1)),
     changes=arrays(float, (30, 4), elements=st.floats(-1e8, 1e8)),
 )
-@settings(max_examples=60, deadline=None)
 def test_a_learnt_curvature_stays_positive(steps, changes):
     """Whatever slopes are learnt, steep, flat or bent down, the next step has a unique answer."""
     descent = Descent(np.eye(4), 1.0, 0, 0.0)

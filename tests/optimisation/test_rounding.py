@@ -192,7 +192,6 @@ def test_limits_are_told():
     balanced=st.booleans(),
     angle=st.sampled_from([0.0, 20.0, 45.0, 88.0, 90.0]),
 )
-@settings(max_examples=60)
 def test_choices_are_the_whole_plies_within_bounds(one, lower, room, balanced, angle):
     """Every choice is a whole number of plies (pairs off axis) within the bounds, and all are."""
     design = read_design(two_layers()).design

@@ -564,9 +564,9 @@ def test_terminal_text_keeps_its_width(width):
 def test_the_sheet_is_a_document_with_equal_bytes(tmp_path):
     """PDF and PNG of one place, the same bytes again; the plain renderer can draw it too."""
     given = {"stem": "s"}
-    one = studied("tandem", "rod")
+    one = studied("rings", "rod")
     first = paper.write(seal.page(one), ORIGIN, folder=tmp_path / "1", **given)
-    again = study(ao.read(TEXTS["tandem"]).subject(), "rod", curves=True, mapped=True)
+    again = study(ao.read(TEXTS["rings"]).subject(), "rod", curves=True, mapped=True)
     second = paper.write(seal.page(again), ORIGIN, folder=tmp_path / "2", **given)
     assert [f.sha256 for f in first] == [f.sha256 for f in second]
     assert {f.path.name for f in first} >= {"s.pdf", "s.png"}

@@ -9,6 +9,7 @@ import io
 import re
 import tokenize
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -99,6 +100,13 @@ def modules() -> list[Path]:
     return [path for name in PACKAGES for path in sorted((ROOT / name).rglob("*.py"))]
 
 
+@cache
+def parsed(path: Path) -> tuple[str, ast.Module]:
+    """Source and syntax tree of a module."""
+    source = path.read_text(encoding="utf-8")
+    return source, ast.parse(source)
+
+
 def docstrings(tree: ast.Module) -> list[ast.Constant]:
     """Docstrings of module, classes, functions and attributes."""
     bodies = [getattr(node, "body", None) for node in ast.walk(tree)]
@@ -129,6 +137,7 @@ def messages(source: str, tree: ast.Module) -> Iterator[tuple[int, str]]:
 
     Keys, raw strings (regular expressions), SQL and docstrings are left out.
     """
+    lines = source.encode().split(b"\n")  # `ast.get_source_segment` splits the source each time
     skipped = {id(node) for node in docstrings(tree)}
     for node in ast.walk(tree):
         if isinstance(node, ast.Dict):
@@ -147,10 +156,16 @@ def messages(source: str, tree: ast.Module) -> Iterator[tuple[int, str]]:
             text = node.value
         else:
             continue
-        raw = (ast.get_source_segment(source, node) or "").startswith(("r", "R"))
+        raw = lines[node.lineno - 1][node.col_offset :].startswith((b"r", b"R"))
         sql = re.match(r"\s*(SELECT|INSERT|UPDATE|CREATE|PRAGMA|BEGIN)\b", text)
         if not raw and not sql and is_message(text):
             yield node.lineno, text
+
+
+@cache
+def messages_of(path: Path) -> list[tuple[int, str]]:
+    """Line and text of the messages of a module."""
+    return list(messages(*parsed(path)))
 
 
 def comments(source: str) -> Iterator[tuple[int, str]]:
@@ -177,8 +192,7 @@ def summary(text: str) -> str:
 
 def of_module(path: Path) -> list[str]:
     """All faults of the English of a module."""
-    source = path.read_text(encoding="utf-8")
-    tree = ast.parse(source)
+    source, tree = parsed(path)
     found = []
     for node in docstrings(tree):
         text = spoken(str(node.value))
@@ -187,7 +201,7 @@ def of_module(path: Path) -> list[str]:
         if longest > MOST_WORDS:
             said.append(f'{longest} words in a sentence of "{summary(text)[:60]}": split it')
         found += [(node.lineno, fault) for fault in said]
-    for line, text in [*messages(source, tree), *comments(source)]:
+    for line, text in [*messages_of(path), *comments(source)]:
         found += [(line, fault) for fault in faults(text, BANNED)]
     return [f"{path.relative_to(ROOT)}:{line}: {fault}" for line, fault in sorted(found)]
 
@@ -203,10 +217,8 @@ def test_allowed_texts_exist() -> None:
     """Every excuse is still needed."""
     texts = set()
     for path in modules():
-        source = path.read_text(encoding="utf-8")
-        tree = ast.parse(source)
-        texts |= {text for _, text in messages(source, tree)}
-        texts |= {spoken(str(node.value)) for node in docstrings(tree)}
+        texts |= {text for _, text in messages_of(path)}
+        texts |= {spoken(str(node.value)) for node in docstrings(parsed(path)[1])}
     assert set(ALLOWED) <= texts
     assert all(len(reason.split()) > 2 for reason in ALLOWED.values())
 

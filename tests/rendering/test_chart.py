@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 
 from actuator_opt.rendering import heights, html, paper, terminal
 from actuator_opt.rendering.blocks import Chart, Column, Table
@@ -101,7 +101,6 @@ def words(ink):
     return " ".join(mark["text"] for mark in ink.marks if "text" in mark)
 
 
-@settings(max_examples=150, deadline=None)
 @given(st.lists(st.lists(panels(REAL), min_size=1, max_size=2), min_size=1, max_size=2))
 def test_labels_never_touch(columns):
     """Ticks, legends, notes, limits and ends of curves keep apart, and all stay on the paper."""
@@ -114,7 +113,6 @@ def test_labels_never_touch(columns):
         assert -0.8 <= y <= ink.height + 0.8
 
 
-@settings(max_examples=150, deadline=None)
 @given(panels(ANY))
 def test_any_value_is_drawn_or_left_out(panel):
     """NaN, infinity and absurd sizes: finite marks, and an empty frame says why."""

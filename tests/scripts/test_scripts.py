@@ -2,37 +2,18 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
-from script_loader import script
+from script_loader import ran_here, script
 
 from actuator_opt import api as verbs
 from actuator_opt.evaluation.plugin import load
 
 ROOT = Path(__file__).parents[2]
 SCRIPTS = ROOT / "designs" / "scripts"
-
-
-def _run(name: str, tmp_path: Path) -> str:
-    """Standard output of a script run as a person runs it, from another folder."""
-    done = subprocess.run(
-        [sys.executable, "-W", "error", str(SCRIPTS / name)],
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        cwd=tmp_path,
-        env=os.environ | {"PYTHONPATH": str(ROOT), "PYTHONUTF8": "1"},
-        timeout=120,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    assert list(tmp_path.iterdir()) == []
-    return done.stdout
 
 
 def test_every_script_of_the_folder_is_tested() -> None:
@@ -67,9 +48,18 @@ def test_a_script_serves_as_a_plugin_file(name) -> None:
         assert metric.quantity.label == plugin.quantity.label
 
 
-def test_the_saving_script_prints_both_mass_tables(tmp_path) -> None:
+@pytest.fixture(scope="module")
+def saving() -> Any:
+    """The optima of the saving script, from one start."""
+    return script("composite_saving").compute(starts=1)
+
+
+def test_the_saving_script_prints_both_mass_tables(saving, capsys, monkeypatch) -> None:
     """Every part stands in one line with both masses, whose difference is the saving printed."""
-    out = _run("composite_saving.py", tmp_path)
+    study = script("composite_saving")
+    monkeypatch.setattr(study, "compute", lambda: saving)
+    study.main()
+    out = capsys.readouterr().out
     rows = dict(re.findall(r"^(\w[\w ]*?) {2,}([-\d. ]+)", out, re.MULTILINE))
     parts = ("barrel", "rod", "piston", "caps", "glands", "seals", "fastening", "clevises")
     sums = [0.0, 0.0]
@@ -88,14 +78,13 @@ def test_the_saving_script_prints_both_mass_tables(tmp_path) -> None:
     assert out.count("\n- ") == 7
 
 
-def test_the_saving_is_computed_at_two_true_optima(capsys) -> None:
+def test_the_saving_is_computed_at_two_true_optima(saving, capsys) -> None:
     """Composite, steel and steel with aluminium ends are optima; who is lighter is said.
 
     What the carbon barrel saves over a steel one with screwed aluminium ends (about 42 g), its
     bonded caps take again.
     """
     study = script("composite_saving")
-    saving = study.compute(starts=2)
     for optimum in (saving.steel, saving.composite, saving.mixed):
         assert optimum.status == "optimal"
         assert optimum.kkt.residual <= 1e-6
@@ -112,7 +101,8 @@ def test_the_saving_is_computed_at_two_true_optima(capsys) -> None:
 
 def test_the_metric_script_prints_a_changed_optimum(tmp_path) -> None:
     """The added metric and constraint are both active and cost mass."""
-    out = _run("custom_metric.py", tmp_path)
+    out = ran_here("custom_metric", tmp_path)
+    assert list(tmp_path.iterdir()) == []
     masses = re.search(r"mass, g +([\d.]+) +([\d.]+)", out)
     assert masses is not None
     assert float(masses[2]) > float(masses[1])

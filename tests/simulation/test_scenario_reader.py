@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 
 from actuator_opt.base import quantities, units
 from actuator_opt.base.errors import InputError
@@ -861,7 +861,6 @@ def outcome(text, **options):
         assert fault.message
 
 
-@settings(max_examples=150, deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(CODE), st.sampled_from(ODD)), min_size=1, max_size=4))
 def test_odd_values(changes):
     """Any value replaced by any odd one."""
@@ -871,7 +870,6 @@ def test_odd_values(changes):
     outcome("".join(lines))
 
 
-@settings(max_examples=150, deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(CODE), st.sampled_from(KEYS)), min_size=1, max_size=4))
 def test_odd_keys(changes):
     """Any key replaced by any other."""
@@ -882,7 +880,6 @@ def test_odd_keys(changes):
     outcome("".join(lines))
 
 
-@settings(max_examples=100, deadline=None)
 @given(st.integers(0, len(LOOP)), st.text(max_size=5), st.integers(0, 20))
 def test_random_characters(position, inserted, removed):
     """Any characters typed anywhere over the file."""
@@ -898,7 +895,6 @@ TREES = st.recursive(
 )
 
 
-@settings(max_examples=200, deadline=None)
 @given(st.dictionaries(st.sampled_from(list(entries(Scenario))), TREES, max_size=6))
 def test_any_tree(tree):
     """Blocks, lists and texts where others belong."""
@@ -920,7 +916,6 @@ PATHS = [
 ]  # fmt: skip
 
 
-@settings(max_examples=150, deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(PATHS), st.sampled_from(ODD)), max_size=3), st.booleans())
 def test_odd_overrides(overrides, whole):
     """Any --set over a whole file, or over one that lacks what it names."""
@@ -943,7 +938,6 @@ SET_PATHS = [
 ]  # fmt: skip
 
 
-@settings(max_examples=60, deadline=None)
 @given(st.dictionaries(st.sampled_from(SET_PATHS), st.sampled_from(ODD), max_size=4))
 def test_odd_changes_of_the_design(shelf, changes):
     """Any values under set: a design, or faults of either file, each with its place."""

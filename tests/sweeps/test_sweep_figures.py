@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from sweep_case import KNEE, NEAR, STEEL, WAYS
 
 import actuator_opt as ao
@@ -151,7 +151,6 @@ def test_where_the_rod_has_no_wall_there_is_no_design(knee):
 
 
 @given(st.lists(st.tuples(st.integers(0, 6), st.integers(0, 6)), max_size=40))
-@settings(max_examples=150, deadline=None)
 def test_a_front_is_what_nothing_betters(points):
     """Against every pair compared, less being better in both."""
     values = np.array(points, dtype=float).reshape(-1, 2)
@@ -188,7 +187,6 @@ def test_the_pareto_line_is_of_every_feasible_design(knee, monkeypatch):
 
 
 @given(st.lists(st.integers(0, 25), max_size=12))
-@settings(max_examples=60, deadline=None)
 def test_what_is_kept_is_every_kth_row(sizes):
     """Whatever the chunks, the kept rows are those of numbers 0, k, 2k, ... and not too few."""
     pool, most, total = Pool(), result.MOST_POINTS, 0

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 import scatter_case as case
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from scipy.stats import binom, norm
 
 import actuator_opt as ao
@@ -128,7 +128,6 @@ def test_an_output_that_does_not_vary_has_no_indices():
 
 
 @given(st.floats(0.0, 1.0), st.floats(0.0, 1.0))
-@settings(max_examples=60, deadline=None)
 def test_quantiles_grow_and_stay_within(one, other):
     """Every distribution is monotone in the share, within its bounds."""
     for shape, stated in (
