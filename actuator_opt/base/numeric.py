@@ -186,7 +186,7 @@ T = TypeVar("T")
 _SIZE = re.compile(
     r"(?:.*_)?(?:bore|radius|diameter|thickness(?:es)?|length|width|section|stroke|span|pitch|gap"
     r"|depth|height|land|engagement|clearance|tolerance|roughness|travel|areas?|volume"
-    r"|second_moments?|wetted_(?:back|front))(?:_[ab12])?"
+    r"|second_moments?|wetted_(?:back|front)|(?:edge|flank)_distance)(?:_[ab12])?"
 )
 """Pattern of the argument names of lengths, areas, volumes and second moments, which are never
 negative."""

@@ -36,11 +36,11 @@ def first_ply(
 ) -> dict[str, Array]:
     """Pressures at which the first ply fails beside a joint, by layer.
 
-    The result is empty for a wall without plies of known strength, for caps that are plates, and
-    if an elastic constant is unknown.
+    The result is empty for a wall without plies of known strength or with unbalanced plies, for
+    caps that are plates, and if an elastic constant is unknown.
     """
     plies, form = wall.plies, end_joint.joint.form
-    if plies is None or not loaded.shells:
+    if plies is None or not loaded.shells or not all(ply.balanced for ply in plies.layers):
         return {}
     pressures: dict[str, Array] = {}
     if form == "skirts" and (beside := edge_beside(loaded)) is not None:

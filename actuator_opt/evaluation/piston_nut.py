@@ -138,7 +138,7 @@ def yields(
                 piston_nut.web_stress(
                     force=force,
                     radius=radius,
-                    reach=maximum(corner - radius, 0.0),
+                    reach_length=maximum(corner - radius, 0.0),
                     thickness=g.piston_length - height,
                 )
                 for force, radius in ((push * around, shoulder), (pull, flats))

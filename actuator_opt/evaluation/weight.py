@@ -110,7 +110,7 @@ def _rod_ends(v: Values, design: Design, rod: RodSection) -> Array:
     """Mass of the rod's threaded stud, of the two plugs in its bore, and of its bonded fittings.
 
     A plug closes the bore at each end. A bonded fitting is itself such a plug, or a sleeve around
-    one. Stud and plugs are each one diameter of the thread there long; at the piston, this is the
+    one. Stud and plugs are as long as the diameter of the thread there; at the piston, this is the
     nut's thread if there is one.
     """
     density = v[f"materials.{rod.end_material}.density"]

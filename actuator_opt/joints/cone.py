@@ -361,8 +361,8 @@ def _hoops(end: End) -> tuple[Array, Array, Array]:
     section = fibre_trap.hoop_section(
         thickness=thickness,
         width=end.sizes["hoop_width"],
-        rise=trap.rise,
-        run=trap.outer_foot - trap.outer_edge,
+        flank_height=trap.rise,
+        flank_length=trap.outer_foot - trap.outer_edge,
     )
     return trap.top - thickness / 2, thickness, section
 
@@ -382,8 +382,8 @@ def _reached(end: End, materials: MaterialProperties) -> Array:
         width=fibre_trap.hoop_reach(
             radius=radius, thickness=thickness, modulus=along, axial_modulus=across
         ),
-        rise=trap.rise,
-        run=trap.outer_foot - trap.outer_edge,
+        flank_height=trap.rise,
+        flank_length=trap.outer_foot - trap.outer_edge,
     )
 
 
@@ -404,7 +404,7 @@ def _neck(loaded: Loaded) -> tuple[Array, Array]:
     stresses: tuple[Array, Array] = fibre_trap.neck_stresses(
         force=loaded.force,
         outer_radius=end.inner_radius,
-        wall=end.sizes["wall"],
+        wall_thickness=end.sizes["wall"],
         crest_radius=trap.crest,
         valley_radius=trap.valley,
         flank_distance=(trap.edge + trap.foot) / 2,

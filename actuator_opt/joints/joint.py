@@ -408,7 +408,7 @@ class Strength:
 
 
 class Opening(NamedTuple):
-    """How parts enter the barrel at an end, and how the end is closed.
+    """Opening at an end of the barrel through which parts enter, and what closes it.
 
     An end `opens` "again" at any time, "once" if it is closed for good, as by a bond, or "never" if
     it is made with the barrel. `closing` is a sentence with the word {end} for cap or head.

@@ -220,7 +220,7 @@ def _pattern_faults(
                                  "rows, but plies need 3", length_text(3 * d), ("retention.rows",)),
         "thin laminate": ("diameter", f"the laminate is {thickness / d:.3g} pin diameters thick, "
                           "but pins need half of one", length_text(2 * thickness), plies[1:]),
-        "thick laminate": ("diameter", f"a pin is to be no thinner than the laminate, of "
+        "thick laminate": ("diameter", f"a pin must be no thinner than the laminate, of "
                            f"{length_text(thickness)}", length_text(thickness), plies[1:]),
         "distance from the plate": ("length", "rows and edge leave less than a pin diameter to the "
                                     "plate", length_text(inboard),
@@ -409,22 +409,24 @@ def _stresses(loaded: Loaded, layers: Sequence[model.FibreLayer]) -> dict[str, A
     count, diameter, edge = sizes["count"], sizes["diameter"], sizes["edge"]
     row = {"force": force, "count": count}
     lever = thickness / 2
-    hole = model.elastic_hole_factor(diameter=diameter, pitch=2 * pi * radius / count, edge=edge)
+    hole = model.elastic_hole_factor(
+        diameter=diameter, pitch=2 * pi * radius / count, edge_distance=edge
+    )
     net = model.net_section_stress(
         force=loaded.force, count=count, diameter=diameter, thickness=thickness, radius=radius
     )
     return {
         "bearing": model.bearing_stress(**row, diameter=diameter, thickness=thickness),
-        "shear-out": model.shear_out_stress(**row, thickness=thickness, edge=edge),
+        "shear-out": model.shear_out_stress(**row, thickness=thickness, edge_distance=edge),
         "net": model.laminate_hole_factor(elastic_factor=hole) * net,
         "pin shear": model.pin_shear(**row, diameter=diameter),
-        "pin bending": model.pin_bending(**row, diameter=diameter, lever=lever),
-        "plastic bending": model.plastic_pin_bending(**row, diameter=diameter, lever=lever),
+        "pin bending": model.pin_bending(**row, diameter=diameter, lever_length=lever),
+        "plastic bending": model.plastic_pin_bending(**row, diameter=diameter, lever_length=lever),
         "plug": model.bearing_stress(**row, diameter=diameter, thickness=sizes["wall"]),
         "held": model.bearing_stress(
             **row,
             diameter=diameter,
-            thickness=model.holding_depth(depth=sizes["wall"], lever=lever),
+            thickness=model.holding_depth(depth=sizes["wall"], lever_length=lever),
         ),
     }
 

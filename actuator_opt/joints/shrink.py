@@ -98,12 +98,18 @@ def _material_faults(view: StatedValues, materials: KnownMaterials) -> Iterator[
     radius = float(tube.outer[-1])
     give = model.ring_give(
         inner_radius=radius,
-        wall=wall,
+        wall_thickness=wall,
         youngs_modulus=ring["youngs_modulus"],
         poissons_ratio=ring["poissons_ratio"],
     )
     per_pressure = -model.outer_growth(tube=tube, outer_pressure=1.0) + give
-    stresses = [("ring", ring["yield_strength"], model.ring_stress(inner_radius=radius, wall=wall))]
+    stresses = [
+        (
+            "ring",
+            ring["yield_strength"],
+            model.ring_stress(inner_radius=radius, wall_thickness=wall),
+        )
+    ]
     innermost = view.text("barrel", "layup", 0, "material")
     liner = {} if innermost is None else materials.numbers(innermost)
     if innermost is not None and materials.kind(innermost) == "metal" and "yield_strength" in liner:
@@ -204,7 +210,9 @@ def _contact_of(loaded: Loaded) -> Contact | str:
         return "the elastic constants of barrel or ring are unknown"
     give = {
         "tube_give": -model.outer_growth(tube=tube, outer_pressure=1.0),
-        "give": model.ring_give(inner_radius=end.outer_radius, wall=end.sizes["wall"], **ring),
+        "give": model.ring_give(
+            inner_radius=end.outer_radius, wall_thickness=end.sizes["wall"], **ring
+        ),
     }
     pressed = model.outer_growth(tube=tube, inner_pressure=loaded.pressure)
     pulled = model.outer_growth(tube=tube, axial_force=loaded.force)
@@ -280,7 +288,7 @@ def _strength(loaded: Loaded) -> Strength | str:
         return f"{end.material} has no yield strength"
     grips = {f"grip, {word}": grip / loaded.force for word, grip in contact.grips.items()}
     plastic = model.plastic_pressure(
-        inner_radius=end.outer_radius, wall=end.sizes["wall"], yield_strength=strength
+        inner_radius=end.outer_radius, wall_thickness=end.sizes["wall"], yield_strength=strength
     )
     working = {**grips, "wall buckled by the ring": _collapse(loaded) / contact.idle}
     outermost = end.layers[-1].material
@@ -296,7 +304,7 @@ def _yields(loaded: Loaded) -> Mapping[str, Array]:
     contact, end, materials = _contact(loaded), loaded.end, loaded.materials
     if isinstance(contact, str) or end.material is None:
         return {}
-    ring = model.ring_stress(inner_radius=end.outer_radius, wall=end.sizes["wall"])
+    ring = model.ring_stress(inner_radius=end.outer_radius, wall_thickness=end.sizes["wall"])
     stresses = {"shrink ring": (end.material, ring * contact.most)}
     if materials.kind(end.layers[0].material) == "metal":
         squeezed = model.bore_stress(tube=contact.tube) * contact.idle
@@ -314,7 +322,7 @@ def _fatigue(loaded: Loaded) -> Fatigue:
     contact, end = _contact(loaded), loaded.end
     if isinstance(contact, str) or end.material is None:
         return Fatigue()
-    stress = model.ring_stress(inner_radius=end.outer_radius, wall=end.sizes["wall"])
+    stress = model.ring_stress(inner_radius=end.outer_radius, wall_thickness=end.sizes["wall"])
     span = stress * contact.rise
     return Fatigue((Pulsed("shrink ring", end.material, span, stress * contact.idle + span / 2),))
 

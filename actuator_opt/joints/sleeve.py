@@ -207,7 +207,7 @@ def _mass(joint: Joint, end: End, materials: MaterialProperties) -> Mapping[str,
         tip_radius=tip,
         outer_radius=tip + fit.lift,
         length=length,
-        taper=fit.ramp,
+        taper_length=fit.ramp,
     )
     radius = end.inner_radius
     for index, layer in enumerate(end.layers):

@@ -200,16 +200,19 @@ def flank_shear(*, pressure: Array, angle: Array) -> Array:
 
 
 @geometry
-def hoop_section(*, thickness: Array, width: Array, rise: Array, run: Array) -> Array:
+def hoop_section(
+    *, thickness: Array, width: Array, flank_height: Array, flank_length: Array
+) -> Array:
     """Section of hoop plies with a flat top: floor of the valley, and wedge on the flank.
 
-    A = t w + (t m - m^2/2) (run/rise), m = min(t, rise).
+    A = t w + (t m - m^2/2) (l/h), m = min(t, h).
 
     Parameters
     ----------
     thickness : t, on the floor of the valley [m]
     width : w, on the floor of the valley [m]
-    rise, run : radial and axial length of the band's outside over the flank [m]
+    flank_height, flank_length : h and l, radial and axial length of the band's outside over the
+        flank [m]
 
     Returns
     -------
@@ -225,12 +228,12 @@ def hoop_section(*, thickness: Array, width: Array, rise: Array, run: Array) -> 
 
     Examples
     --------
-    >>> a = hoop_section(thickness=3e-3, width=4e-3, rise=2e-3, run=2e-3)
+    >>> a = hoop_section(thickness=3e-3, width=4e-3, flank_height=2e-3, flank_length=2e-3)
     >>> print(f"{a * 1e6:.1f}")
     16.0
     """
-    on_flank = minimum(thickness, rise)
-    return thickness * width + (thickness - on_flank / 2) * on_flank * run / rise
+    on_flank = minimum(thickness, flank_height)
+    return thickness * width + (thickness - on_flank / 2) * on_flank * flank_length / flank_height
 
 
 @geometry
@@ -399,7 +402,7 @@ def neck_stresses(
     *,
     force: Array,
     outer_radius: Array,
-    wall: Array,
+    wall_thickness: Array,
     crest_radius: Array,
     valley_radius: Array,
     flank_distance: Array,
@@ -415,7 +418,7 @@ def neck_stresses(
     Parameters
     ----------
     force : F, axial [N]
-    outer_radius, wall : r_o and thickness w of the neck [m]
+    outer_radius, wall_thickness : r_o and thickness w of the neck [m]
     crest_radius, valley_radius : r_2 and r_1 [m]
     flank_distance : z, from the neck to the middle of the flank [m]
     angle : psi, of the flank to the axis [rad]
@@ -438,17 +441,17 @@ def neck_stresses(
 
     Examples
     --------
-    >>> axial, bending = neck_stresses(force=7273.57, outer_radius=10.5e-3, wall=2e-3,
+    >>> axial, bending = neck_stresses(force=7273.57, outer_radius=10.5e-3, wall_thickness=2e-3,
     ...                                crest_radius=13.5e-3, valley_radius=11e-3,
     ...                                flank_distance=2.22e-3, angle=1.0471975511965976)
     >>> print(f"{axial / 1e6:.2f} {bending / 1e6:.1f}")
     60.93 134.2
     """
-    area = pi * wall * (2 * outer_radius - wall)
-    lever = (crest_radius + valley_radius) / 2 - (outer_radius - wall / 2)
+    area = pi * wall_thickness * (2 * outer_radius - wall_thickness)
+    lever = (crest_radius + valley_radius) / 2 - (outer_radius - wall_thickness / 2)
     lever = lever - flank_distance / namespace(angle).tan(angle)
     axial = force / area
-    return axial, 3 * lever / wall * axial
+    return axial, 3 * lever / wall_thickness * axial
 
 
 @geometry

@@ -70,7 +70,9 @@ def bearing_stress(*, force: Array, count: Array, diameter: Array, thickness: Ar
 
 
 @geometry
-def shear_out_stress(*, force: Array, count: Array, thickness: Array, edge: Array) -> Array:
+def shear_out_stress(
+    *, force: Array, count: Array, thickness: Array, edge_distance: Array
+) -> Array:
     """Mean shear stress of the two planes from a hole to the laminate's end, F/(2 n t e).
 
     Parameters
@@ -78,7 +80,7 @@ def shear_out_stress(*, force: Array, count: Array, thickness: Array, edge: Arra
     force : F of the row [N]
     count : n [-]
     thickness : t [m]
-    edge : e, from the centre of the hole to the end of the laminate [m]
+    edge_distance : e, from the centre of the hole to the end of the laminate [m]
 
     Returns
     -------
@@ -94,11 +96,11 @@ def shear_out_stress(*, force: Array, count: Array, thickness: Array, edge: Arra
 
     Examples
     --------
-    >>> s = shear_out_stress(force=7273.57, count=12, thickness=3e-3, edge=12e-3)
+    >>> s = shear_out_stress(force=7273.57, count=12, thickness=3e-3, edge_distance=12e-3)
     >>> print(f"{s / 1e6:.5f}")
     8.41848
     """
-    return force / (2 * count * thickness * edge)
+    return force / (2 * count * thickness * edge_distance)
 
 
 @geometry
@@ -137,7 +139,7 @@ def net_section_stress(
 
 
 @geometry
-def elastic_hole_factor(*, diameter: Array, pitch: Array, edge: Array) -> Array:
+def elastic_hole_factor(*, diameter: Array, pitch: Array, edge_distance: Array) -> Array:
     """Peak stress of an isotropic sheet at a pin-loaded hole, divided by that of its net section.
 
     k_te = 2 + (w/d - 1) - 1.5 T (w/d - 1)/(w/d + 1), T = 1.5 - 0.5 w/e for e below w, else 1.
@@ -146,7 +148,7 @@ def elastic_hole_factor(*, diameter: Array, pitch: Array, edge: Array) -> Array:
     ----------
     diameter : d [m]
     pitch : w, circumference per pin [m]
-    edge : e [m]
+    edge_distance : e [m]
 
     Returns
     -------
@@ -162,11 +164,15 @@ def elastic_hole_factor(*, diameter: Array, pitch: Array, edge: Array) -> Array:
 
     Examples
     --------
-    >>> print(f"{elastic_hole_factor(diameter=4e-3, pitch=7.330383e-3, edge=12e-3):.5f}")
+    >>> print(f"{elastic_hole_factor(diameter=4e-3, pitch=7.330383e-3, edge_distance=12e-3):.5f}")
     2.39169
     """
     wide = pitch / diameter
-    close = where(real(edge) < real(pitch), 1.5 - 0.5 * pitch / edge, 1.0 + 0 * edge)
+    close = where(
+        real(edge_distance) < real(pitch),
+        1.5 - 0.5 * pitch / edge_distance,
+        1.0 + 0 * edge_distance,
+    )
     return 1 + wide - 1.5 * close * (wide - 1) / (wide + 1)
 
 
@@ -228,7 +234,7 @@ def pin_shear(*, force: Array, count: Array, diameter: Array) -> Array:
 
 
 @geometry
-def pin_bending(*, force: Array, count: Array, diameter: Array, lever: Array) -> Array:
+def pin_bending(*, force: Array, count: Array, diameter: Array, lever_length: Array) -> Array:
     """Elastic bending stress of the pins of a row at the plug's surface, 32 F a/(n pi d^3).
 
     Parameters
@@ -236,7 +242,8 @@ def pin_bending(*, force: Array, count: Array, diameter: Array, lever: Array) ->
     force : F of the row [N]
     count : n [-]
     diameter : d [m]
-    lever : a, from the plug's surface to the resultant in the laminate, half of t without a gap [m]
+    lever_length : a, from the plug's surface to the resultant in the laminate; half of t without
+        a gap [m]
 
     Returns
     -------
@@ -252,15 +259,17 @@ def pin_bending(*, force: Array, count: Array, diameter: Array, lever: Array) ->
 
     Examples
     --------
-    >>> s = pin_bending(force=7273.57, count=12, diameter=4e-3, lever=1.5e-3)
+    >>> s = pin_bending(force=7273.57, count=12, diameter=4e-3, lever_length=1.5e-3)
     >>> print(f"{s / 1e6:.3f}")
     144.703
     """
-    return 32 * force * lever / (count * pi * diameter * diameter * diameter)
+    return 32 * force * lever_length / (count * pi * diameter * diameter * diameter)
 
 
 @geometry
-def plastic_pin_bending(*, force: Array, count: Array, diameter: Array, lever: Array) -> Array:
+def plastic_pin_bending(
+    *, force: Array, count: Array, diameter: Array, lever_length: Array
+) -> Array:
     """Strength that the pins of a row need against a plastic hinge, 6 F a/(n d^3).
 
     Parameters
@@ -268,7 +277,7 @@ def plastic_pin_bending(*, force: Array, count: Array, diameter: Array, lever: A
     force : F of the row [N]
     count : n [-]
     diameter : d [m]
-    lever : a, as in `pin_bending` [m]
+    lever_length : a, as in `pin_bending` [m]
 
     Returns
     -------
@@ -284,15 +293,15 @@ def plastic_pin_bending(*, force: Array, count: Array, diameter: Array, lever: A
 
     Examples
     --------
-    >>> s = plastic_pin_bending(force=7273.57, count=12, diameter=4e-3, lever=1.5e-3)
+    >>> s = plastic_pin_bending(force=7273.57, count=12, diameter=4e-3, lever_length=1.5e-3)
     >>> print(f"{s / 1e6:.4f}")
     85.2371
     """
-    return 6 * force * lever / (count * diameter * diameter * diameter)
+    return 6 * force * lever_length / (count * diameter * diameter * diameter)
 
 
 @geometry
-def holding_depth(*, depth: Array, lever: Array) -> Array:
+def holding_depth(*, depth: Array, lever_length: Array) -> Array:
     """Depth of plug that resists the force of a pin, if the plug also keeps the pin upright.
 
     The plug presses on the pin with its full strength: one way near the surface, the other way near
@@ -301,7 +310,7 @@ def holding_depth(*, depth: Array, lever: Array) -> Array:
     Parameters
     ----------
     depth : w, depth of the pin in the plug [m]
-    lever : a, as in `pin_bending` [m]
+    lever_length : a, as in `pin_bending` [m]
 
     Returns
     -------
@@ -317,10 +326,10 @@ def holding_depth(*, depth: Array, lever: Array) -> Array:
 
     Examples
     --------
-    >>> print(f"{holding_depth(depth=3e-3, lever=1.5e-3) * 1e3:.5f}")
+    >>> print(f"{holding_depth(depth=3e-3, lever_length=1.5e-3) * 1e3:.5f}")
     0.70820
     """
-    arm = depth + 2 * lever
+    arm = depth + 2 * lever_length
     return sqrt(arm * arm + depth * depth) - arm
 
 
@@ -456,6 +465,7 @@ def axial_modulus(*, layers: Sequence[FibreLayer]) -> Array:
     return laminate.effective_moduli(membrane=stiffness, thickness=thickness)[0]
 
 
+@geometry
 def fibre_strengths(*, layers: Sequence[FibreLayer]) -> tuple[Array, Array]:
     """Mean axial stress and mean shear stress of a laminate at which the first fibres fail.
 

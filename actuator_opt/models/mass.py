@@ -105,7 +105,12 @@ def turned_volume(*, profile: Sequence[tuple[Array, Array]]) -> Array:
 
 @geometry
 def tapered_ring_volume(
-    *, inner_radius: Array, tip_radius: Array, outer_radius: Array, length: Array, taper: Array
+    *,
+    inner_radius: Array,
+    tip_radius: Array,
+    outer_radius: Array,
+    length: Array,
+    taper_length: Array,
 ) -> Array:
     """Volume of a ring whose outside is a cone at one end.
 
@@ -114,7 +119,7 @@ def tapered_ring_volume(
     Parameters
     ----------
     inner_radius, tip_radius, outer_radius : r, a at the tip and b [m]
-    length, taper : L, and T of the cone [m]
+    length, taper_length : L, and T of the cone [m]
 
     Returns
     -------
@@ -131,13 +136,13 @@ def tapered_ring_volume(
     Examples
     --------
     >>> volume = tapered_ring_volume(inner_radius=10e-3, tip_radius=11e-3, outer_radius=12e-3,
-    ...                              length=20e-3, taper=5e-3)
+    ...                              length=20e-3, taper_length=5e-3)
     >>> print(f"{1e9 * volume:.1f}")
     2581.3
     """
     a, b, inner = tip_radius, outer_radius, inner_radius * inner_radius
     cone = (a * a + a * b + b * b) / 3 - inner
-    return math.pi * ((b * b - inner) * (length - taper) + cone * taper)
+    return math.pi * ((b * b - inner) * (length - taper_length) + cone * taper_length)
 
 
 @geometry

@@ -249,7 +249,7 @@ def corner_radius(*, diameter: Array) -> Array:
 
 
 @geometry
-def web_stress(*, force: Array, radius: Array, reach: Array, thickness: Array) -> Array:
+def web_stress(*, force: Array, radius: Array, reach_length: Array, thickness: Array) -> Array:
     """Equivalent stress of the piston's web, which carries a force from ring to shoulder or nut.
 
     sqrt((3 V a/t^2)^2 + 3 (V/t)^2), V = F/(2 pi r): an edge that may not turn at either side
@@ -259,7 +259,7 @@ def web_stress(*, force: Array, radius: Array, reach: Array, thickness: Array) -
     ----------
     force : F on the web [N]
     radius : r at which the web is supported [m]
-    reach : a, radial distance from the support to the ring, not negative [m]
+    reach_length : a, radial distance from the support to the ring, not negative [m]
     thickness : t of the web [m]
 
     Returns
@@ -278,10 +278,10 @@ def web_stress(*, force: Array, radius: Array, reach: Array, thickness: Array) -
 
     Examples
     --------
-    >>> sigma = web_stress(force=5e3, radius=5.5e-3, reach=1.4e-3, thickness=2e-3)
+    >>> sigma = web_stress(force=5e3, radius=5.5e-3, reach_length=1.4e-3, thickness=2e-3)
     >>> print(f"{sigma / 1e6:.1f} MPa")
     196.9 MPa
     """
     shear = force / (2 * pi * radius) / thickness
-    bending = 3 * shear * reach / thickness
+    bending = 3 * shear * reach_length / thickness
     return sqrt(bending * bending + 3 * shear * shear)

@@ -228,8 +228,8 @@ def springing(
     -----
     Valid: one ring with a gap, free of stress in its groove, bent to a circle.
 
-    The neutral fibre is taken at r_c. It is nearer to the inner edge, so that the stress is an upper
-    bound.
+    The neutral fibre is taken at r_c. It is nearer to the inner edge, which makes the stress an
+    upper bound.
 
     References
     ----------

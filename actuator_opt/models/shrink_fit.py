@@ -97,14 +97,14 @@ def bore_stress(*, tube: LayeredTube) -> Array:
 
 @geometry
 def ring_give(
-    *, inner_radius: Array, wall: Array, youngs_modulus: Array, poissons_ratio: Array
+    *, inner_radius: Array, wall_thickness: Array, youngs_modulus: Array, poissons_ratio: Array
 ) -> Array:
     """Growth of a ring's bore per unit pressure in it, r/E ((b^2 + r^2)/(b^2 - r^2) + nu).
 
     Parameters
     ----------
     inner_radius : r [m]
-    wall : b - r [m]
+    wall_thickness : b - r [m]
     youngs_modulus : E [Pa]
     poissons_ratio : nu [-]
 
@@ -122,11 +122,12 @@ def ring_give(
 
     Examples
     --------
-    >>> c = ring_give(inner_radius=15.2e-3, wall=2e-3, youngs_modulus=210e9, poissons_ratio=0.3)
+    >>> c = ring_give(inner_radius=15.2e-3, wall_thickness=2e-3, youngs_modulus=210e9,
+    ...               poissons_ratio=0.3)
     >>> print(f"{c * 1e15:.4f} nm/MPa")
     610.2340 nm/MPa
     """
-    return inner_radius / youngs_modulus * (_ratio(inner_radius, wall) + poissons_ratio)
+    return inner_radius / youngs_modulus * (_ratio(inner_radius, wall_thickness) + poissons_ratio)
 
 
 def _ratio(inner_radius: Array, wall: Array) -> Array:
@@ -204,13 +205,13 @@ def grip(*, friction_coefficient: Array, radius: Array, pressure: Array, length:
 
 
 @geometry
-def ring_stress(*, inner_radius: Array, wall: Array) -> Array:
+def ring_stress(*, inner_radius: Array, wall_thickness: Array) -> Array:
     """Von Mises stress at a ring's bore per unit pressure there.
 
     Parameters
     ----------
     inner_radius : r [m]
-    wall : thickness of the ring [m]
+    wall_thickness : thickness of the ring [m]
 
     Returns
     -------
@@ -226,20 +227,20 @@ def ring_stress(*, inner_radius: Array, wall: Array) -> Array:
 
     Examples
     --------
-    >>> print(f"{ring_stress(inner_radius=15.2e-3, wall=2e-3):.5f}")
+    >>> print(f"{ring_stress(inner_radius=15.2e-3, wall_thickness=2e-3):.5f}")
     8.67420
     """
-    return von_mises(hoop=_ratio(inner_radius, wall), radial=-1.0, axial=0.0)
+    return von_mises(hoop=_ratio(inner_radius, wall_thickness), radial=-1.0, axial=0.0)
 
 
 @geometry
-def plastic_pressure(*, inner_radius: Array, wall: Array, yield_strength: Array) -> Array:
+def plastic_pressure(*, inner_radius: Array, wall_thickness: Array, yield_strength: Array) -> Array:
     """Pressure at which the whole ring flows, as when it is crimped: (2/sqrt(3)) R_e ln(b/r).
 
     Parameters
     ----------
     inner_radius : r [m]
-    wall : b - r [m]
+    wall_thickness : b - r [m]
     yield_strength : R_e [Pa]
 
     Returns
@@ -256,12 +257,12 @@ def plastic_pressure(*, inner_radius: Array, wall: Array, yield_strength: Array)
 
     Examples
     --------
-    >>> p = plastic_pressure(inner_radius=15.2e-3, wall=2e-3, yield_strength=355e6)
+    >>> p = plastic_pressure(inner_radius=15.2e-3, wall_thickness=2e-3, yield_strength=355e6)
     >>> print(f"{p / 1e6:.4f}")
     50.6717
     """
-    xp = namespace(inner_radius, wall)
-    return 2 / 3**0.5 * yield_strength * xp.log((inner_radius + wall) / inner_radius)
+    xp = namespace(inner_radius, wall_thickness)
+    return 2 / 3**0.5 * yield_strength * xp.log((inner_radius + wall_thickness) / inner_radius)
 
 
 @geometry

@@ -642,7 +642,7 @@ def reasons(evaluation: Evaluation) -> Iterator[Block]:
 
 
 def order_of_assembly(evaluation: Evaluation) -> Iterator[Block]:
-    """How the actuator is put together, derived from its joints."""
+    """Order of assembly, derived from the joints."""
     if lines := assembly.order(evaluation.design):
         yield Notes("Order of assembly", lines, on="paper")
 

@@ -227,7 +227,7 @@ SAMPLES = {
     },
     "mass.tapered_ring_volume": {
         "inner_radius": 10e-3, "tip_radius": 11e-3, "outer_radius": 13e-3, "length": 0.03,
-        "taper": 8e-3,
+        "taper_length": 8e-3,
     },
     "mass.disc_mass": {"density": 2700.0, "diameter": 0.03, "thickness": 8e-3},
     "mass.piston_groove_volume": {"diameter": 0.025, "depth": 1.7e-3, "width": 2.4e-3},
@@ -364,6 +364,23 @@ SAMPLES = {
         "diameter": 8e-3, "shoulder_diameter": 11.5e-3, "stud_modulus": 206e9,
         "piston_modulus": 71.7e9,
     },
+    "barrel_ends.preload_change": {
+        "temperature_change": 40.0,
+        "barrel_expansion": 20e-6,
+        "barrel_length": 126e-3,
+        "plate_expansion": 23.6e-6,
+        "plate_thickness": 7e-3,
+        "tie_rod_expansion": 11.5e-6,
+        "tie_rod_length": 140e-3,
+        "barrel_stiffness": 39.6825e6,
+        "tie_rod_stiffness": 115.566e6,
+    },
+    "retaining_ring.springing": {
+        "groove_depth": 0.4e-3,
+        "inner_radius": 8.7e-3,
+        "outer_radius": 11.1e-3,
+        "youngs_modulus": 206e9,
+    },
     "piston_nut.least_stud_share": {
         "diameter": 8e-3,
         "piston_diameter": 21e-3,
@@ -382,7 +399,7 @@ SAMPLES = {
     "piston_nut.shoulder_area": {"diameter": 8e-3, "shoulder_diameter": 12e-3},
     "piston_nut.nut_volume": {"diameter": 8e-3},
     "piston_nut.web_stress": {
-        "force": 5e3, "radius": 5.5e-3, "reach": 1.4e-3, "thickness": 2e-3,
+        "force": 5e3, "radius": 5.5e-3, "reach_length": 1.4e-3, "thickness": 2e-3,
     },
     "piston_nut.corner_radius": {"diameter": 8e-3},
     "retaining_ring.groove_area": GROOVE,

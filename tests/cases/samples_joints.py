@@ -13,7 +13,7 @@ PLIES = [
     laminate_pins.FibreLayer(thickness, angle, STIFFNESS, 1.7e9, 1.1e9)
     for thickness, angle in ((1e-3, 1.5), (2e-3, 0.8), (0.9e-3, 0.05))
 ]
-RING = {"inner_radius": 15e-3, "wall": 2e-3}
+RING = {"inner_radius": 15e-3, "wall_thickness": 2e-3}
 
 
 def growth_of(layers, inner_radius, **loads):
@@ -30,17 +30,17 @@ def stress_of(layers, inner_radius):
 SAMPLES: dict = {
     "laminate_pins.bearing_stress": {**ROW, "thickness": 3e-3},
     "laminate_pins.shear_out_stress": {
-        "force": 7e3, "count": 8.0, "thickness": 3e-3, "edge": 12e-3,
+        "force": 7e3, "count": 8.0, "thickness": 3e-3, "edge_distance": 12e-3,
     },
     "laminate_pins.net_section_stress": {**ROW, "thickness": 3e-3, "radius": 14e-3},
     "laminate_pins.elastic_hole_factor": [
-        {"diameter": 4e-3, "pitch": 11e-3, "edge": edge} for edge in (8e-3, 14e-3)
+        {"diameter": 4e-3, "pitch": 11e-3, "edge_distance": edge} for edge in (8e-3, 14e-3)
     ],
     "laminate_pins.laminate_hole_factor": {"elastic_factor": 2.6},
     "laminate_pins.pin_shear": ROW,
-    "laminate_pins.pin_bending": {**ROW, "lever": 1.5e-3},
-    "laminate_pins.plastic_pin_bending": {**ROW, "lever": 1.5e-3},
-    "laminate_pins.holding_depth": {"depth": 5e-3, "lever": 1.5e-3},
+    "laminate_pins.pin_bending": {**ROW, "lever_length": 1.5e-3},
+    "laminate_pins.plastic_pin_bending": {**ROW, "lever_length": 1.5e-3},
+    "laminate_pins.holding_depth": {"depth": 5e-3, "lever_length": 1.5e-3},
     "laminate_pins.pin_flexibility": {
         "diameter": 4e-3, "thickness": 3e-3, "modulus": 5e10, "depth": 5e-3,
         "plug_modulus": 7e10, "pin_modulus": 2e11,

@@ -37,7 +37,8 @@ SAMPLES: dict = {
     "fibre_trap.compliance": {**HOOPS, "angle": 0.6, "friction_coefficient": 0.1},
     "fibre_trap.flank_shear": {"pressure": 3e7, "angle": 0.6},
     "fibre_trap.hoop_section": [
-        {"thickness": t, "width": 4e-3, "rise": 2e-3, "run": 2.5e-3} for t in (1e-3, 3e-3)
+        {"thickness": t, "width": 4e-3, "flank_height": 2e-3, "flank_length": 2.5e-3}
+        for t in (1e-3, 3e-3)
     ],
     "fibre_trap.hoop_reach": {
         "radius": 15e-3, "thickness": 2e-3, "modulus": 135e9, "axial_modulus": 8.5e9,
@@ -47,7 +48,8 @@ SAMPLES: dict = {
     "fibre_trap.crest_pressure": {"line_force": 1e5, "crest_radius": 3e-3, "angle": 0.6},
     "fibre_trap.crest_shear": {"force": 7e3, "valley_radius": 14e-3, "length": 4e-3},
     "fibre_trap.neck_stresses": {
-        "force": 7e3, **FLANK, "outer_radius": 11e-3, "wall": 2e-3, "flank_distance": 3e-3,
+        "force": 7e3, **FLANK, "outer_radius": 11e-3, "wall_thickness": 2e-3,
+        "flank_distance": 3e-3,
     },
     "fibre_trap.cooling_play": {
         "expansion_difference": 24e-6, "cooling": 120.0, "radius": 16e-3, "angle": 0.6,

@@ -46,6 +46,28 @@ def test_two_springs_share_a_pull():
     assert wide == near(stud / (stud + ALUMINIUM * (12e-3**2 - D**2)))  # no wider than the nut
 
 
+def test_stud_and_piston_as_springs():
+    """Least share and preload by two springs in parallel; shoulder, hexagon and corner by areas."""
+    length, piston = 6e-3, 21.4e-3
+    stud = pi / 4 * D**2 * STEEL / (length + 0.9 * D)
+    clamped = pi / 4 * (piston**2 - D**2) * ALUMINIUM / length
+    size = {
+        "diameter": D, "piston_diameter": piston, "length": length,
+        "stud_modulus": STEEL, "piston_modulus": ALUMINIUM,
+    }  # fmt: skip
+    assert piston_nut.least_stud_share(**size) == near(stud / (stud + clamped))
+    grown = 6e-4 * length  # the stud stretches, the piston gives, and both forces are equal
+    force = piston_nut.preload_change(**size, strain_difference=6e-4)
+    assert force / stud + force / clamped == near(grown)
+    assert piston_nut.shoulder_area(diameter=D, shoulder_diameter=12e-3) == near(
+        pi * (6e-3**2 - 4e-3**2)
+    )
+    corner = piston_nut.corner_radius(diameter=D)
+    assert corner * sqrt(3) / 2 == near(0.75 * D)  # half the width across flats
+    hexagon = 6 * sqrt(3) / 4 * corner**2
+    assert piston_nut.nut_volume(diameter=D) == near((hexagon - pi / 4 * D**2) * 0.8 * D)
+
+
 def test_rows_of_the_knee_by_hand():
     """Clamping force, stress of the stud, and pressure under the shoulder."""
     found, _ = pair()
@@ -104,7 +126,9 @@ def test_the_web_by_a_guided_beam():
     line = force / (2 * pi * radius)
     moment = line * reach / 2  # a guided end: no rotation at both ends
     bending, shear = 6 * moment / thickness**2, line / thickness
-    found = piston_nut.web_stress(force=force, radius=radius, reach=reach, thickness=thickness)
+    found = piston_nut.web_stress(
+        force=force, radius=radius, reach_length=reach, thickness=thickness
+    )
     assert found == near(sqrt(bending**2 + 3 * shear**2))
 
 
@@ -132,10 +156,10 @@ def test_a_nut_that_cannot_be_is_refused(changes, path, said):
 def test_a_laminated_rod_has_no_nut():
     """Its shoulder would crush plies."""
     text = (DESIGNS / "knee.yaml").read_text("utf-8")
-    layered = "  material: steel_42crmo4\n  outer_diameter: 11.5 mm\n  inner_diameter: 7 mm\n"
+    layered = "  material: steel_42crmo4\n  outer_diameter: 12 mm\n  inner_diameter: 8 mm\n"
     assert layered in text
     plies = (
-        "  material: steel_42crmo4\n  outer_diameter: 11.5 mm\n  layup:\n"
+        "  material: steel_42crmo4\n  outer_diameter: 12 mm\n  layup:\n"
         "    - {material: t700_epoxy, angle: 10 deg, thickness: 2 mm}\n"
         "  fitting: {adhesive: epoxy_structural, length: 20 mm}\n"
     )

@@ -95,7 +95,9 @@ def test_hoop_section_by_integration(thickness):
         return max(thickness - max(-x, 0.0) * rise / run, 0.0)
 
     area = quad(height, -run, width, points=[0.0, -thickness * run / rise], limit=200)[0]
-    got = fibre_trap.hoop_section(thickness=thickness, width=width, rise=rise, run=run)
+    got = fibre_trap.hoop_section(
+        thickness=thickness, width=width, flank_height=rise, flank_length=run
+    )
     assert got == near(area, 1e-8)
 
 
@@ -193,8 +195,9 @@ def test_plug_against_finite_elements(name):
     axial, bending = (
         stress / 1e6
         for stress in fibre_trap.neck_stresses(
-            force=force, outer_radius=outer / 1e3, wall=wall / 1e3, crest_radius=top / 1e3,
-            valley_radius=low / 1e3, flank_distance=(crest + run / 2) / 1e3, angle=angle,
+            force=force, outer_radius=outer / 1e3, wall_thickness=wall / 1e3,
+            crest_radius=top / 1e3, valley_radius=low / 1e3,
+            flank_distance=(crest + run / 2) / 1e3, angle=angle,
         )
     )  # fmt: skip
     mean, at_bore = wall_oracle.through(plate + 0.05, inner, outer)
@@ -401,3 +404,30 @@ def test_warnings():
     block = CONE[CONE.index("    type: cone") : CONE.index("  head:")]
     both = KNEE.replace(CONE, "retention:\n" + block.replace("    ", "  "))
     assert any("both ends are wound" in text for text in ao.evaluate(ao.read(both)).warnings)
+
+
+def test_crest_and_play_by_equilibrium():
+    """Pressure of a belt, shear of a root, play of a cone that shrinks, and reach of a shell."""
+    angle = 0.7
+    pressure = fibre_trap.crest_pressure(line_force=1e5, crest_radius=3e-3, angle=angle)
+    assert pressure * 3e-3 * cos(angle) == near(1e5)
+    shear = fibre_trap.crest_shear(force=7e3, valley_radius=14e-3, length=4e-3)
+    assert shear * 2 * pi * 14e-3 * 4e-3 == near(7e3)
+    play = fibre_trap.cooling_play(
+        expansion_difference=24e-6, cooling=100.0, radius=16e-3, angle=angle
+    )
+    assert play * tan(angle) == near(24e-6 * 100 * 16e-3)  # radial shrinkage along the flank
+    reach = fibre_trap.hoop_reach(radius=15e-3, thickness=2e-3, modulus=135e9, axial_modulus=8.5e9)
+    bending, foundation = 8.5e9 * 2e-3**3 / 12, 135e9 * 2e-3 / 15e-3**2
+    assert reach == near((4 * bending / foundation) ** 0.25)
+
+
+def test_ring_with_a_conical_end_by_integration():
+    """Rings up to the taper, then discs of falling radius."""
+    inner, tip, outer, length, taper = 10e-3, 11e-3, 12e-3, 20e-3, 5e-3
+    cone = quad(lambda x: (outer + (tip - outer) * x / taper) ** 2 - inner**2, 0, taper)[0]
+    expected = pi * (cone + (outer**2 - inner**2) * (length - taper))
+    found = mass.tapered_ring_volume(
+        inner_radius=inner, tip_radius=tip, outer_radius=outer, length=length, taper_length=taper
+    )
+    assert found == near(expected, 1e-9)

@@ -222,3 +222,16 @@ def test_pressure_shortens_the_barrel():
     value = barrel_ends.pressure_shortening(pressure=28e6, length=0.18, **TUBE, **ALUMINIUM)
     hoop, radial, _ = barrel.bore_stresses(pressure=28e6, **TUBE)
     assert value == pytest.approx(0.33 * (hoop + radial) / 71.7e9 * 0.18, rel=1e-13)
+
+
+def test_preload_change_by_two_springs():
+    """Four rods of 5 mm steel: the worked number, and equal forces in rods and barrel."""
+    sizes = {"barrel_length": 126e-3, "plate_thickness": 7e-3, "tie_rod_length": 140e-3}
+    springs = {"barrel_stiffness": 39.6825e6, "tie_rod_stiffness": 115.566e6}
+    change = barrel_ends.preload_change(
+        temperature_change=40.0, barrel_expansion=20e-6, plate_expansion=23.6e-6,
+        tie_rod_expansion=11.5e-6, **sizes, **springs,
+    )  # fmt: skip
+    assert change == pytest.approx(1465.63, rel=1e-5)
+    gap = 40 * (20e-6 * 126e-3 + 2 * 23.6e-6 * 7e-3 - 11.5e-6 * 140e-3)
+    assert sum(change / stiffness for stiffness in springs.values()) == pytest.approx(gap)

@@ -32,24 +32,28 @@ def test_pins_by_the_worked_numbers():
     """12 pins of 4 mm, laminate of 3 mm at radius 14 mm, edge 12 mm, each number by hand."""
     row = {"force": FORCE, "count": 12, "diameter": 4e-3}
     assert laminate_pins.bearing_stress(**row, thickness=3e-3) == near(50.5109e6)
-    shear = laminate_pins.shear_out_stress(force=FORCE, count=12, thickness=3e-3, edge=12e-3)
+    shear = laminate_pins.shear_out_stress(
+        force=FORCE, count=12, thickness=3e-3, edge_distance=12e-3
+    )
     assert shear == near(8.41849e6)
     net = laminate_pins.net_section_stress(**row, thickness=3e-3, radius=14e-3)
     assert net == near(60.6668e6)
     pitch = 2 * pi * 14e-3 / 12
     assert pitch / 4e-3 == near(1.83260)
-    elastic = laminate_pins.elastic_hole_factor(diameter=4e-3, pitch=pitch, edge=12e-3)
+    elastic = laminate_pins.elastic_hole_factor(diameter=4e-3, pitch=pitch, edge_distance=12e-3)
     assert elastic == near(2.39169)
     assert laminate_pins.laminate_hole_factor(elastic_factor=elastic) == near(1.37576)
     assert laminate_pins.pin_shear(**row) == near(48.2344e6)
     bent = FORCE / 12 * 1.5e-3
-    assert laminate_pins.pin_bending(**row, lever=1.5e-3) == near(bent / (pi * 4e-3**3 / 32))
-    assert laminate_pins.plastic_pin_bending(**row, lever=1.5e-3) == near(bent / (4e-3**3 / 6))
+    assert laminate_pins.pin_bending(**row, lever_length=1.5e-3) == near(bent / (pi * 4e-3**3 / 32))
+    assert laminate_pins.plastic_pin_bending(**row, lever_length=1.5e-3) == near(
+        bent / (4e-3**3 / 6)
+    )
 
 
 def test_a_hole_close_to_the_edge_concentrates_more():
     """By hand: w/d 3, w/e 1.5, T 0.75: 2 + 2 - 1.5 x 0.75 x 2/4."""
-    near_edge = laminate_pins.elastic_hole_factor(diameter=4e-3, pitch=12e-3, edge=8e-3)
+    near_edge = laminate_pins.elastic_hole_factor(diameter=4e-3, pitch=12e-3, edge_distance=8e-3)
     assert near_edge == pytest.approx(3.4375, rel=1e-12)
 
 
@@ -63,7 +67,7 @@ def test_holding_depth_by_equilibrium(depth, lever):
         return -force * lever - turn**2 / 2 + (depth**2 - turn**2) / 2
 
     turn = brentq(moment, depth / 2, depth)
-    found = laminate_pins.holding_depth(depth=depth, lever=lever)
+    found = laminate_pins.holding_depth(depth=depth, lever_length=lever)
     assert found == pytest.approx(2 * turn - depth, rel=1e-9)
 
 
@@ -174,7 +178,7 @@ def test_shrink_fit_by_the_worked_numbers():
     give = {
         "tube_give": -shrink_fit.outer_growth(tube=tube, outer_pressure=1.0),
         "give": shrink_fit.ring_give(
-            inner_radius=15.2e-3, wall=2e-3, youngs_modulus=210e9, poissons_ratio=0.3
+            inner_radius=15.2e-3, wall_thickness=2e-3, youngs_modulus=210e9, poissons_ratio=0.3
         ),
     }
     assert give["tube_give"] * 1e9 == near(5.58550e-4)
@@ -209,14 +213,14 @@ def test_ring_and_tube_of_one_metal():
         ring_growth=0.0,
         tube_give=-shrink_fit.outer_growth(tube=tube, outer_pressure=1.0),
         give=shrink_fit.ring_give(
-            inner_radius=r, wall=b - r, youngs_modulus=modulus, poissons_ratio=0.3
+            inner_radius=r, wall_thickness=b - r, youngs_modulus=modulus, poissons_ratio=0.3
         ),
     )
     squares = (b**2 - r**2) * (r**2 - a**2) / (2 * r**2 * (b**2 - a**2))
     assert pressure == pytest.approx(modulus * 20e-6 / r * squares, rel=1e-9)
     assert shrink_fit.bore_stress(tube=tube) == pytest.approx(2 * r**2 / (r**2 - a**2), rel=1e-9)
     hoop = (b**2 + r**2) / (b**2 - r**2)
-    assert shrink_fit.ring_stress(inner_radius=r, wall=b - r) == pytest.approx(
+    assert shrink_fit.ring_stress(inner_radius=r, wall_thickness=b - r) == pytest.approx(
         sqrt(hoop**2 + hoop + 1), rel=1e-12
     )
 
@@ -226,7 +230,9 @@ def test_limits_of_the_ring_by_hand():
     radii = np.linspace(15e-3, 18e-3, 20001)
     shear = 2 / sqrt(3) * 355e6 / radii
     by_sum = float(np.sum((shear[1:] + shear[:-1]) / 2 * np.diff(radii)))
-    found = shrink_fit.plastic_pressure(inner_radius=15e-3, wall=3e-3, yield_strength=355e6)
+    found = shrink_fit.plastic_pressure(
+        inner_radius=15e-3, wall_thickness=3e-3, yield_strength=355e6
+    )
     assert found == pytest.approx(by_sum, rel=1e-7)
     assert found == pytest.approx(2 / sqrt(3) * 355e6 * log(1.2), rel=1e-12)
     assert shrink_fit.collapse_pressure(hoop_bending_stiffness=60.0, radius=12e-3) == (
@@ -237,6 +243,10 @@ def test_limits_of_the_ring_by_hand():
 # --- whole cylinders ------------------------------------------------------------------------
 
 KNEE = (DESIGNS / "knee.yaml").read_text("utf-8").partition("\nvariables:")[0] + "\n"
+for old, new in (("bore: 21.8", "bore: 21.5"), ("outer_diameter: 12", "outer_diameter: 11.5"),
+                 ("thickness: 1.8", "thickness: 1.6")):  # fmt: skip
+    assert old in KNEE
+    KNEE = KNEE.replace(old, new)
 RETENTION = KNEE[KNEE.index("retention:\n") : KNEE.index("\nclevis:")]
 STATIC = KNEE[KNEE.index("  static:") : KNEE.index("\nload:")]
 LAYUP = KNEE[KNEE.index("  layup:") : KNEE.index("\nrod:")]

@@ -106,6 +106,17 @@ def test_metal_under_the_groove_against_finite_elements(thickness, depth, lip, w
     assert 0.93 <= bound <= (1.6 if winding else 1.25), (mean, bending, axial, bent)
 
 
+def test_a_ring_that_is_bent_smaller():
+    """A bar bent from radius r to r - h: strain y (1/(r - h) - 1/r) r/b_i at its inner face."""
+    inner, outer, depth = 8.7e-3, 11.1e-3, 0.4e-3
+    middle = (inner + outer) / 2
+    turn = middle / (middle - depth) - 1  # further angle of a unit of arc
+    found = retaining_ring.springing(
+        groove_depth=depth, inner_radius=inner, outer_radius=outer, youngs_modulus=206e9
+    )
+    assert found == near(206e9 * turn * (middle - inner) / inner, 1e-12)
+
+
 def test_collapse_of_a_strip_against_its_stress_blocks():
     """Blocks of +-S with the neutral axis at c carry N = 2 S c and M = S (t^2/4 - c^2)."""
     strength, thickness = 500e6, 2e-3

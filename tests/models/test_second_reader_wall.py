@@ -87,8 +87,10 @@ IM7_TEXT = """  im7_8552: {density: 1580 kg/m^3, youngs_modulus_1: 171.42 GPa,
     strength_2_tension: 62.3 MPa, strength_2_compression: 199.8 MPa, strength_12: 92.3 MPa,
     thermal_expansion_1: -0.5 ppm/K, thermal_expansion_2: 25.8 ppm/K}
 """
+BOND = "retention: {type: bond, material: epoxy_structural, length: 18 mm, wall: 2 mm}\n"
 LINERLESS_WALL = (
     (ROWS, LINERLESS_ROWS),
+    (BOND, ""),  # the wall alone: beside a skirt, it bends
     ("  steel_42crmo4: {dens", IM7_TEXT + "  steel_42crmo4: {dens"),
 )
 THIN = ("barrel:\n", "barrel:\n  model: thin_laminate\n")
@@ -262,7 +264,7 @@ def test_linerless_wall(linerless):
 
 TWISTED = [LINERLESS[0], replace(LINERLESS[1], balanced=False), LINERLESS[2]]
 SINGLE = ("angle: 32 deg,", "angle: 32 deg, balanced: false,")
-TWISTED_WALL = ((ROWS, LINERLESS_ROWS.replace(*SINGLE)), LINERLESS_WALL[1])
+TWISTED_WALL = ((ROWS, LINERLESS_ROWS.replace(*SINGLE)), *LINERLESS_WALL[2:])
 
 
 def test_single_ply_twists():
