@@ -172,7 +172,8 @@ def masses(v: Values, design: Design, g: Geometry) -> dict[str, Array]:
     stud = shank * g.piston_length
     hole = shank * (g.piston_length - height) + pi * corner * corner * height
     return {
-        "fastening": steel * (piston_nut.nut_volume(diameter=g.nut) + stud),
+        "fastening": steel * piston_nut.nut_volume(diameter=g.nut),
+        "rod": steel * stud,
         "piston": -piston * hole,
     }
 

@@ -101,7 +101,7 @@ JOINT = Joint(
     own=lambda loaded: {},
     envelope=_envelope,
     metrics={},
-    judged=("the elastic peak shear of a bond", "mean bond shear"),
+    judged=("peak bond shear", "mean bond shear"),
     models={
         ("retention_factor", "bond at the skirt's edge"): "lap_joint.bond_edge_shear",
         ("retention_factor", "bond at the barrel's edge"): "lap_joint.bond_edge_shear",

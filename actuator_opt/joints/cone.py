@@ -702,10 +702,7 @@ JOINT = Joint(
     own=_own,
     envelope=None,
     metrics=dict.fromkeys((LENGTHS, CREST, GRIP), _ABSENT),
-    judged=(
-        "first damage of the plies at a cone",
-        "rupture of the plies at a cone",
-    ),
+    judged=("first damage of plies", "rupture of plies"),
     models={
         ("retention_factor", "plies on the flank"): "fibre_trap.flank_pressure",
         ("retention_factor", "plies on the crest"): "fibre_trap.crest_pressure",

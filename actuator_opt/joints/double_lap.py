@@ -290,7 +290,7 @@ JOINT = Joint(
     own=_own,
     envelope=overlap.mean_envelope,
     metrics={OVERHANG: "no skirt in the bore"},
-    judged=("the elastic peak shear of a bond", "mean bond shear"),
+    judged=("peak bond shear", "mean bond shear"),
     models={
         **{("retention_factor", place): "lap_joint.double_lap" for place in EDGES},
         **{("retention_factor", place): "lap_joint.edge_peel" for place in PEELS},

@@ -127,7 +127,7 @@ class JointField(NamedTuple):
     help: str = ""
 
 
-ON_METAL = ("yield of metal parts", "rupture of metal parts")
+ON_METAL = ("yield of metal", "rupture of metal")
 """Strengths on which the factors of a metal joint are based: `Joint.judged`."""
 
 

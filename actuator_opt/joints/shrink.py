@@ -407,7 +407,7 @@ JOINT = Joint(
     own=_own,
     envelope=None,
     metrics={CONTACT: _ABSENT, LENGTH: _ABSENT},
-    judged=("the friction of a shrunk ring", "the friction of a shrunk ring"),
+    judged=("grip of a ring", "grip of a ring"),
     models={
         ("retention_factor", "grip, at assembly"): "shrink_fit.grip",
         ("retention_factor", "grip, cold"): "shrink_fit.grip",

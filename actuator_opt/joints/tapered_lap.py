@@ -246,7 +246,7 @@ JOINT = Joint(
     own=lambda loaded: {REST: loaded.end.sizes["length"] - loaded.end.sizes["taper_length"]},
     envelope=overlap.mean_envelope,
     metrics={REST: "the skirts do not taper"},
-    judged=("the elastic peak shear of a bond", "mean bond shear"),
+    judged=("peak bond shear", "mean bond shear"),
     models={
         ("retention_factor", AT_TIP): "lap_joint.tapered_lap",
         ("retention_factor", AT_TUBE): "lap_joint.tapered_lap",

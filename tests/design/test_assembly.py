@@ -110,17 +110,26 @@ def test_rings_that_pass_a_thread_or_a_groove():
     assert "rings of 23.71 mm diameter scrape through the thread at the cap, 23 mm" in words
     wide = {"retention.thread.diameter": f"{23.712 + 1.0825 * 0.75 + 0.001} mm"}
     assert not list(assembly.warnings(design("knee_choices", **changes, **wide)))
-    assert not list(assembly.warnings(design("knee", **{"retention.ring_thickness": "1.7 mm"})))
-    (words,) = assembly.warnings(design("knee", **{"retention.ring_thickness": "1.8 mm"}))
+    assert not list(
+        assembly.warnings(design("knee_choices", **{"retention.ring_thickness": "1.7 mm"}))
+    )
+    (words,) = assembly.warnings(design("knee_choices", **{"retention.ring_thickness": "1.8 mm"}))
     assert "rings of 1.78 mm section fall into the groove at the cap, 1.8 mm wide" in words
 
 
 def test_order_of_the_shipped_knee():
     """Piston and nut outside; head last, through the bore; numbered in drawings."""
     lines = assembly.order(design("knee"))
-    assert [line.split()[0] for line in lines] == ["Set", "Push", "Insert", "Its", "Push", "Screw"]
+    assert [line.split()[0] for line in lines] == [
+        "Set",
+        "Screw",
+        "Insert",
+        "Its",
+        "Screw",
+        "Screw",
+    ]
     assert "nut" in lines[0]
-    assert lines[2] == "Insert piston, rod and head through the opening of 21.5 mm at the head."
+    assert lines[2] == "Insert piston, rod and head through the opening of 21.8 mm at the head."
     evaluation = ao.evaluate(ao.read(DESIGNS / "knee.yaml"))
     drawn = notes(evaluation.design, evaluation.lengths)
     assert [line for line in drawn if line.startswith("Assembly 3. Insert")]

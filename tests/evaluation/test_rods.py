@@ -608,8 +608,10 @@ def test_caps_bond_over_the_temperatures_by_hand():
     library = load_library()
     cap = library.get("al_7075_t6").numbers
     lag = 1.2e9 / 0.15e-3
-    skirt = cap["youngs_modulus"] * 1.5e-3
-    barrel = float(np.squeeze(done.wall.axial_line_stiffness))
+    inner, outer = (float(np.squeeze(size)) for size in (done.geometry.inner_radius,
+                                                         done.geometry.outer_radius))  # fmt: skip
+    skirt = cap["youngs_modulus"] * 1.5e-3 * (outer + 0.75e-3) / outer  # at the bond's radius
+    barrel = float(np.squeeze(done.wall.axial_line_stiffness)) * (inner + outer) / (2 * outer)
     decay = sqrt(lag * (1 / skirt + 1 / barrel))
     gap = cap["thermal_expansion"] - float(np.squeeze(done.wall.expansion[0]))
     glue = library.get("epoxy_structural").numbers

@@ -155,13 +155,13 @@ def test_a_hoop_winding_on_metal_tears_where_its_metal_does():
         areas=areas, strengths=strengths, angles=[0.0, radians(30)], axial_force_per_pressure=closed
     )
     assert helical == pytest.approx((120e-6 * 500e6 + 200e-6 * 2000e6 * 0.75) / closed, rel=1e-12)
-    thin = {"barrel.layup[0].thickness": "1.4 mm", "barrel.layup[1].thickness": "3.5 mm"}
+    thin = {"barrel.layup[0].thickness": "1.5 mm", "barrel.layup[1].thickness": "3.5 mm"}
     found = ao.read(Path(__file__).parents[2] / "designs" / "knee.yaml", set=thin)
     subject = found.subject()
     factors = compute(subject, subject.values()).computed.metrics["burst_factor"]
-    metal = pi * ((10.75e-3 + 1.4e-3) ** 2 - 10.75e-3**2)
+    metal = pi * ((10.9e-3 + 1.5e-3) ** 2 - 10.9e-3**2)
     strength = subject.values()["materials.al_7075_t6.ultimate_strength"]
-    most = metal * strength / (21e6 * pi * 10.75e-3**2)
+    most = metal * strength / (21e6 * pi * 10.9e-3**2)
     torn = float(factors["axial rupture, cold, piston at the end stop"].item())
     assert 0.8 * most < torn < 1.03 * most  # knock-downs, and fibres at 88 deg
     assert torn < min(float(row.item()) for at, row in factors.items() if "rupture" not in at)
