@@ -15,7 +15,7 @@ from ..base.numeric import Array
 from ..base.quantities import Sense
 from ..joints.joint import LEAST_METAL, StaticPlace
 from ..joints.kinds import JOINTS
-from ..models import gland, mass
+from ..models import gland
 from . import choices
 from .choices import Paper
 from .kinds import (
@@ -183,10 +183,12 @@ class Load(Section):
 
 
 def closed_length(
-    *, barrel_length: Array, plate: Array, spigot: Array, extension: Array, pin_diameter: Array
+    *, barrel_length: Array, plate: Array, spigot: Array, extension: Array, eye: Array
 ) -> Array:
-    """Pin-to-pin length of the retracted actuator [m]; `spigot` is the length of the cap's."""
-    eye = mass.eye_length(pin_diameter=pin_diameter)
+    """Pin-to-pin length of the retracted actuator [m].
+
+    `spigot` is the length of the cap's spigot, `eye` that of an eye.
+    """
     return barrel_length + 2 * plate + spigot + extension + 2 * eye
 
 
@@ -316,6 +318,7 @@ class Cylinder(Section):
         float, Of("volume", "dead oil volume of the rod side at full stroke, including ports")
     ] = 0.0
     port_diameter: Annotated[float | None, Of("diameter", "inner diameter of both ports")] = None
+    port_thread: choices.PortThread = None
     stop_travel: Annotated[
         float,
         Of(
@@ -454,6 +457,17 @@ class PistonNut(Section):
     preload: Annotated[float, Of("force", "tension of the stud after tightening")]
 
 
+class Sensor(Section):
+    """A position sensor, fixed in the cap, whose straight element is inside the hollow rod."""
+
+    type: choices.Sensing
+    diameter: Annotated[float, Of("diameter", "diameter of the element inside the rod")]
+    dead_length: Annotated[
+        float, Of("length", "length of the element inside the rod beyond the stroke")
+    ]
+    mass: Annotated[float, Of("component_mass", "mass of the sensor")]
+
+
 class Piston(Section):
     """The piston: a disc with the seal grooves."""
 
@@ -559,7 +573,10 @@ class Clevis(Section):
     """Eyes at both ends, each on a pin in double shear."""
 
     material: Annotated[str, MaterialName("structural")]
-    pin_diameter: Annotated[float, Of("diameter", "diameter of the pins")]
+    pin_diameter: Annotated[
+        float | None, Of("diameter", "diameter of the pins; default: bore of the bearings")
+    ] = None
+    bearing: choices.Bearing = None
 
 
 class Stiffness(Section):
@@ -699,6 +716,7 @@ class Design(Section):
     caps: Annotated[Caps, Field(default_factory=_plain_caps)]
     retention: Retention | None = None
     clevis: Clevis | None = None
+    sensor: Sensor | None = None
     seals: Seals
     extra_masses: Annotated[tuple[ExtraMass, ...], Field(max_length=24)] = ()
     lines: Annotated[tuple[Line, ...], Field(max_length=24)] = ()

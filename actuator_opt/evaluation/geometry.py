@@ -17,6 +17,7 @@ from ..base.numeric import Array, absolute, maximum
 from ..design.material import Material
 from ..design.model import Design, EndRetention, Ply, closed_length, spigot_length
 from ..design.seals import Seal, SealElement
+from ..design.standard_sizes import SphericalBearing, spherical_bearing
 from ..joints.joint import (
     BarrelLayer,
     End,
@@ -27,7 +28,8 @@ from ..joints.joint import (
     StaticPlace,
 )
 from ..joints.kinds import JOINTS
-from ..models import forces, gland, mass, winding_path
+from ..models import forces, gland, winding_path
+from ..models.spherical_bearing import lug_radius
 from .values import Values
 
 
@@ -315,6 +317,8 @@ class Geometry:
     """Forms of cap and head; one entry if their joints are the same."""
     barrel_length: Array
     eye_offset: Array
+    """Length of an eye, from its pin to its end."""
+    eye_radius: Array
     pin_diameter: Array
     closed_length: Array
     piston_grooves: tuple[Groove, ...]
@@ -347,6 +351,32 @@ def _thicknesses(v: Values, part: str, layup: tuple[Ply, ...]) -> tuple[Array, .
     return tuple(v[f"{part}.layup[{i}].thickness"] for i in range(len(layup)))
 
 
+def bearing_of(design: Design) -> SphericalBearing | None:
+    """The spherical bearing of both eyes; None without one."""
+    if design.clevis is None or design.clevis.bearing is None:
+        return None
+    return spherical_bearing(design.clevis.bearing)
+
+
+def _eye(v: Values, design: Design) -> tuple[Array, Array]:
+    """Pin diameter and outer radius of the eyes, both 0 without eyes."""
+    bearing = bearing_of(design)
+    if bearing is not None:
+        sizes = {"outer_diameter": bearing.outer_diameter, "width": bearing.width}
+        return bearing.bore, lug_radius(pin_diameter=bearing.bore, **sizes)
+    pin = 0.0 if design.clevis is None else v["clevis.pin_diameter"]
+    return pin, pin
+
+
+def _fits(v: Values, design: Design, **sizes: Any) -> tuple[EndDimensions, ...]:
+    """Dimensions of cap and head that follow from their joints; `sizes` are those of `end_of`."""
+    outer = sizes["outer_radius"]
+    return tuple(
+        end_joint.joint.fit(end_of(design, end_joint, Numbers(v, end_joint.path), **sizes))
+        for end_joint in joints_of(design)
+    ) or (EndDimensions(plate_radius=outer, radius=outer),)
+
+
 def derive(v: Values, design: Design) -> Geometry:
     """All derived dimensions of a design."""
     bore, stroke = v["cylinder.bore"], v["cylinder.stroke"]
@@ -361,27 +391,21 @@ def derive(v: Values, design: Design) -> Geometry:
     barrel_length = v.get("barrel.length", needed)
     plate = v["caps.thickness"]
     extension = v["rod.extension"]
-    joints, fits = joints_of(design), []
-    for end_joint in joints:
-        end = end_of(
-            design,
-            end_joint,
-            Numbers(v, end_joint.path),
-            inner_radius=inner_radius,
-            outer_radius=outer_radius,
-            thicknesses=thicknesses,
-            barrel_length=barrel_length,
-            plate=plate,
-            rod_radius=rod / 2,
-        )
-        fits.append(end_joint.joint.fit(end))
-    if not fits:
-        fits.append(EndDimensions(plate_radius=outer_radius, radius=outer_radius))
+    joints = joints_of(design)
+    fits = _fits(
+        v,
+        design,
+        inner_radius=inner_radius,
+        outer_radius=outer_radius,
+        thicknesses=thicknesses,
+        barrel_length=barrel_length,
+        plate=plate,
+        rod_radius=rod / 2,
+    )
     forms = tuple(end.joint.form for end in joints)
     static, places = static_grooves(v, design), static_places(design)
     spigot = spigot_length(place=places[0], section=static[0].section) if static else 0.0
-    pin = v["clevis.pin_diameter"] if design.clevis is not None else 0.0
-    eye_offset = mass.eye_length(pin_diameter=pin)
+    pin, eye_radius = _eye(v, design)
     return Geometry(
         bore=bore,
         inner_radius=inner_radius,
@@ -401,17 +425,18 @@ def derive(v: Values, design: Design) -> Geometry:
         head_length=head_length,
         head_clearance=v["head.clearance"],
         plate=plate,
-        fits=tuple(fits),
+        fits=fits,
         forms=forms,
         barrel_length=barrel_length,
-        eye_offset=eye_offset,
+        eye_offset=eye_radius + pin,
+        eye_radius=eye_radius,
         pin_diameter=pin,
         closed_length=closed_length(
             barrel_length=barrel_length,
             plate=plate,
             spigot=spigot,
             extension=extension,
-            pin_diameter=pin,
+            eye=eye_radius + pin,
         ),
         piston_grooves=grooves(v, design, "piston"),
         rod_grooves=grooves(v, design, "rod"),
@@ -454,7 +479,7 @@ def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, 
     skirted = 2 * g.cap_fit.length if len(g.fits) == 1 else g.cap_fit.length + g.head_fit.length
     skirts = {"geometry_skirts": g.wall_length - skirted} if "skirts" in g.forms else {}
     static_width = g.static_grooves[0].width if g.static_grooves else STATIC_SEAL
-    lips = {"cap": g.eye_offset - g.pin_diameter - g.cap_fit.lip} if eyes else {}
+    lips = {"cap": g.eye_offset - g.eye_radius - g.cap_fit.lip} if eyes else {}
     lips["head"] = g.rod_extension - g.head_fit.lip
     plugs = {"geometry_lip": lips, "geometry_plug": (g.plate - static_width) / 2}
     sealed: dict[str, Any] = {}

@@ -28,6 +28,7 @@ from .geometry import (
     Geometry,
     Groove,
     RetentionNumbers,
+    bearing_of,
     end_at,
     end_of,
     groove_totals,
@@ -35,11 +36,16 @@ from .geometry import (
 )
 from .kernel import PreparedDesign
 from .piston_nut import recess
+from .ports import gallery, places, rim_bosses
 from .result import Outline
 from .rods import end_material
 
 _Part: TypeAlias = tuple[str, str, list[Polygon], int]
 """Name of a part, material, polygons, and number of round bars (0 for a turned part)."""
+
+PORTS, BOSSES = "ports", "port bosses"
+RADIAL = (PORTS, BOSSES)
+"""Parts only above the axis."""
 
 _Kind: TypeAlias = Literal["metal", "composite", "polymer", "seal", "oil"]
 
@@ -94,17 +100,25 @@ def _edge(
     return [*edge, (x1, surface)]
 
 
-def _eye(centre: float, pin: float, side: int) -> list[Polygon]:
-    """Half of an eye in side view: a lug of radius `pin` around its hole, and its neck."""
-    angles = [pi * k / 24 for k in range(25)]
-    rim = [(centre + pin * cos(a), pin * sin(a)) for a in angles]
-    hole = [(centre + pin / 2 * cos(a), pin / 2 * sin(a)) for a in reversed(angles)]
-    foot = 0.75**0.5 * pin  # intersection of the neck with the rim
-    neck = sorted((centre + side * foot, centre + side * 2 * pin))
-    return [(*rim, *hole), rectangle(neck[0], neck[1], 0.0, pin / 2)]
+def _half_ring(centre: float, inner: float, outer: float) -> Polygon:
+    """Half of a ring in side view."""
+    turns = [(cos(pi * k / 24), sin(pi * k / 24) if 0 < k < 24 else 0.0) for k in range(25)]
+    rim = [(centre + outer * x, outer * y) for x, y in turns]
+    hole = [(centre + inner * x, inner * y) for x, y in reversed(turns)]
+    return (*rim, *hole)
 
 
-def _kind(material: Material) -> _Kind:
+def _eye(centre: float, pin: float, radius: float, hole: float, side: int) -> list[Polygon]:
+    """Half of an eye in side view: a lug around its hole, and a neck as wide as the pin."""
+    foot = (radius**2 - pin**2 / 4) ** 0.5  # intersection of the neck with the rim
+    neck = sorted((centre + side * foot, centre + side * (radius + pin)))
+    lug = _half_ring(centre, hole / 2, radius)
+    return [lug, rectangle(neck[0], neck[1], 0.0, pin / 2)]
+
+
+def _kind(part: str, material: Material | None) -> _Kind:
+    if material is None:
+        return "oil" if part == PORTS else "metal"
     kinds: dict[str, _Kind] = {"ply": "composite", "polymer": "polymer", "seal": "seal"}
     return kinds.get(material.kind, "metal")
 
@@ -263,6 +277,9 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
         bottom = at.start + height
         edge = ((at.piston_end, hole), (bottom, hole), (bottom, corner), (at.start, corner))
         piston = (*piston[:-2], *edge)
+    if design.sensor is not None:
+        hole = _sensor_hole(design, g)
+        piston = (*piston[:-2], (at.piston_end, hole), (at.start, hole))
     yield "piston", design.piston.material, [piston], 0
     yield "glands", design.head.material, [plug], 0
     yield from _rod(design, g, at)
@@ -282,6 +299,12 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     ]
     for groove in g.static_grooves:
         yield groove.place, groove.material, shapes, 0
+
+
+def _sensor_hole(design: Design, g: Geometry) -> float:
+    """Radius of the hole of the piston through which the sensor passes."""
+    bore, fitting = float(g.rod_inner_diameter) / 2, design.rod.fitting
+    return bore if fitting is None else max(bore - (fitting.wall or 0.0), 0.0)
 
 
 def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
@@ -331,10 +354,59 @@ def _rings(
 
 
 def _eyes(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
-    if design.clevis is not None:
-        pin, name = float(g.pin_diameter), design.clevis.material
-        yield "cap eye", name, _eye(0.0, pin, 1), 0
-        yield "rod eye", name, _eye(at.tip + float(g.eye_offset), pin, -1), 0
+    if design.clevis is None:
+        return
+    pin, bearing, name = float(g.pin_diameter), bearing_of(design), design.clevis.material
+    hole = pin if bearing is None else bearing.outer_diameter
+    centres = {"cap": (0.0, 1), "rod": (at.tip + float(g.eye_offset), -1)}
+    for end, (centre, side) in centres.items():
+        yield f"{end} eye", name, _eye(centre, pin, float(g.eye_radius), hole, side), 0
+    if bearing is not None:
+        rings = [_half_ring(centre, pin / 2, hole / 2) for centre, _ in centres.values()]
+        yield "eye bearings", f"{bearing.name.upper()}, ISO 12240-1", rings, 0
+
+
+def _ports(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
+    """The ports, above the axis: their threads and bores, and their bosses."""
+    found = places(design, g)
+    if found is None:
+        return
+    size, half, bore = found.size, found.size.diameter / 2, float(found.bore) / 2
+    outer, axis = float(g.outer_radius), float(gallery(g)[0])
+    plate = float(g.plate) / 2
+    holes, bosses = [], []
+    ends = (
+        (g.cap_fit, at.start + bore, at.plate - plate, at.start),
+        (g.head_fit, at.head - bore, at.end + plate, at.head),
+    )
+    rims = rim_bosses(size, g)
+    for (fit, above, middle, chamber), boss, rim in zip(ends, found.on_barrel, rims, strict=True):
+        centre = above if boss else middle
+        base = outer if boss else float(fit.plate_radius)
+        top = base + (size.drilled if boss else float(rim))
+        bottom = top - size.drilled
+        holes.append(rectangle(centre - half, centre + half, bottom, top))
+        if top > base:
+            bosses += [
+                rectangle(centre - size.boss / 2, centre - half, base, top),
+                rectangle(centre + half, centre + size.boss / 2, base, top),
+            ]
+        end = at.bore if boss else axis
+        if bottom > end:
+            holes.append(rectangle(centre - bore, centre + bore, end, bottom))
+        if not boss:
+            start, stop = sorted((middle, chamber))
+            holes.append(rectangle(start, stop, axis - bore, axis + bore))
+    yield PORTS, f"{size.thread}, {size.standard}", holes, 0
+    yield BOSSES, design.caps.material, bosses, 0
+
+
+def _sensor(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
+    """The element of a position sensor, from the cap into the rod."""
+    if design.sensor is not None:
+        end = at.start + float(g.stroke) + design.sensor.dead_length
+        shape = rectangle(at.plate, end, 0.0, design.sensor.diameter / 2)
+        yield "sensor", design.sensor.type, [shape], 0
 
 
 def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tuple[Outline, ...]:
@@ -346,12 +418,19 @@ def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tup
         (rectangle(at.piston_end, at.head, at.rod, at.bore),),
         "oil",
     )
-    groups = (_barrel, _ends, _inside, _eyes)
+    groups = (_barrel, _ends, _inside, _eyes, _sensor, _ports)
     parts = [part for group in groups for part in group(design, g, at)]
     return (
         oil,
         *(
-            Outline(part, name, tuple(polygons), _kind(materials[name]), bars)
+            Outline(
+                part,
+                name,
+                tuple(polygons),
+                _kind(part, materials.get(name)),
+                bars,
+                part in RADIAL,
+            )
             for part, name, polygons, bars in parts
             if polygons
         ),
@@ -360,6 +439,7 @@ def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tup
 
 def lengths(design: Design, g: Geometry) -> dict[str, float]:
     """Dimensions that the drawing states [m]."""
+    bearing = bearing_of(design)
     values = {
         "bore": g.bore,
         "rod": g.rod_diameter,
@@ -379,6 +459,8 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
         "pin_rod": g.closed_length,
         "eye_offset": g.eye_offset,
         "pin": g.pin_diameter,
+        "eye_radius": g.eye_radius,
+        "eye_hole": g.pin_diameter if bearing is None else bearing.outer_diameter,
         "extension": g.rod_extension,
     }
     return {name: float(value) for name, value in values.items()}

@@ -282,6 +282,8 @@ class Outline:
     kind: Literal["metal", "composite", "polymer", "seal", "oil"]
     bars: int = 0
     """Number of round bars around the axis, such as tie rods; 0 for a turned part."""
+    radial: bool = False
+    """Whether the part is only above the axis, turned about lines across it, as a port is."""
 
 
 @dataclass(frozen=True, slots=True)

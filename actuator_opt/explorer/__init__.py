@@ -280,7 +280,7 @@ def _part(outline: Outline) -> dict[str, Any]:
         "part": outline.part,
         "kind": outline.kind,
         "polygons": [len(polygon) for polygon in outline.polygons],
-    }
+    } | ({"sides": [-1]} if outline.radial else {})
 
 
 FOLDER = Path(__file__).parent

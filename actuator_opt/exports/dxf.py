@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
-from math import cos, radians, sin, sqrt, tan
+from math import asin, cos, pi, radians, sin, sqrt, tan
 from typing import Any, TypeAlias
 
 from ..base.dataclass import dataclass
@@ -21,7 +21,7 @@ from ..evaluation.outline import notes
 from ..evaluation.result import Evaluation, Outline
 from ..rendering.ink import spread
 from . import fits
-from .step import EYES, Profile, joined, millimetres, title
+from .step import BEARINGS, EYES, Profile, joined, millimetres, title
 
 _CONTROL = re.compile(
     "[\x00-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2060-\u2069\ud800-\udfff\ufeff\ufffe\uffff]"
@@ -395,16 +395,20 @@ def _halves(profile: Profile) -> list[list[_Corner]]:
     return [_straight((*upper, *((x, -r) for x, r in reversed(upper))))]
 
 
-def _eye(centre: float, pin: float, side: int) -> list[list[_Corner]]:
+def _circle(centre: float, diameter: float) -> list[_Corner]:
+    return [(centre - diameter / 2, 0.0, 1.0), (centre + diameter / 2, 0.0, 1.0)]
+
+
+def _eye(centre: float, pin: float, radius: float, hole: float, side: int) -> list[list[_Corner]]:
     """Outlines of an eye seen along its pin: the lug with its neck, and the hole.
 
-    The shape is that of `mass.eye_volume`.
+    The shape is that of `mass.eye_volume` or `spherical_bearing.bearing_eye_volume`.
     """
-    foot, half = centre + side * sqrt(0.75) * pin, pin / 2
-    arc = -side * tan(radians(300 / 4))
-    end = centre + side * 2 * pin
+    foot, half = centre + side * sqrt(radius * radius - pin * pin / 4), pin / 2
+    arc = -side * tan((2 * pi - 2 * asin(half / radius)) / 4)
+    end = centre + side * (radius + pin)
     lug = [(foot, half, 0.0), (end, half, 0.0), (end, -half, 0.0), (foot, -half, arc)]
-    return [lug, [(centre - half, 0.0, 1.0), (centre + half, 0.0, 1.0)]]
+    return [lug, _circle(centre, hole)]
 
 
 def _profiles(outline: Outline) -> list[Profile]:
@@ -413,10 +417,16 @@ def _profiles(outline: Outline) -> list[Profile]:
 
 def _cut(evaluation: Evaluation, outline: Outline) -> list[list[_Corner]]:
     """Closed outlines of a part in the section plane."""
+    lengths = evaluation.lengths
+    pin, radius, hole = (1000 * lengths[name] for name in ("pin", "eye_radius", "eye_hole"))
     if outline.part in EYES:
         at, side = ("pin_cap", 1) if outline.part == "cap eye" else ("pin_rod", -1)
-        lengths = evaluation.lengths
-        return _eye(1000 * lengths[at], 1000 * lengths["pin"], side)
+        return _eye(1000 * lengths[at], pin, radius, hole, side)
+    if outline.part == BEARINGS:
+        ends = (1000 * lengths[at] for at in ("pin_cap", "pin_rod"))
+        return [_circle(end, size) for end in ends for size in (hole, pin)]
+    if outline.radial:
+        return [_straight(millimetres(polygon)) for polygon in outline.polygons]
     lines = [half for profile in _profiles(outline) for half in _halves(profile)]
     if outline.bars % 2:
         return [line for line in lines if line[0][1] > 0]  # no bar lies opposite the first
@@ -477,7 +487,8 @@ def _parts(
         if look is not None:
             look = look[0], look[1] * paper.scale
         thin = {"layer": layer, "lineweight": 13}
-        _hatch(space, lines, look, thin, nested=outline.part in EYES)
+        if outline.kind != "oil":
+            _hatch(space, lines, look, thin, nested=outline.part in (*EYES, BEARINGS))
         for line in lines:
             space.add_lwpolyline(line, format="xyb", close=True, dxfattribs={"layer": layer})
 
@@ -504,7 +515,8 @@ def _words(
         "",
         *(f"{title(outline.part)}: {outline.material}" for outline in outlines),
         "",
-        "Not drawn, as the models do not describe their shape: threads, ports, fillets, chamfers.",
+        "Not drawn, as the models do not describe their shape: threads, fillets, chamfers"
+        f"{'' if evaluation.design.cylinder.port_thread else ', ports'}.",
         "Rings are drawn as rectangles in their grooves, not with their true sections.",
     ]
     lines += notes(evaluation.design, evaluation.lengths)
@@ -569,7 +581,9 @@ def dxf(evaluation: Evaluation, *, program: str, date: str | None = None) -> byt
     """
     ezdxf = library("ezdxf")
     outlines = [
-        outline for outline in evaluation.outlines if outline.polygons and outline.kind != "oil"
+        outline
+        for outline in evaluation.outlines
+        if outline.polygons and (outline.kind != "oil" or outline.radial)
     ]
     profiles = [millimetres(polygon) for outline in outlines for polygon in outline.polygons]
     first = min(x for profile in profiles for x, _ in profile)

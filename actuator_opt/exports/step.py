@@ -34,7 +34,8 @@ _RINGS = tuple(
     for ring in ("seal", "secondary seal", "guide", "wiper")
 )
 EYES = ("cap eye", "rod eye")
-NOT_TURNED = ("oil", *_RINGS, *EYES)
+BEARINGS = "eye bearings"
+NOT_TURNED = ("oil", *_RINGS, *EYES, BEARINGS, "ports")
 """Parts of the section that are not exported, because the model does not define their shape."""
 
 
@@ -43,7 +44,8 @@ class SolidBody:
     """A body of revolution about the x axis; lengths in mm.
 
     `profile` is the half-section, with x = 0 at the body's first end; `places` are the positions of
-    that origin in the assembly, one per copy of the body.
+    that origin in the assembly, one per copy of the body. A `radial` body is turned about a line
+    across the axis, which points away from it.
     """
 
     name: str
@@ -51,6 +53,7 @@ class SolidBody:
     material: str
     profile: Profile
     places: tuple[tuple[float, float, float], ...]
+    radial: bool = False
 
 
 def title(part: str) -> str:
@@ -208,6 +211,23 @@ def _bars(outline: Outline) -> SolidBody:
     )
 
 
+def _bosses(outline: Outline) -> Iterator[SolidBody]:
+    """The bosses of the ports, each drawn as two pieces beside its hole."""
+    pieces = [tidy(millimetres(polygon)) for polygon in outline.polygons]
+    for index, (first, second) in enumerate(zip(pieces[::2], pieces[1::2], strict=True), 1):
+        (left, base), (inner, top) = first[0], max(first)
+        radius = (max(second)[0] - left) / 2
+        hole, height = radius - (inner - left), top - base
+        yield SolidBody(
+            name=f"port boss {index}",
+            part=outline.part,
+            material=outline.material,
+            profile=((0.0, hole), (height, hole), (height, radius), (0.0, radius)),
+            places=((left + radius, base, 0.0),),
+            radial=True,
+        )
+
+
 def _bodies(outline: Outline) -> Iterator[SolidBody]:
     part = outline.part
     label = title(part)
@@ -233,6 +253,8 @@ def bodies(evaluation: Evaluation) -> list[SolidBody]:
     for outline in evaluation.outlines:
         if outline.bars:
             solid_bodies.append(_bars(outline))
+        elif outline.part == "port bosses":
+            solid_bodies += _bosses(outline)
         elif outline.part not in NOT_TURNED:
             solid_bodies += _bodies(outline)
     return solid_bodies
@@ -306,12 +328,12 @@ class Records:
         axis, zero = self.direction(along, 0.0), self.direction(0.0, 1.0)
         return self.shared(f"AXIS2_PLACEMENT_3D('',{origin},{axis},{zero})")
 
-    def place(self, at: tuple[float, float, float]) -> str:
-        """Add a coordinate system that is shifted but not rotated.
+    def place(self, at: tuple[float, float, float], *, across: bool = False) -> str:
+        """Add a coordinate system that is shifted and, if `across`, turned from x to y.
 
-        All CAD programs read such a coordinate system in the same way.
+        All CAD programs read one that is only shifted in the same way.
         """
-        axis, zero = self.direction(0.0, 0.0, 1.0), self.direction(1.0, 0.0)
+        axis, zero = self.direction(0.0, 0.0, 1.0), self.direction(not across, across)
         return self.shared(f"AXIS2_PLACEMENT_3D('',{self.point(*at)},{axis},{zero})")
 
 
@@ -487,7 +509,7 @@ def step(bodies: Sequence[SolidBody], *, name: str, program: str, date: str | No
     parts = [_Product(r, body.name, body.material, contexts) for body in bodies]
     for body, part in zip(bodies, parts, strict=True):
         part.shaped("ADVANCED_BREP_SHAPE_REPRESENTATION", (home, solid(r, body.name, body.profile)))
-    places = [[r.place(place) for place in body.places] for body in bodies]
+    places = [[r.place(place, across=body.radial) for place in body.places] for body in bodies]
     frames = dict.fromkeys([home, *(frame for frames in places for frame in frames)])
     whole.shaped("SHAPE_REPRESENTATION", frames)
     for body, part, frames_of in zip(bodies, parts, places, strict=True):

@@ -1,0 +1,128 @@
+"""Threaded ports: where they are, their masses, and the metal and clearance around them.
+
+A port is in the rim of an end plate; an axial drilling leads from it to the chamber. If the plate
+is not deep enough for the drill, a boss on its rim makes up for it. Where the barrel encloses the
+end plate, the port is in a round boss on the barrel, at the end of the chamber. The land of the
+piston before its first groove then passes the port's bore, so that no seal does.
+"""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Any
+
+from ..base.dataclass import dataclass
+from ..base.numeric import Array, maximum
+from ..design.model import Design
+from ..design.standard_sizes import PortSize, port
+from ..joints.joint import LEAST_METAL
+from ..models.mass import stud_mass
+from ..models.port import boss_volume
+from .geometry import Geometry, groove_totals
+from .values import Values
+
+NO_PORTS = "no thread of the ports stated: add cylinder.port_thread"
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """The ports of a design: size and bore; whether those of cap and head are on the barrel."""
+
+    size: PortSize
+    bore: Array
+    on_barrel: tuple[bool, bool]
+
+
+def places(design: Design, g: Geometry, v: Values | None = None) -> Places | None:
+    """The ports of a design; None if it states no thread for them."""
+    name = design.cylinder.port_thread
+    if name is None:
+        return None
+    size, forms = port(name), g.forms or ("plates",)
+    stated = design.cylinder.port_diameter or size.bore
+    return Places(
+        size=size,
+        bore=stated if v is None else v.get("cylinder.port_diameter", size.bore),
+        on_barrel=(forms[0] == "plugs", forms[-1] == "plugs"),
+    )
+
+
+def gallery(g: Geometry) -> tuple[Array, Array]:
+    """Radius of the axial drillings, and radial width of the metal of the head that they pass.
+
+    They lie between the grooves of the rod seals and the groove of a static seal on the head.
+    """
+    inner = g.rod_diameter / 2 + groove_totals(g.rod_grooves)[2]
+    sealed = g.static_places[1] == "bore"
+    outer = g.inner_radius - (g.static_grooves[0].gland_depth if sealed else 0.0)
+    return (inner + outer) / 2, outer - inner
+
+
+def rim_bosses(size: PortSize, g: Geometry) -> tuple[Array, Array]:
+    """Heights of the bosses on the rims of cap and head that the drill of a port needs, or 0."""
+    under = g.rod_diameter / 2 + g.head_clearance + LEAST_METAL
+    return (
+        maximum(size.drilled - g.cap_fit.plate_radius, 0.0),
+        maximum(size.drilled - (g.head_fit.plate_radius - under), 0.0),
+    )
+
+
+def lands(v: Values, design: Design, g: Geometry) -> dict[str, Any]:
+    """Metal beside the ports, and clearances of their bosses, which the optimiser keeps."""
+    ports = places(design, g, v)
+    if ports is None:
+        return {}
+    size, bore, rows = ports.size, ports.bore, {}
+    if any(ports.on_barrel):
+        length, count, _ = groove_totals(g.piston_grooves)
+        land = (g.piston_length - length) / (count + 1)
+        rows["land of the piston beyond the port"] = land - bore
+        rows["barrel beside the boss"] = g.outer_radius - size.boss / 2
+    if all(ports.on_barrel):
+        between = g.barrel_length - g.head_length - bore - size.boss
+        rows["between the bosses"] = between
+    fits = (g.cap_fit, g.head_fit)
+    for name, boss, fit in zip(("cap", "head"), ports.on_barrel, fits, strict=True):
+        if boss:
+            spigot = g.spigot if name == "cap" else 0.0
+            end = fit.beyond + spigot + (bore - size.boss) / 2
+            rows[f"barrel's end beside the boss, {name}"] = end
+            continue
+        rows[f"{name} plate beside the port"] = (g.plate - size.seat) / 2
+        if name == "head":
+            rows["head beside the drilling"] = (gallery(g)[1] - bore) / 2
+    return {"geometry_port": rows}
+
+
+def masses(v: Values, design: Design, g: Geometry) -> dict[str, Array]:
+    """Mass of the bosses, and of the metal that the ports remove, with a negative sign."""
+    ports = places(design, g, v)
+    if ports is None:
+        return {}
+    size = ports.size
+    caps = v[f"materials.{design.caps.material}.density"]
+    head = v[f"materials.{design.head.material}.density"]
+    thread = {"diameter": size.diameter, "pitch": size.pitch, "length": size.drilled}
+    area = pi / 4 * ports.bore * ports.bore
+    wall = sum(
+        v[f"materials.{ply.material}.density"] * thickness
+        for ply, thickness in zip(design.barrel.layup, g.thicknesses, strict=True)
+    )
+    cut = stud_mass(density=caps, **thread)
+    rims = rim_bosses(size, g)
+    parts: dict[str, Array] = {}
+    fits = (g.cap_fit, g.head_fit)
+    for name, boss, fit, rim in zip(("cap", "head"), ports.on_barrel, fits, rims, strict=True):
+        if boss:
+            solid = boss_volume(
+                boss_diameter=size.boss, height=size.drilled, tube_radius=g.outer_radius
+            )
+            parts["ports"] = parts.get("ports", 0.0) + caps * solid - cut
+            parts["barrel"] = parts.get("barrel", 0.0) - wall * area
+        else:
+            further = maximum(fit.plate_radius + rim - size.drilled - gallery(g)[0], 0.0)
+            solid = caps * pi / 4 * size.boss * size.boss * rim
+            parts[name] = solid - cut - caps * area * (further + g.plate / 2)
+            if name == "head":
+                parts["glands"] = -head * area * g.head_length
+    return parts

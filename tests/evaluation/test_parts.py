@@ -1,0 +1,264 @@
+"""Ports, spherical bearings and position sensor: masses by hand, limits, refusals, drawings."""
+
+from __future__ import annotations
+
+import io
+import re
+from itertools import pairwise
+from math import pi
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+import pytest
+from step_reader import StepFile
+
+import actuator_opt as ao
+from actuator_opt.base.errors import InputError
+from actuator_opt.design import standard_sizes
+from actuator_opt.design.materials import load_library
+from actuator_opt.exports.dxf import dxf
+from actuator_opt.exports.step import bodies, step
+from actuator_opt.models import gland, port, spherical_bearing
+
+DESIGNS = Path(__file__).parents[2] / "designs"
+NUT = r"  nut:.*\n(    .*\n)+"
+SENSOR = """sensor:
+  type: magnetostrictive
+  diameter: 6 mm
+  dead_length: 15 mm
+  mass: 40 g
+
+"""
+
+
+def near(value, rel=1e-9):
+    """Equal up to rounding."""
+    return pytest.approx(value, rel=rel)
+
+
+def text_of(name, *changes):
+    """A shipped design, changed by (pattern, text); every pattern occurs."""
+    text = (DESIGNS / f"{name}.yaml").read_text("utf-8")
+    for pattern, new in changes:
+        assert re.search(pattern, text)
+        text = re.sub(pattern, new, text, count=1)
+    return text
+
+
+PORTS = (r"  port_diameter: 6 mm\n", "  port_thread: m8x1\n")
+BEARINGS = (r"  pin_diameter: 8 mm\n", "  bearing: ge8e\n")
+LONGER = (r"length: 12.5 mm", "length: 15 mm")
+
+
+def pair(name, *changes, before=()):
+    """A design with some changes, and with these and `changes`."""
+    return (
+        ao.evaluate(ao.read(text_of(name, *before))),
+        ao.evaluate(ao.read(text_of(name, *before, *changes))),
+    )
+
+
+def difference(first, second):
+    """Change of each part's mass."""
+    parts = {**first.mass_parts, **second.mass_parts}
+    return {
+        part: second.mass_parts.get(part, 0.0) - first.mass_parts.get(part, 0.0) for part in parts
+    }
+
+
+LIBRARY = load_library()
+
+
+def density(name):
+    """Density of a material of the library."""
+    return LIBRARY.get(name).numbers["density"]
+
+
+def test_the_tables_are_plausible_and_say_what_was_checked():
+    """Bore below core of the thread, seat and boss around it; ratings rise with the size."""
+    tables = standard_sizes.tables()
+    ports = [standard_sizes.port(name) for name in tables.names("ports")]
+    assert len(ports) == 25
+    for size in ports:
+        assert size.bore < size.diameter - 1.08 * size.pitch < size.diameter < size.seat < size.boss
+        assert size.depth < size.drilled
+        assert size.confidence == "unverified"
+    bearings = [standard_sizes.spherical_bearing(n) for n in tables.names("spherical_bearings")]
+    assert len(bearings) == 19
+    for size, larger in pairwise(bearings):
+        assert size.name == f"ge{1e3 * size.bore:g}e"
+        assert (size.bore, size.static_rating) < (larger.bore, larger.static_rating)
+        # steel of the ring space, and less: the gap between the rings and the grease weigh little
+        ring = 7850 * pi / 4 * (size.outer_diameter**2 - size.bore**2) * size.width
+        assert 0.5 * ring < size.mass < 1.02 * ring
+
+
+def test_saddle_of_a_boss_by_quadrature():
+    """Mean of R - sqrt(R^2 - y^2) over the disc."""
+    radius = 15e-3
+    for half in (3e-3, 7e-3, 12e-3):
+        offset = np.linspace(-half, half, 400001)
+        weight = np.sqrt(half**2 - offset**2)
+        mean = np.sum(weight * (radius - np.sqrt(radius**2 - offset**2))) / np.sum(weight)
+        found = port.saddle_depth(boss_diameter=2 * half, tube_radius=radius)
+        assert found == pytest.approx(mean, rel=3e-3)
+        volume = port.boss_volume(boss_diameter=2 * half, height=0.01, tube_radius=radius)
+        assert volume == near(pi * half**2 * (0.01 + found))
+
+
+def test_bosses_on_the_barrel_by_hand():
+    """A barrel that encloses its plugs: two bosses, without thread, and two holes in the wall."""
+    bare, found = pair("knee", PORTS, before=[LONGER])
+    outer = (21.5 / 2 + 1.6 + 2.7) * 1e-3
+    boss, depth, pitch_diameter, bore = 14e-3, 11.5e-3, (8 - 0.649519) * 1e-3, 3e-3
+    solid = port.boss_volume(boss_diameter=boss, height=depth, tube_radius=outer)
+    metal, fibres = density("al_7075_t6"), density("t700_epoxy")
+    one = metal * (solid - pi / 4 * pitch_diameter**2 * depth)
+    wall = pi / 4 * bore**2 * (metal * 1.6e-3 + fibres * 2.7e-3)
+    change = difference(bare, found)
+    assert change.pop("ports") == near(2 * one, 1e-5)
+    assert change.pop("barrel") == near(-2 * wall, 1e-6)
+    assert set(change.values()) == {0.0}
+    assert "ports and fittings" in bare.mass_leaves_out
+    assert "ports and fittings" not in found.mass_leaves_out
+    assert "fittings of the ports" in found.mass_leaves_out
+    assert {"port"} == {value.material for value in found.unverified if value.value == "m8x1"}
+
+
+def test_ports_in_the_plates_by_hand():
+    """Skirted caps: a hole in each rim, a drilling to the chamber, a boss on the head."""
+    thick = (r"(caps:\n(?:  .*\n)*?  thickness:) .*", r"\1 12 mm")
+    bare, found = pair("steel_baseline", PORTS, before=[thick])
+    g = {name: float(value) for name, value in found.lengths.items()}
+    change, design = difference(bare, found), found.design
+    steel = density(design.caps.material)
+    area, depth = pi / 4 * 3e-3**2, 11.5e-3
+    cut = pi / 4 * ((8 - 0.649519) * 1e-3) ** 2 * depth
+    plate, rod = g["plate_outer"] / 2, g["rod"] / 2
+    rim = max(depth - (plate - rod - design.head.clearance - 1e-3), 0.0)
+    assert rim > 0
+    groove = design.seals.rod
+    inner = rod + groove.section * (1 - groove.squeeze)
+    outer = g["bore"] / 2 - design.seals.static.section * (1 - design.seals.static.squeeze)
+    axis = (inner + outer) / 2
+    further = [max(plate + more - depth - axis, 0.0) for more in (0.0, rim)]
+    boss = pi / 4 * 14e-3**2 * rim
+    caps = boss - 2 * cut - area * (sum(further) + 12e-3)
+    assert change.pop("caps") == near(steel * caps, 1e-5)
+    head = density(design.head.material)
+    assert change.pop("glands") == near(-head * area * design.head.length)
+    assert set(change.values()) == {0.0}
+    rows = {"plate": (12e-3 - 9.1e-3) / 2, "head": (outer - inner - 3e-3) / 2}
+    assert found.metrics["geometry_port"].value == near(min(rows.values()))
+
+
+def test_limits_of_the_bosses_by_hand():
+    """The land of the piston and the barrel beside the boss; a thin barrel misses the limit."""
+    _, found = pair("knee", PORTS, before=[LONGER])
+    seal = found.design.seals.piston
+    width = gland.back_up_groove_width(
+        groove_width=gland.groove_width(section=seal.section),
+        thickness=seal.back_up_thickness,
+        count=2,
+    )
+    land = (15e-3 - width) / 2
+    assert found.metrics["geometry_port"].value == near(land - 3e-3)
+    large = ao.evaluate(ao.read(text_of("knee", LONGER, (PORTS[0], "  port_thread: g1_2\n"))))
+    row = large.metrics["geometry_port"]
+    assert row.place == "land of the piston beyond the port"
+    assert row.value == near(land - 14e-3)
+
+
+def test_bearings_by_hand():
+    """Eyes with GE8E: lug, neck and bearing; static load rating over push; length of the eyes."""
+    bare, found = pair("knee", BEARINGS)
+    d, outer, width = 8e-3, 16e-3, 8e-3
+    radius = outer / 2 + d**2 / (2 * width)
+    assert radius == near(12e-3)
+    sizes = {"pin_diameter": d, "outer_diameter": outer, "width": width}
+    assert spherical_bearing.lug_radius(**sizes) == near(radius)
+    volume = pi * width * (radius**2 - outer**2 / 4) + pi / 4 * d**3
+    assert spherical_bearing.bearing_eye_volume(**sizes) == near(volume)
+    steel = density("steel_42crmo4")
+    assert bare.mass_parts["clevises"] == near(2 * steel * pi * d**3)
+    assert found.mass_parts["clevises"] == near(2 * (steel * volume + 8e-3))
+    push = 21e6 * pi / 4 * 21.5e-3**2
+    assert found.metrics["eye_bearing_factor"].value == near(27.5e3 / push)
+    longer = found.metrics["closed_length"].value - bare.metrics["closed_length"].value
+    assert longer == near(2 * (radius + d - 2 * d))
+    assert found.metrics["pin_factor"].value == bare.metrics["pin_factor"].value
+    assert "spherical bearings of the eyes" in bare.mass_leaves_out
+    assert "spherical bearings of the eyes" not in found.mass_leaves_out
+
+
+def test_a_choice_of_bearings_is_judged_by_their_ratings():
+    """GE4E misses the factor 1.5 of the check list, GE5E meets it, and larger ones weigh more."""
+    text = text_of("knee", BEARINGS) + "choices:\n  clevis.bearing: [ge4e, ge5e, ge8e]\n"
+    push, rows = 21e6 * pi / 4 * 21.5e-3**2, []
+    for name, rating in (("ge4e", 10.2e3), ("ge5e", 17e3), ("ge8e", 27.5e3)):
+        found = ao.evaluate(ao.read(text, set={"clevis.bearing": name}))
+        (check,) = [c for c in found.checks if c.metric == "eye_bearing_factor"]
+        assert check.value == near(rating / push)
+        rows.append((found.metrics["mass"].value, check.status))
+    assert [status for _, status in rows] == ["missed", "met", "met"]
+    assert rows == sorted(rows, key=lambda row: row[0])
+
+
+def test_sensor_by_hand():
+    """The sensor adds its mass, and takes the piston's core and one plug of the rod away."""
+    hollow = (r"  inner_diameter: \S+ mm", "  inner_diameter: 8.5 mm")
+    before = [(NUT, ""), hollow]
+    bare, found = pair("knee", (r"clevis:\n", SENSOR + "clevis:\n"), before=before)
+    area = pi / 4 * 8.5e-3**2
+    change = difference(bare, found)
+    assert change.pop("sensor") == near(40e-3)
+    assert change.pop("piston") == near(-density("al_7075_t6") * area * 12.5e-3)
+    assert change.pop("fastening") == near(-density("steel_42crmo4") * area * 10e-3)
+    assert set(change.values()) == {0.0}
+    inside = 12.5e-3 + (110 + 8 + 4.7 + 12) * 1e-3 - 10e-3  # piston and rod, without the plug
+    rows = (8.5e-3 - 6e-3) / 2, inside - 110e-3 - 15e-3
+    assert found.metrics["geometry_sensor"].value == near(min(rows))
+    assert "position sensor" not in found.mass_leaves_out
+
+
+REFUSED = [
+    ([(PORTS[0], "  port_diameter: 6 mm\n  port_thread: m8x1\n")],
+     r"port_diameter: 6 mm: larger than the bore of a port M8x1 \(3 mm\); write at most 3 mm"),
+    ([(PORTS[0], "  port_thread: m9\n")], r"port_thread: \"m9\".*use one of|port_thread: \"m9\""),
+    ([(BEARINGS[0], "  pin_diameter: 8 mm\n  bearing: ge10e\n")],
+     r"pin_diameter: 8 mm: the bore of bearing ge10e is 10 mm; remove the line"),
+    ([(BEARINGS[0], "")], r"clevis.pin_diameter: missing: required without bearing; add e.g."),
+    ([(r"clevis:\n", SENSOR + "clevis:\n")], r"sensor: the sensor would pass through the stud"),
+    ([(NUT, ""), (r"  inner_diameter: 7 mm\n", ""), (r"  rod.inner_diameter:\n(    .*\n)+", ""),
+      (r"clevis:\n", SENSOR + "clevis:\n")],
+     r"sensor.diameter: 6 mm: needs a rod with a bore of 8 mm, but it is solid; write"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("changes", "words"), REFUSED)
+def test_contradictions_are_refused_in_one_line(changes, words):
+    """Bore larger than the port's, a pin that is not the bearing's, a solid rod, a solid stud."""
+    with pytest.raises(InputError, match=words) as caught:
+        ao.read(text_of("knee", *changes))
+    assert len(caught.value.diagnostics) == 1
+
+
+def test_drawings_show_ports_bearings_and_sensor():
+    """Ports above the axis only; STEP has a closed body for each boss; DXF is valid."""
+    hollow = (r"  inner_diameter: \S+ mm", "  inner_diameter: 8.5 mm")
+    sensor = (r"clevis:\n", SENSOR + "clevis:\n")
+    changes = [LONGER, (NUT, ""), hollow, PORTS, BEARINGS, sensor]
+    found = ao.evaluate(ao.read(text_of("knee", *changes)))
+    parts = {outline.part: outline for outline in found.outlines}
+    assert {"ports", "port bosses", "eye bearings", "sensor"} <= set(parts)
+    assert {part for part, outline in parts.items() if outline.radial} == {"ports", "port bosses"}
+    assert parts["ports"].material == "M8x1, ISO 6149-1"
+    top = max(r for polygon in parts["port bosses"].polygons for _, r in polygon)
+    assert top == near((21.5 / 2 + 1.6 + 2.7 + 11.5) * 1e-3)
+    assert len([b for b in bodies(found) if b.radial]) == 2
+    StepFile(step(bodies(found), name="knee", program="test"))
+    document = ezdxf.read(io.StringIO(dxf(found, program="test").decode()))
+    assert not document.audit().errors
+    layers = {entity.dxf.layer for entity in document.modelspace()}
+    assert {"ports", "port bosses", "eye bearings", "sensor"} <= layers
