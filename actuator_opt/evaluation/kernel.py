@@ -141,11 +141,11 @@ def compute_flow(
     out.put("flow", flow["a"])
     out.put("piston_speed", state.speed)
     out.put("oil_viscosity", state.kinematic_viscosity)
-    if "cylinder.port_diameter" in v:
-        port = v["cylinder.port_diameter"]
-        out.put("port_velocity", lines.port_velocity(flow=flow["a"], port_diameter=port))
-    else:
+    bore = ports.bore(v, design)
+    if bore is None:
         out.skip("port_velocity", "no port stated: add cylinder.port_diameter")
+    else:
+        out.put("port_velocity", lines.port_velocity(flow=flow["a"], port_diameter=bore))
     if design.lines:
         _compute_lines(v, design, state, flow, out)
     else:

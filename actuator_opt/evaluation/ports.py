@@ -33,6 +33,13 @@ class Places:
     on_barrel: tuple[bool, bool]
 
 
+def bore(v: Values, design: Design) -> Array | None:
+    """Bore of the ports; None if the design states neither bore nor thread."""
+    name = design.cylinder.port_thread
+    default = None if name is None else port(name).bore
+    return v.get("cylinder.port_diameter", default)
+
+
 def places(design: Design, g: Geometry, v: Values | None = None) -> Places | None:
     """The ports of a design; None if it states no thread for them."""
     name = design.cylinder.port_thread

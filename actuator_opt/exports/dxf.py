@@ -18,6 +18,7 @@ from typing import Any, TypeAlias
 from ..base.dataclass import dataclass
 from ..base.errors import library
 from ..evaluation.outline import notes
+from ..evaluation.parts_list import parts_list
 from ..evaluation.result import Evaluation, Outline
 from ..rendering.ink import spread
 from . import fits
@@ -531,9 +532,12 @@ def _words(
 
 
 def _masses(evaluation: Evaluation) -> Iterator[str]:
-    """Yield the masses of the parts and their sum."""
-    parts = ((title(part), mass) for part, mass in evaluation.mass_parts.items() if mass)
-    yield "Mass: " + ", ".join(f"{name} {1e3 * mass:.4g} g" for name, mass in parts)
+    """Yield the parts list, with pieces, masses and materials, and the sum of the masses."""
+    yield "Parts list: pieces, part, mass, material"
+    for part, pieces, material, mass in parts_list(evaluation):
+        if mass:
+            count = "" if pieces is None else f"{pieces} "
+            yield f"{count}{title(part)}, {1e3 * mass:.4g} g, {material}"
     yield f"Sum {1e3 * sum(evaluation.mass_parts.values()):.4g} g, without oil."
 
 

@@ -17,6 +17,7 @@ import actuator_opt as ao
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import standard_sizes
 from actuator_opt.design.materials import load_library
+from actuator_opt.evaluation.parts_list import parts_list
 from actuator_opt.exports.dxf import dxf
 from actuator_opt.exports.step import bodies, step
 from actuator_opt.models import gland, port, spherical_bearing
@@ -262,3 +263,27 @@ def test_drawings_show_ports_bearings_and_sensor():
     assert not document.audit().errors
     layers = {entity.dxf.layer for entity in document.modelspace()}
     assert {"ports", "port bosses", "eye bearings", "sensor"} <= layers
+
+
+def test_the_parts_list_counts_pieces_and_names_materials():
+    """Every entry of the mass breakdown, with pieces and materials; DXF and report have them."""
+    found = ao.evaluate(ao.read(text_of("knee", LONGER, PORTS, BEARINGS)))
+    rows = {row.part: row for row in parts_list(found)}
+    assert {part: row.mass for part, row in rows.items()} == dict(found.mass_parts)
+    assert rows["barrel"][1:3] == (1, "al_7075_t6, t700_epoxy")
+    assert rows["caps"][1:3] == (2, "al_7075_t6")
+    # piston: ring and two back-ups; rod: ring and one back-up; a static ring in cap and in head
+    assert rows["seals"][1:3] == (3 + 2 + 2, "nbr_90, back_up_ptfe")
+    assert rows["fastening"][1:3] == (None, "steel_42crmo4, steel_bolt_12_9")
+    assert rows["clevises"][1:3] == (2, "steel_42crmo4 with GE8E, ISO 12240-1")
+    assert rows["ports"][1:3] == (2, "al_7075_t6, M8x1, ISO 6149-1")
+    bonded = ao.evaluate(ao.read(DESIGNS / "knee_bonded.yaml"))
+    (caps,) = [row for row in parts_list(bonded) if row.part == "caps"]
+    assert caps.material == "al_7075_t6, epoxy_structural"
+    document = ezdxf.read(io.StringIO(dxf(found, program="test").decode()))
+    texts = [entity.dxf.text for entity in document.modelspace().query("TEXT")]
+    mass = 1e3 * found.mass_parts["ports"]
+    assert f"2 ports, {mass:.4g} g, al_7075_t6, M8x1, ISO 6149-1" in texts
+    assert any("M8x1 by ISO 6149-1, full thread 10 deep, drill 11.5 deep" in t for t in texts)
+    assert "Holes of the eyes: 16 mm for GE8E." in texts
+    assert "Thread of the piston's stud: M8 x 1 - 6g; tighten to 7 kN." in texts
