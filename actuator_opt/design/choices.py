@@ -168,6 +168,13 @@ Turn: TypeAlias = Annotated[
         "it is cut off as scrap; pins: around a ring of pins at the end, without extra length"
     ),
 ]
+CushionEnd: TypeAlias = Annotated[
+    Literal["both", "cap", "rod"],
+    Choice(
+        "where there is a cushion; both: at both ends; cap: at full retraction; "
+        "rod: at full extension"
+    ),
+]
 Chamber: TypeAlias = Annotated[
     Literal["a", "b"], Choice("chamber that the line feeds; a: cap side; b: rod side")
 ]

@@ -78,8 +78,11 @@ def _closed(view: FileView) -> float | None:
     plate = view.number("caps", "thickness") if view.has("caps") else plain
     extension = view.number("rod", "extension")
     eye = _eye_length(view)
-    if barrel is None or plate is None or extension is None or eye is None:
+    bushes = view.number("cushion", "length") if view.has("cushion") else 0.0
+    if barrel is None or plate is None or extension is None or eye is None or bushes is None:
         return None
+    if view.text("cushion", "ends") == "both":
+        bushes = 2 * bushes
     section, spigot = view.number("seals", "static", "section"), 0.0
     if section is not None:
         place, _ = seal_faults.static_places(view)
@@ -89,6 +92,7 @@ def _closed(view: FileView) -> float | None:
             barrel_length=barrel,
             plate=plate,
             spigot=spigot,
+            bushes=bushes,
             extension=extension,
             eye=eye,
         )
@@ -412,6 +416,29 @@ def parts(view: FileView) -> Iterator[Fault]:
             "remove the line, or choose another bearing",
         )
     yield from _sensor(view)
+    yield from _cushion(view)
+
+
+def _cushion(view: FileView) -> Iterator[Fault]:
+    """Check that a cushion is shorter than the stroke, and its spear between rod and bore."""
+    loc = ("cushion",)
+    if not view.has(*loc):
+        return
+    yield from _smaller(view, (*loc, "length"), ("cylinder", "stroke"))
+    varied = view.has("variables", "cylinder.bore")
+    if not varied:
+        yield from _smaller(view, (*loc, "diameter"), ("cylinder", "bore"))
+    rod_end, varied = view.text(*loc, "ends") != "cap", view.has("variables", "rod.outer_diameter")
+    if rod_end and not varied:
+        yield from _smaller(view, ("rod", "outer_diameter"), (*loc, "diameter"))
+    opened, closed = view.number(*loc, "open_area"), view.number(*loc, "end_area")
+    if opened is not None and closed is not None and not 0 < closed < opened:
+        text = quantities.INPUTS["orifice_area"].text
+        yield Fault(
+            (*loc, "end_area"),
+            f"{text(closed)}: must be above 0 and below open_area ({text(opened)})",
+            "write the area of the gap that remains at the stop",
+        )
 
 
 def _sensor(view: FileView) -> Iterator[Fault]:

@@ -183,13 +183,20 @@ class Load(Section):
 
 
 def closed_length(
-    *, barrel_length: Array, plate: Array, spigot: Array, extension: Array, eye: Array
+    *,
+    barrel_length: Array,
+    plate: Array,
+    spigot: Array,
+    bushes: Array,
+    extension: Array,
+    eye: Array,
 ) -> Array:
     """Pin-to-pin length of the retracted actuator [m].
 
-    `spigot` is the length of the cap's spigot, `eye` that of an eye.
+    `spigot` is the length of the cap's spigot, `bushes` that of the bushes of all cushions, `eye`
+    that of an eye.
     """
-    return barrel_length + 2 * plate + spigot + extension + 2 * eye
+    return barrel_length + 2 * plate + spigot + bushes + extension + 2 * eye
 
 
 def spigot_length(*, place: StaticPlace, section: Array) -> Array:
@@ -457,6 +464,31 @@ class PistonNut(Section):
     preload: Annotated[float, Of("force", "tension of the stud after tightening")]
 
 
+class Cushion(Section):
+    """A cushioning spear that throttles the oil shortly before a stop."""
+
+    ends: choices.CushionEnd = "both"
+    length: Annotated[float, Of("part_length", "length of the cushioned travel")]
+    open_area: Annotated[float, Of("orifice_area", "flow area when the spear enters")]
+    end_area: Annotated[float, Of("orifice_area", "remaining flow area at the stop")]
+    exponent: Annotated[
+        float,
+        Of(
+            "stribeck_exponent",
+            "exponent of the curve by which the flow area falls along the travel",
+        ),
+    ] = 1.0
+
+
+class BuiltCushion(Cushion):
+    """Cushions of the cylinder: a spear on the piston and a collar on the rod, in bushes.
+
+    The bushes lengthen the cylinder. A scenario simulates these cushions unless it states its own.
+    """
+
+    diameter: Annotated[float, Of("diameter", "diameter of spear and collar")]
+
+
 class Sensor(Section):
     """A position sensor, fixed in the cap, whose straight element is inside the hollow rod."""
 
@@ -717,6 +749,7 @@ class Design(Section):
     retention: Retention | None = None
     clevis: Clevis | None = None
     sensor: Sensor | None = None
+    cushion: BuiltCushion | None = None
     seals: Seals
     extra_masses: Annotated[tuple[ExtraMass, ...], Field(max_length=24)] = ()
     lines: Annotated[tuple[Line, ...], Field(max_length=24)] = ()

@@ -221,7 +221,7 @@ def _blocks(retention: dict[str, Any] | None) -> Iterator[dict[str, Any]]:
 def spec_hash(subject: PreparedDesign) -> str:
     """Hash of all inputs that determine the result: design, material data and program version."""
     design = subject.design.model_dump(mode="json")
-    for key in ("uncertainty", "extra_masses", "sensor"):
+    for key in ("uncertainty", "extra_masses", "sensor", "cushion"):
         if not design[key]:  # unset fields are left out: hashes of older designs stay valid
             del design[key]
     for block, key in ((design["cylinder"], "port_thread"), (design["clevis"], "bearing")):

@@ -329,12 +329,19 @@ class Geometry:
     """Places of the static seals of cap and head, both empty without static seals."""
     spigot: Array
     """Length of the cap's spigot, which has the groove of the static seal; 0 without one."""
+    cushion: Array
+    """Diameter of the cushions' spear and collar; 0 without cushions."""
+    cap_bush: Array
+    """Length of the cushion's bush between cap and chamber; 0 without one."""
+    head_bush: Array
+    """Length of the cushion's bush between head and chamber; 0 without one."""
     bearing_span: Array
 
     @property
     def wall_length(self) -> Array:
         """Length of the barrel wall, with the parts that enclose the end plates."""
-        return self.barrel_length + self.spigot + self.cap_fit.beyond + self.head_fit.beyond
+        inside = self.cap_bush + self.barrel_length + self.head_bush
+        return inside + self.spigot + self.cap_fit.beyond + self.head_fit.beyond
 
     @property
     def cap_fit(self) -> EndDimensions:
@@ -366,6 +373,18 @@ def _eye(v: Values, design: Design) -> tuple[Array, Array]:
         return bearing.bore, lug_radius(pin_diameter=bearing.bore, **sizes)
     pin = 0.0 if design.clevis is None else v["clevis.pin_diameter"]
     return pin, pin
+
+
+def _bushes(v: Values, design: Design) -> tuple[Array, Array, Array]:
+    """Diameter of the cushions, and lengths of their bushes at cap and head; 0 without cushions."""
+    if design.cushion is None:
+        return 0.0, 0.0, 0.0
+    length, ends = v["cushion.length"], design.cushion.ends
+    return (
+        v["cushion.diameter"],
+        0.0 if ends == "rod" else length,
+        0.0 if ends == "cap" else length,
+    )
 
 
 def _fits(v: Values, design: Design, **sizes: Any) -> tuple[EndDimensions, ...]:
@@ -406,6 +425,7 @@ def derive(v: Values, design: Design) -> Geometry:
     static, places = static_grooves(v, design), static_places(design)
     spigot = spigot_length(place=places[0], section=static[0].section) if static else 0.0
     pin, eye_radius = _eye(v, design)
+    cushion, cap_bush, head_bush = _bushes(v, design)
     return Geometry(
         bore=bore,
         inner_radius=inner_radius,
@@ -418,7 +438,7 @@ def derive(v: Values, design: Design) -> Geometry:
         rod_inner_diameter=rod_inner,
         rod_thicknesses=rod_thicknesses,
         rod_extension=extension,
-        rod_length=barrel_length - piston_length + plate + extension,
+        rod_length=barrel_length - piston_length + head_bush + plate + extension,
         piston_length=piston_length,
         piston_clearance=v["piston.clearance"],
         nut=0.0 if design.piston.nut is None else v["piston.nut.diameter"],
@@ -435,6 +455,7 @@ def derive(v: Values, design: Design) -> Geometry:
             barrel_length=barrel_length,
             plate=plate,
             spigot=spigot,
+            bushes=cap_bush + head_bush,
             extension=extension,
             eye=eye_radius + pin,
         ),
@@ -443,7 +464,10 @@ def derive(v: Values, design: Design) -> Geometry:
         static_grooves=static,
         static_places=places,
         spigot=spigot,
-        bearing_span=(piston_length + head_length + plate) / 2,
+        cushion=cushion,
+        cap_bush=cap_bush,
+        head_bush=head_bush,
+        bearing_span=(piston_length + head_length + plate) / 2 + head_bush,
     )
 
 

@@ -23,6 +23,7 @@ from ..models import damping, elements, forces, lines, transmission_line
 from . import (
     barrel as barrel_module,
     circuit,
+    cushion,
     duty,
     film,
     film_tables,
@@ -389,7 +390,7 @@ def _lands(v: Values, design: Design, g: Geometry, rod: RodSection, out: MetricA
     if design.piston.nut is not None:
         hole = piston_nut.recess(g)[1]
     lands = geometry_module.lands(g, hole, eyes=design.clevis is not None)
-    lands |= piston_nut.lands(design, g) | ports.lands(v, design, g)
+    lands |= piston_nut.lands(design, g) | ports.lands(v, design, g) | cushion.lands(design, g)
     for name, value in (lands | sensor.lands(v, design, g, rod)).items():
         out.put(name, value)
     if design.piston.nut is None:
@@ -398,6 +399,8 @@ def _lands(v: Values, design: Design, g: Geometry, rod: RodSection, out: MetricA
         out.skip("geometry_port", ports.NO_PORTS)
     if design.sensor is None:
         out.skip("geometry_sensor", sensor.NO_SENSOR)
+    if design.cushion is None:
+        out.skip("geometry_cushion", cushion.NO_CUSHION)
     if not g.rod_thicknesses:
         out.skip("geometry_rod_bore", "the rod has no layers")
     if g.static_places[1] != "bore":

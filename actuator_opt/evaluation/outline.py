@@ -36,7 +36,7 @@ from .geometry import (
 )
 from .kernel import PreparedDesign
 from .piston_nut import recess
-from .ports import gallery, places, rim_bosses
+from .ports import boss_axis, cushioned, gallery, places, rim_bosses
 from .result import Outline
 from .rods import end_material
 
@@ -127,7 +127,7 @@ def _kind(part: str, material: Material | None) -> _Kind:
 class _Stations:
     """Axial positions of faces and ends, measured from the cap pin, and radii.
 
-    `plate` is the inner face of the cap's plate, and `start` the end of the chamber.
+    `plate` is the inner face of the cap's plate, `start` and `head` are the ends of the chamber.
     """
 
     face: float
@@ -145,15 +145,15 @@ class _Stations:
 def _stations(g: Geometry) -> _Stations:
     face = float(g.eye_offset)
     plate = face + float(g.plate)
-    start = plate + float(g.spigot)
-    end = start + float(g.barrel_length)
+    start = plate + float(g.spigot) + float(g.cap_bush)
+    end = start + float(g.barrel_length) + float(g.head_bush)
     rod, bore = float(g.rod_diameter) / 2, float(g.inner_radius)
     return _Stations(
         face=face,
         plate=plate,
         start=start,
         end=end,
-        head=end - float(g.head_length),
+        head=end - float(g.head_length) - float(g.head_bush),
         tip=end + float(g.plate) + float(g.rod_extension),
         piston_end=start + float(g.piston_length),
         rod=rod,
@@ -218,6 +218,7 @@ def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
         _plate(g, (at.face, at.plate), 0.0, g.cap_fit, rims[0]),
         _plate(g, (at.end, at.end + plate), at.hole, g.head_fit, rims[1]),
         *_spigot(g, at),
+        *_cap_bush(g, at),
     ]
     others: dict[tuple[str, str, int], list[Polygon]] = {}
     face, back = at.face, at.end + plate
@@ -252,7 +253,24 @@ def _spigot(g: Geometry, at: _Stations) -> Iterator[Polygon]:
     if float(g.spigot) > 0:
         depth = float(g.static_grooves[0].gland_depth)
         inner = at.bore - depth - LEAST_METAL
-        yield _grooved(at.plate, at.start, inner, at.bore, g.static_grooves, at.bore, outside=True)
+        end = at.start - float(g.cap_bush)
+        yield _grooved(at.plate, end, inner, at.bore, g.static_grooves, at.bore, outside=True)
+
+
+def _cap_bush(g: Geometry, at: _Stations) -> Iterator[Polygon]:
+    """The bush at the cap that the spear of a cushion enters."""
+    if float(g.cap_bush) > 0:
+        yield rectangle(at.start - float(g.cap_bush), at.start, float(g.cushion) / 2, at.bore)
+
+
+def _cushion(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
+    """Spear and collar of the cushions."""
+    cap, head, radius = float(g.cap_bush), float(g.head_bush), float(g.cushion) / 2
+    hole = 0.0 if design.sensor is None else _sensor_hole(design, g)
+    shapes = [rectangle(at.start - cap, at.start, hole, radius)] if cap > 0 else []
+    if head > 0:
+        shapes.append(rectangle(at.piston_end, at.piston_end + head, at.rod, radius))
+    yield "cushions", end_material(design), shapes, 0
 
 
 def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
@@ -261,16 +279,20 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     piston = _grooved(at.start, at.piston_end, 0.0, radius, g.piston_grooves, at.bore, outside=True)
     cap_place, head_place = g.static_places
     length = float(g.head_length)
+    face = at.end - length
     outer = _edge(
-        at.head,
+        face,
         at.end,
         at.bore,
         g.static_grooves if head_place == "bore" else (),
         at.bore,
         outside=True,
     )
-    inner = _edge(at.head, at.end, at.hole, g.rod_grooves, at.rod, outside=False)
+    inner = _edge(face, at.end, at.hole, g.rod_grooves, at.rod, outside=False)
     plug = (*inner, *reversed(outer))
+    plugs, bush = [plug], float(g.head_bush)
+    if bush > 0:
+        plugs.append(rectangle(at.head, at.head + bush, float(g.cushion) / 2, at.bore))
     if float(g.nut) > 0:
         height, corner = (float(size) for size in recess(g))
         hole = float(g.nut) / 2
@@ -281,14 +303,17 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
         hole = _sensor_hole(design, g)
         piston = (*piston[:-2], (at.piston_end, hole), (at.start, hole))
     yield "piston", design.piston.material, [piston], 0
-    yield "glands", design.head.material, [plug], 0
+    yield "glands", design.head.material, plugs, 0
+    yield from _cushion(design, g, at)
     yield from _rod(design, g, at)
     yield from _rings(at.start, float(g.piston_length), g.piston_grooves, at.bore, -1)
-    yield from _rings(at.head, length, g.rod_grooves, at.rod, 1)
+    yield from _rings(face, length, g.rod_grooves, at.rod, 1)
     beyond = at.end + float(g.plate)
     spans = {
-        "cap": {"rim": (at.face, at.plate), "bore": (at.plate, at.start)}.get(cap_place),
-        "head": {"rim": (at.end, beyond), "bore": (at.head, at.end)}.get(head_place),
+        "cap": {"rim": (at.face, at.plate), "bore": (at.plate, at.start - float(g.cap_bush))}.get(
+            cap_place
+        ),
+        "head": {"rim": (at.end, beyond), "bore": (face, at.end)}.get(head_place),
     }
     shapes = [
         shape
@@ -372,28 +397,35 @@ def _ports(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     if found is None:
         return
     size, half, bore = found.size, found.size.diameter / 2, float(found.bore) / 2
-    outer, axis = float(g.outer_radius), float(gallery(g)[0])
+    outer, bushes = float(g.outer_radius), cushioned(design)
     plate = float(g.plate) / 2
     holes, bosses = [], []
+    cap, head = float(g.cap_bush), float(g.head_bush)
+    near = [float(boss_axis(design, g, name, found.bore)) for name in ("cap", "head")]
     ends = (
-        (g.cap_fit, at.start + bore, at.plate - plate, at.start),
-        (g.head_fit, at.head - bore, at.end + plate, at.head),
+        (g.cap_fit, at.start - cap + near[0], at.plate - plate, at.start - cap),
+        (g.head_fit, at.head + head - near[1], at.end + plate, at.head + head),
     )
     rims = rim_bosses(size, g)
-    for (fit, above, middle, chamber), boss, rim in zip(ends, found.on_barrel, rims, strict=True):
-        centre = above if boss else middle
+    for (fit, above, middle, chamber), boss, rim, bush in zip(
+        ends, found.on_barrel, rims, bushes, strict=True
+    ):
+        axis = float(gallery(g, bush=bush)[0])
+        middle = above if boss else middle
         base = outer if boss else float(fit.plate_radius)
         top = base + (size.drilled if boss else float(rim))
         bottom = top - size.drilled
-        holes.append(rectangle(centre - half, centre + half, bottom, top))
+        holes.append(rectangle(middle - half, middle + half, bottom, top))
         if top > base:
             bosses += [
-                rectangle(centre - size.boss / 2, centre - half, base, top),
-                rectangle(centre + half, centre + size.boss / 2, base, top),
+                rectangle(middle - size.boss / 2, middle - half, base, top),
+                rectangle(middle + half, middle + size.boss / 2, base, top),
             ]
-        end = at.bore if boss else axis
+        end = axis
+        if boss:
+            end = float(g.cushion) / 2 if bush else at.bore
         if bottom > end:
-            holes.append(rectangle(centre - bore, centre + bore, end, bottom))
+            holes.append(rectangle(middle - bore, middle + bore, end, bottom))
         if not boss:
             start, stop = sorted((middle, chamber))
             holes.append(rectangle(start, stop, axis - bore, axis + bore))
@@ -452,6 +484,8 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
         "barrel_length": g.barrel_length,
         "plate": g.plate,
         "spigot": g.spigot,
+        "cap_bush": g.cap_bush,
+        "head_bush": g.head_bush,
         "beyond_cap": g.cap_fit.beyond,
         "beyond_head": g.head_fit.beyond,
         "closed_length": g.closed_length,

@@ -12,7 +12,7 @@ from math import pi
 from typing import Any
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, maximum
+from ..base.numeric import Array, maximum, minimum
 from ..design.model import Design
 from ..design.standard_sizes import PortSize, port
 from ..joints.joint import LEAST_METAL
@@ -54,14 +54,34 @@ def places(design: Design, g: Geometry, v: Values | None = None) -> Places | Non
     )
 
 
-def gallery(g: Geometry) -> tuple[Array, Array]:
+def cushioned(design: Design) -> tuple[bool, bool]:
+    """Whether cap and head have a cushion, in whose bush the port then opens."""
+    ends = "" if design.cushion is None else design.cushion.ends
+    return ends in ("cap", "both"), ends in ("rod", "both")
+
+
+def boss_axis(design: Design, g: Geometry, name: str, bore: Array) -> Array:
+    """Distance of a boss's axis from the outer end of chamber or bush at an end [m].
+
+    The bore of a port opens at the end of the chamber, or into the middle of a cushion's bush.
+    """
+    cap, head = cushioned(design)
+    if name == "cap":
+        return g.cap_bush / 2 if cap else bore / 2
+    return g.head_bush / 2 if head else bore / 2
+
+
+def gallery(g: Geometry, *, bush: bool) -> tuple[Array, Array]:
     """Radius of the axial drillings, and radial width of the metal of the head that they pass.
 
-    They lie between the grooves of the rod seals and the groove of a static seal on the head.
+    They lie between the grooves of the rod seals and the groove of a static seal on the head. With
+    a cushion's `bush`, they end in its bush.
     """
     inner = g.rod_diameter / 2 + groove_totals(g.rod_grooves)[2]
     sealed = g.static_places[1] == "bore"
     outer = g.inner_radius - (g.static_grooves[0].gland_depth if sealed else 0.0)
+    if bush:
+        outer = minimum(outer, g.cushion / 2)
     return (inner + outer) / 2, outer - inner
 
 
@@ -83,21 +103,26 @@ def lands(v: Values, design: Design, g: Geometry) -> dict[str, Any]:
     if any(ports.on_barrel):
         length, count, _ = groove_totals(g.piston_grooves)
         land = (g.piston_length - length) / (count + 1)
-        rows["land of the piston beyond the port"] = land - bore
+        passed = [
+            boss and not bush for boss, bush in zip(ports.on_barrel, cushioned(design), strict=True)
+        ]
+        if any(passed):
+            rows["land of the piston beyond the port"] = land - bore
         rows["barrel beside the boss"] = g.outer_radius - size.boss / 2
     if all(ports.on_barrel):
-        between = g.barrel_length - g.head_length - bore - size.boss
-        rows["between the bosses"] = between
+        inside = g.cap_bush + g.barrel_length - g.head_length + g.head_bush
+        axes = sum(boss_axis(design, g, name, bore) for name in ("cap", "head"))
+        rows["between the bosses"] = inside - axes - size.boss
     fits = (g.cap_fit, g.head_fit)
     for name, boss, fit in zip(("cap", "head"), ports.on_barrel, fits, strict=True):
         if boss:
-            spigot = g.spigot if name == "cap" else 0.0
-            end = fit.beyond + spigot + (bore - size.boss) / 2
+            outside = fit.beyond + (g.spigot if name == "cap" else g.head_length)
+            end = outside + boss_axis(design, g, name, bore) - size.boss / 2
             rows[f"barrel's end beside the boss, {name}"] = end
             continue
         rows[f"{name} plate beside the port"] = (g.plate - size.seat) / 2
         if name == "head":
-            rows["head beside the drilling"] = (gallery(g)[1] - bore) / 2
+            rows["head beside the drilling"] = (gallery(g, bush=cushioned(design)[1])[1] - bore) / 2
     return {"geometry_port": rows}
 
 
@@ -118,8 +143,10 @@ def masses(v: Values, design: Design, g: Geometry) -> dict[str, Array]:
     cut = stud_mass(density=caps, **thread)
     rims = rim_bosses(size, g)
     parts: dict[str, Array] = {}
-    fits = (g.cap_fit, g.head_fit)
-    for name, boss, fit, rim in zip(("cap", "head"), ports.on_barrel, fits, rims, strict=True):
+    fits, bushes = (g.cap_fit, g.head_fit), cushioned(design)
+    for name, boss, fit, rim, bush in zip(
+        ("cap", "head"), ports.on_barrel, fits, rims, bushes, strict=True
+    ):
         if boss:
             solid = boss_volume(
                 boss_diameter=size.boss, height=size.drilled, tube_radius=g.outer_radius
@@ -127,7 +154,7 @@ def masses(v: Values, design: Design, g: Geometry) -> dict[str, Array]:
             parts["ports"] = parts.get("ports", 0.0) + caps * solid - cut
             parts["barrel"] = parts.get("barrel", 0.0) - wall * area
         else:
-            further = maximum(fit.plate_radius + rim - size.drilled - gallery(g)[0], 0.0)
+            further = maximum(fit.plate_radius + rim - size.drilled - gallery(g, bush=bush)[0], 0.0)
             solid = caps * pi / 4 * size.boss * size.boss * rim
             parts[name] = solid - cut - caps * area * (further + g.plate / 2)
             if name == "head":

@@ -66,7 +66,7 @@ class Beam:
 
 def lengths(g: Geometry, state: LoadState) -> tuple[Array, Array]:
     """Lengths of the cylinder and of the rod outside it; their sum is the eye-to-eye distance."""
-    cylinder = g.eye_offset + 2 * g.plate + g.spigot + g.barrel_length
+    cylinder = g.eye_offset + 2 * g.plate + g.spigot + g.cap_bush + g.barrel_length + g.head_bush
     return cylinder, maximum(state.reach + g.rod_extension + g.eye_offset, LEAST)
 
 

@@ -10,7 +10,7 @@ from ..design.model import Design
 from ..joints.joint import LEAST_METAL, EndDimensions
 from ..models import mass
 from ..models.spherical_bearing import bearing_eye_volume
-from . import piston_nut, ports, sensor
+from . import cushion, piston_nut, ports, sensor
 from .geometry import Geometry, Numbers, bearing_of, end_at, joints_of
 from .limits import MaterialValues
 from .rods import RodSection, fitting_hole
@@ -168,6 +168,7 @@ def parts(
         piston_nut.masses(v, design, g),
         ports.masses(v, design, g),
         sensor.masses(v, design, g, rod),
+        cushion.masses(v, design, g, rod),
     ):
         for part, addition in additions.items():
             masses[part] = masses.get(part, 0.0) + addition

@@ -219,8 +219,8 @@ def _stations(lengths: Mapping[str, float]) -> dict[str, tuple[float, float]]:
     mm = {name: 1000 * value for name, value in lengths.items()}
     face = mm["eye_offset"]
     plate = face + mm["plate"]
-    start = plate + mm["spigot"]
-    end = start + mm["barrel_length"]
+    start = plate + mm["spigot"] + mm["cap_bush"]
+    end = start + mm["barrel_length"] + mm["head_bush"]
     piston = start + mm["piston_length"]
     spans = {
         "plate": (face, plate),

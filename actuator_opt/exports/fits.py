@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from ..design.model import Design
 from ..design.standard_sizes import port, spherical_bearing
 from ..evaluation import Evaluation
+from ..evaluation.geometry import joints_of
 
 RANGES = (
     # up to, IT7, IT8, upper deviation of f: mm and um
@@ -77,8 +78,10 @@ def notes(evaluation: Evaluation) -> Iterator[str]:
         hole = port(design.cylinder.port_thread)
         yield (
             f"Ports: {hole.thread} by {hole.standard}, full thread {1e3 * hole.depth:g} deep, "
-            f"drill {1e3 * hole.drilled:g} deep; chamfer the edges of the piston that pass a port."
+            f"drill {1e3 * hole.drilled:g} deep."
         )
+        if design.cushion is None and any(e.joint.form == "plugs" for e in joints_of(design)):
+            yield "Chamfer the edges of the piston, which pass the ports."
     if design.clevis is not None and design.clevis.bearing is not None:
         bearing = spherical_bearing(design.clevis.bearing)
         yield f"Holes of the eyes: {1e3 * bearing.outer_diameter:g} mm for {bearing.name.upper()}."

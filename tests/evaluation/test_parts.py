@@ -287,3 +287,94 @@ def test_the_parts_list_counts_pieces_and_names_materials():
     assert any("M8x1 by ISO 6149-1, full thread 10 deep, drill 11.5 deep" in t for t in texts)
     assert "Holes of the eyes: 16 mm for GE8E." in texts
     assert "Thread of the piston's stud: M8 x 1 - 6g; tighten to 7 kN." in texts
+
+
+CUSHION = """cushion:
+  diameter: 15 mm
+  length: 10 mm
+  open_area: 20 mm^2
+  end_area: 1 mm^2
+
+"""
+CUSHIONED = (r"clevis:\n", CUSHION + "clevis:\n")
+
+
+def test_cushions_by_hand():
+    """Two bushes lengthen barrel and rod; spear and collar are of the rod's steel, and move."""
+    bare, found = pair("knee", CUSHIONED)
+    bore, rod, d, length = 21.5e-3, 11.5e-3, 15e-3, 10e-3
+    metal, fibres, steel = (density(n) for n in ("al_7075_t6", "t700_epoxy", "steel_42crmo4"))
+    radius = bore / 2
+    inner = pi * ((radius + 1.6e-3) ** 2 - radius**2)
+    outer = pi * ((radius + 4.3e-3) ** 2 - (radius + 1.6e-3) ** 2)
+    change = difference(bare, found)
+    assert change.pop("barrel") == near(2 * length * (metal * inner + fibres * outer), 1e-6)
+    bush = metal * pi / 4 * (bore**2 - d**2) * length
+    assert change.pop("caps") == near(bush)
+    assert change.pop("glands") == near(bush)
+    assert change.pop("rod") == near(steel * pi / 4 * (rod**2 - 7e-3**2) * length)
+    spear, collar = pi / 4 * d**2 * length, pi / 4 * (d**2 - rod**2) * length
+    assert change.pop("fastening") == near(steel * (spear + collar))
+    assert max(map(abs, change.values())) < 1e-12
+    for name in ("closed_length", "barrel_length"):
+        assert found.metrics[name].value - bare.metrics[name].value == near(2 * length)
+    assert found.metrics["geometry_cushion"].value == near((d - rod) / 2)
+    assert found.metrics["buckling_factor"].value < bare.metrics["buckling_factor"].value
+    alone = ao.evaluate(ao.read(text_of("knee", CUSHIONED), set={"cushion.ends": "cap"}))
+    longer = alone.metrics["closed_length"].value - bare.metrics["closed_length"].value
+    assert longer == near(length)
+    assert alone.metrics["geometry_cushion"].value == near((bore - d) / 2)
+    assert alone.mass_parts["rod"] == near(bare.mass_parts["rod"])
+
+
+def test_a_port_opens_into_the_bush_of_a_cushion():
+    """The piston then passes no port, so that its land sets no limit."""
+    found = ao.evaluate(ao.read(text_of("knee", PORTS, CUSHIONED)))
+    parts = {outline.part: outline for outline in found.outlines}
+    (bush,) = [p for p in parts["caps"].polygons if max(r for _, r in p) == near(21.5e-3 / 2)][-1:]
+    middle = (min(x for x, _ in bush) + max(x for x, _ in bush)) / 2
+    thread = parts["ports"].polygons[0]
+    assert (min(x for x, _ in thread) + max(x for x, _ in thread)) / 2 == near(middle)
+    assert found.metrics["geometry_port"].place == "barrel beside the boss"
+    half = (21.5 / 2 + 1.6 + 2.7 - 14 / 2) * 1e-3
+    assert found.metrics["geometry_port"].value == near(half)
+
+
+def test_a_linkage_knows_the_length_of_cushions_and_bearings():
+    """The fault of a dead point names the closed length that the evaluation has."""
+    linkage = "linkage:\n  base_radius: 20 mm\n  crank_radius: 300 mm\n\nclevis:\n"
+    changes = [BEARINGS, CUSHIONED]
+    length = ao.evaluate(ao.read(text_of("knee", *changes))).metrics["closed_length"].value
+    with pytest.raises(InputError, match=f"the actuator, {1e3 * length:.4g} mm to"):
+        ao.read(text_of("knee", *changes, (r"clevis:\n", linkage)))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("length: 10 mm", "length: 120 mm", r"cushion.length: 120 mm: must be smaller than"),
+        ("end_area: 1 mm^2", "end_area: 30 mm^2", r"cushion.end_area: .* below open_area"),
+        ("end_area: 1 mm^2", "end_area: 0 mm^2", r"cushion.end_area: .* must be above 0"),
+    ],
+)
+def test_contradictions_of_a_cushion_are_refused_in_one_line(old, new, words):
+    """Longer than the stroke, a gap that does not close, a gap that closes fully."""
+    with pytest.raises(InputError, match=words) as caught:
+        ao.read(text_of("knee", (r"clevis:\n", CUSHION.replace(old, new) + "clevis:\n")))
+    assert len(caught.value.diagnostics) == 1
+
+
+def test_a_scenario_takes_the_cushions_of_its_design(tmp_path):
+    """The same force over time as with the same cushion in the scenario."""
+    design = text_of("servo_knee", (r"(?m)^clevis:\n", CUSHION.replace("15", "18") + "clevis:\n"))
+    (tmp_path / "with.yaml").write_text(design)
+    body = "duration: 0.35 s\nsample_time: 1 ms\ninitial:\n  position: 30 mm\n"
+    body += "signal:\n  - shape: constant\n    value: -10 V\n"
+    stop = "".join(f"    {line}\n" for line in CUSHION.splitlines()[2:5])
+    forces = []
+    for extra in ("", f"stops:\n  cushion:\n{stop}"):
+        path = tmp_path / "scenario.yaml"
+        path.write_text(f"name: stop\ndesign: with.yaml\n{body}{extra}")
+        forces.append(ao.simulate(path).signals["cushion_force"])
+    np.testing.assert_allclose(forces[0], forces[1], rtol=1e-9, atol=1e-6)
+    assert np.max(np.abs(forces[0])) > 100.0
