@@ -71,16 +71,15 @@ Criterion: TypeAlias = Annotated[
 PortThread: TypeAlias = Annotated[
     str | None,
     Row(
-        "thread of both ports: m8x1 … by ISO 6149-1, g1_8 … by ISO 1179-1, un7_16 … by "
-        "ISO 11926-1; in the rims of the end plates, or in bosses on a barrel that encloses them",
+        "thread of both ports, in the rims of the end plates, or in bosses on a barrel that "
+        "encloses them",
         "ports",
     ),
 ]
 Bearing: TypeAlias = Annotated[
     str | None,
     Row(
-        "spherical plain bearing of both eyes, series E of ISO 12240-1, steel on steel; "
-        "the number is its bore in mm",
+        "spherical plain bearing of both eyes, series E of ISO 12240-1, steel on steel",
         "spherical_bearings",
     ),
 ]

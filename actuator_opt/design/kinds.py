@@ -333,7 +333,7 @@ class Row(Choice):
     """A row of a table of standard sizes, by its name; the table is read when first used."""
 
     def __init__(self, help: str, table: str) -> None:
-        self.help = help
+        self.meaning = help
         self.table = table
 
     @property
@@ -342,6 +342,14 @@ class Row(Choice):
         from .standard_sizes import tables
 
         return tables().names(self.table)
+
+    @property
+    def help(self) -> str:  # type: ignore[override]
+        """What the row decides, and the meaning of every name."""
+        from .standard_sizes import meaning
+
+        rows = (f"{word}: {meaning(self.table, word)}" for word in self.words)
+        return "; ".join([self.meaning, *rows])
 
 
 class CaseName(Text):

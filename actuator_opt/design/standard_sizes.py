@@ -308,6 +308,14 @@ def spherical_bearing(name: str) -> SphericalBearing:
     )
 
 
+def meaning(table: str, name: str) -> str:
+    """Words for a row of the tables `ports` and `spherical_bearings`."""
+    if table == "ports":
+        return f"{port(name).thread}, {port(name).standard}"
+    size = spherical_bearing(name)
+    return f"bore {1e3 * size.bore:g} mm, static load rating {1e-3 * size.static_rating:g} kN"
+
+
 @functools.cache
 def o_rings() -> tuple[ORing, ...]:
     """O-rings of GB/T 3452.1 series G, sorted by section, then by inside diameter; m."""
