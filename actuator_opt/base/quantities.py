@@ -99,6 +99,7 @@ INPUTS = _table("""
  ring_width           | b      | length      | mm   | 0.2   | 200   | radial width of a ring
  seal_count           | n      | count       | -    | 0     | 8     | number of seals
  bolt_count           | n      | count       | -    | 2     | 48    | number of bolts or tie rods
+ piece_count          | n      | count       | -    | 1     | 100   | number of equal components
  thread_diameter      | d_t    | length      | mm   | 1     | 500   | nominal thread diameter
  thread_pitch         | P      | length      | mm   | 0.2   | 12    | thread pitch
  diameter             | d      | length      | mm   | 0.5   | 1000  | diameter

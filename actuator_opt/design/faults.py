@@ -83,6 +83,10 @@ def _closed(view: FileView) -> float | None:
         return None
     if view.text("cushion", "ends") == "both":
         bushes = 2 * bushes
+    for index in range(len(view.items("extra_masses"))):
+        count = view.number("extra_masses", index, "count")
+        length = view.number("extra_masses", index, "length")
+        bushes += (count or 0.0) * (length or 0.0)
     section, spigot = view.number("seals", "static", "section"), 0.0
     if section is not None:
         place, _ = seal_faults.static_places(view)
@@ -92,7 +96,7 @@ def _closed(view: FileView) -> float | None:
             barrel_length=barrel,
             plate=plate,
             spigot=spigot,
-            bushes=bushes,
+            further=bushes,
             extension=extension,
             eye=eye,
         )
@@ -417,6 +421,15 @@ def parts(view: FileView) -> Iterator[Fault]:
         )
     yield from _sensor(view)
     yield from _cushion(view)
+    for index in range(len(view.items("extra_masses"))):
+        loc = ("extra_masses", index)
+        if view.number(*loc, "length") and view.text(*loc, "place") not in ("cap", "rod"):
+            yield Fault(
+                (*loc, "length"),
+                "only a component between cap or rod and its eye makes the actuator longer",
+                "remove the line, or write place: cap or rod",
+                at_key=True,
+            )
 
 
 def _cushion(view: FileView) -> Iterator[Fault]:

@@ -58,6 +58,11 @@ class ExtraMass(Section):
     kind: choices.Component
     mass: Annotated[float, Of("component_mass", "mass of the component")]
     place: choices.Carrier
+    count: Annotated[float, Of("piece_count", "number of such components")] = 1.0
+    length: Annotated[
+        float,
+        Of("length", "length of each along the axis, between cap or rod and its eye"),
+    ] = 0.0
 
 
 class Valve(Section):
@@ -187,16 +192,16 @@ def closed_length(
     barrel_length: Array,
     plate: Array,
     spigot: Array,
-    bushes: Array,
+    further: Array,
     extension: Array,
     eye: Array,
 ) -> Array:
     """Pin-to-pin length of the retracted actuator [m].
 
-    `spigot` is the length of the cap's spigot, `bushes` that of the bushes of all cushions, `eye`
-    that of an eye.
+    `spigot` is the length of the cap's spigot, `further` that of the bushes of cushions and of the
+    components between cap or rod and eye, `eye` that of an eye.
     """
-    return barrel_length + 2 * plate + spigot + bushes + extension + 2 * eye
+    return barrel_length + 2 * plate + spigot + further + extension + 2 * eye
 
 
 def spigot_length(*, place: StaticPlace, section: Array) -> Array:

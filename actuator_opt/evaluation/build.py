@@ -224,6 +224,10 @@ def spec_hash(subject: PreparedDesign) -> str:
     for key in ("uncertainty", "extra_masses", "sensor", "cushion"):
         if not design[key]:  # unset fields are left out: hashes of older designs stay valid
             del design[key]
+    for component in design.get("extra_masses", ()):
+        for key, unset in (("count", 1.0), ("length", 0.0)):
+            if component[key] == unset:
+                del component[key]
     for block, key in ((design["cylinder"], "port_thread"), (design["clevis"], "bearing")):
         if block and block[key] is None:
             del block[key]

@@ -335,6 +335,10 @@ class Geometry:
     """Length of the cushion's bush between cap and chamber; 0 without one."""
     head_bush: Array
     """Length of the cushion's bush between head and chamber; 0 without one."""
+    cap_stack: Array
+    """Length of the components between cap and eye."""
+    rod_stack: Array
+    """Length of the components between rod and eye."""
     bearing_span: Array
 
     @property
@@ -373,6 +377,17 @@ def _eye(v: Values, design: Design) -> tuple[Array, Array]:
         return bearing.bore, lug_radius(pin_diameter=bearing.bore, **sizes)
     pin = 0.0 if design.clevis is None else v["clevis.pin_diameter"]
     return pin, pin
+
+
+def _stacks(v: Values, design: Design) -> tuple[Array, Array]:
+    """Lengths of the components between cap and eye, and between rod and eye."""
+    lengths: dict[str, Array] = {"cap": 0.0, "rod": 0.0}
+    for index, component in enumerate(design.extra_masses):
+        if component.place in lengths:
+            at = f"extra_masses[{index}]."
+            added = v[f"{at}count"] * v[f"{at}length"]
+            lengths[component.place] = lengths[component.place] + added
+    return lengths["cap"], lengths["rod"]
 
 
 def _bushes(v: Values, design: Design) -> tuple[Array, Array, Array]:
@@ -425,7 +440,7 @@ def derive(v: Values, design: Design) -> Geometry:
     static, places = static_grooves(v, design), static_places(design)
     spigot = spigot_length(place=places[0], section=static[0].section) if static else 0.0
     pin, eye_radius = _eye(v, design)
-    cushion, cap_bush, head_bush = _bushes(v, design)
+    (cushion, cap_bush, head_bush), stacks = _bushes(v, design), _stacks(v, design)
     return Geometry(
         bore=bore,
         inner_radius=inner_radius,
@@ -455,7 +470,7 @@ def derive(v: Values, design: Design) -> Geometry:
             barrel_length=barrel_length,
             plate=plate,
             spigot=spigot,
-            bushes=cap_bush + head_bush,
+            further=cap_bush + head_bush + sum(stacks),
             extension=extension,
             eye=eye_radius + pin,
         ),
@@ -467,6 +482,8 @@ def derive(v: Values, design: Design) -> Geometry:
         cushion=cushion,
         cap_bush=cap_bush,
         head_bush=head_bush,
+        cap_stack=stacks[0],
+        rod_stack=stacks[1],
         bearing_span=(piston_length + head_length + plate) / 2 + head_bush,
     )
 
@@ -503,7 +520,7 @@ def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, 
     skirted = 2 * g.cap_fit.length if len(g.fits) == 1 else g.cap_fit.length + g.head_fit.length
     skirts = {"geometry_skirts": g.wall_length - skirted} if "skirts" in g.forms else {}
     static_width = g.static_grooves[0].width if g.static_grooves else STATIC_SEAL
-    lips = {"cap": g.eye_offset - g.eye_radius - g.cap_fit.lip} if eyes else {}
+    lips = {"cap": g.eye_offset + g.cap_stack - g.eye_radius - g.cap_fit.lip} if eyes else {}
     lips["head"] = g.rod_extension - g.head_fit.lip
     plugs = {"geometry_lip": lips, "geometry_plug": (g.plate - static_width) / 2}
     sealed: dict[str, Any] = {}

@@ -143,7 +143,7 @@ class _Stations:
 
 
 def _stations(g: Geometry) -> _Stations:
-    face = float(g.eye_offset)
+    face = float(g.eye_offset) + float(g.cap_stack)
     plate = face + float(g.plate)
     start = plate + float(g.spigot) + float(g.cap_bush)
     end = start + float(g.barrel_length) + float(g.head_bush)
@@ -383,7 +383,7 @@ def _eyes(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
         return
     pin, bearing, name = float(g.pin_diameter), bearing_of(design), design.clevis.material
     hole = pin if bearing is None else bearing.outer_diameter
-    centres = {"cap": (0.0, 1), "rod": (at.tip + float(g.eye_offset), -1)}
+    centres = {"cap": (0.0, 1), "rod": (at.tip + float(g.rod_stack + g.eye_offset), -1)}
     for end, (centre, side) in centres.items():
         yield f"{end} eye", name, _eye(centre, pin, float(g.eye_radius), hole, side), 0
     if bearing is not None:
@@ -433,6 +433,17 @@ def _ports(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     yield BOSSES, design.caps.material, bosses, 0
 
 
+def _components(g: Geometry, at: _Stations) -> Iterator[_Part]:
+    """Components between cap or rod and eye, as blocks as wide as the cap's plate and the rod."""
+    cap, rod = float(g.cap_stack), float(g.rod_stack)
+    blocks = []
+    if cap > 0:
+        blocks.append(rectangle(at.face - cap, at.face, 0.0, float(g.cap_fit.plate_radius)))
+    if rod > 0:
+        blocks.append(rectangle(at.tip, at.tip + rod, 0.0, at.rod))
+    yield "components", "as stated", blocks, 0
+
+
 def _sensor(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     """The element of a position sensor, from the cap into the rod."""
     if design.sensor is not None:
@@ -452,6 +463,7 @@ def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tup
     )
     groups = (_barrel, _ends, _inside, _eyes, _sensor, _ports)
     parts = [part for group in groups for part in group(design, g, at)]
+    parts += _components(g, at)
     return (
         oil,
         *(
@@ -492,6 +504,7 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
         "pin_cap": 0.0,
         "pin_rod": g.closed_length,
         "eye_offset": g.eye_offset,
+        "face": g.eye_offset + g.cap_stack,
         "pin": g.pin_diameter,
         "eye_radius": g.eye_radius,
         "eye_hole": g.pin_diameter if bearing is None else bearing.outer_diameter,

@@ -83,12 +83,13 @@ def _optional(design: Design) -> dict[str, tuple[int | None, str]]:
     if design.sensor is not None:
         entries["sensor"] = (1, design.sensor.type)
     for part in (STATED, STATED_MOVING):
-        kinds = [
-            COMPONENTS.get(component.kind, component.kind)
+        listed = [
+            component
             for component in design.extra_masses
             if (component.place in ("piston", "rod")) == (part == STATED_MOVING)
         ]
-        entries[part] = (len(kinds), _joined(kinds))
+        kinds = [COMPONENTS.get(component.kind, component.kind) for component in listed]
+        entries[part] = (round(sum(component.count for component in listed)), _joined(kinds))
     return entries
 
 

@@ -184,8 +184,13 @@ def parts(
     stated = {part: masses[part] for part in OPTIONAL if part in masses}
     for index, component in enumerate(design.extra_masses):
         part = STATED_MOVING if component.place in ("piston", "rod") else STATED
-        stated[part] = stated.get(part, 0.0) + v[f"extra_masses[{index}].mass"]
+        stated[part] = stated.get(part, 0.0) + _component(v, index)
     return {part: masses[part] for part in PARTS} | stated
+
+
+def _component(v: Values, index: int) -> Array:
+    """Mass of a component that the design states, with all its pieces."""
+    return v[f"extra_masses[{index}].count"] * v[f"extra_masses[{index}].mass"]
 
 
 def moving(parts: Mapping[str, Array], load: Array = 0.0) -> Array:

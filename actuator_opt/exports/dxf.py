@@ -217,7 +217,7 @@ def reach(profiles: Sequence[Profile], x: float) -> float:
 def _stations(lengths: Mapping[str, float]) -> dict[str, tuple[float, float]]:
     """Start and end position of every axial length, mm."""
     mm = {name: 1000 * value for name, value in lengths.items()}
-    face = mm["eye_offset"]
+    face = mm["face"]
     plate = face + mm["plate"]
     start = plate + mm["spigot"] + mm["cap_bush"]
     end = start + mm["barrel_length"] + mm["head_bush"]
@@ -604,7 +604,7 @@ def dxf(evaluation: Evaluation, *, program: str, date: str | None = None) -> byt
         _axis(space, first, last, paper)
         lengths = evaluation.lengths
         diameters_above(space, lengths, profiles, paper)
-        skirts = _skirts(outlines, 1000 * (lengths["eye_offset"] + lengths["plate"]))
+        skirts = _skirts(outlines, 1000 * (lengths["face"] + lengths["plate"]))
         lowest = lengths_below(space, lengths, skirts, profiles, paper)
         origin = ", ".join(part for part in (program, date) if part)
         corner = (first, lowest - 1.5 * paper.row)

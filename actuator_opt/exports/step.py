@@ -35,7 +35,7 @@ _RINGS = tuple(
 )
 EYES = ("cap eye", "rod eye")
 BEARINGS = "eye bearings"
-NOT_TURNED = ("oil", *_RINGS, *EYES, BEARINGS, "ports")
+NOT_TURNED = ("oil", *_RINGS, *EYES, BEARINGS, "ports", "components")
 """Parts of the section that are not exported, because the model does not define their shape."""
 
 

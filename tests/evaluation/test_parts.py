@@ -378,3 +378,45 @@ def test_a_scenario_takes_the_cushions_of_its_design(tmp_path):
         forces.append(ao.simulate(path).signals["cushion_force"])
     np.testing.assert_allclose(forces[0], forces[1], rtol=1e-9, atol=1e-6)
     assert np.max(np.abs(forces[0])) > 100.0
+
+
+MANIFOLD = """extra_masses:
+  - kind: manifold
+    mass: 120 g
+    place: cap
+    length: 25 mm
+  - kind: other
+    mass: 4 g
+    count: 2
+    place: head
+  - kind: other
+    mass: 10 g
+    place: rod
+    length: 3 mm
+    count: 2
+
+clevis:
+"""
+
+
+def test_stated_components_have_count_and_length():
+    """Masses times pieces; lengths lie between cap or rod and eye, and weaken the column."""
+    bare, found = pair("knee", (r"clevis:\n", MANIFOLD))
+    change = difference(bare, found)
+    assert change.pop("components") == near(120e-3 + 2 * 4e-3)
+    assert change.pop("moving components") == near(20e-3)
+    assert set(change.values()) == {0.0}
+    longer = found.metrics["closed_length"].value - bare.metrics["closed_length"].value
+    assert longer == near(25e-3 + 2 * 3e-3)
+    assert found.metrics["buckling_factor"].value < bare.metrics["buckling_factor"].value
+    assert "valve and manifold" not in found.mass_leaves_out
+    rows = {row.part: row for row in parts_list(found)}
+    assert rows["components"][1:3] == (3, "valve and manifold, other")
+    parts = {outline.part: outline for outline in found.outlines}
+    spans = [[x for x, _ in polygon] for polygon in parts["components"].polygons]
+    assert [max(span) - min(span) for span in spans] == [near(25e-3), near(6e-3)]
+    ends = [x for x, _ in parts["rod eye"].polygons[0]]
+    assert (min(ends) + max(ends)) / 2 == near(found.lengths["closed_length"])
+    dxf(found, program="test")
+    with pytest.raises(InputError, match=r"extra_masses\[0\].length: only a component between"):
+        ao.read(text_of("knee", (r"clevis:\n", MANIFOLD.replace("place: cap", "place: barrel"))))
