@@ -410,7 +410,7 @@ def _ports(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     for (fit, above, middle, chamber), boss, rim, bush in zip(
         ends, found.on_barrel, rims, bushes, strict=True
     ):
-        axis = float(gallery(g, bush=bush)[0])
+        axis, drilled, _ = (float(size) for size in gallery(g, bore=found.bore, bush=bush))
         middle = above if boss else middle
         base = outer if boss else float(fit.plate_radius)
         top = base + (size.drilled if boss else float(rim))
@@ -428,7 +428,7 @@ def _ports(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
             holes.append(rectangle(middle - bore, middle + bore, end, bottom))
         if not boss:
             start, stop = sorted((middle, chamber))
-            holes.append(rectangle(start, stop, axis - bore, axis + bore))
+            holes.append(rectangle(start, stop, axis - drilled / 2, axis + drilled / 2))
     yield PORTS, f"{size.thread}, {size.standard}", holes, 0
     yield BOSSES, design.caps.material, bosses, 0
 

@@ -1,6 +1,6 @@
 """Threaded ports: where they are, their masses, and the metal and clearance around them.
 
-A port is in the rim of an end plate; an axial drilling leads from it to the chamber. If the plate
+A port is in the rim of an end plate; axial drillings lead from it to the chamber. If the plate
 is not deep enough for the drill, a boss on its rim makes up for it. Where the barrel encloses the
 end plate, the port is in a round boss on the barrel, at the end of the chamber. The land of the
 piston before its first groove then passes the port's bore, so that no seal does.
@@ -71,18 +71,24 @@ def boss_axis(design: Design, g: Geometry, name: str, bore: Array) -> Array:
     return g.head_bush / 2 if head else bore / 2
 
 
-def gallery(g: Geometry, *, bush: bool) -> tuple[Array, Array]:
-    """Radius of the axial drillings, and radial width of the metal of the head that they pass.
+DRILL = 1e-3
+"""Smallest drill of the drillings from a port to the chamber [m]. Our choice."""
 
-    They lie between the grooves of the rod seals and the groove of a static seal on the head. With
-    a cushion's `bush`, they end in its bush.
+
+def gallery(g: Geometry, *, bore: Array, bush: bool) -> tuple[Array, Array, Array]:
+    """Radius of the axial drillings, their diameter, and the width of the metal around them.
+
+    Drillings with the area of the bore together are spread over half the circumference: in a ring
+    of radius R they need the radial width d^2/(4 R). They lie between the grooves of the rod seals
+    and the groove of a static seal on the head. With a cushion's `bush`, they end in its bore.
     """
     inner = g.rod_diameter / 2 + groove_totals(g.rod_grooves)[2]
     sealed = g.static_places[1] == "bore"
     outer = g.inner_radius - (g.static_grooves[0].gland_depth if sealed else 0.0)
     if bush:
         outer = minimum(outer, g.cushion / 2)
-    return (inner + outer) / 2, outer - inner
+    radius = (inner + outer) / 2
+    return radius, maximum(bore * bore / (4 * radius), DRILL), outer - inner
 
 
 def rim_bosses(size: PortSize, g: Geometry) -> tuple[Array, Array]:
@@ -122,7 +128,8 @@ def lands(v: Values, design: Design, g: Geometry) -> dict[str, Any]:
             continue
         rows[f"{name} plate beside the port"] = (g.plate - size.seat) / 2
         if name == "head":
-            rows["head beside the drilling"] = (gallery(g, bush=cushioned(design)[1])[1] - bore) / 2
+            _, drilled, width = gallery(g, bore=bore, bush=cushioned(design)[1])
+            rows["head beside the drillings"] = (width - drilled) / 2
     return {"geometry_port": rows}
 
 
@@ -154,7 +161,8 @@ def masses(v: Values, design: Design, g: Geometry) -> dict[str, Array]:
             parts["ports"] = parts.get("ports", 0.0) + caps * solid - cut
             parts["barrel"] = parts.get("barrel", 0.0) - wall * area
         else:
-            further = maximum(fit.plate_radius + rim - size.drilled - gallery(g, bush=bush)[0], 0.0)
+            axis = gallery(g, bore=ports.bore, bush=bush)[0]
+            further = maximum(fit.plate_radius + rim - size.drilled - axis, 0.0)
             solid = caps * pi / 4 * size.boss * size.boss * rim
             parts[name] = solid - cut - caps * area * (further + g.plate / 2)
             if name == "head":
