@@ -346,7 +346,7 @@ class Row(Choice):
 
     @property
     def help(self) -> str:  # type: ignore[override]
-        """What the row decides, and the meaning of every name."""
+        """Meaning of the key, and of every name."""
         from .standard_sizes import meaning
 
         rows = (f"{word}: {meaning(self.table, word)}" for word in self.words)
