@@ -23,6 +23,11 @@ from actuator_opt.exports.step import bodies, step
 from actuator_opt.models import gland, port, spherical_bearing
 
 DESIGNS = Path(__file__).parents[2] / "designs"
+BORE, LINER, WINDING, ROD, ROD_BORE = 21.8e-3, 1.8e-3, 2.7e-3, 12e-3, 8e-3
+"""Sizes in designs/knee.yaml [m]: bore, layers of the barrel, and both diameters of the rod."""
+OUTER = BORE / 2 + LINER + WINDING
+PUSH = 21e6 * pi / 4 * BORE**2
+"""Supply pressure on the piston of the knee [N]."""
 NUT = r"  nut:.*\n(    .*\n)+"
 SENSOR = """sensor:
   type: magnetostrictive
@@ -49,6 +54,7 @@ def text_of(name, *changes):
 
 PORTS = (r"  port_diameter: 6 mm\n", "  port_thread: m8x1\n")
 BEARINGS = (r"  pin_diameter: 8 mm\n", "  bearing: ge8e\n")
+NECK = (BEARINGS[0], "  bearing: ge8e\n  neck: 20 mm\n")
 LONGER = (r"length: 12.5 mm", "length: 15 mm")
 
 
@@ -111,12 +117,11 @@ def test_saddle_of_a_boss_by_quadrature():
 def test_bosses_on_the_barrel_by_hand():
     """A barrel that encloses its plugs: two bosses, without thread, and two holes in the wall."""
     bare, found = pair("knee", PORTS, before=[LONGER])
-    outer = (21.5 / 2 + 1.6 + 2.7) * 1e-3
     boss, depth, pitch_diameter, bore = 14e-3, 11.5e-3, (8 - 0.649519) * 1e-3, 3e-3
-    solid = port.boss_volume(boss_diameter=boss, height=depth, tube_radius=outer)
+    solid = port.boss_volume(boss_diameter=boss, height=depth, tube_radius=OUTER)
     metal, fibres = density("al_7075_t6"), density("t700_epoxy")
     one = metal * (solid - pi / 4 * pitch_diameter**2 * depth)
-    wall = pi / 4 * bore**2 * (metal * 1.6e-3 + fibres * 2.7e-3)
+    wall = pi / 4 * bore**2 * (metal * LINER + fibres * WINDING)
     change = difference(bare, found)
     assert change.pop("ports") == near(2 * one, 1e-5)
     assert change.pop("barrel") == near(-2 * wall, 1e-6)
@@ -185,8 +190,7 @@ def test_bearings_by_hand():
     steel = density("steel_42crmo4")
     assert bare.mass_parts["clevises"] == near(2 * steel * pi * d**3)
     assert found.mass_parts["clevises"] == near(2 * (steel * volume + 8e-3))
-    push = 21e6 * pi / 4 * 21.5e-3**2
-    assert found.metrics["eye_bearing_factor"].value == near(27.5e3 / push)
+    assert found.metrics["eye_bearing_factor"].value == near(27.5e3 / PUSH)
     longer = found.metrics["closed_length"].value - bare.metrics["closed_length"].value
     assert longer == near(2 * (radius + d - 2 * d))
     assert found.metrics["pin_factor"].value == bare.metrics["pin_factor"].value
@@ -196,12 +200,12 @@ def test_bearings_by_hand():
 
 def test_a_choice_of_bearings_is_judged_by_their_ratings():
     """GE4E misses the factor 1.5 of the check list, GE5E meets it, and larger ones weigh more."""
+    rows = []
     text = text_of("knee", BEARINGS) + "choices:\n  clevis.bearing: [ge4e, ge5e, ge8e]\n"
-    push, rows = 21e6 * pi / 4 * 21.5e-3**2, []
     for name, rating in (("ge4e", 10.2e3), ("ge5e", 17e3), ("ge8e", 27.5e3)):
         found = ao.evaluate(ao.read(text, set={"clevis.bearing": name}))
         (check,) = [c for c in found.checks if c.metric == "eye_bearing_factor"]
-        assert check.value == near(rating / push)
+        assert check.value == near(rating / PUSH)
         rows.append((found.metrics["mass"].value, check.status))
     assert [status for _, status in rows] == ["missed", "met", "met"]
     assert rows == sorted(rows, key=lambda row: row[0])
@@ -232,7 +236,7 @@ REFUSED = [
      r"pin_diameter: 8 mm: the bore of bearing ge10e is 10 mm; remove the line"),
     ([(BEARINGS[0], "")], r"clevis.pin_diameter: missing: required without bearing; add e.g."),
     ([(r"clevis:\n", SENSOR + "clevis:\n")], r"sensor: the sensor would pass through the stud"),
-    ([(NUT, ""), (r"  inner_diameter: 7 mm\n", ""), (r"  rod.inner_diameter:\n(    .*\n)+", ""),
+    ([(NUT, ""), (r"  inner_diameter: 8 mm\n", ""), (r"  rod.inner_diameter:\n(    .*\n)+", ""),
       (r"clevis:\n", SENSOR + "clevis:\n")],
      r"sensor.diameter: 6 mm: needs a rod with a bore of 8 mm, but it is solid; write"),
 ]  # fmt: skip
@@ -257,8 +261,8 @@ def test_drawings_show_ports_bearings_and_sensor():
     assert {part for part, outline in parts.items() if outline.radial} == {"ports", "port bosses"}
     assert parts["ports"].material == "M8x1, ISO 6149-1"
     top = max(r for polygon in parts["port bosses"].polygons for _, r in polygon)
-    assert top == near((21.5 / 2 + 1.6 + 2.7 + 11.5) * 1e-3)
-    assert len([b for b in bodies(found) if b.radial]) == 2
+    assert top == near(OUTER + 11.5e-3)
+    assert [body.axes for body in bodies(found) if body.axes] == 2 * [((0.0, 1.0, 0.0),)]
     StepFile(step(bodies(found), name="knee", program="test"))
     document = ezdxf.read(io.StringIO(dxf(found, program="test").decode()))
     assert not document.audit().errors
@@ -275,7 +279,7 @@ def test_the_parts_list_counts_pieces_and_names_materials():
     assert rows["caps"][1:3] == (2, "al_7075_t6")
     # piston: ring and two back-ups; rod: ring and one back-up; a static ring in cap and in head
     assert rows["seals"][1:3] == (3 + 2 + 2, "nbr_90, back_up_ptfe")
-    assert rows["fastening"][1:3] == (None, "steel_42crmo4, steel_bolt_12_9")
+    assert rows["fastening"][1:3] == (None, "steel_42crmo4")
     assert rows["clevises"][1:3] == (2, "steel_42crmo4 with GE8E, ISO 12240-1")
     assert rows["ports"][1:3] == (2, "al_7075_t6, M8x1, ISO 6149-1")
     bonded = ao.evaluate(ao.read(DESIGNS / "knee_bonded.yaml"))
@@ -287,7 +291,7 @@ def test_the_parts_list_counts_pieces_and_names_materials():
     assert f"2 ports, {mass:.4g} g, al_7075_t6, M8x1, ISO 6149-1" in texts
     assert any("M8x1 by ISO 6149-1, full thread 10 deep, drill 11.5 deep" in t for t in texts)
     assert "Holes of the eyes: 16 mm for GE8E." in texts
-    assert "Thread of the piston's stud: M8 x 1 - 6g; tighten to 7 kN." in texts
+    assert "Thread of the piston's stud: M8 x 1 - 6g; tighten to 8 kN." in texts
 
 
 CUSHION = """cushion:
@@ -303,28 +307,27 @@ CUSHIONED = (r"clevis:\n", CUSHION + "clevis:\n")
 def test_cushions_by_hand():
     """Two bushes lengthen barrel and rod; spear and collar are of the rod's steel, and move."""
     bare, found = pair("knee", CUSHIONED)
-    bore, rod, d, length = 21.5e-3, 11.5e-3, 15e-3, 10e-3
+    d, length = 15e-3, 10e-3
     metal, fibres, steel = (density(n) for n in ("al_7075_t6", "t700_epoxy", "steel_42crmo4"))
-    radius = bore / 2
-    inner = pi * ((radius + 1.6e-3) ** 2 - radius**2)
-    outer = pi * ((radius + 4.3e-3) ** 2 - (radius + 1.6e-3) ** 2)
+    inner = pi * ((BORE / 2 + LINER) ** 2 - BORE**2 / 4)
+    outer = pi * (OUTER**2 - (BORE / 2 + LINER) ** 2)
     change = difference(bare, found)
     assert change.pop("barrel") == near(2 * length * (metal * inner + fibres * outer), 1e-6)
-    bush = metal * pi / 4 * (bore**2 - d**2) * length
+    bush = metal * pi / 4 * (BORE**2 - d**2) * length
     assert change.pop("caps") == near(bush)
     assert change.pop("glands") == near(bush)
-    assert change.pop("rod") == near(steel * pi / 4 * (rod**2 - 7e-3**2) * length)
-    spear, collar = pi / 4 * d**2 * length, pi / 4 * (d**2 - rod**2) * length
+    assert change.pop("rod") == near(steel * pi / 4 * (ROD**2 - ROD_BORE**2) * length)
+    spear, collar = pi / 4 * d**2 * length, pi / 4 * (d**2 - ROD**2) * length
     assert change.pop("fastening") == near(steel * (spear + collar))
     assert max(map(abs, change.values())) < 1e-12
     for name in ("closed_length", "barrel_length"):
         assert found.metrics[name].value - bare.metrics[name].value == near(2 * length)
-    assert found.metrics["geometry_cushion"].value == near((d - rod) / 2)
+    assert found.metrics["geometry_cushion"].value == near((d - ROD) / 2)
     assert found.metrics["buckling_factor"].value < bare.metrics["buckling_factor"].value
     alone = ao.evaluate(ao.read(text_of("knee", CUSHIONED), set={"cushion.ends": "cap"}))
     longer = alone.metrics["closed_length"].value - bare.metrics["closed_length"].value
     assert longer == near(length)
-    assert alone.metrics["geometry_cushion"].value == near((bore - d) / 2)
+    assert alone.metrics["geometry_cushion"].value == near((BORE - d) / 2)
     assert alone.mass_parts["rod"] == near(bare.mass_parts["rod"])
 
 
@@ -332,19 +335,37 @@ def test_a_port_opens_into_the_bush_of_a_cushion():
     """The piston then passes no port, so that its land sets no limit."""
     found = ao.evaluate(ao.read(text_of("knee", PORTS, CUSHIONED)))
     parts = {outline.part: outline for outline in found.outlines}
-    (bush,) = [p for p in parts["caps"].polygons if max(r for _, r in p) == near(21.5e-3 / 2)][-1:]
+    (bush,) = [p for p in parts["caps"].polygons if max(r for _, r in p) == near(BORE / 2)][-1:]
     middle = (min(x for x, _ in bush) + max(x for x, _ in bush)) / 2
     thread = parts["ports"].polygons[0]
     assert (min(x for x, _ in thread) + max(x for x, _ in thread)) / 2 == near(middle)
     assert found.metrics["geometry_port"].place == "barrel beside the boss"
-    half = (21.5 / 2 + 1.6 + 2.7 - 14 / 2) * 1e-3
-    assert found.metrics["geometry_port"].value == near(half)
+    assert found.metrics["geometry_port"].value == near(OUTER - 7e-3)
 
 
-def test_a_linkage_knows_the_length_of_cushions_and_bearings():
+MANIFOLD = """extra_masses:
+  - kind: manifold
+    mass: 120 g
+    place: cap
+    length: 25 mm
+  - kind: other
+    mass: 4 g
+    count: 2
+    place: head
+  - kind: other
+    mass: 10 g
+    place: rod
+    length: 3 mm
+    count: 2
+
+clevis:
+"""
+
+
+def test_a_linkage_knows_the_length_of_cushions_bearings_neck_and_components():
     """The fault of a dead point names the closed length that the evaluation has."""
     linkage = "linkage:\n  base_radius: 20 mm\n  crank_radius: 300 mm\n\nclevis:\n"
-    changes = [BEARINGS, CUSHIONED]
+    changes = [NECK, CUSHIONED, (r"clevis:\n", MANIFOLD)]
     length = ao.evaluate(ao.read(text_of("knee", *changes))).metrics["closed_length"].value
     with pytest.raises(InputError, match=f"the actuator, {1e3 * length:.4g} mm to"):
         ao.read(text_of("knee", *changes, (r"clevis:\n", linkage)))
@@ -381,23 +402,34 @@ def test_a_scenario_takes_the_cushions_of_its_design(tmp_path):
     assert np.max(np.abs(forces[0])) > 100.0
 
 
-MANIFOLD = """extra_masses:
-  - kind: manifold
-    mass: 120 g
-    place: cap
-    length: 25 mm
-  - kind: other
-    mass: 4 g
-    count: 2
-    place: head
-  - kind: other
-    mass: 10 g
-    place: rod
-    length: 3 mm
-    count: 2
-
-clevis:
-"""
+def test_neck_bearing_and_components_lengthen_the_cap_eye_together():
+    """Pin, 20 mm of bearing eye, 20 mm of neck, 25 mm of manifold, then the cap; as in DXF."""
+    bare, found = pair("knee", NECK, (r"clevis:\n", MANIFOLD))
+    eye = 12e-3 + 8e-3  # radius of the lug, by test_bearings_by_hand, and neck as long as the pin
+    longer = found.metrics["closed_length"].value - bare.metrics["closed_length"].value
+    assert longer == near(2 * (eye - 2 * 8e-3) + 20e-3 + 25e-3 + 2 * 3e-3)
+    volume = spherical_bearing.bearing_eye_volume(
+        pin_diameter=8e-3, outer_diameter=16e-3, width=8e-3
+    )
+    steel = density("steel_42crmo4")
+    clevises = 2 * (steel * volume + 8e-3) + steel * pi / 4 * 8e-3**2 * 20e-3
+    assert found.mass_parts["clevises"] == near(clevises)
+    parts = {outline.part: outline for outline in found.outlines}
+    ends = {
+        name: [f(x for x, _ in polygon) for f in (min, max)]
+        for name, polygon in (
+            ("neck", parts["cap eye"].polygons[-1]),
+            ("manifold", parts["components"].polygons[0]),
+            ("cap", parts["caps"].polygons[0]),
+        )
+    }
+    assert ends["neck"] == near([eye, eye + 20e-3])
+    assert ends["manifold"] == near([eye + 20e-3, eye + 45e-3])
+    assert ends["cap"][0] == near(eye + 45e-3)
+    document = ezdxf.read(io.StringIO(dxf(found, program="test").decode()))
+    lines = document.modelspace().query('LWPOLYLINE[layer=="cap eye"]')
+    right = [max(x for x, *_ in line) for line in lines]
+    assert sorted(right) == near([8.0, 40.0])  # hole of the bearing, end of the neck
 
 
 def test_stated_components_have_count_and_length():
