@@ -365,10 +365,15 @@ class Geometry:
     head_bush: Array
     """Length of the cushion's bush between head and chamber; 0 without one."""
     cap_stack: Array
-    """Length between cap and eye: the additional neck of the eye, and components."""
+    """Length of the components between cap and eye."""
     rod_stack: Array
     """Length of the components between rod and eye."""
     bearing_span: Array
+
+    @property
+    def cap_face(self) -> Array:
+        """Distance from the pin of the cap's eye to the outer face of the cap's plate."""
+        return self.eye_offset + self.neck + self.cap_stack
 
     @property
     def wall_length(self) -> Array:
@@ -404,18 +409,15 @@ def bearing_of(design: Design) -> SphericalBearing | None:
 
 
 def _eyes(v: Values, design: Design) -> dict[str, Array]:
-    """Sizes of the eyes, and lengths between cap and eye, and between rod and eye.
-
-    The additional neck of the cap's eye and the components lengthen the actuator alike.
-    """
-    bearing, neck = bearing_of(design), 0.0 if design.clevis is None else v["clevis.neck"]
+    """Sizes of the eyes, and lengths of the components between cap or rod and eye."""
+    bearing = bearing_of(design)
     if bearing is not None:
         pin = bearing.bore
         sizes = {"outer_diameter": bearing.outer_diameter, "width": bearing.width}
         radius = lug_radius(pin_diameter=pin, **sizes)
     else:
         pin = radius = 0.0 if design.clevis is None else v["clevis.pin_diameter"]
-    lengths: dict[str, Array] = {"cap": neck, "rod": 0.0}
+    lengths: dict[str, Array] = {"cap": 0.0, "rod": 0.0}
     for index, component in enumerate(design.extra_masses):
         if component.place in lengths:
             at = f"extra_masses[{index}]."
@@ -425,7 +427,7 @@ def _eyes(v: Values, design: Design) -> dict[str, Array]:
         "pin_diameter": pin,
         "eye_radius": radius,
         "eye_offset": radius + pin,
-        "neck": neck,
+        "neck": 0.0 if design.clevis is None else v["clevis.neck"],
         "cap_stack": lengths["cap"],
         "rod_stack": lengths["rod"],
     }
@@ -506,7 +508,7 @@ def derive(v: Values, design: Design) -> Geometry:
             barrel_length=barrel_length,
             plate=plate,
             spigot=spigot,
-            further=bushes + eyes["cap_stack"] + eyes["rod_stack"],
+            further=bushes + eyes["neck"] + eyes["cap_stack"] + eyes["rod_stack"],
             extension=extension,
             eye=eyes["eye_offset"],
         ),
@@ -555,7 +557,7 @@ def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, 
     skirted = 2 * g.cap_fit.length if len(g.fits) == 1 else g.cap_fit.length + g.head_fit.length
     skirts = {"geometry_skirts": g.wall_length - skirted} if "skirts" in g.forms else {}
     static_width = g.static_grooves[0].width if g.static_grooves else STATIC_SEAL
-    lips = {"cap": g.eye_offset + g.cap_stack - g.eye_radius - g.cap_fit.lip} if eyes else {}
+    lips = {"cap": g.cap_face - g.eye_radius - g.cap_fit.lip} if eyes else {}
     lips["head"] = g.rod_extension - g.head_fit.lip
     plugs = {"geometry_lip": lips, "geometry_plug": (g.plate - static_width) / 2}
     sealed: dict[str, Any] = {}

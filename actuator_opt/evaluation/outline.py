@@ -151,7 +151,7 @@ class _Stations:
 
 
 def _stations(g: Geometry) -> _Stations:
-    face = float(g.eye_offset) + float(g.cap_stack)
+    face = float(g.cap_face)
     plate = face + float(g.plate)
     start = plate + float(g.spigot) + float(g.cap_bush)
     end = start + float(g.barrel_length) + float(g.head_bush)
@@ -403,8 +403,7 @@ def _eyes(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     for end, (centre, side) in centres.items():
         shapes = _eye(centre, pin, float(g.eye_radius), hole, side)
         if end == "cap" and float(g.neck) > 0:
-            start = float(g.eye_offset)
-            shapes.append(rectangle(start, start + float(g.neck), 0.0, pin / 2))
+            shapes.append(rectangle(at.face - float(g.neck), at.face, 0.0, pin / 2))
         yield f"{end} eye", name, shapes, 0, False
     if bearing is not None:
         rings = [_half_ring(centre, pin / 2, hole / 2) for centre, _ in centres.values()]
@@ -454,11 +453,15 @@ def _ports(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
 
 
 def _components(g: Geometry, at: _Stations) -> Iterator[_Part]:
-    """Components between cap or rod and eye, as blocks as wide as the cap's plate and the rod."""
-    cap, rod = float(g.cap_stack - g.neck), float(g.rod_stack)
+    """Components between cap or rod and eye, as blocks as wide as the cap's plate and the rod.
+
+    The additional neck is between cap and component, which so is outside a barrel around the neck.
+    """
+    cap, rod = float(g.cap_stack), float(g.rod_stack)
     blocks = []
     if cap > 0:
-        blocks.append(rectangle(at.face - cap, at.face, 0.0, float(g.cap_fit.plate_radius)))
+        start = float(g.eye_offset)
+        blocks.append(rectangle(start, start + cap, 0.0, float(g.cap_fit.plate_radius)))
     if rod > 0:
         blocks.append(rectangle(at.tip, at.tip + rod, 0.0, at.rod))
     yield "components", "as stated", blocks, 0, False
@@ -526,8 +529,9 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
         "pin_cap": 0.0,
         "pin_rod": g.closed_length,
         "eye_offset": g.eye_offset,
-        "face": g.eye_offset + g.cap_stack,
+        "face": g.cap_face,
         "neck": g.neck,
+        "cap_stack": g.cap_stack,
         "pin": g.pin_diameter,
         "eye_radius": g.eye_radius,
         "eye_hole": g.pin_diameter if bearing is None else bearing.outer_diameter,

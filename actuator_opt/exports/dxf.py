@@ -425,8 +425,14 @@ def _cut(evaluation: Evaluation, outline: Outline) -> list[list[_Corner]]:
     pin, radius, hole = (1000 * lengths[name] for name in ("pin", "eye_radius", "eye_hole"))
     if outline.part in EYES:
         at, side = ("pin_cap", 1) if outline.part == "cap eye" else ("pin_rod", -1)
-        neck = 1000 * lengths["neck"] if outline.part == "cap eye" else 0.0
-        return _eye(1000 * lengths[at], pin, radius, hole, side, neck)
+        neck, face = (1000 * lengths[name] for name in ("neck", "face"))
+        if outline.part == "rod eye" or neck == 0.0:
+            return _eye(1000 * lengths[at], pin, radius, hole, side, 0.0)
+        if lengths["cap_stack"] == 0.0:
+            return _eye(1000 * lengths[at], pin, radius, hole, side, neck)
+        near = face - neck  # components are between eye and neck
+        shaft = ((near, pin / 2), (near, -pin / 2), (face, -pin / 2), (face, pin / 2))
+        return [*_eye(1000 * lengths[at], pin, radius, hole, side, 0.0), _straight(shaft)]
     if outline.part == BEARINGS:
         ends = (1000 * lengths[at] for at in ("pin_cap", "pin_rod"))
         return [_circle(end, size) for end in ends for size in (hole, pin)]

@@ -403,7 +403,7 @@ def test_a_scenario_takes_the_cushions_of_its_design(tmp_path):
 
 
 def test_neck_bearing_and_components_lengthen_the_cap_eye_together():
-    """Pin, 20 mm of bearing eye, 20 mm of neck, 25 mm of manifold, then the cap; as in DXF."""
+    """Pin, 20 mm of bearing eye, 25 mm of manifold, 20 mm of neck, then the cap; as in DXF."""
     bare, found = pair("knee", NECK, (r"clevis:\n", MANIFOLD))
     eye = 12e-3 + 8e-3  # radius of the lug, by test_bearings_by_hand, and neck as long as the pin
     longer = found.metrics["closed_length"].value - bare.metrics["closed_length"].value
@@ -423,13 +423,14 @@ def test_neck_bearing_and_components_lengthen_the_cap_eye_together():
             ("cap", parts["caps"].polygons[0]),
         )
     }
-    assert ends["neck"] == near([eye, eye + 20e-3])
-    assert ends["manifold"] == near([eye + 20e-3, eye + 45e-3])
+    assert ends["manifold"] == near([eye, eye + 25e-3])
+    assert ends["neck"] == near([eye + 25e-3, eye + 45e-3])
     assert ends["cap"][0] == near(eye + 45e-3)
-    document = ezdxf.read(io.StringIO(dxf(found, program="test").decode()))
-    lines = document.modelspace().query('LWPOLYLINE[layer=="cap eye"]')
-    right = [max(x for x, *_ in line) for line in lines]
-    assert sorted(right) == near([8.0, 40.0])  # hole of the bearing, end of the neck
+    alone = ao.evaluate(ao.read(text_of("knee", NECK)))
+    for drawn, right in ((found, [8.0, 20.0, 65.0]), (alone, [8.0, 40.0])):  # hole, eye, neck
+        document = ezdxf.read(io.StringIO(dxf(drawn, program="test").decode()))
+        lines = document.modelspace().query('LWPOLYLINE[layer=="cap eye"]')
+        assert sorted(max(x for x, *_ in line) for line in lines) == near(right)
 
 
 def test_stated_components_have_count_and_length():
