@@ -17,6 +17,7 @@ import actuator_opt as ao
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import standard_sizes
 from actuator_opt.design.materials import load_library
+from actuator_opt.evaluation.outline import shapes
 from actuator_opt.evaluation.parts_list import parts_list
 from actuator_opt.exports.dxf import dxf
 from actuator_opt.exports.step import bodies, step
@@ -175,6 +176,26 @@ def test_limits_of_the_bosses_by_hand():
     row = large.metrics["geometry_port"]
     assert row.place == "land of the piston beyond the port"
     assert row.value == near(land - 14e-3)
+
+
+def test_bosses_sit_on_the_winding_over_a_sleeve():
+    """A sleeve of 2.4 mm lifts the winding by 0.6 mm; the bare 7 mm at its end carry no boss."""
+    sleeve = "  sleeve:\n    material: al_7075_t6\n    wall: 2.4 mm\n    inner_length: 25 mm\n"
+    text = text_of("knee", LONGER, PORTS, (r"    pitch: 0.75 mm\n", rf"\g<0>{sleeve}"))
+    design = ao.read(text.partition("\nvariables:")[0])
+    found = ao.evaluate(design)
+    parts = {outline.part: outline for outline in found.outlines}
+    radii = [r for polygon in parts["port bosses"].polygons for _, r in polygon]
+    assert [min(radii), max(radii)] == near([OUTER + 0.6e-3, OUTER + 0.6e-3 + 11.5e-3])
+    row = found.metrics["geometry_port"]
+    assert row.place == "barrel's end beside the boss, cap"
+    assert row.value == near(4.7e-3 + 3e-3 / 2 - 14e-3 / 2)  # plate, axis of the port, half a boss
+    walls = {"retention.sleeve.wall": np.array([2.4e-3, 2.6e-3])}
+    drawn = shapes(design.subject(), walls, 2)
+    assert list(drawn.which) == [0, 0]
+    (template,) = drawn.templates
+    x_and_r = template.at(drawn.dimensions)[:-4].reshape(-1, 2, 2)
+    assert x_and_r[:, 1].max(axis=0) == near(OUTER + np.array([0.6e-3, 0.8e-3]) + 11.5e-3, 1e-7)
 
 
 def test_bearings_by_hand():
