@@ -14,7 +14,7 @@ from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
 from ..models.seals import LAWS as CONTACT_LAWS
 from ..models.strength import CRITERIA
 from ..seals.kinds import TYPES as SEAL_TYPES
-from .kinds import Choice, choice_of
+from .kinds import Choice, Row, choice_of
 
 Paper: TypeAlias = Annotated[
     Literal["ElAsswad2018", "AaltoThesis", "Huang2017"] | None,
@@ -67,6 +67,21 @@ WallModel: TypeAlias = Annotated[
 ]
 Criterion: TypeAlias = Annotated[
     str, choice_of("failure criterion for the plies of barrel and rod", CRITERIA)
+]
+PortThread: TypeAlias = Annotated[
+    str | None,
+    Row(
+        "thread of both ports, in the rims of the end plates, or in bosses on a barrel that "
+        "encloses them",
+        "ports",
+    ),
+]
+Bearing: TypeAlias = Annotated[
+    str | None,
+    Row(
+        "spherical plain bearing of both eyes, series E of ISO 12240-1, steel on steel",
+        "spherical_bearings",
+    ),
 ]
 JOINT_TYPE = choice_of("how cap and head are joined to the barrel", JOINTS)
 RetentionType: TypeAlias = Annotated[str, JOINT_TYPE]
@@ -138,11 +153,25 @@ Carrier: TypeAlias = Annotated[
         "end; head: does not move, at the rod end; piston: moves; rod: moves, outside the piston"
     ),
 ]
+Sensing: TypeAlias = Annotated[
+    Literal["magnetostrictive", "lvdt"],
+    Choice(
+        "principle of the position sensor; magnetostrictive: a rod with a wave guide, read through "
+        "a magnet on the piston; lvdt: a rod with coils or core of a differential transformer"
+    ),
+]
 Turn: TypeAlias = Annotated[
     Literal["cut_off", "pins"],
     Choice(
         "how a helical winding turns at the ends; cut_off: on the mandrel beyond the barrel, where "
         "it is cut off as scrap; pins: around a ring of pins at the end, without extra length"
+    ),
+]
+CushionEnd: TypeAlias = Annotated[
+    Literal["both", "cap", "rod"],
+    Choice(
+        "where there is a cushion; both: at both ends; cap: at full retraction; "
+        "rod: at full extension"
     ),
 ]
 Chamber: TypeAlias = Annotated[

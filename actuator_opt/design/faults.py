@@ -10,19 +10,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any, NamedTuple, get_args
+from typing import Any, NamedTuple, TypeVar, get_args
 
 from ..base import errors, quantities
 from ..base.errors import Fault, article
 from ..base.quantities import length_text
-from ..joints.joint import Joint
-from ..models import linkage as crank
+from ..joints.joint import LEAST_METAL, ROUNDING, Joint
+from ..models import linkage as crank, mass
 from ..models.piston_nut import HEIGHT
+from ..models.spherical_bearing import lug_radius
 from . import assembly, choices, material, seal_faults, wall_faults
 from .kinds import MaterialName
+from .lengths import closed_length, spigot_length
 from .material import ROLES
-from .model import PLAIN_CAP, closed_length, spigot_length
+from .model import PLAIN_CAP
+from .standard_sizes import port, spherical_bearing
 from .structure import FileView, Loc, MaterialLookup, child, leaves
+
+Row = TypeVar("Row")
 
 _ROUND = math.radians(0.01)
 """Suggested joint angles are rounded to this step (rad), into the allowed range."""
@@ -38,6 +43,29 @@ class _Reach(NamedTuple):
     offset: float
 
 
+def _eye_length(view: FileView) -> float | None:
+    """Length of an eye from its pin to its end, 0 without eyes; None if unknown."""
+    if not view.has("clevis"):
+        return 0.0
+    bearing = _row(view, ("clevis", "bearing"), spherical_bearing)
+    if bearing is not None:
+        sizes = {"outer_diameter": bearing.outer_diameter, "width": bearing.width}
+        return float(lug_radius(pin_diameter=bearing.bore, **sizes)) + bearing.bore
+    pin = view.number("clevis", "pin_diameter")
+    return None if pin is None else float(mass.eye_length(pin_diameter=pin))
+
+
+def _row(view: FileView, loc: Loc, row: Callable[[str], Row]) -> Row | None:
+    """The row of a table of sizes that the file names; None if it names none."""
+    name = view.text(*loc)
+    if name is None:
+        return None
+    try:
+        return row(name)
+    except StopIteration:  # an unknown name is a separate fault
+        return None
+
+
 def _closed(view: FileView) -> float | None:
     """Pin-to-pin length of the retracted actuator; None if a length that it needs is unknown."""
     stroke, piston = view.number("cylinder", "stroke"), view.number("piston", "length")
@@ -50,10 +78,17 @@ def _closed(view: FileView) -> float | None:
     plain = None if bore is None else PLAIN_CAP * bore
     plate = view.number("caps", "thickness") if view.has("caps") else plain
     extension = view.number("rod", "extension")
-    pin = view.number("clevis", "pin_diameter") if view.has("clevis") else 0.0
-    neck = view.number("clevis", "neck") if view.has("clevis") else 0.0
-    if barrel is None or plate is None or extension is None or pin is None:
+    eye = _eye_length(view)
+    further = view.number("cushion", "length") if view.has("cushion") else 0.0
+    if barrel is None or plate is None or extension is None or eye is None or further is None:
         return None
+    if view.text("cushion", "ends") == "both":
+        further = 2 * further
+    further += view.number("clevis", "neck") or 0.0
+    for index in range(len(view.items("extra_masses"))):
+        count = view.number("extra_masses", index, "count")
+        length = view.number("extra_masses", index, "length")
+        further += (count or 0.0) * (length or 0.0)
     section, spigot = view.number("seals", "static", "section"), 0.0
     if section is not None:
         place, _ = seal_faults.static_places(view)
@@ -66,9 +101,9 @@ def _closed(view: FileView) -> float | None:
             barrel_length=barrel,
             plate=plate,
             spigot=spigot,
+            further=further,
             extension=extension,
-            pin_diameter=pin,
-            neck=neck or 0.0,
+            eye=eye,
         )
     )
 
@@ -358,6 +393,105 @@ def piston_nut(view: FileView) -> Iterator[Fault]:
         )
 
 
+def parts(view: FileView) -> Iterator[Fault]:
+    """Check the parts of standard series: ports, bearings of the eyes, position sensor."""
+    size, bore = (
+        _row(view, ("cylinder", "port_thread"), port),
+        view.number("cylinder", "port_diameter"),
+    )
+    if size is not None and bore is not None and bore > size.bore * (1 + 1e-9):
+        yield Fault(
+            ("cylinder", "port_diameter"),
+            f"{length_text(bore)}: larger than the bore of a port {size.thread} "
+            f"({length_text(size.bore)})",
+            f"write at most {length_text(size.bore)}, or a larger port_thread",
+        )
+    pin, bearing = (
+        view.number("clevis", "pin_diameter"),
+        _row(view, ("clevis", "bearing"), spherical_bearing),
+    )
+    if view.has("clevis") and not view.has("clevis", "bearing"):
+        if not view.has("clevis", "pin_diameter"):
+            yield Fault(
+                ("clevis", "pin_diameter"),
+                "missing: required without bearing",
+                'add e.g. "pin_diameter: 10 mm", or "bearing: ge10e"',
+            )
+    elif pin is not None and bearing is not None and abs(pin - bearing.bore) > 1e-9:
+        yield Fault(
+            ("clevis", "pin_diameter"),
+            f"{length_text(pin)}: the bore of bearing {bearing.name} is "
+            f"{length_text(bearing.bore)}",
+            "remove the line, or choose another bearing",
+        )
+    yield from _sensor(view)
+    yield from _cushion(view)
+    for index in range(len(view.items("extra_masses"))):
+        loc = ("extra_masses", index)
+        if view.number(*loc, "length") and view.text(*loc, "place") not in ("cap", "rod"):
+            yield Fault(
+                (*loc, "length"),
+                "only a component between cap or rod and its eye makes the actuator longer",
+                "remove the line, or write place: cap or rod",
+                at_key=True,
+            )
+
+
+def _cushion(view: FileView) -> Iterator[Fault]:
+    """Check that a cushion is shorter than the stroke, and its spear between rod and bore."""
+    loc = ("cushion",)
+    if not view.has(*loc):
+        return
+    yield from _smaller(view, (*loc, "length"), ("cylinder", "stroke"))
+    varied = view.has("variables", "cylinder.bore")
+    if not varied:
+        yield from _smaller(view, (*loc, "diameter"), ("cylinder", "bore"))
+    rod_end, varied = view.text(*loc, "ends") != "cap", view.has("variables", "rod.outer_diameter")
+    if rod_end and not varied:
+        yield from _smaller(view, ("rod", "outer_diameter"), (*loc, "diameter"))
+    opened, closed = view.number(*loc, "open_area"), view.number(*loc, "end_area")
+    if opened is not None and closed is not None and not 0 < closed < opened:
+        text = quantities.INPUTS["orifice_area"].text
+        yield Fault(
+            (*loc, "end_area"),
+            f"{text(closed)}: must be above 0 and below open_area ({text(opened)})",
+            "write the area of the gap that remains at the stop",
+        )
+
+
+def _sensor(view: FileView) -> Iterator[Fault]:
+    """Check that a position sensor has a hollow rod, and a way into it."""
+    if not view.has("sensor"):
+        return
+    layers, hole = view.items("rod", "layup"), view.number("rod", "inner_diameter")
+    diameter = view.number("sensor", "diameter")
+    if view.has("piston", "nut"):
+        yield Fault(
+            ("sensor",),
+            "the sensor would pass through the stud of the piston's nut, which is solid",
+            "remove piston.nut and state the fastening under extra_masses, or remove the sensor",
+            at_key=True,
+        )
+    if layers and view.has("rod", "fitting") and not view.has("rod", "fitting", "wall"):
+        yield Fault(
+            ("sensor",),
+            "the fittings of the rod are solid, so that the sensor cannot pass",
+            "add rod.fitting.wall, or remove the sensor",
+            at_key=True,
+        )
+    variable = view.has("variables", "rod.inner_diameter")
+    if not layers and not variable and hole is not None and diameter is not None:
+        least = diameter + 2 * LEAST_METAL
+        if hole < least * (1 - ROUNDING):
+            bore = f"its bore is {length_text(hole)}" if hole else "it is solid"
+            yield Fault(
+                ("sensor", "diameter"),
+                f"{length_text(diameter)}: needs a rod with a bore of {length_text(least)}, "
+                f"but {bore}",
+                f"write rod.inner_diameter of at least {length_text(least)}",
+            )
+
+
 def rod(view: FileView) -> Iterator[Fault]:
     """Check that the rod fits into the bore, and the rod's own bore and thread into the rod."""
     yield from _smaller(view, ("rod", "outer_diameter"), ("cylinder", "bore"))
@@ -496,6 +630,7 @@ def _case_force(loc: Loc, case: dict[str, Any], *, linked: bool) -> Iterator[Fau
 CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
     rod,
     piston_nut,
+    parts,
     barrel_length,
     wall_faults.skirts,
     supply,

@@ -330,6 +330,29 @@ def choice_of(help: str, registry: kinds.Kinds[Any]) -> Choice:
     return Choice(f"{help}; {registry.help}", registry.names)
 
 
+class Row(Choice):
+    """A row of a table of standard sizes, by its name; the table is read when first used."""
+
+    def __init__(self, help: str, table: str) -> None:
+        self.meaning = help
+        self.table = table
+
+    @property
+    def words(self) -> tuple[str, ...]:  # type: ignore[override]
+        """Names of the rows."""
+        from .standard_sizes import tables
+
+        return tables().names(self.table)
+
+    @property
+    def help(self) -> str:  # type: ignore[override]
+        """Meaning of the key, and of every name."""
+        from .standard_sizes import meaning
+
+        rows = (f"{word}: {meaning(self.table, word)}" for word in self.words)
+        return "; ".join([self.meaning, *rows])
+
+
 class CaseName(Text):
     """Name of a load case; it must be usable inside a PATH such as ``load_cases[NAME].force``."""
 

@@ -11,11 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
 from pydantic import Field, create_model
 
-from ..base.numeric import Array
 from ..base.quantities import Sense
-from ..joints.joint import LEAST_METAL, StaticPlace
 from ..joints.kinds import JOINTS
-from ..models import gland, mass
 from . import choices
 from .choices import Paper
 from .kinds import (
@@ -58,6 +55,11 @@ class ExtraMass(Section):
     kind: choices.Component
     mass: Annotated[float, Of("component_mass", "mass of the component")]
     place: choices.Carrier
+    count: Annotated[float, Of("piece_count", "number of such components")] = 1.0
+    length: Annotated[
+        float,
+        Of("length", "length of each along the axis, between cap or rod and its eye"),
+    ] = 0.0
 
 
 class Valve(Section):
@@ -182,28 +184,6 @@ class Load(Section):
     ] = 0.0
 
 
-def closed_length(
-    *,
-    barrel_length: Array,
-    plate: Array,
-    spigot: Array,
-    extension: Array,
-    pin_diameter: Array,
-    neck: Array,
-) -> Array:
-    """Pin-to-pin length of the retracted actuator [m]; `spigot` and `neck` are those of the cap."""
-    eye = mass.eye_length(pin_diameter=pin_diameter)
-    return barrel_length + 2 * plate + spigot + extension + 2 * eye + neck
-
-
-def spigot_length(*, place: StaticPlace, section: Array) -> Array:
-    """Length of the cap's spigot, with the groove of the static seal and metal beside it [m].
-
-    It is 0 unless the static seal of the cap has the place "bore".
-    """
-    return gland.groove_width(section=section) + 2 * LEAST_METAL if place == "bore" else 0.0
-
-
 class Variable(Section):
     """Bounds and start (SI) of a dimension that the optimiser varies.
 
@@ -322,6 +302,7 @@ class Cylinder(Section):
         float, Of("volume", "dead oil volume of the rod side at full stroke, including ports")
     ] = 0.0
     port_diameter: Annotated[float | None, Of("diameter", "inner diameter of both ports")] = None
+    port_thread: choices.PortThread = None
     stop_travel: Annotated[
         float,
         Of(
@@ -460,6 +441,42 @@ class PistonNut(Section):
     preload: Annotated[float, Of("force", "tension of the stud after tightening")]
 
 
+class Cushion(Section):
+    """A cushioning spear that throttles the oil shortly before a stop."""
+
+    ends: choices.CushionEnd = "both"
+    length: Annotated[float, Of("part_length", "length of the cushioned travel")]
+    open_area: Annotated[float, Of("orifice_area", "flow area when the spear enters")]
+    end_area: Annotated[float, Of("orifice_area", "remaining flow area at the stop")]
+    exponent: Annotated[
+        float,
+        Of(
+            "stribeck_exponent",
+            "exponent of the curve by which the flow area falls along the travel",
+        ),
+    ] = 1.0
+
+
+class BuiltCushion(Cushion):
+    """Cushions of the cylinder: a spear on the piston and a collar on the rod, in bushes.
+
+    The bushes lengthen the cylinder. A scenario simulates these cushions unless it states its own.
+    """
+
+    diameter: Annotated[float, Of("diameter", "diameter of spear and collar")]
+
+
+class Sensor(Section):
+    """A position sensor, fixed in the cap, whose straight element is inside the hollow rod."""
+
+    type: choices.Sensing
+    diameter: Annotated[float, Of("diameter", "diameter of the element inside the rod")]
+    dead_length: Annotated[
+        float, Of("length", "length of the element inside the rod beyond the stroke")
+    ]
+    mass: Annotated[float, Of("component_mass", "mass of the sensor")]
+
+
 class Piston(Section):
     """The piston: a disc with the seal grooves."""
 
@@ -587,10 +604,13 @@ class Clevis(Section):
     """Eyes at both ends, each on a pin in double shear."""
 
     material: Annotated[str, MaterialName("structural")]
-    pin_diameter: Annotated[float, Of("diameter", "diameter of the pins")]
+    pin_diameter: Annotated[
+        float | None, Of("diameter", "diameter of the pins; default: bore of the bearings")
+    ] = None
     neck: Annotated[
         float, Of("length", "additional length of the cap eye's neck, past a barrel around it")
     ] = 0.0
+    bearing: choices.Bearing = None
 
 
 class Stiffness(Section):
@@ -736,6 +756,8 @@ class Design(Section):
     caps: Annotated[Caps, Field(default_factory=_plain_caps)]
     retention: Retention | None = None
     clevis: Clevis | None = None
+    sensor: Sensor | None = None
+    cushion: BuiltCushion | None = None
     seals: Seals
     extra_masses: Annotated[tuple[ExtraMass, ...], Field(max_length=24)] = ()
     lines: Annotated[tuple[Line, ...], Field(max_length=24)] = ()

@@ -135,6 +135,43 @@ class Gland:
         return 1 - self.depth_min / section
 
 
+@dataclass(frozen=True, slots=True)
+class PortSize:
+    """A threaded port for a fitting.
+
+    `seat` is the largest diameter of the seat of its seal, `boss` the smallest diameter of a boss
+    with the port, `depth` that of the full thread, and `drilled` that of its drill.
+    """
+
+    name: str
+    thread: str
+    diameter: float
+    pitch: float
+    seat: float
+    boss: float
+    depth: float
+    drilled: float
+    bore: float
+    standard: str
+    confidence: str
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class SphericalBearing:
+    """A spherical plain bearing; static load rating in N, mass in kg."""
+
+    name: str
+    bore: float
+    outer_diameter: float
+    width: float
+    ring_width: float
+    static_rating: float
+    mass: float
+    confidence: str
+    source: str
+
+
 class _Tables(Mapping[str, Any]):
     """Tables of a file by name, each parsed when first used."""
 
@@ -158,6 +195,11 @@ class _Tables(Mapping[str, Any]):
             self._parsed[name] = document.data[name]
         return self._parsed[name]
 
+    def names(self, name: str) -> tuple[str, ...]:
+        """The first entries of all rows of a table, without parsing it."""
+        start, end = self._places[name]
+        return tuple(re.findall(r"(?m)^ +- \[(\w+),", self.text[start:end]))
+
     def __iter__(self) -> Iterator[str]:
         return iter(self._places)
 
@@ -166,7 +208,7 @@ class _Tables(Mapping[str, Any]):
 
 
 @functools.lru_cache(maxsize=1)
-def tables() -> Mapping[str, Any]:
+def tables() -> _Tables:
     """Contents of ``standards.yaml``; numbers are texts, so that they stay exact."""
     return _Tables(store.data_folder("materials") / "standards.yaml")
 
@@ -224,6 +266,54 @@ def cylinder_pairs(series: str | None = None) -> tuple[CylinderPair, ...]:
         if series in (None, group["series"])
         for bore, rod in group["rows"]
     )  # fmt: skip
+
+
+PORT_LENGTHS = ("diameter", "pitch", "seat", "boss", "depth", "drilled", "bore")
+BEARING_LENGTHS = ("bore", "outer_diameter", "width", "ring_width")
+
+
+@functools.cache
+def port(name: str) -> PortSize:
+    """A port by its name, such as `m10x1`."""
+    return next(
+        PortSize(
+            name=name,
+            thread=thread,
+            **dict(zip(PORT_LENGTHS, map(metres, numbers), strict=True)),
+            standard=group["standard"],
+            confidence=group["confidence"],
+            source=citation(group["source"]),
+        )
+        for group in tables()["ports"]
+        for row, thread, *numbers in group["rows"]
+        if row == name
+    )
+
+
+@functools.cache
+def spherical_bearing(name: str) -> SphericalBearing:
+    """A spherical plain bearing by its name, such as `ge8e`."""
+    table = tables()["spherical_bearings"]
+    return next(
+        SphericalBearing(
+            name=name,
+            **dict(zip(BEARING_LENGTHS, map(metres, sizes), strict=True)),
+            static_rating=float(f"{rating}e3"),
+            mass=float(f"{grams}e-3"),
+            confidence=table["confidence"],
+            source=citation(table["source"]),
+        )
+        for row, *sizes, rating, grams in table["rows"]
+        if row == name
+    )
+
+
+def meaning(table: str, name: str) -> str:
+    """Words for a row of the tables `ports` and `spherical_bearings`."""
+    if table == "ports":
+        return f"{port(name).thread}, {port(name).standard}"
+    size = spherical_bearing(name)
+    return f"bore {1e3 * size.bore:g} mm, static load rating {1e-3 * size.static_rating:g} kN"
 
 
 @functools.cache

@@ -222,9 +222,16 @@ def _blocks(retention: dict[str, Any] | None) -> Iterator[dict[str, Any]]:
 def spec_hash(subject: PreparedDesign) -> str:
     """Hash of all inputs that determine the result: design, material data and program version."""
     design = subject.design.model_dump(mode="json")
-    for key in ("uncertainty", "extra_masses"):
+    for key in ("uncertainty", "extra_masses", "sensor", "cushion"):
         if not design[key]:  # unset fields are left out: hashes of older designs stay valid
             del design[key]
+    for component in design.get("extra_masses", ()):
+        for key, unset in (("count", 1.0), ("length", 0.0)):
+            if component[key] == unset:
+                del component[key]
+    for block, key in ((design["cylinder"], "port_thread"), (design["clevis"], "bearing")):
+        if block and block[key] is None:
+            del block[key]
     for block in _blocks(design["retention"]):
         for key in ("cap", "head", "sleeve", *OWN_KEYS):
             if key in block and block[key] is None:

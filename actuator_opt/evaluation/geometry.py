@@ -14,9 +14,11 @@ from typing import Any, Literal, NamedTuple
 
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, maximum
+from ..design.lengths import closed_length, spigot_length
 from ..design.material import Material
-from ..design.model import Design, EndRetention, Ply, closed_length, spigot_length
+from ..design.model import Design, EndRetention, Ply
 from ..design.seals import Seal, SealElement
+from ..design.standard_sizes import SphericalBearing, spherical_bearing
 from ..joints.joint import (
     ENCLOSED,
     HELICAL,
@@ -30,7 +32,8 @@ from ..joints.joint import (
 )
 from ..joints.kinds import JOINTS
 from ..joints.sleeve import in_sleeve
-from ..models import forces, gland, mass, winding_path
+from ..models import forces, gland, winding_path
+from ..models.spherical_bearing import lug_radius
 from .values import Values
 
 
@@ -340,6 +343,8 @@ class Geometry:
     """Forms of cap and head; one entry if their joints are the same."""
     barrel_length: Array
     eye_offset: Array
+    """Length of an eye, from its pin to its end, without the additional neck of the cap's."""
+    eye_radius: Array
     neck: Array
     """Additional length of the neck of the cap's eye."""
     pin_diameter: Array
@@ -353,12 +358,28 @@ class Geometry:
     spigot: Array
     """Length of the cap's spigot, which has the groove of the static seal or is its skirt in the
     bore; 0 without one."""
+    cushion: Array
+    """Diameter of the cushions' spear and collar; 0 without cushions."""
+    cap_bush: Array
+    """Length of the cushion's bush between cap and chamber; 0 without one."""
+    head_bush: Array
+    """Length of the cushion's bush between head and chamber; 0 without one."""
+    cap_stack: Array
+    """Length of the components between cap and eye."""
+    rod_stack: Array
+    """Length of the components between rod and eye."""
     bearing_span: Array
+
+    @property
+    def cap_face(self) -> Array:
+        """Distance from the pin of the cap's eye to the outer face of the cap's plate."""
+        return self.eye_offset + self.neck + self.cap_stack
 
     @property
     def wall_length(self) -> Array:
         """Length of the barrel wall, with the parts that enclose the end plates."""
-        return self.barrel_length + self.spigot + self.cap_fit.beyond + self.head_fit.beyond
+        inside = self.cap_bush + self.barrel_length + self.head_bush
+        return inside + self.spigot + self.cap_fit.beyond + self.head_fit.beyond
 
     @property
     def cap_fit(self) -> EndDimensions:
@@ -380,6 +401,65 @@ def _thicknesses(v: Values, part: str, layup: tuple[Ply, ...]) -> tuple[Array, .
     return tuple(v[f"{part}.layup[{i}].thickness"] for i in range(len(layup)))
 
 
+def bearing_of(design: Design) -> SphericalBearing | None:
+    """The spherical bearing of both eyes; None without one."""
+    if design.clevis is None or design.clevis.bearing is None:
+        return None
+    return spherical_bearing(design.clevis.bearing)
+
+
+def _eyes(v: Values, design: Design) -> dict[str, Array]:
+    """Sizes of the eyes, and lengths of the components between cap or rod and eye."""
+    bearing = bearing_of(design)
+    if bearing is not None:
+        pin = bearing.bore
+        sizes = {"outer_diameter": bearing.outer_diameter, "width": bearing.width}
+        radius = lug_radius(pin_diameter=pin, **sizes)
+    else:
+        pin = radius = 0.0 if design.clevis is None else v["clevis.pin_diameter"]
+    lengths: dict[str, Array] = {"cap": 0.0, "rod": 0.0}
+    for index, component in enumerate(design.extra_masses):
+        if component.place in lengths:
+            at = f"extra_masses[{index}]."
+            added = v[f"{at}count"] * v[f"{at}length"]
+            lengths[component.place] = lengths[component.place] + added
+    return {
+        "pin_diameter": pin,
+        "eye_radius": radius,
+        "eye_offset": radius + pin,
+        "neck": 0.0 if design.clevis is None else v["clevis.neck"],
+        "cap_stack": lengths["cap"],
+        "rod_stack": lengths["rod"],
+    }
+
+
+def _cushions(v: Values, design: Design) -> dict[str, Array]:
+    """Diameter of the cushions, and lengths of their bushes at cap and head; 0 without cushions."""
+    ends = None if design.cushion is None else design.cushion.ends
+    return {
+        "cushion": 0.0 if ends is None else v["cushion.diameter"],
+        "cap_bush": v["cushion.length"] if ends in ("cap", "both") else 0.0,
+        "head_bush": v["cushion.length"] if ends in ("rod", "both") else 0.0,
+    }
+
+
+def _angles(v: Values, design: Design, forms: Sequence[Form]) -> tuple[Array, ...]:
+    """Winding angles of the barrel's layers; those of helical layers vary under a wound end."""
+    return tuple(
+        v[f"barrel.layup[{i}].angle"] if "wound" in forms and _helical(ply) else ply.angle
+        for i, ply in enumerate(design.barrel.layup)
+    )
+
+
+def _fits(v: Values, design: Design, **sizes: Any) -> tuple[EndDimensions, ...]:
+    """Dimensions of cap and head that follow from their joints; `sizes` are those of `end_of`."""
+    outer = sizes["outer_radius"]
+    return tuple(
+        end_joint.joint.fit(end_of(design, end_joint, Numbers(v, end_joint.path), **sizes))
+        for end_joint in joints_of(design)
+    ) or (EndDimensions(plate_radius=outer, radius=outer),)
+
+
 def derive(v: Values, design: Design) -> Geometry:
     """All derived dimensions of a design."""
     bore, stroke = v["cylinder.bore"], v["cylinder.stroke"]
@@ -387,50 +467,28 @@ def derive(v: Values, design: Design) -> Geometry:
     thicknesses = _thicknesses(v, "barrel", design.barrel.layup)
     rod_thicknesses = _thicknesses(v, "rod", design.rod.layup)
     rod_inner = rod - 2 * sum(rod_thicknesses) if rod_thicknesses else v["rod.inner_diameter"]
-    inner_radius = bore / 2
-    outer_radius = inner_radius + sum(thicknesses)
     piston_length, head_length = v["piston.length"], v["head.length"]
-    needed = piston_length + stroke + head_length
-    barrel_length = v.get("barrel.length", needed)
-    plate = v["caps.thickness"]
-    extension = v["rod.extension"]
-    static = static_grooves(v, design)
-    joints, fits = joints_of(design), []
-    forms = tuple(end.joint.form for end in joints)
-    angles = tuple(
-        v[f"barrel.layup[{i}].angle"] if "wound" in forms and _helical(ply) else ply.angle
-        for i, ply in enumerate(design.barrel.layup)
-    )
-    for end_joint in joints:
-        end = end_of(
-            design,
-            end_joint,
-            Numbers(v, end_joint.path),
-            inner_radius=inner_radius,
-            outer_radius=outer_radius,
-            thicknesses=thicknesses,
-            angles=angles,
-            barrel_length=barrel_length,
-            plate=plate,
-            rod_radius=rod / 2,
-            head_length=head_length,
-            static=static,
-        )
-        fits.append(end_joint.joint.fit(end))
-    if not fits:
-        fits.append(EndDimensions(plate_radius=outer_radius, radius=outer_radius))
-    places = static_places(design)
+    barrel_length = v.get("barrel.length", piston_length + stroke + head_length)
+    plate, extension = v["caps.thickness"], v["rod.extension"]
+    forms = tuple(end.joint.form for end in joints_of(design))
+    sizes: dict[str, Any] = {
+        "inner_radius": bore / 2,
+        "outer_radius": bore / 2 + sum(thicknesses),
+        "thicknesses": thicknesses,
+        "angles": _angles(v, design, forms),
+        "barrel_length": barrel_length,
+        "plate": plate,
+        "head_length": head_length,
+    }
+    static, places = static_grooves(v, design), static_places(design)
+    fits = _fits(v, design, **sizes, rod_radius=rod / 2, static=static)
     spigot = spigot_length(place=places[0], section=static[0].section) if static else 0.0
     spigot = spigot + fits[0].inner_length
-    pin = v["clevis.pin_diameter"] if design.clevis is not None else 0.0
-    eye_offset = mass.eye_length(pin_diameter=pin)
-    neck = v["clevis.neck"] if design.clevis is not None else 0.0
+    eyes, cushions = _eyes(v, design), _cushions(v, design)
+    bushes = cushions["cap_bush"] + cushions["head_bush"]
     return Geometry(
         bore=bore,
-        inner_radius=inner_radius,
-        outer_radius=outer_radius,
-        thicknesses=thicknesses,
-        angles=angles,
+        **sizes,
         stroke=stroke,
         area_a=forces.piston_area(bore=bore),
         area_b=forces.annulus_area(bore=bore, rod_diameter=rod),
@@ -438,33 +496,29 @@ def derive(v: Values, design: Design) -> Geometry:
         rod_inner_diameter=rod_inner,
         rod_thicknesses=rod_thicknesses,
         rod_extension=extension,
-        rod_length=barrel_length - piston_length + plate + extension,
+        rod_length=barrel_length - piston_length + cushions["head_bush"] + plate + extension,
         piston_length=piston_length,
         piston_clearance=v["piston.clearance"],
         nut=0.0 if design.piston.nut is None else v["piston.nut.diameter"],
-        head_length=head_length,
         head_clearance=v["head.clearance"],
-        plate=plate,
-        fits=tuple(fits),
+        fits=fits,
         forms=forms,
-        barrel_length=barrel_length,
-        eye_offset=eye_offset,
-        neck=neck,
-        pin_diameter=pin,
+        **eyes,
         closed_length=closed_length(
             barrel_length=barrel_length,
             plate=plate,
             spigot=spigot,
+            further=bushes + eyes["neck"] + eyes["cap_stack"] + eyes["rod_stack"],
             extension=extension,
-            pin_diameter=pin,
-            neck=neck,
+            eye=eyes["eye_offset"],
         ),
         piston_grooves=grooves(v, design, "piston"),
         rod_grooves=grooves(v, design, "rod"),
         static_grooves=static,
         static_places=places,
         spigot=spigot,
-        bearing_span=(piston_length + head_length + plate) / 2,
+        **cushions,
+        bearing_span=(piston_length + head_length + plate) / 2 + cushions["head_bush"],
     )
 
 
@@ -503,7 +557,7 @@ def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, 
     skirted = 2 * g.cap_fit.length if len(g.fits) == 1 else g.cap_fit.length + g.head_fit.length
     skirts = {"geometry_skirts": g.wall_length - skirted} if "skirts" in g.forms else {}
     static_width = g.static_grooves[0].width if g.static_grooves else STATIC_SEAL
-    lips = {"cap": g.eye_offset + g.neck - g.pin_diameter - g.cap_fit.lip} if eyes else {}
+    lips = {"cap": g.cap_face - g.eye_radius - g.cap_fit.lip} if eyes else {}
     lips["head"] = g.rod_extension - g.head_fit.lip
     plugs = {"geometry_lip": lips, "geometry_plug": (g.plate - static_width) / 2}
     sealed: dict[str, Any] = {}

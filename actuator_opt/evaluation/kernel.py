@@ -24,6 +24,7 @@ from ..models import damping, elements, forces, lines, transmission_line
 from . import (
     barrel as barrel_module,
     circuit,
+    cushion,
     duty,
     film,
     film_tables,
@@ -31,10 +32,12 @@ from . import (
     linkage as joint,
     motion,
     piston_nut,
+    ports,
     rings as rings_module,
     rod_strength as beam_module,
     rods,
     sealing,
+    sensor,
     springs,
     state,
     strength,
@@ -140,11 +143,11 @@ def compute_flow(
     out.put("flow", flow["a"])
     out.put("piston_speed", state.speed)
     out.put("oil_viscosity", state.kinematic_viscosity)
-    if "cylinder.port_diameter" in v:
-        port = v["cylinder.port_diameter"]
-        out.put("port_velocity", lines.port_velocity(flow=flow["a"], port_diameter=port))
-    else:
+    bore = ports.bore(v, design)
+    if bore is None:
         out.skip("port_velocity", "no port stated: add cylinder.port_diameter")
+    else:
+        out.put("port_velocity", lines.port_velocity(flow=flow["a"], port_diameter=bore))
     if design.lines:
         _compute_lines(v, design, state, flow, out)
     else:
@@ -364,26 +367,8 @@ def statics(
     stop = joint.at_stop(case_state.demands, case_state.push)
     stop = replace(stop, mass=weight.moving(parts, stop.mass))
     duty.compute(v, design, stock, g, case_state, barrel, rod, loaded_joints, stop, net, out)
-    hole = v["rod.thread.diameter"] / 2 if design.rod.thread is not None else g.rod_diameter / 2
-    if design.piston.nut is not None:
-        hole = piston_nut.recess(g)[1]
-    lands = geometry_module.lands(g, hole, eyes=design.clevis is not None)
-    for name, value in (lands | piston_nut.lands(design, g)).items():
-        out.put(name, value)
-    if design.piston.nut is None:
-        out.skip("geometry_piston_web", piston_nut.NO_NUT)
+    _lands(v, design, g, rod, out)
     strength.joint_metrics(loaded_joints, out)
-    if not g.rod_thicknesses:
-        out.skip("geometry_rod_bore", "the rod has no layers")
-    if g.static_places[1] != "bore":
-        out.skip("geometry_static_seal", "no static seal on the outside of the head")
-    if "skirts" not in g.forms:
-        out.skip("geometry_skirts", "cap and head have no skirts over the barrel")
-    if all(fit.sleeve is None for fit in g.fits):
-        out.skip("geometry_sleeve", "no sleeve under the winding")
-    if not set(ENCLOSED) & set(g.forms):
-        for name in ("geometry_lip", "geometry_plug"):
-            out.skip(name, "no plug in the bore")
     _manufacture(v, subject, g, out)
     out.put("barrel_length", g.wall_length)
     out.put("closed_length", g.closed_length)
@@ -400,6 +385,36 @@ def statics(
         damping=damping,
         leakage=leakage,
     )
+
+
+def _lands(v: Values, design: Design, g: Geometry, rod: RodSection, out: MetricArrays) -> None:
+    """Compute walls and clearances that must remain."""
+    hole = v["rod.thread.diameter"] / 2 if design.rod.thread is not None else g.rod_diameter / 2
+    if design.piston.nut is not None:
+        hole = piston_nut.recess(g)[1]
+    lands = geometry_module.lands(g, hole, eyes=design.clevis is not None)
+    lands |= piston_nut.lands(design, g) | ports.lands(v, design, g) | cushion.lands(design, g)
+    for name, value in (lands | sensor.lands(v, design, g, rod)).items():
+        out.put(name, value)
+    if design.piston.nut is None:
+        out.skip("geometry_piston_web", piston_nut.NO_NUT)
+    if design.cylinder.port_thread is None:
+        out.skip("geometry_port", ports.NO_PORTS)
+    if design.sensor is None:
+        out.skip("geometry_sensor", sensor.NO_SENSOR)
+    if design.cushion is None:
+        out.skip("geometry_cushion", cushion.NO_CUSHION)
+    if not g.rod_thicknesses:
+        out.skip("geometry_rod_bore", "the rod has no layers")
+    if g.static_places[1] != "bore":
+        out.skip("geometry_static_seal", "no static seal on the outside of the head")
+    if "skirts" not in g.forms:
+        out.skip("geometry_skirts", "cap and head have no skirts over the barrel")
+    if all(fit.sleeve is None for fit in g.fits):
+        out.skip("geometry_sleeve", "no sleeve under the winding")
+    if not set(ENCLOSED) & set(g.forms):
+        for name in ("geometry_lip", "geometry_plug"):
+            out.skip(name, "no plug in the bore")
 
 
 def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = None) -> ModelRun:

@@ -22,13 +22,21 @@ from ..base.numeric import Array, maximum
 from ..design import assembly
 from ..design.material import Material
 from ..design.model import Design
-from ..joints.joint import LEAST_METAL, EndDimensions, EndSpan, Polygon, rectangle
+from ..joints.joint import (
+    LEAST_METAL,
+    EndDimensions,
+    EndSpan,
+    Polygon,
+    SleeveFit,
+    rectangle,
+)
 from ..models.piston_nut import FLATS
 from . import geometry as geometry_module
 from .geometry import (
     Geometry,
     Groove,
     RetentionNumbers,
+    bearing_of,
     end_at,
     end_of,
     groove_totals,
@@ -36,12 +44,16 @@ from .geometry import (
 )
 from .kernel import PreparedDesign
 from .piston_nut import recess
+from .ports import boss_axis, cushioned, gallery, places, rim_bosses, seat_radius
 from .result import Outline
 from .rods import end_material
 
 _Part: TypeAlias = tuple[str, str, list[Polygon], int, bool]
 """Name of a part, material, polygons, number of round bars (0 for a turned part), and whether these
 are radial."""
+
+PORTS, BOSSES = "ports", "port bosses"
+"""Parts of the ports: each is one radial bar, so it is only above the axis."""
 
 _Kind: TypeAlias = Literal["metal", "composite", "polymer", "seal", "oil"]
 
@@ -96,17 +108,25 @@ def _edge(
     return [*edge, (x1, surface)]
 
 
-def _eye(centre: float, pin: float, side: int) -> list[Polygon]:
-    """Half of an eye in side view: a lug of radius `pin` around its hole, and its neck."""
-    angles = [pi * k / 24 for k in range(25)]
-    rim = [(centre + pin * cos(a), pin * sin(a)) for a in angles]
-    hole = [(centre + pin / 2 * cos(a), pin / 2 * sin(a)) for a in reversed(angles)]
-    foot = 0.75**0.5 * pin  # intersection of the neck with the rim
-    neck = sorted((centre + side * foot, centre + side * 2 * pin))
-    return [(*rim, *hole), rectangle(neck[0], neck[1], 0.0, pin / 2)]
+def _half_ring(centre: float, inner: float, outer: float) -> Polygon:
+    """Half of a ring in side view."""
+    turns = [(cos(pi * k / 24), sin(pi * k / 24) if 0 < k < 24 else 0.0) for k in range(25)]
+    rim = [(centre + outer * x, outer * y) for x, y in turns]
+    hole = [(centre + inner * x, inner * y) for x, y in reversed(turns)]
+    return (*rim, *hole)
 
 
-def _kind(material: Material) -> _Kind:
+def _eye(centre: float, pin: float, radius: float, hole: float, side: int) -> list[Polygon]:
+    """Half of an eye in side view: a lug around its hole, and a neck as wide as the pin."""
+    foot = (radius**2 - pin**2 / 4) ** 0.5  # intersection of the neck with the rim
+    neck = sorted((centre + side * foot, centre + side * (radius + pin)))
+    lug = _half_ring(centre, hole / 2, radius)
+    return [lug, rectangle(neck[0], neck[1], 0.0, pin / 2)]
+
+
+def _kind(part: str, material: Material | None) -> _Kind:
+    if material is None:
+        return "oil" if part == PORTS else "metal"
     kinds: dict[str, _Kind] = {"ply": "composite", "polymer": "polymer", "seal": "seal"}
     return kinds.get(material.kind, "metal")
 
@@ -115,7 +135,7 @@ def _kind(material: Material) -> _Kind:
 class _Stations:
     """Axial positions of faces and ends, measured from the cap pin, and radii.
 
-    `plate` is the inner face of the cap's plate, and `start` the end of the chamber.
+    `plate` is the inner face of the cap's plate, `start` and `head` are the ends of the chamber.
     """
 
     face: float
@@ -131,17 +151,17 @@ class _Stations:
 
 
 def _stations(g: Geometry) -> _Stations:
-    face = float(g.eye_offset + g.neck)
+    face = float(g.cap_face)
     plate = face + float(g.plate)
-    start = plate + float(g.spigot)
-    end = start + float(g.barrel_length)
+    start = plate + float(g.spigot) + float(g.cap_bush)
+    end = start + float(g.barrel_length) + float(g.head_bush)
     rod, bore = float(g.rod_diameter) / 2, float(g.inner_radius)
     return _Stations(
         face=face,
         plate=plate,
         start=start,
         end=end,
-        head=end - float(g.head_length),
+        head=end - float(g.head_length) - float(g.head_bush),
         tip=end + float(g.plate) + float(g.rod_extension),
         piston_end=start + float(g.piston_length),
         rod=rod,
@@ -213,6 +233,7 @@ def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
         _plate(g, (at.face, at.plate), 0.0, g.cap_fit, rims[0]),
         _plate(g, (at.end, at.end + plate), at.hole, g.head_fit, rims[1]),
         *_spigot(g, at),
+        *_cap_bush(g, at),
     ]
     others: dict[tuple[str, str, int, bool], list[Polygon]] = {}
     face, back = at.face, at.end + plate
@@ -247,7 +268,24 @@ def _spigot(g: Geometry, at: _Stations) -> Iterator[Polygon]:
     if g.static_places[0] == "bore":
         depth = float(g.static_grooves[0].gland_depth)
         inner = at.bore - depth - LEAST_METAL
-        yield _grooved(at.plate, at.start, inner, at.bore, g.static_grooves, at.bore, outside=True)
+        end = at.start - float(g.cap_bush)
+        yield _grooved(at.plate, end, inner, at.bore, g.static_grooves, at.bore, outside=True)
+
+
+def _cap_bush(g: Geometry, at: _Stations) -> Iterator[Polygon]:
+    """The bush at the cap that the spear of a cushion enters."""
+    if float(g.cap_bush) > 0:
+        yield rectangle(at.start - float(g.cap_bush), at.start, float(g.cushion) / 2, at.bore)
+
+
+def _cushion(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
+    """Spear and collar of the cushions."""
+    cap, head, radius = float(g.cap_bush), float(g.head_bush), float(g.cushion) / 2
+    hole = 0.0 if design.sensor is None else _sensor_hole(design, g)
+    shapes = [rectangle(at.start - cap, at.start, hole, radius)] if cap > 0 else []
+    if head > 0:
+        shapes.append(rectangle(at.piston_end, at.piston_end + head, at.rod, radius))
+    yield "cushions", end_material(design), shapes, 0, False
 
 
 def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
@@ -256,31 +294,41 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     piston = _grooved(at.start, at.piston_end, 0.0, radius, g.piston_grooves, at.bore, outside=True)
     cap_place, head_place = g.static_places
     length = float(g.head_length)
+    face = at.end - length
     outer = _edge(
-        at.head,
+        face,
         at.end,
         float(g.plug_radius),
         g.static_grooves if head_place == "bore" else (),
         at.bore,
         outside=True,
     )
-    inner = _edge(at.head, at.end, at.hole, g.rod_grooves, at.rod, outside=False)
+    inner = _edge(face, at.end, at.hole, g.rod_grooves, at.rod, outside=False)
     plug = (*inner, *reversed(outer))
+    plugs, bush = [plug], float(g.head_bush)
+    if bush > 0:
+        plugs.append(rectangle(at.head, at.head + bush, float(g.cushion) / 2, at.bore))
     if float(g.nut) > 0:
         height, corner = (float(size) for size in recess(g))
         hole = float(g.nut) / 2
         bottom = at.start + height
         edge = ((at.piston_end, hole), (bottom, hole), (bottom, corner), (at.start, corner))
         piston = (*piston[:-2], *edge)
+    if design.sensor is not None:
+        hole = _sensor_hole(design, g)
+        piston = (*piston[:-2], (at.piston_end, hole), (at.start, hole))
     yield "piston", design.piston.material, [piston], 0, False
-    yield "glands", design.head.material, [plug], 0, False
+    yield "glands", design.head.material, plugs, 0, False
+    yield from _cushion(design, g, at)
     yield from _rod(design, g, at)
     yield from _rings(at.start, float(g.piston_length), g.piston_grooves, at.bore, -1)
-    yield from _rings(at.head, length, g.rod_grooves, at.rod, 1)
+    yield from _rings(face, length, g.rod_grooves, at.rod, 1)
     beyond = at.end + float(g.plate)
     spans = {
-        "cap": {"rim": (at.face, at.plate), "bore": (at.plate, at.start)}.get(cap_place),
-        "head": {"rim": (at.end, beyond), "bore": (at.head, at.end)}.get(head_place),
+        "cap": {"rim": (at.face, at.plate), "bore": (at.plate, at.start - float(g.cap_bush))}.get(
+            cap_place
+        ),
+        "head": {"rim": (at.end, beyond), "bore": (face, at.end)}.get(head_place),
     }
     shapes = [
         shape
@@ -291,6 +339,12 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     ]
     for groove in g.static_grooves:
         yield groove.place, groove.material, shapes, 0, False
+
+
+def _sensor_hole(design: Design, g: Geometry) -> float:
+    """Radius of the hole of the piston through which the sensor passes."""
+    bore, fitting = float(g.rod_inner_diameter) / 2, design.rod.fitting
+    return bore if fitting is None else max(bore - (fitting.wall or 0.0), 0.0)
 
 
 def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
@@ -341,13 +395,84 @@ def _rings(
 
 
 def _eyes(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
-    if design.clevis is not None:
-        pin, name = float(g.pin_diameter), design.clevis.material
-        cap = _eye(0.0, pin, 1)
-        if float(g.neck) > 0:
-            cap.append(rectangle(float(g.eye_offset), at.face, 0.0, pin / 2))
-        yield "cap eye", name, cap, 0, False
-        yield "rod eye", name, _eye(at.tip + float(g.eye_offset), pin, -1), 0, False
+    if design.clevis is None:
+        return
+    pin, bearing, name = float(g.pin_diameter), bearing_of(design), design.clevis.material
+    hole = pin if bearing is None else bearing.outer_diameter
+    centres = {"cap": (0.0, 1), "rod": (at.tip + float(g.rod_stack + g.eye_offset), -1)}
+    for end, (centre, side) in centres.items():
+        shapes = _eye(centre, pin, float(g.eye_radius), hole, side)
+        if end == "cap" and float(g.neck) > 0:
+            shapes.append(rectangle(at.face - float(g.neck), at.face, 0.0, pin / 2))
+        yield f"{end} eye", name, shapes, 0, False
+    if bearing is not None:
+        rings = [_half_ring(centre, pin / 2, hole / 2) for centre, _ in centres.values()]
+        yield "eye bearings", f"{bearing.name.upper()}, ISO 12240-1", rings, 0, False
+
+
+def _ports(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
+    """The ports, above the axis: their threads and bores, and their bosses."""
+    found = places(design, g)
+    if found is None:
+        return
+    size, half, bore = found.size, found.size.diameter / 2, float(found.bore) / 2
+    bushes = cushioned(design)
+    plate = float(g.plate) / 2
+    holes, bosses = [], []
+    cap, head = float(g.cap_bush), float(g.head_bush)
+    near = [float(boss_axis(design, g, name, found.bore)) for name in ("cap", "head")]
+    ends = (
+        (g.cap_fit, at.start - cap + near[0], at.plate - plate, at.start - cap),
+        (g.head_fit, at.head + head - near[1], at.end + plate, at.head + head),
+    )
+    rims = rim_bosses(size, g)
+    for (fit, above, middle, chamber), boss, rim, bush in zip(
+        ends, found.on_barrel, rims, bushes, strict=True
+    ):
+        axis, drilled, _ = (float(size) for size in gallery(g, bore=found.bore, bush=bush))
+        middle = above if boss else middle
+        base = float(seat_radius(g, fit) if boss else fit.plate_radius)
+        top = base + (size.drilled if boss else float(rim))
+        bottom = top - size.drilled
+        holes.append(rectangle(middle - half, middle + half, bottom, top))
+        if top > base:
+            bosses += [
+                rectangle(middle - size.boss / 2, middle - half, base, top),
+                rectangle(middle + half, middle + size.boss / 2, base, top),
+            ]
+        end = axis
+        if boss:
+            end = float(g.cushion) / 2 if bush else at.bore
+        if bottom > end:
+            holes.append(rectangle(middle - bore, middle + bore, end, bottom))
+        if not boss:
+            start, stop = sorted((middle, chamber))
+            holes.append(rectangle(start, stop, axis - drilled / 2, axis + drilled / 2))
+    yield PORTS, f"{size.thread}, {size.standard}", holes, 1, True
+    yield BOSSES, design.caps.material, bosses, 1, True
+
+
+def _components(g: Geometry, at: _Stations) -> Iterator[_Part]:
+    """Components between cap or rod and eye, as blocks as wide as the cap's plate and the rod.
+
+    The additional neck is between cap and component, which so is outside a barrel around the neck.
+    """
+    cap, rod = float(g.cap_stack), float(g.rod_stack)
+    blocks = []
+    if cap > 0:
+        start = float(g.eye_offset)
+        blocks.append(rectangle(start, start + cap, 0.0, float(g.cap_fit.plate_radius)))
+    if rod > 0:
+        blocks.append(rectangle(at.tip, at.tip + rod, 0.0, at.rod))
+    yield "components", "as stated", blocks, 0, False
+
+
+def _sensor(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
+    """The element of a position sensor, from the cap into the rod."""
+    if design.sensor is not None:
+        end = at.start + float(g.stroke) + design.sensor.dead_length
+        shape = rectangle(at.plate, end, 0.0, design.sensor.diameter / 2)
+        yield "sensor", design.sensor.type, [shape], 0, False
 
 
 def _merged(parts: Iterable[_Part]) -> Iterator[_Part]:
@@ -368,12 +493,13 @@ def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tup
         (rectangle(at.piston_end, at.head, at.rod, at.bore),),
         "oil",
     )
-    groups = (_barrel, _ends, _inside, _eyes)
-    parts = _merged(part for group in groups for part in group(design, g, at))
+    groups = (_barrel, _ends, _inside, _eyes, _sensor, _ports)
+    drawn = [part for group in groups for part in group(design, g, at)]
+    parts = _merged([*drawn, *_components(g, at)])
     return (
         oil,
         *(
-            Outline(part, name, tuple(polygons), _kind(materials[name]), bars, radial)
+            Outline(part, name, tuple(polygons), _kind(part, materials.get(name)), bars, radial)
             for part, name, polygons, bars, radial in parts
             if polygons
         ),
@@ -382,6 +508,7 @@ def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tup
 
 def lengths(design: Design, g: Geometry) -> dict[str, float]:
     """Dimensions that the drawing states [m]."""
+    bearing = bearing_of(design)
     values = {
         "bore": g.bore,
         "rod": g.rod_diameter,
@@ -394,14 +521,20 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
         "barrel_length": g.barrel_length,
         "plate": g.plate,
         "spigot": g.spigot,
+        "cap_bush": g.cap_bush,
+        "head_bush": g.head_bush,
         "beyond_cap": g.cap_fit.beyond,
         "beyond_head": g.head_fit.beyond,
         "closed_length": g.closed_length,
         "pin_cap": 0.0,
         "pin_rod": g.closed_length,
-        "eye_offset": g.eye_offset + g.neck,
+        "eye_offset": g.eye_offset,
+        "face": g.cap_face,
         "neck": g.neck,
+        "cap_stack": g.cap_stack,
         "pin": g.pin_diameter,
+        "eye_radius": g.eye_radius,
+        "eye_hole": g.pin_diameter if bearing is None else bearing.outer_diameter,
         "extension": g.rod_extension,
     }
     return {name: float(value) for name, value in values.items()}
@@ -606,6 +739,11 @@ def _changed(geometry: Geometry, change: _Change) -> Geometry:
     return Geometry(**values)
 
 
+def _changed_sleeve(sleeve: SleeveFit, change: _Change) -> SleeveFit:
+    bare, inner, ramp, lift = (change(size) for size in sleeve[:4])
+    return SleeveFit(bare, inner, ramp, lift, sleeve.liner)
+
+
 def _changed_fit(fit: EndDimensions, change: _Change) -> EndDimensions:
     return EndDimensions(
         plate_radius=change(fit.plate_radius),
@@ -619,6 +757,7 @@ def _changed_fit(fit: EndDimensions, change: _Change) -> EndDimensions:
         groove=tuple(change(size) for size in fit.groove),
         short=change(fit.short),
         own=tuple(change(size) for size in fit.own),
+        sleeve=None if fit.sleeve is None else _changed_sleeve(fit.sleeve, change),
     )
 
 

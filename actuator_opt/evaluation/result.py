@@ -283,7 +283,15 @@ class Outline:
     bars: int = 0
     """Number of round bars around the axis, such as tie rods; 0 for a turned part."""
     radial: bool = False
-    """Whether the bars are radial, such as pins, not parallel to the axis."""
+    """Whether the bars are radial, such as pins or ports, not parallel to the axis."""
+
+    @property
+    def sides(self) -> tuple[int, ...]:
+        """Sides of the axis that show the part: 1 above, -1 below.
+
+        The first bar is above the axis. If the number of bars is odd, none lies opposite.
+        """
+        return (1,) if self.bars % 2 else (1, -1)
 
 
 @dataclass(frozen=True, slots=True)

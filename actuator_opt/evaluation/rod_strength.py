@@ -66,8 +66,8 @@ class Beam:
 
 def lengths(g: Geometry, state: LoadState) -> tuple[Array, Array]:
     """Lengths of the cylinder and of the rod outside it; their sum is the eye-to-eye distance."""
-    cylinder = g.eye_offset + g.neck + 2 * g.plate + g.spigot + g.barrel_length
-    return cylinder, maximum(state.reach + g.rod_extension + g.eye_offset, LEAST)
+    cylinder = g.cap_face + 2 * g.plate + g.spigot + g.cap_bush + g.barrel_length + g.head_bush
+    return cylinder, maximum(state.reach + g.rod_extension + g.rod_stack + g.eye_offset, LEAST)
 
 
 CriticalLoad: TypeAlias = Callable[[Design, Wall, RodSection, tuple[Array, Array]], Array]

@@ -229,7 +229,9 @@ class LoadState:
 
 def overhang(g: Geometry, state: LoadState) -> Array:
     """Distance of the rod eye from the middle of the head bearing, in every load case."""
-    return state.reach + g.rod_extension + g.eye_offset + (g.head_length + g.plate) / 2
+    return (
+        state.reach + g.rod_extension + g.rod_stack + g.eye_offset + (g.head_length + g.plate) / 2
+    )
 
 
 def side_reactions(g: Geometry, state: LoadState) -> dict[str, Array]:

@@ -28,6 +28,7 @@ from .geometry import (
     Geometry,
     Groove,
     Numbers,
+    bearing_of,
     clamped,
     end_at,
     groove_totals,
@@ -167,7 +168,7 @@ def compute(
     thermal["rod fittings"] = fittings if isinstance(fittings, str) else fittings.thermal(stock)
     rods.thermal(v, design, thermal, out)
     _caps(stock, design, g, supply, out)
-    _pins(v, stock, design, push, out)
+    _pins(stock, design, g, push, out)
     _guides(stock, design, g, state, out)
 
 
@@ -369,7 +370,14 @@ def _caps(
     out.put("cap_factor", {place: strength / stress for place, stress in stresses.items()})
 
 
-def _pins(v: Values, stock: MaterialValues, design: Design, push: Array, out: MetricArrays) -> None:
+def _pins(
+    stock: MaterialValues, design: Design, g: Geometry, push: Array, out: MetricArrays
+) -> None:
+    bearing = bearing_of(design)
+    if bearing is None:
+        out.skip("eye_bearing_factor", "no spherical bearing stated: add clevis.bearing")
+    else:
+        out.put("eye_bearing_factor", bearing.static_rating / push)
     if design.clevis is None:
         out.skip("pin_factor", "no clevis stated: add clevis")
         return
@@ -377,7 +385,7 @@ def _pins(v: Values, stock: MaterialValues, design: Design, push: Array, out: Me
     if strength is None:
         out.skip("pin_factor", f"{design.clevis.material} has no yield strength")
         return
-    stress = retention.pin_shear_stress(force=push, diameter=v["clevis.pin_diameter"])
+    stress = retention.pin_shear_stress(force=push, diameter=g.pin_diameter)
     out.put("pin_factor", strength / sqrt(3) / stress)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from .. import models as formulas
 from ..base.dataclass import dataclass
-from ..design import assembly
+from ..design import assembly, standard_sizes
 from ..design.material import compatible
 from ..design.model import PLAIN_CAP, Design
 from ..design.paths import quantity_of
@@ -25,10 +25,12 @@ from ..metrics.table import CRITERION, OWN, ROWS, WALL_FED
 from ..models import contact_profile, gland, laminate, rough_surface, seals
 from ..models.strength import CRITERIA
 from ..models.winding_path import SLIPPAGE
-from . import linkage as joint, motion, proportions, springs, state
+from . import geometry as geometry_module, linkage as joint, motion, proportions, springs, state
 from .barrel import LAMINATES, kind
 from .film_tables import FilmTable
+from .geometry import Geometry
 from .kernel import ModelRun, PreparedDesign
+from .ports import places
 from .result import Metric, ModelUse, Unverified
 from .rings import Ring, extrusion_end, seal_contact
 from .rod_strength import NEAR
@@ -299,6 +301,7 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
     yield from _head_warnings(subject.design)
     yield from (("", text) for text in assembly.warnings(subject.design))
     yield from _skirt_oil_warnings(subject.design, run)
+    yield from _port_warnings(subject, g)
     yield from _bond_warnings(run)
     for part, assumption in (
         ("head", "material and length of the piston"),
@@ -421,6 +424,17 @@ def _skirt_oil_warnings(design: Design, run: ModelRun) -> Iterable[tuple[str, st
                     f"more than the stated {1e6 * design.cylinder.dead_volume_a:.2g} ml: add it to "
                     "cylinder.dead_volume_a",
                 )
+
+
+def _port_warnings(subject: PreparedDesign, g: Geometry) -> Iterable[tuple[str, str]]:
+    """Warn of ports in bosses, whose fixing no model covers, and of their holes in plies."""
+    found = places(subject.design, g)
+    if found is None or not any(found.on_barrel):
+        return
+    layers = subject.design.barrel.layup
+    plies = any(subject.materials[layer.material].kind == "ply" for layer in layers)
+    hole = " nor the stress in the plies beside its hole" if plies else ""
+    yield ("", f"no model covers how the boss of a port is fixed to the barrel{hole}")
 
 
 def _winding_warnings(design: Design, run: ModelRun) -> Iterable[tuple[str, str]]:
@@ -550,3 +564,9 @@ def unverified(subject: PreparedDesign, v: Values) -> Iterable[Unverified]:
             if f"materials.{name}.{key}" in v.read or key == "kinematic_viscosity":
                 entry = material.properties[key]
                 yield Unverified(name, key, entry.text, entry.source, entry.note)
+    thread = subject.design.cylinder.port_thread
+    if thread is not None and (port := standard_sizes.port(thread)).confidence == "unverified":
+        yield Unverified("port", "sizes", thread, port.source)
+    bearing = geometry_module.bearing_of(subject.design)
+    if bearing is not None and bearing.confidence == "unverified":
+        yield Unverified("bearing", "sizes and rating", bearing.name, bearing.source)

@@ -9,16 +9,19 @@ from ..design.choices import COMPONENTS
 from ..design.model import Design
 from ..joints.joint import LEAST_METAL, EndDimensions
 from ..models import mass
-from . import piston_nut
-from .geometry import Geometry, Numbers, end_at, joints_of
+from ..models.spherical_bearing import bearing_eye_volume
+from . import cushion, piston_nut, ports, sensor
+from .geometry import Geometry, Numbers, bearing_of, end_at, joints_of
 from .limits import MaterialValues
 from .rods import RodSection, fitting_hole
 from .values import Values
 
 PARTS = ("barrel", "rod", "piston", "caps", "glands", "seals", "fastening", "clevises")
-"""Parts of the mass breakdown, in assembly order. Components with a stated mass follow them."""
+"""Parts of the mass breakdown, in assembly order."""
+OPTIONAL = ("ports", "sensor")
+"""Parts that follow them, in a design that states them: bosses of the ports, position sensor."""
 STATED, STATED_MOVING = "components", "moving components"
-"""Parts of the breakdown: components with a stated mass, fixed or moving with the rod."""
+"""Last parts of the breakdown: components with a stated mass, fixed or moving with the rod."""
 MOVING = ("rod", "piston", "fastening", STATED_MOVING)
 """Parts that move with the rod."""
 
@@ -131,19 +134,26 @@ def _rod_ends(v: Values, design: Design, rod: RodSection) -> Array:
     return total + stud + mass.disc_mass(density=density, diameter=hole, thickness=plugs)
 
 
+def _eyes(v: Values, design: Design, g: Geometry) -> Array:
+    """Mass of both eyes with their spherical bearings, and of the additional neck of the cap's."""
+    if design.clevis is None:
+        return 0.0
+    density, bearing = v[f"materials.{design.clevis.material}.density"], bearing_of(design)
+    neck = mass.disc_mass(density=density, diameter=g.pin_diameter, thickness=g.neck)
+    if bearing is None:
+        return 2 * density * mass.eye_volume(pin_diameter=g.pin_diameter) + neck
+    volume = bearing_eye_volume(
+        pin_diameter=bearing.bore, outer_diameter=bearing.outer_diameter, width=bearing.width
+    )
+    return 2 * (density * volume + bearing.mass) + neck
+
+
 def parts(
     v: Values, design: Design, stock: MaterialValues, geometry: Geometry, rod: RodSection
 ) -> dict[str, Array]:
     """Mass of every part [kg]; the oil is not included."""
     g = geometry
     caps = v[f"materials.{design.caps.material}.density"]
-    clevises: Array = 0.0
-    if design.clevis is not None:
-        density = v[f"materials.{design.clevis.material}.density"]
-        clevises = 2 * density * mass.eye_volume(pin_diameter=g.pin_diameter)
-        clevises = clevises + mass.disc_mass(
-            density=density, diameter=g.pin_diameter, thickness=g.neck
-        )
     masses = {
         "barrel": _barrel(v, design, g),
         "rod": rod.mass_per_length * g.rod_length,
@@ -153,12 +163,18 @@ def parts(
         "glands": _gland(v, design, g),
         "seals": _seals(v, g),
         "fastening": _rod_ends(v, design, rod),
-        "clevises": clevises,
+        "clevises": _eyes(v, design, g),
     }
     head = v[f"materials.{design.head.material}.density"]
-    for additions in (_static_grooves(caps, head, g), piston_nut.masses(v, design, g)):
+    for additions in (
+        _static_grooves(caps, head, g),
+        piston_nut.masses(v, design, g),
+        ports.masses(v, design, g),
+        sensor.masses(v, design, g, rod),
+        cushion.masses(v, design, g, rod),
+    ):
         for part, addition in additions.items():
-            masses[part] = masses[part] + addition
+            masses[part] = masses.get(part, 0.0) + addition
     for end_joint in joints_of(design):
         end = end_at(design, end_joint, Numbers(v, end_joint.path), g)
         for part, addition in end_joint.joint.mass(end, stock).items():
@@ -168,11 +184,16 @@ def parts(
             else:
                 masses[part] = masses[part] + end_joint.count * addition
     masses["caps"] = masses.pop("cap") + masses.pop("head")
-    stated: dict[str, Array] = {}
+    stated = {part: masses[part] for part in OPTIONAL if part in masses}
     for index, component in enumerate(design.extra_masses):
         part = STATED_MOVING if component.place in ("piston", "rod") else STATED
-        stated[part] = stated.get(part, 0.0) + v[f"extra_masses[{index}].mass"]
+        stated[part] = stated.get(part, 0.0) + _component(v, index)
     return {part: masses[part] for part in PARTS} | stated
+
+
+def _component(v: Values, index: int) -> Array:
+    """Mass of a component that the design states, with all its pieces."""
+    return v[f"extra_masses[{index}].count"] * v[f"extra_masses[{index}].mass"]
 
 
 def moving(parts: Mapping[str, Array], load: Array = 0.0) -> Array:
@@ -193,9 +214,14 @@ def left_out(design: Design) -> tuple[str, ...]:
     joints = joints_of(design)
     if joints and all("adhesive" in end.joint.kinds for end in joints):
         stated.add("static_seals")
-    if design.clevis is None:
+    if design.clevis is None or design.clevis.bearing is not None:
         stated.add("bearings")
-    return tuple(words for kind, words in COMPONENTS.items() if kind not in stated)
+    if design.sensor is not None:
+        stated.add("sensor")
+    missing = {kind: words for kind, words in COMPONENTS.items() if kind not in stated}
+    if design.cylinder.port_thread is not None and "ports" in missing:
+        missing["ports"] = "fittings of the ports"
+    return tuple(missing.values())
 
 
 def oil(v: Values, design: Design, geometry: Geometry, position: Array = 0.0) -> Array:

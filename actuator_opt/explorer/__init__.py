@@ -280,7 +280,7 @@ def _part(outline: Outline) -> dict[str, Any]:
         "part": outline.part,
         "kind": outline.kind,
         "polygons": [len(polygon) for polygon in outline.polygons],
-    }
+    } | ({"sides": [-1]} if len(outline.sides) == 1 else {})
 
 
 FOLDER = Path(__file__).parent

@@ -48,18 +48,19 @@ function drawSection(row) {
   const pixel = Math.max(wide / (svg.clientWidth || 400), 2 * (radius + pad) / ((svg.clientHeight || 190) - 30)), foot = 28 * pixel;
   svg.setAttribute("viewBox", `${left - pad} ${-radius - pad} ${wide} ${2 * radius + 2 * pad + foot}`);
   let at = 0;
-  const paths = template.parts.map(({ part, kind, polygons }) => {
+  const paths = template.parts.map(({ part, kind, polygons, sides = [1, -1] }) => {
     let d = "";
     for (const points of polygons) {
       const shape = [];
       for (let k = 0; k < points; k++, at += 2) shape.push([found[at], found[at + 1]]);
-      for (const side of [1, -1]) d += "M" + shape.map(([x, r]) => `${x.toFixed(4)} ${(side * r).toFixed(4)}`).join("L") + "Z";
+      for (const side of sides) d += "M" + shape.map(([x, r]) => `${x.toFixed(4)} ${(side * r).toFixed(4)}`).join("L") + "Z";
     }
     const path = element("path", { class: kind, d });
     path.append(element("title", {}, part));
     return path;
   });
-  svg.append(...paths.filter((p) => p.classList.contains("oil")), ...paths.filter((p) => !p.classList.contains("oil")));
+  const first = paths.filter((p, k) => p.classList.contains("oil") && !template.parts[k].sides);
+  svg.append(...first, ...paths.filter((p) => !first.includes(p)));
   svg.append(element("path", { class: "centre", d: `M${left - pad} 0H${right + pad}` }));
   const bar = [500, 200, 100, 50, 20, 10, 5, 2, 1].find((length) => length < (right - left) / 4) || 1, y = radius + pad + foot * 0.45;
   svg.append(element("path", { class: "bar", d: `M${left} ${y - foot / 8}V${y + foot / 8}M${left} ${y}H${left + bar}M${left + bar} ${y - foot / 8}V${y + foot / 8}` }));

@@ -12,16 +12,17 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
-from math import cos, radians, sin, sqrt, tan
+from math import asin, cos, pi, radians, sin, sqrt, tan
 from typing import Any, TypeAlias
 
 from ..base.dataclass import dataclass
 from ..base.errors import library
 from ..evaluation.outline import notes
+from ..evaluation.parts_list import parts_list
 from ..evaluation.result import Evaluation, Outline
 from ..rendering.ink import spread
 from . import fits
-from .step import EYES, Profile, joined, millimetres, title
+from .step import BEARINGS, EYES, Profile, joined, millimetres, title
 
 _CONTROL = re.compile(
     "[\x00-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2060-\u2069\ud800-\udfff\ufeff\ufffe\uffff]"
@@ -216,10 +217,10 @@ def reach(profiles: Sequence[Profile], x: float) -> float:
 def _stations(lengths: Mapping[str, float]) -> dict[str, tuple[float, float]]:
     """Start and end position of every axial length, mm."""
     mm = {name: 1000 * value for name, value in lengths.items()}
-    face = mm["eye_offset"]
+    face = mm["face"]
     plate = face + mm["plate"]
-    start = plate + mm["spigot"]
-    end = start + mm["barrel_length"]
+    start = plate + mm["spigot"] + mm["cap_bush"]
+    end = start + mm["barrel_length"] + mm["head_bush"]
     piston = start + mm["piston_length"]
     spans = {
         "plate": (face, plate),
@@ -395,16 +396,23 @@ def _halves(profile: Profile) -> list[list[_Corner]]:
     return [_straight((*upper, *((x, -r) for x, r in reversed(upper))))]
 
 
-def _eye(centre: float, pin: float, side: int, neck: float) -> list[list[_Corner]]:
+def _circle(centre: float, diameter: float) -> list[_Corner]:
+    return [(centre - diameter / 2, 0.0, 1.0), (centre + diameter / 2, 0.0, 1.0)]
+
+
+def _eye(
+    centre: float, pin: float, radius: float, hole: float, side: int, neck: float
+) -> list[list[_Corner]]:
     """Outlines of an eye seen along its pin: the lug with its neck, and the hole.
 
-    The shape is that of `mass.eye_volume`, with a neck longer by `neck`.
+    The shape is that of `mass.eye_volume` or `spherical_bearing.bearing_eye_volume`, with a neck
+    longer by `neck`.
     """
-    foot, half = centre + side * sqrt(0.75) * pin, pin / 2
-    arc = -side * tan(radians(300 / 4))
-    end = centre + side * (2 * pin + neck)
+    foot, half = centre + side * sqrt(radius * radius - pin * pin / 4), pin / 2
+    arc = -side * tan((2 * pi - 2 * asin(half / radius)) / 4)
+    end = centre + side * (radius + pin + neck)
     lug = [(foot, half, 0.0), (end, half, 0.0), (end, -half, 0.0), (foot, -half, arc)]
-    return [lug, [(centre - half, 0.0, 1.0), (centre + half, 0.0, 1.0)]]
+    return [lug, _circle(centre, hole)]
 
 
 def _profiles(outline: Outline) -> list[Profile]:
@@ -413,15 +421,23 @@ def _profiles(outline: Outline) -> list[Profile]:
 
 def _cut(evaluation: Evaluation, outline: Outline) -> list[list[_Corner]]:
     """Closed outlines of a part in the section plane."""
+    lengths = evaluation.lengths
+    pin, radius, hole = (1000 * lengths[name] for name in ("pin", "eye_radius", "eye_hole"))
     if outline.part in EYES:
         at, side = ("pin_cap", 1) if outline.part == "cap eye" else ("pin_rod", -1)
-        lengths = evaluation.lengths
-        neck = 1000 * lengths["neck"] if outline.part == "cap eye" else 0.0
-        return _eye(1000 * lengths[at], 1000 * lengths["pin"], side, neck)
+        neck, face = (1000 * lengths[name] for name in ("neck", "face"))
+        if outline.part == "rod eye" or neck == 0.0:
+            return _eye(1000 * lengths[at], pin, radius, hole, side, 0.0)
+        if lengths["cap_stack"] == 0.0:
+            return _eye(1000 * lengths[at], pin, radius, hole, side, neck)
+        near = face - neck  # components are between eye and neck
+        shaft = ((near, pin / 2), (near, -pin / 2), (face, -pin / 2), (face, pin / 2))
+        return [*_eye(1000 * lengths[at], pin, radius, hole, side, 0.0), _straight(shaft)]
+    if outline.part == BEARINGS:
+        ends = (1000 * lengths[at] for at in ("pin_cap", "pin_rod"))
+        return [_circle(end, size) for end in ends for size in (hole, pin)]
     lines = [half for profile in _profiles(outline) for half in _halves(profile)]
-    if outline.bars % 2:
-        return [line for line in lines if line[0][1] > 0]  # no bar lies opposite the first
-    return lines
+    return lines if -1 in outline.sides else [line for line in lines if line[0][1] > 0]
 
 
 def _hatches(outlines: Sequence[Outline]) -> dict[tuple[str, str], tuple[float, float]]:
@@ -478,7 +494,8 @@ def _parts(
         if look is not None:
             look = look[0], look[1] * paper.scale
         thin = {"layer": layer, "lineweight": 13}
-        _hatch(space, lines, look, thin, nested=outline.part in EYES)
+        if outline.kind != "oil":
+            _hatch(space, lines, look, thin, nested=outline.part in (*EYES, BEARINGS))
         for line in lines:
             space.add_lwpolyline(line, format="xyb", close=True, dxfattribs={"layer": layer})
 
@@ -505,7 +522,8 @@ def _words(
         "",
         *(f"{title(outline.part)}: {outline.material}" for outline in outlines),
         "",
-        "Not drawn, as the models do not describe their shape: threads, ports, fillets, chamfers.",
+        "Not drawn, as the models do not describe their shape: threads, fillets, chamfers"
+        f"{'' if evaluation.design.cylinder.port_thread else ', ports'}.",
         "Rings are drawn as rectangles in their grooves, not with their true sections.",
     ]
     lines += notes(evaluation.design, evaluation.lengths)
@@ -520,9 +538,12 @@ def _words(
 
 
 def _masses(evaluation: Evaluation) -> Iterator[str]:
-    """Yield the masses of the parts and their sum."""
-    parts = ((title(part), mass) for part, mass in evaluation.mass_parts.items() if mass)
-    yield "Mass: " + ", ".join(f"{name} {1e3 * mass:.4g} g" for name, mass in parts)
+    """Yield the parts list, with pieces, masses and materials, and the sum of the masses."""
+    yield "Parts list: pieces, part, mass, material"
+    for part, pieces, material, mass in parts_list(evaluation):
+        if mass:
+            count = "" if pieces is None else f"{pieces} "
+            yield f"{count}{title(part)}, {1e3 * mass:.4g} g, {material}"
     yield f"Sum {1e3 * sum(evaluation.mass_parts.values()):.4g} g, without oil."
 
 
@@ -570,7 +591,9 @@ def dxf(evaluation: Evaluation, *, program: str, date: str | None = None) -> byt
     """
     ezdxf = library("ezdxf")
     outlines = [
-        outline for outline in evaluation.outlines if outline.polygons and outline.kind != "oil"
+        outline
+        for outline in evaluation.outlines
+        if outline.polygons and (outline.kind != "oil" or outline.radial)
     ]
     profiles = [millimetres(polygon) for outline in outlines for polygon in outline.polygons]
     first = min(x for profile in profiles for x, _ in profile)
@@ -587,7 +610,7 @@ def dxf(evaluation: Evaluation, *, program: str, date: str | None = None) -> byt
         _axis(space, first, last, paper)
         lengths = evaluation.lengths
         diameters_above(space, lengths, profiles, paper)
-        skirts = _skirts(outlines, 1000 * (lengths["eye_offset"] + lengths["plate"]))
+        skirts = _skirts(outlines, 1000 * (lengths["face"] + lengths["plate"]))
         lowest = lengths_below(space, lengths, skirts, profiles, paper)
         origin = ", ".join(part for part in (program, date) if part)
         corner = (first, lowest - 1.5 * paper.row)

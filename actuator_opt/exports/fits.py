@@ -1,4 +1,4 @@
-"""Notes of a drawing on fits, surfaces and threads, by ISO 286 and ISO 261.
+"""Notes of a drawing on fits, surfaces, threads and ports, by ISO 286 and ISO 261.
 
 Piston and head are fitted to the bore as H8/f7, and so is the rod to the head. The tolerances are
 those of the size; whether they contain the clearance that the design states is said beside them.
@@ -9,7 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..design.model import Design
+from ..design.standard_sizes import port, spherical_bearing
 from ..evaluation import Evaluation
+from ..evaluation.geometry import joints_of
+from ..joints.joint import ENCLOSED
 
 RANGES = (
     # up to, IT7, IT8, upper deviation of f: mm and um
@@ -68,6 +71,21 @@ def notes(evaluation: Evaluation) -> Iterator[str]:
     if thread is not None:
         size = f"M{1e3 * thread.diameter:.5g} x {1e3 * thread.pitch:g} - 6g"
         yield f"Thread of the rod end: {size}, {1e3 * thread.diameter:.4g} long."
+    nut = design.piston.nut
+    if nut is not None:
+        size = f"M{1e3 * nut.diameter:.5g} x {1e3 * nut.pitch:g} - 6g"
+        yield f"Thread of the piston's stud: {size}; tighten to {1e-3 * nut.preload:.4g} kN."
+    if design.cylinder.port_thread is not None:
+        hole = port(design.cylinder.port_thread)
+        yield (
+            f"Ports: {hole.thread} by {hole.standard}, full thread {1e3 * hole.depth:g} deep, "
+            f"drill {1e3 * hole.drilled:g} deep."
+        )
+        if design.cushion is None and any(e.joint.form in ENCLOSED for e in joints_of(design)):
+            yield "Chamfer the edges of the piston, which pass the ports."
+    if design.clevis is not None and design.clevis.bearing is not None:
+        bearing = spherical_bearing(design.clevis.bearing)
+        yield f"Holes of the eyes: {1e3 * bearing.outer_diameter:g} mm for {bearing.name.upper()}."
 
 
 def _clearances(design: Design, part: str) -> float:

@@ -34,7 +34,8 @@ _RINGS = tuple(
     for ring in ("seal", "secondary seal", "guide", "wiper")
 )
 EYES = ("cap eye", "rod eye")
-NOT_TURNED = ("oil", *_RINGS, *EYES)
+BEARINGS, BOSSES = "eye bearings", "port bosses"
+NOT_TURNED = ("oil", *_RINGS, *EYES, BEARINGS, "ports", "components")
 """Parts of the section that are not exported, because the model does not define their shape."""
 
 
@@ -228,6 +229,23 @@ def _pins(outline: Outline) -> Iterator[SolidBody]:
         )
 
 
+def _bosses(outline: Outline) -> Iterator[SolidBody]:
+    """The bosses of the ports, each drawn as two pieces beside its hole."""
+    pieces = [tidy(millimetres(polygon)) for polygon in outline.polygons]
+    for index, (first, second) in enumerate(zip(pieces[::2], pieces[1::2], strict=True), 1):
+        (left, base), (inner, top) = first[0], max(first)
+        radius = (max(second)[0] - left) / 2
+        hole, height = radius - (inner - left), top - base
+        yield SolidBody(
+            name=f"port boss {index}",
+            part=outline.part,
+            material=outline.material,
+            profile=((0.0, hole), (height, hole), (height, radius), (0.0, radius)),
+            places=((left + radius, base, 0.0),),
+            axes=((0.0, 1.0, 0.0),),
+        )
+
+
 def _bodies(outline: Outline) -> Iterator[SolidBody]:
     part = outline.part
     label = title(part)
@@ -251,11 +269,15 @@ def bodies(evaluation: Evaluation) -> list[SolidBody]:
     """
     solid_bodies: list[SolidBody] = []
     for outline in evaluation.outlines:
-        if outline.radial:
+        if outline.part in NOT_TURNED:
+            continue
+        if outline.part == BOSSES:
+            solid_bodies += _bosses(outline)
+        elif outline.radial:
             solid_bodies += _pins(outline)
         elif outline.bars:
             solid_bodies.append(_bars(outline))
-        elif outline.part not in NOT_TURNED:
+        else:
             solid_bodies += _bodies(outline)
     return solid_bodies
 

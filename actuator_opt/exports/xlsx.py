@@ -20,6 +20,7 @@ from ..base.dataclass import dataclass
 from ..base.errors import library
 from ..base.quantities import Quantity
 from ..design.paths import get, quantity_of
+from ..evaluation.parts_list import parts_list
 from ..evaluation.result import NO_RESERVE, NO_ROOM, Check, Evaluation, Requirement
 from ..metrics import METRICS
 from ..pages.section import section
@@ -248,16 +249,18 @@ def _variables(book: Any, evaluation: Evaluation) -> None:
 
 
 def _mass(book: Any, evaluation: Evaluation) -> None:
-    """Add a sheet with the masses of the parts, their sum, the mass of the oil, and a chart."""
+    """Add a sheet with the parts list, the sum of the masses, the mass of the oil, and a chart."""
     quantity = METRICS["mass"]
-    sheet = _Sheet(book, "Mass", (24, 14, 12))
-    sheet.put("A1", f"{evaluation.name}: mass", bold=True)
-    sheet.head(3, ("part", f"mass [{quantity.unit}]", "share [%]"))
-    parts = evaluation.mass_parts
+    sheet = _Sheet(book, "Mass", (24, 14, 12, 9, 30))
+    sheet.put("A1", f"{evaluation.name}: parts and mass", bold=True)
+    sheet.head(3, ("part", f"mass [{quantity.unit}]", "share [%]", "pieces", "material"))
+    parts = parts_list(evaluation)
     last = 3 + len(parts)
     total = last + 1
-    for at, (part, mass) in enumerate(parts.items(), 4):
+    for at, (part, pieces, material, mass) in enumerate(parts, 4):
         sheet.put(f"A{at}", part)
+        sheet.put(f"D{at}", pieces).number_format = "0"
+        sheet.put(f"E{at}", material)
         sheet.put(f"B{at}", quantity.to_display(mass)).number_format = "0.00"
         sheet.formula(f"C{at}", f"IF(B${total}>0,B{at}/B${total},0)", "0.0%")
     sheet.put(f"A{total}", "dry mass", bold=True)
@@ -278,7 +281,7 @@ def _mass(book: Any, evaluation: Evaluation) -> None:
     chart.x_axis.delete = chart.y_axis.delete = False
     chart.y_axis.numFmt, chart.y_axis.number_format = "0", "0"
     chart.height, chart.width = 9.0, 16.0
-    sheet.sheet.add_chart(chart, "E3")
+    sheet.sheet.add_chart(chart, "G3")
 
 
 def _metrics(book: Any, evaluation: Evaluation) -> None:

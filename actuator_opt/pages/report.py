@@ -11,6 +11,7 @@ from ..base.quantities import Quantity
 from ..design import assembly
 from ..design.paths import get, quantity_of
 from ..evaluation import result
+from ..evaluation.parts_list import parts_list
 from ..evaluation.result import Check, Evaluation, Requirement
 from ..metrics import METRICS
 from ..metrics.table import ROWS
@@ -505,7 +506,7 @@ def quantities(evaluation: Evaluation) -> Iterator[Block]:
 
 
 def masses(evaluation: Evaluation) -> Block:
-    """Mass of every part and their total, followed by the mass of the oil."""
+    """Pieces, materials and mass of every part; the total, and the mass of the oil."""
     quantity = METRICS["mass"]
     parts = evaluation.mass_parts
     total = sum(parts.values())
@@ -519,27 +520,32 @@ def masses(evaluation: Evaluation) -> Block:
     rows: list[list[Cell]] = [
         [
             soft(part.replace("_", " ")),
+            "" if pieces is None else str(pieces),
+            soft(material),
             grams(mass),
             text.share_text(mass / total if total else 0.0),
             Share(mass / largest if largest else 0.0),
         ]
-        for part, mass in parts.items()
+        for part, pieces, material, mass in parts_list(evaluation)
     ]
-    rows.append(["dry mass", grams(total), text.share_text(1.0), ""])
+    rows.append(["dry mass", "", "", grams(total), text.share_text(1.0), ""])
     oil = evaluation.metrics.get("mass_oil")
     below = 1
     if oil is not None and oil.value is not None:
-        rows.append(["oil inside", grams(oil.value), "", ""])
-        rows.append(["filled", grams(total + oil.value), "", ""])
+        material = soft(evaluation.design.fluid.material)
+        rows.append(["oil inside", "", material, grams(oil.value), "", ""])
+        rows.append(["filled", "", "", grams(total + oil.value), "", ""])
         below = 3
     columns = [
-        Column("part", "left", 1.0),
+        Column("part", "left", "28mm"),
+        Column("pieces", "right"),
+        Column("material", "left", 1.0),
         Column(f"mass, {unit}", "right"),
         Column("share", "right"),
-        Column("", "left", "80mm"),
+        Column("", "left", "40mm"),
     ]
     note = mass_leaves_out(evaluation)
-    return Table("Mass", columns, rows, total=below, note=note, on="paper")
+    return Table("Parts and mass", columns, rows, total=below, note=note, on="paper")
 
 
 def mass_leaves_out(evaluation: Evaluation) -> str:

@@ -131,8 +131,11 @@ def section(
     return SectionDrawing(ink, scale, factor, items)
 
 
-def _mirrored(polygon: Polygon, frame: _Frame) -> list[list[Point]]:
-    return [[frame.point(x, side * r) for x, r in polygon] for side in (1, -1)]
+def _layer(outline: Outline) -> int:
+    """Order of drawing: the oil of the chamber, the parts, the oil in the ports."""
+    if outline.kind != "oil":
+        return 1
+    return 2 if outline.radial else 0
 
 
 def _patterns(outlines: Sequence[Outline]) -> dict[tuple[str, str], tuple[float, float]]:
@@ -147,8 +150,12 @@ def _patterns(outlines: Sequence[Outline]) -> dict[tuple[str, str], tuple[float,
 
 def _parts(ink: Ink, frame: _Frame, outlines: Sequence[Outline]) -> None:
     patterns = _patterns(outlines)
-    for outline in sorted(outlines, key=lambda o: o.kind != "oil"):
-        halves = [half for polygon in outline.polygons for half in _mirrored(polygon, frame)]
+    for outline in sorted(outlines, key=_layer):
+        halves = [
+            [frame.point(x, side * r) for x, r in polygon]
+            for polygon in outline.polygons
+            for side in outline.sides
+        ]
         ink.path(halves, stroke=None, fill=_TINTS[outline.kind], closed=True)
         pattern = patterns.get((outline.kind, outline.material))
         if outline.kind == "polymer":
@@ -158,7 +165,7 @@ def _parts(ink: Ink, frame: _Frame, outlines: Sequence[Outline]) -> None:
             if outline.kind == "polymer":
                 lines += hatch(halves, angle=pattern[0], spacing=pattern[1])
             ink.path(lines, pen=0.09, stroke=GREY)
-        if outline.kind != "oil":
+        if outline.kind != "oil" or outline.radial:
             ink.path(_edges(outline, frame), pen=OUTLINE)
 
 
@@ -170,7 +177,7 @@ def _edges(outline: Outline, frame: _Frame) -> list[list[Point]]:
             if a != b and not (a[1] <= 0.0 and b[1] <= 0.0):
                 segments.append((index, a, b))
     lines: list[list[Point]] = []
-    for side in (1, -1):
+    for side in outline.sides:
         chain: list[Point] = []
         for index, a, b in segments:
             for ends in _uncovered(a, b, [s[1:] for s in segments if s[0] != index]):

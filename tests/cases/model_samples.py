@@ -97,6 +97,7 @@ METAL = {"youngs_modulus": 71.7e9, "poissons_ratio": 0.33}
 ROD = {"outer_diameter": 12e-3, "inner_diameter": 6e-3}
 SHELL_LAYER = end_bending.ShellLayer(2e-3, 8e10, 8e10, 2.6e10, 2.7e10)
 SHELL = end_bending.Shell(55.0, 7e11, 4e7, 1e-3, 11e-3, 1.6e8, 5e7)
+EYE = {"pin_diameter": 8e-3, "outer_diameter": 16e-3, "width": 8e-3}
 GROOVE = {"bore_diameter": 21e-3, "groove_depth": 0.8e-3}
 DISHED = {
     "force": 7e3,
@@ -402,6 +403,10 @@ SAMPLES = {
         "force": 5e3, "radius": 5.5e-3, "reach_length": 1.4e-3, "thickness": 2e-3,
     },
     "piston_nut.corner_radius": {"diameter": 8e-3},
+    "port.saddle_depth": {"boss_diameter": 14e-3, "tube_radius": 15e-3},
+    "port.boss_volume": {"boss_diameter": 14e-3, "height": 11.5e-3, "tube_radius": 15e-3},
+    "spherical_bearing.lug_radius": EYE,
+    "spherical_bearing.bearing_eye_volume": EYE,
     "retaining_ring.groove_area": GROOVE,
     "retaining_ring.lip_shear": {"force": 7e3, "lip_length": 3e-3, **GROOVE},
     "retaining_ring.lip_bending": {"force": 7e3, "lip_length": 3e-3, **GROOVE},

@@ -536,10 +536,3 @@ Ends: TypeAlias = Annotated[
         "connection of the ports (default: the valve of the design, else its ports.end)", ENDS
     ),
 ]
-CushionEnd: TypeAlias = Annotated[
-    Literal["both", "cap", "rod"],
-    Choice(
-        "where there is a cushion; both: at both ends; cap: at full retraction; "
-        "rod: at full extension"
-    ),
-]

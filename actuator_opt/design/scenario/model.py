@@ -10,7 +10,7 @@ from typing import Annotated
 from pydantic import Field
 
 from ..kinds import Of, Position, Section, Text
-from ..model import Limit, Valve
+from ..model import Cushion, Limit, Valve
 from . import kinds
 from .kinds import FileName, Label, StartPosition
 
@@ -183,22 +183,6 @@ class ValveSupply(Section):
     ] = None
     accumulator: SupplyAccumulator | None = None
     line: SupplyLine | None = None
-
-
-class Cushion(Section):
-    """A cushioning spear that throttles the oil shortly before a stop."""
-
-    ends: kinds.CushionEnd = "both"
-    length: Annotated[float, Of("part_length", "length of the cushioned travel")]
-    open_area: Annotated[float, Of("orifice_area", "flow area when the spear enters")]
-    end_area: Annotated[float, Of("orifice_area", "remaining flow area at the stop")]
-    exponent: Annotated[
-        float,
-        Of(
-            "stribeck_exponent",
-            "exponent of the curve by which the flow area falls along the travel",
-        ),
-    ] = 1.0
 
 
 class Stops(Section):

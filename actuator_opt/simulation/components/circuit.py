@@ -16,6 +16,7 @@ from ...base.dataclass import dataclass
 from ...base.numeric import Array
 from ...base.quantities import INPUTS, SCENARIOS, Quantity
 from ...base.symbolic import Expression, Namespace, Symbol, jacobian
+from ...design.model import Cushion
 from ...design.scenario.kinds import SHAPES, Records, height
 from ...design.scenario.model import Controller, Scenario, SignalSegment
 from ...models.loop import ControllerGains
@@ -199,6 +200,11 @@ class Circuit:
     """Measured value of the controlled quantity."""
     centre: float = 0.0
     """Valve signal that centres the spool [V]."""
+
+    @property
+    def cushion(self) -> Cushion | None:
+        """The cushion of the scenario, or else of the design."""
+        return self.scenario.stops.cushion or self.plant.design.cushion
 
     def scenario_signal(self, parts: Sequence[SignalSegment]) -> Expression:
         """A signal of the scenario as a function of time."""

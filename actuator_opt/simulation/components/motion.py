@@ -44,7 +44,7 @@ def cushions(circuit: Circuit, position: Symbol, speed: Symbol) -> Expression:
 
     The cushion pressure acts on the whole area of the chamber.
     """
-    plant, cushion = circuit.plant, circuit.scenario.stops.cushion
+    plant, cushion = circuit.plant, circuit.cushion
     if cushion is None:
         return 0.0
     total: Expression = 0.0
@@ -107,7 +107,7 @@ def move(
     if plant.oil_damping:
         work_on("shear of the oil", shear)
     work_on("stops", -stop_force)
-    if circuit.scenario.stops.cushion is not None:
+    if circuit.cushion is not None:
         work_on("cushions", -cushion_force)
         system.signal("cushion_force", "force of the cushions", _FORCE, cushion_force)
     work_on("load", load_force)

@@ -1,0 +1,32 @@
+"""Lengths of the actuator, for the checks of a design file and for its geometry."""
+
+from __future__ import annotations
+
+from ..base.numeric import Array
+from ..joints.joint import LEAST_METAL, StaticPlace
+from ..models import gland
+
+
+def closed_length(
+    *,
+    barrel_length: Array,
+    plate: Array,
+    spigot: Array,
+    further: Array,
+    extension: Array,
+    eye: Array,
+) -> Array:
+    """Pin-to-pin length of the retracted actuator [m].
+
+    `spigot` is the length of the cap's spigot, `eye` that of an eye. `further` is that of cushions'
+    bushes, the additional neck of the cap's eye, and the components between cap or rod and eye.
+    """
+    return barrel_length + 2 * plate + spigot + further + extension + 2 * eye
+
+
+def spigot_length(*, place: StaticPlace, section: Array) -> Array:
+    """Length of the cap's spigot, with the groove of the static seal and metal beside it [m].
+
+    It is 0 unless the static seal of the cap has the place "bore".
+    """
+    return gland.groove_width(section=section) + 2 * LEAST_METAL if place == "bore" else 0.0
