@@ -335,8 +335,8 @@ def double_lap(
     Valid: as `bond_edge_shear`; a rigid cap. The tube strains evenly through its thickness.
 
     With F' = M F - c (F/A_b + d), the solution is F = p - sinh(R (L - x)) sinh(R L)^-1 p +
-    sinh(R x) sinh(R L)^-1 (F(L) - p), where R^2 = M and p has equal strain in every wall. A function
-    f of the matrix M with eigenvalues a and b is (f(a) + f(b))/2 + (f(a) - f(b))/(a - b)
+    sinh(R x) sinh(R L)^-1 (F(L) - p), where R^2 = M and p has equal strain in every wall. A
+    function f of the matrix M with eigenvalues a and b is (f(a) + f(b))/2 + (f(a) - f(b))/(a - b)
     (M - (a + b)/2).
 
     References

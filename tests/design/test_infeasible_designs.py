@@ -170,7 +170,7 @@ def solved(actuator, values=(), **options):
 
 
 @pytest.mark.parametrize(
-    ("path", "now"), [("retention.wall", "1 mm"), ("retention.length", "10 mm")]
+    ("path", "now"), [("retention.wall", "1 mm"), ("retention.length", "13 mm")]
 )
 def test_a_fixed_dimension_that_alone_is_enough_comes_first(path, now):
     """At the value printed a design fits, at 1 % less none; safety factors come last."""
