@@ -122,10 +122,14 @@ def winding_edge(
 def with_winding(
     loaded: Loaded, working: Mapping[str, Array], burst: Mapping[str, Array]
 ) -> Strength | str:
-    """Strength of an end from its factors, and those of the end of a winding if there is one."""
+    """Strength of an end from its factors, and those of the end of a winding if there is one.
+
+    The winding is free of stress at the temperature of cure, if that is stated.
+    """
     winding = winding_edge(loaded)
     if winding is None:
         return Strength(working, burst, NOT_BONDED)
     if isinstance(winding, str):
         return winding
-    return Strength({**working, WINDING_EDGE: winding.factor()}, burst, winding.thermal())
+    edge = {**working, WINDING_EDGE: winding.factor()}
+    return Strength(edge, burst, winding.thermal(), cured=True)
