@@ -64,9 +64,9 @@ def test_infeasible_resolve_shows_a_dash():
 
 def test_masses_add_up():
     """The printed parts add up to the printed dry mass; oil stands below it."""
-    rows = rows_of(fixture.page_data(fixture.build_evaluation(), **SOURCE), "Mass")
-    parts = [float(row[1]) for row in rows[:-3]]
-    assert sum(parts) == pytest.approx(float(rows[-3][1]), abs=0.011)
+    rows = rows_of(fixture.page_data(fixture.build_evaluation(), **SOURCE), "Parts and mass")
+    parts = [float(row[3]) for row in rows[:-3]]
+    assert sum(parts) == pytest.approx(float(rows[-3][3]), abs=0.011)
     assert [row[0] for row in rows[-3:]] == ["dry mass", "oil inside", "filled"]
 
 

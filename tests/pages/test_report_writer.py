@@ -167,7 +167,7 @@ def test_absurd_content_still_prints(tmp_path):
         warnings=("#panic() " * 60,),
         models=(),
         unverified=(),
-        mass_parts={"all": 0.0},
+        mass_parts={"barrel": 0.0},
         mass_leaves_out=("ports and fittings",),
         outlines=fixture.outlines(walls=(1e-4,) * 30)[0],
     )
