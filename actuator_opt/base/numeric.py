@@ -91,6 +91,12 @@ def sqrt(value: Array) -> Array:
     return where(negative, 0 * root + np.nan, root)
 
 
+def tangent(angle: Array) -> Array:
+    """Tangent of an angle [rad], by functions that symbols have too."""
+    xp = namespace(angle)
+    return xp.sin(angle) / xp.cos(angle)
+
+
 def magnitude(first: Array, second: Array) -> Array:
     """sqrt(first^2 + second^2); both arguments may carry a complex step."""
     return sqrt(first * first + second * second)

@@ -73,6 +73,12 @@ def warnings(design: Design) -> Iterator[str]:
     """Sentences on parts that may not pass at assembly."""
     view = FileView(design.model_dump())
     yield from _eye(view)
+    joints = [end.joint for end in ends(view)]
+    if joints and all(joint is not None and joint.form == "wound" for joint in joints):
+        yield (
+            "assembly: both ends are wound into the barrel, so piston, rod and seals must be "
+            "inside during winding and cure: hold one end by another joint"
+        )
     bore, ring = view.number("cylinder", "bore"), _largest_ring(view)
     if bore is None or ring is None:
         return

@@ -410,7 +410,7 @@ def parts(view: FileView) -> Iterator[Fault]:
         view.number("clevis", "pin_diameter"),
         _row(view, ("clevis", "bearing"), spherical_bearing),
     )
-    if view.has("clevis") and not view.has("clevis", "bearing"):
+    if view.has("clevis", "material") and not view.has("clevis", "bearing"):
         if not view.has("clevis", "pin_diameter"):
             yield Fault(
                 ("clevis", "pin_diameter"),

@@ -290,12 +290,6 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
     for end in run.joints:
         for metric, sentence in end.joint.warnings(end.loaded, METRICS):
             yield metric, end.end_joint.placed(sentence)
-    if run.joints and all(end.joint.form == "wound" for end in run.joints):
-        yield (
-            "",
-            "both ends are wound into the barrel, so piston, rod and seals must be inside during "
-            "winding and cure: hold one end by another joint (retention.cap, retention.head)",
-        )
     yield from _rod_warnings(subject, run)
     yield from _winding_warnings(subject.design, run)
     yield from _head_warnings(subject.design)

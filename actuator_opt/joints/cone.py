@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.errors import Fault
-from ..base.numeric import Array, maximum, minimum, namespace
+from ..base.numeric import Array, maximum, minimum, namespace, tangent
 from ..base.quantities import INPUTS, Quantity, length_text
 from ..models import fibre_trap, liner_transfer, mass, retaining_ring, winding_path
 from .joint import (
@@ -263,11 +263,10 @@ def _trap(end: End) -> _Trap:
 def _dimensions(end: End) -> _Trap:
     sizes, index = end.sizes, _band(end)
     layer = end.layers[index]
-    xp = namespace(sizes["angle"])
     crest = end.inner_radius + sum(inner.thickness for inner in end.layers[:index])
     depth = sizes["depth"]
     valley = crest - depth
-    slope, mitre = xp.tan(sizes["angle"]), xp.tan(sizes["angle"] / 2)
+    slope, mitre = tangent(sizes["angle"]), tangent(sizes["angle"] / 2)
     piled = layer.thickness * winding_path.geodesic_thickness_ratio(
         angle=layer.angle, start_radius=crest, radius=valley
     )
@@ -569,8 +568,7 @@ def _own(loaded: Loaded) -> dict[str, Array]:
     """
     end, trap, sizes = loaded.end, _trap(loaded.end), loaded.end.sizes
     layer, angle = end.layers[_band(end)], sizes["angle"]
-    xp = namespace(angle)
-    arc, depth = sizes["crest_radius"] * xp.tan(angle / 2), trap.crest - trap.valley
+    arc, depth = sizes["crest_radius"] * tangent(angle / 2), trap.crest - trap.valley
     radius, _, section = _hoops(end)
     give = fibre_trap.radial_give(
         hoop_force=fibre_trap.hoop_force(force=loaded.force, angle=angle),
@@ -582,7 +580,7 @@ def _own(loaded: Loaded) -> dict[str, Array]:
     return {
         LENGTHS: {
             "crest": trap.edge - arc,
-            "flank": depth / xp.sin(angle) - 2 * arc,
+            "flank": depth / namespace(angle).sin(angle) - 2 * arc,
             "metal under the valley": trap.valley - trap.bore,
             "neck under the groove of the seal": sizes["wall"] - end.seal_depth,
             "opening beside the rod": trap.bore - end.rod_radius,

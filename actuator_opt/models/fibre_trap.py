@@ -10,12 +10,12 @@ from __future__ import annotations
 
 from math import pi
 
-from ..base.numeric import Array, geometry, minimum, namespace, sqrt
+from ..base.numeric import Array, geometry, minimum, namespace, sqrt, tangent
 
 
 def _tangent(angle: Array, friction_coefficient: Array) -> Array:
     """tan(psi + rho) with mu = tan(rho)."""
-    slope = namespace(angle).tan(angle)
+    slope = tangent(angle)
     return (slope + friction_coefficient) / (1 - friction_coefficient * slope)
 
 
@@ -57,7 +57,7 @@ def flank_pressure(
     25.8812
     """
     area = pi * (crest_radius - valley_radius) * (crest_radius + valley_radius)
-    return force / area / (1 + friction_coefficient / namespace(angle).tan(angle))
+    return force / area / (1 + friction_coefficient / tangent(angle))
 
 
 @geometry
@@ -163,7 +163,7 @@ def compliance(
     >>> print(f"{c * 1e9:.5f} um/kN")
     2.55652 um/kN
     """
-    slopes = namespace(angle).tan(angle) * _tangent(angle, friction_coefficient)
+    slopes = tangent(angle) * _tangent(angle, friction_coefficient)
     return radius / (2 * pi * section * modulus * slopes)
 
 
@@ -449,7 +449,7 @@ def neck_stresses(
     """
     area = pi * wall_thickness * (2 * outer_radius - wall_thickness)
     lever = (crest_radius + valley_radius) / 2 - (outer_radius - wall_thickness / 2)
-    lever = lever - flank_distance / namespace(angle).tan(angle)
+    lever = lever - flank_distance / tangent(angle)
     axial = force / area
     return axial, 3 * lever / wall_thickness * axial
 
@@ -486,4 +486,4 @@ def cooling_play(
     >>> print(f"{d * 1e6:.2f}")
     68.88
     """
-    return expansion_difference * cooling * radius / namespace(angle).tan(angle)
+    return expansion_difference * cooling * radius / tangent(angle)

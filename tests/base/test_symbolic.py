@@ -30,6 +30,8 @@ NOT_TRACED = {
     "loop.ultimate_gain": "eigenvalues",
     "one_way_valve.one_way_pressure_drop": "iterates",
     "burst_ladder.burst_by_ply_discount": "a matrix of layers",
+    "shrink_fit.bore_stress": "a matrix of layers",
+    "shrink_fit.outer_growth": "a matrix of layers",
     "rough_surface.asperity_integral": "a table",
     "rough_surface.asperity_pressure": "a table",
     "rough_surface.film_ratio_under_contact": "a table",
