@@ -21,6 +21,7 @@ STUDIES = (
     "knee_dynamics",
     "knee_seals",
     "knee_joints",
+    "aerospace_ends",
     "knee_pressure",
     "knee_custom_constraint",
     "course_servo",

@@ -1,8 +1,8 @@
 """What holds the ends of the flight control actuator best.
 
 `aerospace.yaml` is optimised for least mass with each way to hold its ends: tie rods, bonded caps,
-split rings and screwed plugs. Duty, requirements and materials stay; ends that an adhesive does not
-seal get static seals. A further joint is an entry of `ENDS`.
+split rings, screwed plugs, and plugs screwed into sleeves. Duty, requirements and materials stay;
+ends that an adhesive does not seal get static seals. A further joint is an entry of `ENDS`.
 
     python designs/scripts/aerospace_ends.py                  # prints the tables
     python designs/scripts/aerospace_ends.py --out reports    # and writes the report there
@@ -62,14 +62,33 @@ ENDS: dict[str, tuple[str, Data, dict[str, tuple[str, str]]]] = {
         {"length": "10 mm", "wall": "2 mm", "thread": {"pitch": "1 mm"}},
         {"length": ("3 mm", "30 mm"), "wall": ("1 mm", "8 mm")},
     ),
+    "sleeve": (
+        "plugs in sleeves",
+        {
+            "type": "plug_thread",
+            "length": "10 mm",
+            "wall": "2 mm",
+            "thread": {"pitch": "1 mm"},
+            "sleeve": {"material": "ti_6al4v", "wall": "2.5 mm", "inner_length": "20 mm"},
+        },
+        {
+            "length": ("3 mm", "30 mm"),
+            "wall": ("1 mm", "8 mm"),
+            "sleeve.wall": ("1.8 mm", "8 mm"),
+            "sleeve.inner_length": ("3 mm", "80 mm"),
+        },
+    ),
 }
-"""Each joint with its name, the keys of its block, and the bounds of its variables."""
+"""Each joint with its name, the keys of its block, and the bounds of its variables.
+
+`type` is stated where it differs from the name here. Sleeves are in one piece with the liner.
+"""
 CUT = ("retaining_ring", "plug_thread")
 """Joints whose groove or thread is cut into the liner, which starts thicker."""
 THICK = "2.5 mm"
 SEAL = {"compound": "nbr_90", "section": "2.62 mm", "squeeze": "20 %", "tolerance": "0.05 mm"}
 """Static seals, with the section of the moving ones."""
-QUICK = ("tie_rods", "retaining_ring")
+QUICK = ("tie_rods", "plug_thread")
 PARTS = {
     "barrel": ("barrel", GREY),
     "rod": ("rod", BLUE),

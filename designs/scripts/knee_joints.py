@@ -1,9 +1,9 @@
 """Which joint of the barrel's ends gives the lightest actuator, over pressure and bore.
 
-Four actuators are optimised for least mass at each pressure and bore: a composite barrel with
-bonded caps, composite barrels whose plugs are held by a split ring or a thread in the liner, and a
-steel barrel with screwed caps. The knee is scaled by the rules of `RULES`, so that all four do the
-same work.
+Five actuators are optimised for least mass at each pressure and bore: a composite barrel with
+bonded caps, composite barrels whose plugs are held by a split ring or a thread in the liner, or by
+a thread in a sleeve, and a steel barrel with screwed caps. The knee is scaled by the rules of
+`RULES`, so that all five do the same work.
 
     python designs/scripts/knee_joints.py                  # prints the tables
     python designs/scripts/knee_joints.py --out reports    # and writes the report there
@@ -12,6 +12,7 @@ same work.
 
 from __future__ import annotations
 
+from copy import deepcopy
 from math import pi
 from pathlib import Path
 from typing import Any
@@ -22,7 +23,7 @@ import actuator_opt as ao
 from actuator_opt.base.tables import aligned
 from actuator_opt.rendering.axes import Axes
 from actuator_opt.rendering.blocks import Drawing
-from actuator_opt.rendering.ink import BLACK, BLUE, GREY, RED, WHITE, Ink, spread_within
+from actuator_opt.rendering.ink import BLACK, BLUE, GREY, OCHRE, RED, WHITE, Ink, spread_within
 from actuator_opt.rendering.script_pages import (
     Sheets,
     grid_table,
@@ -37,11 +38,48 @@ Data = dict[str, Any]
 DESIGNS = Path(__file__).resolve().parents[1]
 JOINTS = {
     "bond": ("knee_bonded.yaml", "bonded caps", GREY),
+    "sleeve": ("knee_bonded.yaml", "plugs in sleeves", OCHRE),
     "retaining_ring": ("knee.yaml", "split rings", BLUE),
     "plug_thread": ("knee.yaml", "screwed plugs", BLACK),
     "thread": ("steel_baseline.yaml", "steel, screwed caps", RED),
 }
 """Joints with the design that each scales, its name, and its colour in the figure."""
+BLOCKS: dict[str, tuple[Data, dict[str, tuple[str, str]]]] = {
+    "retaining_ring": (
+        {
+            "type": "retaining_ring",
+            "material": "steel_bolt_12_9",
+            "length": "5.8 mm",
+            "groove_depth": "0.4 mm",
+            "ring_thickness": "1.3 mm",
+            "ring_width": "4.2 mm",
+        },
+        {
+            "length": ("1 mm", "10 mm"),
+            "groove_depth": ("0.3 mm", "2 mm"),
+            "ring_thickness": ("1 mm", "5 mm"),
+            "ring_width": ("1 mm", "5 mm"),
+        },
+    ),
+    "sleeve": (
+        {
+            "type": "plug_thread",
+            "length": "7 mm",
+            "wall": "1.5 mm",
+            "thread": {"pitch": "0.75 mm"},
+            "sleeve": {"material": "al_7075_t6", "wall": "2.2 mm", "inner_length": "15 mm"},
+        },
+        {
+            "length": ("3 mm", "20 mm"),
+            "wall": ("1 mm", "5 mm"),
+            "sleeve.wall": ("0.8 mm", "6 mm"),
+            "sleeve.inner_length": ("3 mm", "50 mm"),
+        },
+    ),
+}
+"""Joints that replace that of the design they scale: their block, and bounds of their variables."""
+STATIC = {"compound": "nbr_90", "section": "1.78 mm", "squeeze": "20 %", "tolerance": "0.05 mm"}
+"""Static seals of plugs in sleeves; the bonded knee, from which they are derived, has none."""
 PRESSURES = (100, 210, 350)
 BORES = (16, 20, 25, 32, 40, 50, 63, 80)
 QUICK = ((210,), (25, 63))
@@ -59,13 +97,27 @@ RULES = (
     "The nut of the piston is left out.",
     "Friction, seal extrusion, trapped oil and bearing pressure are not limited, as they depend on "
     "the seals and not on the joint. All other requirements are those of the knee.",
+    "Cones and double bonds are left out: their searches often end without an optimum, and their "
+    "optima in samples were heavier than plugs in sleeves.",
 )
-LEAST = {"retention.wall": 1.2, "caps.thickness": 4.6, "retention.length": 3.0}
+WHY = {
+    "bond": "they need no thread, whose least size is too heavy for small and weak ends.",
+    "sleeve": "only the ends are thick enough for the thread; between them, a thinner liner shares "
+    "the force with plies along the barrel.",
+    "retaining_ring": "the tube is thick enough for the groove without more metal at its ends.",
+    "plug_thread": "the tube is thick enough for the thread without more metal at its ends.",
+    "thread": "stiffness and not pressure sets the wall; steel is as stiff for its mass as "
+    "aluminium, and hoop plies add mass but little stiffness.",
+}
+"""Why a joint is the lightest."""
+LEAST = {
+    "retention.wall": 1.2, "caps.thickness": 4.6, "retention.length": 3.0, "sleeve.wall": 1.9,
+}  # fmt: skip
 """Smallest start of some sizes [mm]."""
 SMALLER = (
     "retention.ring_width", "retention.groove_depth", "retention.ring_thickness",
     "retention.length", "caps.thickness", "rod.outer_diameter", "piston.length", "head.length",
-    "rod.inner_diameter",
+    "rod.inner_diameter", "retention.sleeve.inner_length",
 )  # fmt: skip
 """Variables whose lower bound is scaled down in actuators that are smaller than the knee."""
 FREED = ("extrusion_factor", "trapped_factor", "bearing_factor")
@@ -103,10 +155,14 @@ def scaled(joint: str, pressure: float, bore: float) -> Data:
         data[part]["length"] = times(data[part]["length"], max(size, 1))
     data["caps"]["thickness"] = times(data["caps"]["thickness"], strong, LEAST["caps.thickness"])
     data["clevis"]["pin_diameter"] = times(data["clevis"]["pin_diameter"], strong)
+    wound = JOINTS[joint][0] == JOINTS["bond"][0]
     for index, layer in enumerate(data["barrel"]["layup"]):
-        least = 0.45 if joint == "bond" else 0.3 if index else 2.4
+        least = 0.45 if wound else 0.3 if index else 2.4
         layer["thickness"] = times(layer["thickness"], strong, least)
-    data["piston"].pop("nut", None)
+    if data["piston"].pop("nut", None):
+        del data["variables"]["piston.nut.preload"]
+    if joint == "sleeve":
+        data["seals"]["static"] = dict(STATIC)
     _seals(data["seals"], bore)
     for case in data["load_cases"]:
         for key in case.keys() & {"force", "side_load"}:
@@ -125,27 +181,34 @@ def _seals(seals: Data, bore: float) -> None:
 
 
 def _joint(data: Data, joint: str, bore: float, strong: float) -> None:
-    """Scale the sizes of the joint; a screwed plug replaces the split ring of the knee."""
-    retention, variables = data["retention"], data["variables"]
-    pitch = "0.75 mm" if bore < 28 else "1 mm" if bore < 50 else "1.5 mm"
-    if joint == "plug_thread":
-        retention.clear()
-        retention.update(type=joint, length="8 mm", wall="1.5 mm", thread={})
+    """Replace the joint of the design where `BLOCKS` has another; scale its sizes."""
+    variables = data["variables"]
+    if joint in BLOCKS:
+        block, bounds = BLOCKS[joint]
+        data["retention"] = deepcopy(block)
         for path in [path for path in variables if path.startswith("retention.")]:
             del variables[path]
-        variables["retention.length"] = {"lower": "3 mm", "upper": "20 mm"}
-        variables["retention.wall"] = {"lower": "1 mm", "upper": "5 mm"}
-    for key, value in retention.items():
+        for key, (lower, upper) in bounds.items():
+            variables[f"retention.{key}"] = {"lower": lower, "upper": upper}
+    _block(data["retention"], "retention", bore, strong)
+
+
+def _block(block: Data, name: str, bore: float, strong: float) -> None:
+    """Scale the sizes of a joint, and of the blocks in it."""
+    for key, value in block.items():
         if key == "thread":
-            retention[key] = {"pitch": pitch}
+            block[key] = {"pitch": "0.75 mm" if bore < 28 else "1 mm" if bore < 50 else "1.5 mm"}
+        elif isinstance(value, dict):
+            _block(value, key, bore, strong)
         elif key not in ("type", "material"):
-            retention[key] = times(value, strong, LEAST.get(f"retention.{key}", 0.0))
+            block[key] = times(value, strong, LEAST.get(f"{name}.{key}", 0.0))
 
 
 def _limits(data: Data, size: float, strong: float, pressure: float) -> None:
     """Scale requirements and bounds; the bore is fixed."""
     variables, limits = data["variables"], data["requirements"]
     variables.pop("cylinder.bore", None)
+    variables["barrel.layup[0].thickness"]["upper"] = "5 mm"
     largest, smallest = max(1, strong, size), min(1, size, strong)
     for path, bounds in variables.items():
         if path.endswith(("squeeze", "angle")):
@@ -167,8 +230,9 @@ def _limits(data: Data, size: float, strong: float, pressure: float) -> None:
 def compute(*, quick: bool = False) -> Data:
     """The whole study as plain numbers, SI."""
     pressures, bores = QUICK if quick else (PRESSURES, BORES)
+    starts = 1 if quick else 2
     rows = [
-        {"pressure": pressure, "bore": bore} | {joint: best(joint, pressure, bore)
+        {"pressure": pressure, "bore": bore} | {joint: best(joint, pressure, bore, starts)
                                                 for joint in JOINTS}
         for pressure in pressures
         for bore in bores
@@ -176,10 +240,13 @@ def compute(*, quick: bool = False) -> Data:
     return rounded({"version": ao.__version__, "rows": rows})
 
 
-def best(joint: str, pressure: float, bore: float) -> Data:
+def best(joint: str, pressure: float, bore: float, starts: int) -> Data:
     """Mass and parts of an optimum, and the limits at the joint that it just meets."""
-    text = yaml.safe_dump(scaled(joint, pressure, bore), sort_keys=False)
-    found = ao.optimise(ao.read(text), starts=2, prices=False)
+    subject = read(joint, pressure, bore)
+    found = ao.optimise(subject, starts=starts, prices=False)
+    if found.status == "feasible":  # no optimum yet: search on from there
+        reached = {variable.path: variable.value for variable in found.variables}
+        found = ao.optimise(subject.changed(reached), starts=1, prices=False)
     if found.status != "optimal":
         card = found.infeasibility
         return {"mass": None, "why": found.status if card is None else card.sentence}
@@ -190,6 +257,11 @@ def best(joint: str, pressure: float, bore: float) -> Data:
         "binds": active,
         "values": {variable.path: variable.value for variable in found.variables},
     }
+
+
+def read(joint: str, pressure: float, bore: float) -> ao.Actuator:
+    """The scaled design, checked."""
+    return ao.read(yaml.safe_dump(scaled(joint, pressure, bore), sort_keys=False))
 
 
 def masses(row: Data) -> dict[str, float]:
@@ -254,7 +326,26 @@ def lead(study: Data) -> list[str]:
             for joint, bores in winners.items()
         ]
         sentences.append(f"Lightest at {fixed(pressure, 0)} bar: {'; '.join(said)}.")
+    first = {lightest(row) for row in study["rows"]}
+    sentences += [f"Why {JOINTS[joint][1]}: {WHY[joint]}" for joint in JOINTS if joint in first]
+    level: dict[float, list[str]] = {}
+    for row in study["rows"]:
+        if lightest(row) == "sleeve" and _level(row):
+            level.setdefault(row["pressure"], []).append(fixed(row["bore"], 0))
+    if level:
+        points = (f"{fixed(bar, 0)} bar and {', '.join(bores)} mm" for bar, bores in level.items())
+        sentences.append(
+            f"At {'; '.join(points)}, the sleeve is as thick as its liner: plies along the barrel "
+            "save the mass there, and not the sleeve."
+        )
     return [*sentences, *RULES]
+
+
+def _level(row: Data) -> bool:
+    """Whether the lightest sleeve is as thick as its liner."""
+    values = row["sleeve"]["values"]
+    liner: float = values["barrel.layup[0].thickness"]
+    return bool(values["retention.sleeve.wall"] < 1.001 * liner)
 
 
 # ---- the figure ----
@@ -288,17 +379,24 @@ def _panel(ink: Ink, box: tuple[float, float, float, float], rows: list[Data], t
     axes = Axes(ink, box, (bores[0], bores[-1]), (0.95, TOP))
     axes.frame(title, "bore, mm")
     for joint, (_, _, colour) in JOINTS.items():
-        points = [
-            (row["bore"], masses(row)[joint] / masses(row)[lightest(row)])
-            for row in rows
-            if joint in masses(row)
-        ]
-        if points:
+        for points in _pieces(joint, rows):
             xs, ys = ([point[i] for point in points] for i in (0, 1))
             ink.path(axes.clipped(xs, ys), stroke=colour, pen=0.45)
             for x, y in points:
                 if y <= TOP:
                     ink.circle(axes.x(x), axes.y(y), 0.7, fill=WHITE, stroke=colour, pen=0.3)
+
+
+def _pieces(joint: str, rows: list[Data]) -> list[list[tuple[float, float]]]:
+    """Points of a curve, bore and ratio, parted where the joint has no design."""
+    pieces: list[list[tuple[float, float]]] = [[]]
+    for row in rows:
+        found = masses(row)
+        if joint in found:
+            pieces[-1].append((row["bore"], found[joint] / found[lightest(row)]))
+        else:
+            pieces.append([])
+    return [piece for piece in pieces if piece]
 
 
 def _names(ink: Ink, row: Data, left: float) -> None:
@@ -330,7 +428,7 @@ def page(study: Data) -> Sheets:
             Drawing(
                 "Mass divided by that of the lightest",
                 drawing(study),
-                "A curve that is missing, or ends, has no design there.",
+                "A curve has a gap where there is no design.",
             ),
             grid_table("Masses", mass_rows(study), note, words=[-2]),
             grid_table(

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from math import pi
 from pathlib import Path
 from typing import Any
 
 import pytest
-import yaml
 from script_loader import carried, ran, script
 
 import actuator_opt as ao
@@ -31,8 +31,7 @@ def numbers(request) -> dict[str, Any]:
 
 
 def _read(joint: str, row: dict[str, Any]) -> ao.Actuator:
-    text = yaml.safe_dump(study.scaled(joint, row["pressure"], row["bore"]), sort_keys=False)
-    return ao.read(text)
+    return study.read(joint, row["pressure"], row["bore"])
 
 
 @pytest.mark.parametrize(("pressure", "bore"), [(100, 16), (210, 25), (350, 80)])
@@ -64,14 +63,49 @@ def test_the_lightest_is_the_lightest(numbers) -> None:
         found = study.masses(row)
         assert found[study.lightest(row)] == min(found.values())
     pressures = {row["pressure"] for row in numbers["rows"]}
-    assert len(study.lead(numbers)) == len(pressures) + len(study.RULES)
+    winners = {study.lightest(row) for row in numbers["rows"]}
+    said = study.lead(numbers)
+    for pressure in pressures:
+        (sentence,) = (text for text in said if text.startswith(f"Lightest at {pressure} bar"))
+        bores = [row["bore"] for row in numbers["rows"] if row["pressure"] == pressure]
+        assert sorted(int(word) for word in re.findall(r"\d+(?=,| mm)", sentence)) == bores
+    assert sum(text.startswith("Why ") for text in said) == len(winners)
+
+
+def test_joints_that_replace_that_of_the_knee() -> None:
+    """At the bore and pressure of the knee, its own joint is that of the file, without the nut."""
+    knee = ao.read(ROOT / "designs" / "knee.yaml").design
+    row = {"pressure": study.KNEE_PRESSURE, "bore": study.KNEE_BORE}
+    for joint in study.JOINTS:
+        design = _read(joint, row).design
+        assert design.piston.nut is None
+        assert not any("nut" in path for path in design.variables)
+        assert design.retention.type == ("plug_thread" if joint == "sleeve" else joint)
+        assert (design.retention.sleeve is not None) == (joint == "sleeve")
+        own = {path for path in design.variables if path.startswith("retention.")}
+        if joint in study.BLOCKS:
+            assert own == {f"retention.{key}" for key in study.BLOCKS[joint][1]}
+    plug = _read("plug_thread", row).design
+    assert plug.retention.length == pytest.approx(knee.retention.length)
+    assert plug.retention.thread == knee.retention.thread
+    assert {path for path in knee.variables if path.startswith("retention.")} == {
+        path for path in plug.variables if path.startswith("retention.")
+    }
+
+
+def test_a_sleeve_saves_metal_between_the_ends() -> None:
+    """At the knee's size, the liner between the sleeves is thinner than a tube with threads."""
+    rows = {(row["pressure"], row["bore"]): row for row in carried(REPORT)["rows"]}
+    row = rows[210, 20]
+    liner = "barrel.layup[0].thickness"
+    assert row["sleeve"]["values"][liner] < 0.5 * row["plug_thread"]["values"][liner]
+    assert row["sleeve"]["parts"]["barrel"] < row["plug_thread"]["parts"]["barrel"]
 
 
 def test_what_the_committed_map_shows() -> None:
-    """Bonds win small at 100 bar, steel large; plugs win everywhere at 210 and 350 bar."""
+    """At 100 bar, bonds win at the smallest bore and steel at the largest; else sleeves win."""
     rows = {(row["pressure"], row["bore"]): row for row in carried(REPORT)["rows"]}
-    assert study.lightest(rows[100, 16]) == "bond"
-    assert study.lightest(rows[100, 80]) == "thread"
-    for (pressure, _), row in rows.items():
-        if pressure > 100:
-            assert study.lightest(row) in ("retaining_ring", "plug_thread")
+    assert len(rows) == len(study.PRESSURES) * len(study.BORES)
+    others = {(100, 16): "bond", (100, 80): "thread"}
+    for point, row in rows.items():
+        assert study.lightest(row) == others.get(point, "sleeve")
