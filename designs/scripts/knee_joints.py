@@ -82,7 +82,7 @@ STATIC = {"compound": "nbr_90", "section": "1.78 mm", "squeeze": "20 %", "tolera
 """Static seals of plugs in sleeves; the bonded knee, from which they are derived, has none."""
 PRESSURES = (100, 210, 350)
 BORES = (16, 20, 25, 32, 40, 50, 63, 80)
-QUICK = ((210,), (25, 63))
+QUICK = ((210,), (25, 40))
 """Supply pressures [bar] and bores [mm]; ISO 3320 sizes."""
 KNEE_BORE, KNEE_PRESSURE = 21.4, 210.0
 """Bore [mm] and pressure [bar] of the knee, from which the others are scaled."""
