@@ -309,6 +309,7 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
     ):
         if part not in subject.design.model_fields_set:
             yield "", f"no {part} stated; assumed: {assumption}"
+    yield from (("", text) for text in run.computed.left_out)
     lives = [np.min(np.real(x)) for x in run.computed.metrics.get("cycle_life", {}).values()]
     if lives and np.isfinite(min(lives)) and min(lives) > LONGEST_LIFE:
         yield (
