@@ -277,11 +277,12 @@ def _in_plug(
     if "rim" not in places or bore is None:
         return
     plate = view.bound("upper", "caps", "thickness") if view.has("caps") else PLAIN_CAP * bore
+    at_most = "at most " if view.has("variables", "caps.thickness") else ""
     if plate is not None and width >= plate:
         yield Fault(
             loc,
             f"its groove of {length_text(width)} does not fit into the plug, which is "
-            f"{length_text(plate)} thick",
+            f"{at_most}{length_text(plate)} thick",
             "increase caps.thickness or use a smaller section",
         )
         return

@@ -94,6 +94,12 @@ def test_nothing_is_left_out_of_the_mass():
         ("knee_bonded", {}, "seals.static", "the adhesive seals them"),
         ("knee fixed", {"seals.static.section": "3.53 mm"}, "seals.static.section", "4.82 mm does"),
         ("knee fixed", {"caps.thickness": "2.4 mm"}, "seals.static.section", "2.4 mm thick"),
+        (
+            "knee",
+            {"seals.static.section": "7 mm", "variables.caps.thickness.upper": "9 mm"},
+            "seals.static.section",
+            "at most 9 mm thick",
+        ),
         (  # a groove of 5.6 mm between a bore of 21.8 mm, and a hole of 12.06 mm for the rod
             "knee fixed",
             {"seals.static.section": "7 mm", "caps.thickness": "12 mm"},
