@@ -61,25 +61,27 @@ def examine(
         subject = actuator.subject()
     except InputError as error:
         return Examined(error.diagnostics, [])
-    faults = _of_models(actuator, without_films(subject))
+    remarks: list[str] = []
+    faults = _of_models(actuator, without_films(subject), remarks)
     if faults and actuator.plugins:  # a plugin may reject the NaN of a film that is not solved
-        faults = _of_models(actuator, subject)
-    return Examined(faults, [] if faults else _out_of_proportion(subject))
+        faults = _of_models(actuator, subject, remarks)
+    return Examined(faults, [] if faults else [*remarks, *_out_of_proportion(subject)])
 
 
-def _of_models(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
+def _of_models(actuator: Actuator, subject: PreparedDesign, remarks: list[str]) -> list[Diagnostic]:
     """Faults that only the models reveal, such as requirements on metrics that do not exist.
 
-    The others are variables that no model reads, and impossible choices.
+    The others are variables that no model reads, and impossible choices. `remarks` takes warnings
+    of single values of the choices that are never possible.
     """
     try:
         faults = requirement_faults(actuator, subject)
         if faults:
             return faults
         if actuator.design.choices:
-            from ..optimisation.choices import possible
+            from ..optimisation.choices import never_possible, possible
 
-            possible(subject)
+            remarks[:] = never_possible(possible(subject))
         elif actuator.design.variables:
             from ..optimisation.actuator import build
 

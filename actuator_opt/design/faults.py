@@ -372,7 +372,11 @@ def piston_nut(view: FileView) -> Iterator[Fault]:
             at_key=True,
         )
         return
-    diameter, length = view.number(*loc, "diameter"), view.number("piston", "length")
+    diameter, length = view.number(*loc, "diameter"), view.bound("upper", "piston", "length")
+    varied = view.has("variables", "piston.length")
+    at_most, path = (
+        ("at most ", "the upper bound of piston.length") if varied else ("", "piston.length")
+    )
     rod_diameter = view.number("rod", "outer_diameter")
     if diameter is None:
         return
@@ -383,13 +387,19 @@ def piston_nut(view: FileView) -> Iterator[Fault]:
             f"{length_text(rod_diameter)}",
             f"write less than {length_text(rod_diameter)}",
         )
+    if view.number(*loc, "preload") == 0 and not view.has("variables", "piston.nut.preload"):
+        yield Fault(
+            (*loc, "preload"),
+            "0: nothing clamps the piston on the rod",
+            'write the tension after tightening, e.g. "preload: 8 kN"',
+        )
     height = HEIGHT * diameter
-    if length is not None and height >= length and not view.has("variables", "piston.length"):
+    if length is not None and height >= length:
         yield Fault(
             (*loc, "diameter"),
             f"the nut, {length_text(height)} high, does not fit into the piston, which is "
-            f"{length_text(length)} long",
-            "use a smaller thread, or increase piston.length",
+            f"{at_most}{length_text(length)} long",
+            f"use a smaller thread, or increase {path}",
         )
 
 
@@ -507,11 +517,12 @@ def rod(view: FileView) -> Iterator[Fault]:
             f"{length_text(thread)}: larger than the rod ({length_text(diameter)})",
             f"write at most {length_text(diameter)}",
         )
-    for owner in (("rod",), *(end.at for end in wall_faults.ends(view))):
+    joints = ((*end.at, "thread") for end in wall_faults.ends(view))
+    for threaded in (("rod", "thread"), ("piston", "nut"), *joints):
         yield from _smaller(
             view,
-            (*owner, "thread", "pitch"),
-            (*owner, "thread", "diameter"),
+            (*threaded, "pitch"),
+            (*threaded, "diameter"),
             factor=0.5,
             why=", or no core of the thread remains",
         )

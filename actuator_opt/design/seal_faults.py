@@ -18,6 +18,7 @@ from ..seals.contact import GROOVE_WIDTH
 from ..seals.kinds import SIZES, TYPES
 from ..seals.seal_type import SealType, SizeFault
 from ..seals.u_cup import lip_faults
+from .model import PLAIN_CAP
 from .seals import BACK_UPS
 from .structure import FileView, Loc, MaterialLookup, Properties, child_at
 
@@ -239,6 +240,7 @@ def static_seal(view: FileView) -> Iterator[Fault]:
             "remove the block, or use another joint (retention.type)",
             at_key=True,
         )
+    yield from _in_plug(view, places, depth, width)
     if places[1] != "bore":
         return
     length = view.number("head" if view.has("head") else "piston", "length")
@@ -259,6 +261,43 @@ def static_seal(view: FileView) -> Iterator[Fault]:
         yield Fault(
             (*loc, "section"),
             "its groove and that of the rod seal meet in the head",
+            "use a smaller section, a larger bore or a thinner rod",
+        )
+
+
+def _in_plug(
+    view: FileView, places: tuple[StaticPlace, StaticPlace], depth: float, width: float
+) -> Iterator[Fault]:
+    """Check that the groove of the static seal fits into the rim of the plugs.
+
+    For variables, the bounds with the most metal count; the optimiser keeps a wall beside the
+    groove (`geometry_plug`).
+    """
+    loc, bore = ("seals", "static", "section"), view.bound("upper", "cylinder", "bore")
+    if "rim" not in places or bore is None:
+        return
+    plate = view.bound("upper", "caps", "thickness") if view.has("caps") else PLAIN_CAP * bore
+    at_most = "at most " if view.has("variables", "caps.thickness") else ""
+    if plate is not None and width >= plate:
+        yield Fault(
+            loc,
+            f"its groove of {length_text(width)} does not fit into the plug, which is "
+            f"{at_most}{length_text(plate)} thick",
+            "increase caps.thickness or use a smaller section",
+        )
+        return
+    rod_diameter, gap = (
+        view.bound("lower", "rod", "outer_diameter"),
+        view.number("head", "clearance"),
+    )
+    if rod_diameter is None or gap is None:
+        return
+    hole = rod_diameter / 2 + gap if places[1] == "rim" else 0.0
+    if depth >= bore / 2 - hole > 0:
+        yield Fault(
+            loc,
+            f"its groove of {length_text(depth)} is deeper than the plug, which has "
+            f"{length_text(bore / 2 - hole)} of metal between bore and rod",
             "use a smaller section, a larger bore or a thinner rod",
         )
 

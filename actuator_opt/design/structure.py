@@ -236,6 +236,11 @@ class FileView:
         """The SI number at a location."""
         return number_of(self.value(*loc))
 
+    def bound(self, side: Literal["lower", "upper"], *loc: str) -> float | None:
+        """The bound of a variable (SI); the number itself if it is not a variable."""
+        bound = number_of(child_at(self.tree, ("variables", ".".join(loc), side)))
+        return self.number(*loc) if bound is None else bound
+
     def text(self, *loc: str | int) -> str | None:
         """The text at a location."""
         value = self.value(*loc)

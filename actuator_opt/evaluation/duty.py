@@ -76,12 +76,12 @@ def _endurance(
         fatigue = end.joint.fatigue(end.loaded)
         loads += [(end.end_joint.placed(place), *load) for place, *load in fatigue.pulsed]
         lives |= end.placed(fatigue.lives)
-    life, factor, unknown = {}, {}, []
+    life, factor, unknown = {}, {}, {}
     for place, name, span, mean in loads:
         ultimate = stock.allowable(name, "ultimate_strength")
         limit = stock.allowable(name, "fatigue_strength")
         if ultimate is None or limit is None:
-            unknown.append(name)
+            unknown[place] = name
             continue
         limit_cycles = stock.get(name, "fatigue_cycles", default=1e6)
         peak = mean + span / 2
@@ -105,7 +105,13 @@ def _endurance(
         if values:
             out.put(metric, values)
         else:
-            out.skip(metric, f"fatigue strength is unknown for {', '.join(dict.fromkeys(unknown))}")
+            out.skip(
+                metric,
+                f"fatigue strength is unknown for {', '.join(dict.fromkeys(unknown.values()))}",
+            )
+    if life and unknown:
+        parts = ", ".join(f"{place} ({name})" for place, name in unknown.items())
+        out.left_out.append(f"pressure-cycle life leaves out {parts}: fatigue strength unknown")
 
 
 def _end_stop(

@@ -559,7 +559,12 @@ def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, 
     static_width = g.static_grooves[0].width if g.static_grooves else STATIC_SEAL
     lips = {"cap": g.cap_face - g.eye_radius - g.cap_fit.lip} if eyes else {}
     lips["head"] = g.rod_extension - g.head_fit.lip
-    plugs = {"geometry_lip": lips, "geometry_plug": (g.plate - static_width) / 2}
+    beside: Array | dict[str, Array] = (g.plate - static_width) / 2
+    if g.static_places[1] == "rim" and g.static_grooves:
+        rest = g.inner_radius - g.rod_diameter / 2 - g.head_clearance
+        rest = rest - g.static_grooves[0].gland_depth
+        beside = {"axial": beside, "radial": rest}
+    plugs = {"geometry_lip": lips, "geometry_plug": beside}
     sealed: dict[str, Any] = {}
     if g.static_places[1] == "bore":
         depth = g.static_grooves[0].gland_depth

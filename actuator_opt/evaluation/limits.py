@@ -187,6 +187,8 @@ class MetricArrays:
     why: dict[str, str] = field(default_factory=dict)
     applies: dict[str, Array] = field(default_factory=dict)
     applies_at: dict[tuple[str, str], Array] = field(default_factory=dict)
+    left_out: list[str] = field(default_factory=list)
+    """Sentences that name the parts that a metric leaves out."""
     friction_parts: dict[str, Array] = field(default_factory=dict)
     """Running friction of each seal; the sum is `friction_running`."""
 

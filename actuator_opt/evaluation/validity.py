@@ -268,6 +268,18 @@ LONGEST_LIFE = 1e9
 """Number of cycles up to which there are data for stress-life curves [Shigley2011]."""
 
 
+def _life_warnings(run: ModelRun) -> Iterable[tuple[str, str]]:
+    """Warn of parts without fatigue data, and of lives beyond those of tests."""
+    yield from (("", text) for text in run.computed.left_out)
+    lives = [np.min(np.real(x)) for x in run.computed.metrics.get("cycle_life", {}).values()]
+    if lives and np.isfinite(min(lives)) and min(lives) > LONGEST_LIFE:
+        yield (
+            "cycle_life",
+            f"pressure-cycle life beyond {LONGEST_LIFE / 1e6:.0f} million cycles is extrapolated: "
+            "read it as more than that, for metals only, not for adhesive or plies",
+        )
+
+
 def kind_of(subject: PreparedDesign) -> str:
     """Name of the wall model of a design."""
     return kind(subject.design, subject.materials)
@@ -303,13 +315,7 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
     ):
         if part not in subject.design.model_fields_set:
             yield "", f"no {part} stated; assumed: {assumption}"
-    lives = [np.min(np.real(x)) for x in run.computed.metrics.get("cycle_life", {}).values()]
-    if lives and np.isfinite(min(lives)) and min(lives) > LONGEST_LIFE:
-        yield (
-            "cycle_life",
-            f"pressure-cycle life beyond {LONGEST_LIFE / 1e6:.0f} million cycles is extrapolated: "
-            "read it as more than that, for metals only, not for adhesive or plies",
-        )
+    yield from _life_warnings(run)
     section = subject.design.fluid
     yield from state.warnings(section, subject.materials[section.material], v.cases, run.state)
     yield from seal_warnings(subject, v, run)

@@ -18,6 +18,7 @@ from ..base.quantities import Quantity, length_text
 from ..models import mass, retaining_ring as model
 from .joint import (
     ON_METAL,
+    ROUNDING,
     DrawnPart,
     End,
     EndDimensions,
@@ -52,6 +53,9 @@ choice, for a root radius of at least a tenth of the depth; no published value f
 LANDS = ("geometry_ring_groove", "geometry_ring_opening")
 """Metrics of the metal left under the groove, and of the clearance between ring and rod."""
 
+_OPENING = ("retention.groove_depth", "retention.ring_width")
+"""PATHs of the joint's sizes that determine the clearance of the rod."""
+
 ASSEMBLY = "ring_assembly_factor"
 """Metric of the ring's strength as it passes the bore."""
 
@@ -68,6 +72,21 @@ def _faults(view: StatedValues) -> Iterator[Fault]:
             f"{length_text(width)}: the ring vanishes in its groove, which is "
             f"{length_text(depth)} deep",
             f"write more than {length_text(depth)}; twice the depth is usual",
+        )
+    bore, rod = view.number("cylinder", "bore"), view.number("rod", "outer_diameter")
+    if depth is None or width is None or bore is None or rod is None:
+        return
+    outer = bore / 2 + depth
+    varied = ("cylinder.bore", "rod.outer_diameter", *_OPENING)
+    least = rod / 2 if view.at_head and not any(view.has("variables", x) for x in varied) else 0.0
+    if width >= (outer - least) * (1 - ROUNDING):
+        what = "the ring would be inside the rod" if least else "the ring would have no opening"
+        yield Fault(
+            ("retention", "ring_width"),
+            f"{length_text(width)}: {what}, as the outer radius of the ring is "
+            f"{length_text(outer)}"
+            + (f" and that of the rod {length_text(least)}" if least else ""),
+            f"write less than {length_text(outer - least)}; twice the depth of the groove is usual",
         )
 
 

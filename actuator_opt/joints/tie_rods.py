@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import pi
+from math import asin, pi, sin
 
 import numpy as np
 
+from ..base.errors import Fault
 from ..base.numeric import Array, maximum
-from ..base.quantities import Quantity
-from ..models import endurance, mass, retention
+from ..base.quantities import Quantity, length_text
+from ..models import endurance, mass, piston_nut, retention
 from .joint import (
     NOT_BONDED,
     ON_METAL,
@@ -26,11 +27,56 @@ from .joint import (
     Loaded,
     MaterialProperties,
     Opening,
+    StatedValues,
     Strength,
     WallPressures,
     nothing,
     rectangle,
 )
+
+
+def _spacing(outer_radius: float, diameter: float, count: float) -> tuple[float, float]:
+    """Distance of neighbouring tie rods, and width of their nuts over the corners [m].
+
+    The pitch circle has the radius R + d. Nuts that are closer together than their width meet.
+    """
+    pitch_radius = outer_radius + diameter
+    return 2 * pitch_radius * sin(pi / count), 2 * piston_nut.corner_radius(diameter=diameter)
+
+
+def _faults(view: StatedValues) -> Iterator[Fault]:
+    """Report tie rods without preload, and nuts that meet; for variables, a warning names these."""
+    if view.number("retention", "preload") == 0 and not view.has("variables", "retention.preload"):
+        yield Fault(
+            ("retention", "preload"),
+            "0: nothing closes the joint between barrel and caps",
+            'write e.g. "preload: 20 kN", or remove the line, and a preload is assumed',
+        )
+    layers = range(len(view.items("barrel", "layup")))
+    paths = [f"barrel.layup[{index}].thickness" for index in layers]
+    paths += ["cylinder.bore", "retention.thread.diameter", "retention.count"]
+    numbers = [view.number("barrel", "layup", index, "thickness") for index in layers]
+    numbers += [view.number("cylinder", "bore"), view.number("retention", "thread", "diameter")]
+    count, known = view.number("retention", "count"), [x for x in numbers if x is not None]
+    if count is None or len(known) < len(numbers) or any(view.has("variables", x) for x in paths):
+        return
+    *thicknesses, bore, diameter = known
+    radius = bore / 2 + sum(thicknesses)
+    distance, nut = _spacing(radius, diameter, count)
+    if distance < nut:
+        most = int(pi / asin(nut / 2 / (radius + diameter)))
+        yield Fault(
+            ("retention", "count"),
+            f"{count:.0f}: {_meeting(distance, nut)}",
+            f"write at most {most}, or a smaller thread.diameter",
+        )
+
+
+def _meeting(distance: float, nut: float) -> str:
+    return (
+        f"the nuts of the tie rods meet: they are {length_text(nut)} wide over the corners, and "
+        f"{length_text(distance)} apart"
+    )
 
 
 def _fit(end: End) -> EndDimensions:
@@ -126,6 +172,11 @@ def _own(loaded: Loaded) -> dict[str, Mapping[str, Array]]:
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
+    end = loaded.end
+    sizes = (end.outer_radius, end.sizes["thread.diameter"], end.sizes["count"])
+    distance, nut = _spacing(*(float(np.min(np.real(size))) for size in sizes))
+    if distance < nut:
+        yield "retention_factor", _meeting(distance, nut)
     if "preload" not in loaded.end.sizes:
         force = float(np.max(np.real(_clamp(loaded).preload)))
         yield (
@@ -164,7 +215,7 @@ JOINT = Joint(
     ),
     kinds=("metal",),
     without={},
-    faults=nothing,
+    faults=_faults,
     material_faults=nothing,
     opening=lambda _: Opening("again", "Clamp the {end} on the barrel with the tie rods."),
     form="plates",

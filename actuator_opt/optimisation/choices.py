@@ -32,7 +32,7 @@ from ..base.cluster import HERE, Cluster
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..design import Design
-from ..design.choice_list import combinations, left_out
+from ..design.choice_list import Value, combinations, left_out
 from ..design.materials import load_library
 from ..evaluation import PreparedDesign, compute
 from ..evaluation.limits import LimitRow, all_limits, rows_of
@@ -228,6 +228,17 @@ def _give_up(look: Look, error: InputError) -> None:
         f"{diagnostic.path}: {diagnostic.message}" if diagnostic.path else diagnostic.message
     )
     look.how = "not possible"
+
+
+def never_possible(looks: Sequence[Look]) -> Iterator[str]:
+    """Yield a sentence on each allowed value that no possible combination has."""
+    for path in looks[0].values:
+        by_value: dict[Value, list[str]] = {}
+        for look in looks:
+            by_value.setdefault(look.values[path], []).append(look.fault)
+        for value, faults in by_value.items():
+            if all(faults):
+                yield f"choices.{path}: no combination with {value} is possible: {faults[0]}"
 
 
 def _require_one(looks: Sequence[Look]) -> None:

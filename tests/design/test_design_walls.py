@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
+import actuator_opt as ao
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import LoadedDesign, get, numbers, read_design, with_values
 from actuator_opt.design.materials import load_library
 from actuator_opt.design.writer import init_text, to_yaml
 from actuator_opt.joints.kinds import JOINTS
 
+DESIGNS = Path(__file__).parents[2] / "designs"
 GOOD = init_text("test")
 HOLLOW = "  inner_diameter: 4 mm         # 0 = solid\n"
 MOVED = "  rod.inner_diameter:\n    lower: 0 mm\n    upper: 16 mm\n"
@@ -200,6 +203,35 @@ def test_fault_at_its_place(text, path, at, message, remedy):
     assert rest.startswith(at)
     assert message in fault.message
     assert remedy in fault.remedy
+
+
+@pytest.mark.parametrize(
+    ("changes", "path", "said", "remedy"),
+    [
+        # 2 (23.6 + 5) sin(pi/48) mm apart, and 1.5 x 5 x 2/sqrt(3) mm over the corners
+        ({"count": "48"}, "retention.count", "8.66 mm wide over the corners, and 3.741", "most 20"),
+        ({"thread.diameter": "40 mm"}, "retention.count", "69.28 mm wide", "most 5"),
+        ({"preload": "0 N"}, "retention.preload", "nothing closes the joint", "20 kN"),
+    ],
+)
+def test_tie_rods_that_cannot_be_are_refused(changes, path, said, remedy):
+    """Nuts that meet on the pitch circle, and a joint that no preload closes."""
+    text = (DESIGNS / "aerospace.yaml").read_text("utf-8")
+    start, end = text.index("variables:"), text.index("requirements:")
+    text = text[:start] + text[end:]
+    ao.read(text)
+    with pytest.raises(InputError) as error:
+        ao.read(text, set={f"retention.{key}": value for key, value in changes.items()})
+    (fault,) = error.value.diagnostics
+    assert fault.path == path
+    assert said in fault.message
+    assert remedy in fault.remedy
+
+
+def test_varied_tie_rods_that_meet_are_a_warning():
+    """Sizes that are variables can still change, so their start is not refused."""
+    aerospace = ao.read(DESIGNS / "aerospace.yaml", set={"retention.count": "48"})
+    assert any("nuts of the tie rods meet" in text for text in ao.evaluate(aerospace).warnings)
 
 
 def test_autofrettage_needs_a_wrap():

@@ -146,6 +146,12 @@ def test_an_optimum_keeps_the_web():
     [
         ({"piston.nut.diameter": "12 mm"}, "piston.nut.diameter", "no shoulder"),
         ({"piston.nut.pitch": "-1 mm"}, "piston.nut.pitch", ""),
+        ({"piston.nut.pitch": "4 mm"}, "piston.nut.pitch", "no core of the thread"),
+        (
+            {"piston.length": "6.2 mm", "variables.piston.length.upper": "6.3 mm"},
+            "piston.nut.diameter",
+            "at most 6.3 mm long",
+        ),
     ],
 )
 def test_a_nut_that_cannot_be_is_refused(changes, path, said):
@@ -153,6 +159,20 @@ def test_a_nut_that_cannot_be_is_refused(changes, path, said):
     with pytest.raises(InputError) as error:
         ao.read(DESIGNS / "knee.yaml", set=changes)
     assert any(one.path == path and said in one.message for one in error.value.diagnostics)
+
+
+def test_a_nut_without_preload_is_refused():
+    """Nothing would clamp the piston; as a variable, the preload may start anywhere."""
+    text = (DESIGNS / "knee.yaml").read_text("utf-8")
+    free = "  piston.nut.preload:\n    lower: 3 kN\n    upper: 20 kN\n"
+    assert free in text
+    with pytest.raises(InputError) as error:
+        ao.read(text.replace(free, ""), set={"piston.nut.preload": "0 N"})
+    (fault,) = error.value.diagnostics
+    assert fault.path == "piston.nut.preload"
+    assert "nothing clamps" in fault.message
+    assert "8 kN" in fault.remedy
+    ao.read(text.replace("lower: 3 kN", "lower: 0 N"), set={"piston.nut.preload": "0 N"})
 
 
 def test_a_laminated_rod_has_no_nut():

@@ -92,13 +92,43 @@ def test_nothing_is_left_out_of_the_mass():
         ("steel_baseline", {"seals.static.clearance": "1.5 mm"}, "seals.static.clearance", "depth"),
         ("steel_baseline", {"seals.static.compound": "al_7075_t6"}, "seals.static.compound", ""),
         ("knee_bonded", {}, "seals.static", "the adhesive seals them"),
+        ("knee fixed", {"seals.static.section": "3.53 mm"}, "seals.static.section", "4.82 mm does"),
+        ("knee fixed", {"caps.thickness": "2.4 mm"}, "seals.static.section", "2.4 mm thick"),
+        (
+            "knee",
+            {"seals.static.section": "7 mm", "variables.caps.thickness.upper": "9 mm"},
+            "seals.static.section",
+            "at most 9 mm thick",
+        ),
+        (  # a groove of 5.6 mm between a bore of 21.8 mm, and a hole of 12.06 mm for the rod
+            "knee fixed",
+            {"seals.static.section": "7 mm", "caps.thickness": "12 mm"},
+            "seals.static.section",
+            "5.6 mm is deeper than the plug, which has 4.87 mm",
+        ),
     ],
 )
 def test_a_static_seal_that_cannot_be_is_refused(name, changes, path, said):
     """Each with its place and what to do."""
-    text = (DESIGNS / f"{name}.yaml").read_text("utf-8")
+    text = (DESIGNS / f"{name.split()[0]}.yaml").read_text("utf-8")
+    if "fixed" in name:
+        start, end = text.index("variables:"), text.index("# The same requirements")
+        text = text[:start] + text[end:]
     if STATIC not in text:
         text = text.replace("\nload:\n", f"{STATIC}\nload:\n", 1)
     with pytest.raises(InputError) as error:
         ao.read(text, set=changes)
     assert any(one.path == path and said in one.message for one in error.value.diagnostics)
+
+
+def test_an_optimum_keeps_metal_between_groove_and_rod():
+    """A ring of 5.33 mm has a groove of 4.264 mm, which would leave 0.6 mm beside the rod."""
+    knee = ao.read(DESIGNS / "knee.yaml", set={"seals.static.section": "5.33 mm"})
+    best = ao.optimise(knee, prices=False)
+    sizes = {variable.path: variable.value for variable in best.variables}
+    rest = (sizes["cylinder.bore"] - sizes["rod.outer_diameter"]) / 2 - 30e-6 - 4.264e-3
+    assert best.status == "optimal"
+    assert rest >= 1e-3 * (1 - 1e-6)
+    assert best.evaluation.metrics["geometry_plug"].value == near(
+        min(rest, (sizes["caps.thickness"] - 1.3655 * 5.33e-3) / 2), 1e-5
+    )

@@ -219,6 +219,44 @@ def test_a_groove_that_cannot_be_cut_is_refused(changes, path, said):
     assert any(one == path and said in message for one, message, _ in found), found
 
 
+def fixed():
+    """The held knee without variables."""
+    text = held()
+    start, end = text.index("variables:"), text.index("# The same requirements")
+    return text[:start] + text[end:]
+
+
+@pytest.mark.parametrize(
+    ("width", "said"), [("12 mm", "inside the rod"), ("5.5 mm", "that of the rod 6.5 mm")]
+)
+def test_a_ring_inside_the_rod_is_refused(width, said):
+    """Its outer radius is 12 mm, the rod's 6.5 mm; a ring of 5.4 mm leaves 0.1 mm."""
+    ((path, message, remedy),) = complaints(fixed(), **{"retention.ring_width": width})
+    assert path == "retention.ring_width"
+    assert said in message
+    assert "less than 5.5 mm" in remedy
+    ao.read(fixed(), set={"retention.ring_width": "5.4 mm"})
+
+
+def test_a_variable_ring_without_opening_is_refused():
+    """Beyond its outer radius of 12 mm it has no inner radius; up to there, a limit counts."""
+    wide = held().replace("  retention.ring_width:\n    lower: 1 mm\n    upper: 5 mm",
+                          "  retention.ring_width:\n    lower: 1 mm\n    upper: 15 mm")  # fmt: skip
+    ((path, message, _),) = complaints(wide, **{"retention.ring_width": "12 mm"})
+    assert path == "retention.ring_width"
+    assert "no opening" in message
+    ao.read(wide, set={"retention.ring_width": "11 mm"})
+
+
+def test_a_ring_of_unknown_fatigue_strength_is_named():
+    """Life then comes from other parts, and a warning says what it leaves out."""
+    known = "materials:\n  steel_bolt_12_9:\n    fatigue_strength: 400 MPa\n\nretention:\n"
+    unrated, rated = held(), held().replace("retention:\n", known, 1)
+    said = "life leaves out retaining ring (steel_bolt_12_9)"
+    assert any(said in text for text in ao.evaluate(ao.read(unrated)).warnings)
+    assert not any("leaves out" in text for text in ao.evaluate(ao.read(rated)).warnings)
+
+
 def test_missing_sizes_of_the_ring_are_named():
     """Every size without default is asked for."""
     text = held().replace("  groove_depth: 0.5 mm\n", "", 1)

@@ -15,6 +15,7 @@ from cli_runner import DESIGNS, evaluated, refused, run
 from hypothesis import given, settings, strategies as st
 
 import actuator_opt as ao
+from actuator_opt.api import examine
 from actuator_opt.base import units
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import choice_list, read_design
@@ -318,6 +319,19 @@ def test_a_contradiction_leaves_out_its_combination_only():
     assert not bad.feasible
     assert "retention.thread" in bad.status
     assert result.choices.tried == 1
+
+
+def test_check_warns_of_a_choice_that_is_never_possible():
+    """The thread lacks its keys in every combination; the bond only with a metal."""
+    lists = {
+        "retention.type": "[thread, bond]",
+        "retention.material": "[epoxy_structural, steel_bolt_12_9]",
+    }
+    (warning, metal) = examine(listed(lists)).warnings
+    assert "choices.retention.type: no combination with thread" in warning
+    assert "retention.thread: missing" in warning
+    assert "no combination with steel_bolt_12_9" in metal
+    assert examine(DESIGNS / "knee_choices.yaml").warnings == []
 
 
 def test_impossible_choices_are_refused_in_one_line():
