@@ -115,6 +115,7 @@ def joints_under_load(
                 paths=wall.path.per_pressure,
                 line_stiffness=wall.axial_line_stiffness,
                 expansion=None if wall.expansion is None else wall.expansion[0],
+                warm_liner=wall.warm_liner,
                 clamp=wall.path.clamp,
                 shells=shells,
                 pressure=v["supply.pressure"],

@@ -323,6 +323,9 @@ class Loaded:
     paths: Mapping[str, Array]
     line_stiffness: Array
     expansion: Array | None
+    warm_liner: Array | None
+    """Axial stress of the innermost layer per kelvin of warming [Pa/K]; None if it is no metal of a
+    layered wall, or unknown."""
     clamp: Clamp | None
     shells: tuple[ShellLayer, ...]
     """Stiffness of the barrel's layers against bending; empty if an elastic constant is unknown."""

@@ -67,8 +67,8 @@ def winding_edge(
 
     The winding is on a sleeve or, without one, on the innermost layer. The innermost layers that do
     not belong to it are `liners` in number, at most one. The winding's stiffness is that of the
-    whole wall less that of the liner. The mean expansion of the wall weighs both by their
-    stiffness, which gives the expansion of the winding.
+    whole wall less that of the liner. The mismatch on a liner is that which gives the liner's axial
+    stress of the exact wall. That of a sleeve weighs winding and liner by their stiffness.
     """
     end, materials = loaded.end, loaded.materials
     around = end.layers[liners:]
@@ -98,7 +98,10 @@ def winding_edge(
     of_liner = modulus * area / interface
     of_winding = (whole - modulus * inside) / interface
     expansion, mismatch = materials.get(liner.material, "thermal_expansion"), None
-    if expansion is not None and loaded.expansion is not None:
+    if liners and loaded.warm_liner is not None:
+        pull = -loaded.warm_liner * inside / interface  # of the winding, per kelvin
+        mismatch = pull * (1 / (modulus * inside / interface) + 1 / of_winding)
+    elif expansion is not None and loaded.expansion is not None:
         of_wall = modulus * inside / interface + of_winding
         mismatch = (expansion - loaded.expansion) * of_wall / of_winding
     return WindingEdge(

@@ -93,7 +93,6 @@ def test_a_bore_too_small_for_the_force():
     for start, end in (
         ("  static:", "load:\n"),
         ("  nut:", "\nhead:"),
-        (PRELOAD, "  cylinder.bore:"),
     ):
         text = text[: text.index(start)] + text[text.index(end, text.index(start)) :]
     card = best(
@@ -154,7 +153,6 @@ def test_knee_with_thick_rings():
     assert optimise(subject, starts=1, prices=False).status == "optimal"
 
 
-PRELOAD = "  piston.nut.preload:"
 WALL = "  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n"
 
 

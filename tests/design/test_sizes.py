@@ -36,6 +36,10 @@ SQUEEZE = "  seals.rod.squeeze:\n    lower: 5 %\n    upper: 25 %\n"
 SECTION = "  seals.rod.section:\n    lower: 1.5 mm\n    upper: 4 mm\n"
 
 
+LONG = ("length: 22 mm", "length: 27 mm")
+"""A bond that holds larger bores."""
+
+
 def sized(lines, block=BORE, *changes, more=""):
     """The bench design whose bore (or another variable) also states these lines."""
     return bench((BORE, block + "".join(f"    {line}\n" for line in lines) + more), *changes)
@@ -328,7 +332,7 @@ def test_what_allows_the_smaller_size_where_rounding_costs_much():
 
     With the number as printed the rounding ends there, at the mass that was told.
     """
-    text = sized(["sizes: [20 mm, 23 mm]"], BORE, ("force: 4 kN", "force: 6.4 kN"))
+    text = sized(["sizes: [20 mm, 23 mm]"], BORE, ("force: 4 kN", "force: 6.4 kN"), LONG)
     result = ao.optimise(ao.read(text), starts=2, prices=False)
     rounding = result.rounding
     assert (rounding.met, result.best.cylinder.bore) == (True, 0.023)

@@ -281,6 +281,34 @@ def test_masses_of_the_ring_and_of_the_longer_barrel_by_hand():
     assert parts["fastening"] == near(without + 2 * ring, 1e-9)
 
 
+def test_edge_of_the_winding_by_the_strains_of_the_wall():
+    """Plane stress at the bore gives the liner's pull per kelvin; shear lag its shear at the edge.
+
+    The winding is free of stress at cure, 120 degrees; cold is at 0, where the strength is whole.
+    """
+    subject = ao.read(held()).subject()
+    run = compute(subject, subject.values())
+    axial, hoop = (float(np.ravel(strain)[0]) for strain in run.wall.expansion)
+    modulus, nu, alpha = 71.7e9, 0.33, 23.6e-6
+    stress = modulus / (1 - nu**2) * (axial - alpha + nu * (hoop - alpha))
+    inner, liner, plies = 11.5e-3, 2e-3, (1.2e-3, 0.8e-3)
+    around = 2 * pi * (inner + liner)
+    area = pi * liner * (2 * inner + liner)
+    outer = inner + liner + sum(plies)
+    whole = float(np.ravel(run.wall.axial_line_stiffness)[0]) * pi * (inner + outer)
+    give = around / (modulus * area) + around / (whole - modulus * area)
+    k = 1 / (liner * 2 * (1 + nu) / (3 * modulus) + sum(plies) / (3 * 4.3e9))
+    shear = k * abs(stress) * area / around * give / (k * give) ** 0.5 * 120
+    stock = run.joints[0].loaded.materials
+    strength = min(
+        float(np.ravel(value)[0])
+        for key in ("strength_12", "strength_23")
+        if (value := stock.allowable("t700_epoxy", key, cold=True)) is not None
+    )
+    found = run.computed.metrics["bond_thermal_factor"]["caps, cold"]
+    assert float(np.ravel(found)[0]) == near(strength / shear, 1e-6)
+
+
 def best(name, **changes):
     """The optimum of a shipped design."""
     return ao.optimise(ao.read(DESIGNS / name, set=changes), prices=False)

@@ -168,6 +168,8 @@ def compute(
         states = tuple(Climate(state.name, 0.0, cold=state.cold) for state in states)
     else:
         wall.expansion = (solution.axial[WARMTH], solution.warm_hoop)
+        if layers[0].isotropic:
+            wall.warm_liner = solution.stress[0][0, 0, WARMTH]
     if exact:
         wall.autofrettage = _autofrettage(v, design, layers, g)
     residual = _ResidualStress(solution, states, path, wall.autofrettage)

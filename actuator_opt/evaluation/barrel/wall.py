@@ -265,6 +265,8 @@ class Wall:
     layered: bool
     axial_line_stiffness: Array
     expansion: tuple[Array, Array] | None = None
+    warm_liner: Array | None = None
+    """Axial stress per kelvin of warming of an innermost layer of metal [Pa/K]; None if unknown."""
     yield_pressure: dict[str, Array] = field(default_factory=dict)
     first_ply_pressure: dict[str, Array] = field(default_factory=dict)
     burst_pressure: dict[str, Array] = field(default_factory=dict)
