@@ -160,7 +160,7 @@ def scaled(joint: str, pressure: float, bore: float) -> Data:
         least = 0.45 if wound else 0.3 if index else 2.4
         layer["thickness"] = times(layer["thickness"], strong, least)
     if data["piston"].pop("nut", None):
-        del data["variables"]["piston.nut.preload"]
+        data["variables"].pop("piston.nut.preload", None)
     if joint == "sleeve":
         data["seals"]["static"] = dict(STATIC)
     _seals(data["seals"], bore)
