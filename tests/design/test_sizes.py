@@ -298,7 +298,8 @@ def test_a_design_against_enumeration():
     """
     block = THICKNESS + "    step: 0.25 mm\n"
     text = sized(["sizes: [21 mm, 22.5 mm, 24 mm, 26 mm]"], BORE, (THICKNESS, block),
-                 ("force: 4 kN", "force: 7 kN"), WEAK, ("length: 22 mm", "length: 26 mm"))  # fmt: skip
+                 ("force: 4 kN", "force: 7 kN"), WEAK,
+                 ("length: 22 mm", "length: 26 mm"))  # fmt: skip
     actuator = build(ao.read(text).subject())
 
     def scan(bore, hoop, walls):
