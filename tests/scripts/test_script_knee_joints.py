@@ -103,9 +103,10 @@ def test_a_sleeve_saves_metal_between_the_ends() -> None:
 
 
 def test_what_the_committed_map_shows() -> None:
-    """At 100 bar, bonds win at the smallest bore and steel at the largest; else sleeves win."""
+    """Bonds win at little force, steel for stiffness, plugs in thick tubes; else sleeves."""
     rows = {(row["pressure"], row["bore"]): row for row in carried(REPORT)["rows"]}
     assert len(rows) == len(study.PRESSURES) * len(study.BORES)
     others = {(100, 16): "bond", (100, 80): "thread"}
+    others |= dict.fromkeys(((350, 63), (350, 80)), "plug_thread")
     for point, row in rows.items():
         assert study.lightest(row) == others.get(point, "sleeve")
