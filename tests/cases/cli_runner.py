@@ -83,7 +83,7 @@ retention:
   type: bond
   material: epoxy_structural
   length: 22 mm
-  wall: 3 mm
+  wall: 2 mm
 
 clevis:
   material: steel_42crmo4

@@ -109,7 +109,7 @@ def test_isotropic_barrel():
         [(block("barrel"), SCREWED_ON), *without("variables"),
          ("  material: epoxy_structural\n", SCREWED), ("type: bond", "type: thread")],
         [("  material: epoxy_structural\n", "  material: steel_bolt_10_9\n" + THREAD),
-         ("type: bond", "type: tie_rods"), ("  wall: 3 mm\n", "")],
+         ("type: bond", "type: tie_rods"), ("  wall: 2 mm\n", "")],
         [("    compound: nbr_90\n", "    compound: nbr_90\n    count: 0\n")],
         [("objective:\n  minimise: mass", "materials:\n  t700_epoxy:\n    density: 1600 kg/m^3")],
         [("  length: 14 mm\n", "  length: 14 mm\n  bearing: guide_ptfe_bronze\n")],

@@ -259,7 +259,7 @@ def test_actuator_against_enumeration():
     """
     text = two_layers(
         (WALL, ""),
-        ("length: 22 mm\n  wall: 3 mm", "length: 22 mm\n  wall: 4 mm"),
+        ("length: 22 mm\n  wall: 2 mm", "length: 22 mm\n  wall: 4 mm"),
         ("force: 4 kN", "force: 7 kN"),
         ("    lower: 0.5 mm\n    upper: 4 mm", "    lower: 0.5 mm\n    upper: 2.5 mm"),
     )
