@@ -55,11 +55,11 @@ def test_a_requirement_exactly_at_its_limit():
 
 def test_a_bore_required_at_its_bound():
     """A requirement that only the upper bound of the bore meets holds there, and is met."""
-    upper = ("    upper: 30 mm", "    upper: 23 mm")
-    found = best(upper, required("min: 0.023"), own=lambda v: v["cylinder.bore"])
+    upper = ("    upper: 30 mm", "    upper: 22 mm")
+    found = best(upper, required("min: 0.022"), own=lambda v: v["cylinder.bore"])
     assert found.status == "optimal"
     assert found.evaluation.met
-    assert {v.path: v.value for v in found.variables}["cylinder.bore"] == pytest.approx(0.023)
+    assert {v.path: v.value for v in found.variables}["cylinder.bore"] == pytest.approx(0.022)
 
 
 def test_a_requirement_no_variable_moves_exactly_at_its_limit(plain):

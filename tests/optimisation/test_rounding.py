@@ -505,7 +505,8 @@ def test_plies_too_coarse_for_the_requirements(tmp_path):
         (FREE_AXIAL, ""),
         (BORE, ""),
         *fixed,
-        ("requirements:\n", f"requirements:\n  stiffness_barrel:\n    min: {least} N/m\n"
+        ("requirements:\n", "requirements:\n  retention_factor: {min: 1}\n"
+         f"  stiffness_barrel:\n    min: {least} N/m\n"
          f"    max: {most} N/m\n"),
     )  # fmt: skip
     file = tmp_path / "none.yaml"
@@ -543,7 +544,7 @@ def test_page_one_is_the_design_that_is_built(simple):
         assert data[part] == made[part]
     tables = {block.get("title"): block for block in data["blocks"]}
     alone = {block.get("title"): block for block in made["blocks"]}
-    for title in ("Requirements", "Check list", "Mass"):
+    for title in ("Requirements", "Check list", "Parts and mass"):
         assert tables[title]["rows"] == alone[title]["rows"], title
     heads = [one["head"] for one in tables["Design variables"]["columns"]]
     place = heads.index("whole plies")
