@@ -581,8 +581,8 @@ def test_equal_designs_give_equal_files(tmp_path):
 
 
 def test_terminal_keeps_places_and_groups_reasons():
-    """At 100 columns the places of the loop are whole; one reason stands once."""
-    shown = fixture.shown(evaluated("loop"), width=100)
+    """At 110 columns the places of the loop are whole; one reason stands once."""
+    shown = fixture.shown(evaluated("loop"), width=110)
     line = next(x for x in shown.splitlines() if x.startswith("bandwidth"))
     assert re.search(r"swing, retract, 100 %$", line)
     assert "…" not in next(x for x in shown.splitlines() if x.startswith("phase_margin"))
