@@ -196,7 +196,6 @@ def test_the_terminal_prints_the_value_its_margin_is_of():
     assert "600.0" in line
     assert "1600" not in line
     assert "40.0 %" in line
-    assert "stance" in line
 
 
 def test_an_optimum_shows_its_objective():

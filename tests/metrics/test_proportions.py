@@ -58,7 +58,7 @@ FIRES = {
     ("retention.length", "bore"): {"cylinder.bore": "500 mm"},
     ("retention.length", "turns"): {"retention.length": "4 mm"},
     ("retention.length", "groove depth"): {"retention.length": "15 mm"},
-    ("retention.ring_width", "groove depth"): {"retention.ring_width": "10.5 mm"},
+    ("retention.ring_width", "groove depth"): {"retention.ring_width": "0.6 mm"},
     ("load.mass", "load"): {"load.mass": "500 t"},
     ("load_cases", "strokes"): {"load_cases[stance].speed": "0.0001 mm/s"},
     ("fluid.temperature", "oil"): {"fluid.temperature": "-90 degC"},
