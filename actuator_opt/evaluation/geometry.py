@@ -443,14 +443,6 @@ def _cushions(v: Values, design: Design) -> dict[str, Array]:
     }
 
 
-def _angles(v: Values, design: Design, forms: Sequence[Form]) -> tuple[Array, ...]:
-    """Winding angles of the barrel's layers; those of helical layers vary under a wound end."""
-    return tuple(
-        v[f"barrel.layup[{i}].angle"] if "wound" in forms and _helical(ply) else ply.angle
-        for i, ply in enumerate(design.barrel.layup)
-    )
-
-
 def _fits(v: Values, design: Design, **sizes: Any) -> tuple[EndDimensions, ...]:
     """Dimensions of cap and head that follow from their joints; `sizes` are those of `end_of`."""
     outer = sizes["outer_radius"]
@@ -475,7 +467,7 @@ def derive(v: Values, design: Design) -> Geometry:
         "inner_radius": bore / 2,
         "outer_radius": bore / 2 + sum(thicknesses),
         "thicknesses": thicknesses,
-        "angles": _angles(v, design, forms),
+        "angles": tuple(v[f"barrel.layup[{i}].angle"] for i in range(len(thicknesses))),
         "barrel_length": barrel_length,
         "plate": plate,
         "head_length": head_length,

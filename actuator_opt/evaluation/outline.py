@@ -177,9 +177,9 @@ def _barrel(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     last = len(g.thicknesses) - 1
     for i, (ply, thickness) in enumerate(zip(design.barrel.layup, g.thicknesses, strict=True)):
         outer = radius + float(thickness)
-        outside = min(outer, float(g.outer_radius)) if i == last else outer
+        limit = min(outer, float(g.outer_radius)) if i == last else 0.0
         edges = []
-        for r, bore, turned in ((radius, i == 0, False), (outside, False, i == last)):
+        for r, bore, turned in ((radius, i == 0, 0.0), (outer, False, limit)):
             cap, head = (
                 _edge_points(*side, r, liner=i == 0, bore=bore, turned=turned) for side in sides
             )
@@ -197,13 +197,13 @@ def _edge_points(
     *,
     liner: bool,
     bore: bool,
-    turned: bool,
+    turned: float,
 ) -> Polygon:
     """Points of a layer's edge at one end of the barrel, from there inwards.
 
     `end` is the axial position of the end, and `face` that of the inner face of the plate. `liner`
     is whether the layer is the innermost. The edge is the `bore` with the groove outside the
-    chamber, or the outside, which may be `turned` down to the radius of a skirt. On a sleeve, which
+    chamber, or the outside, turned down to a skirt with a radius below `turned`. On a sleeve, which
     has groove and skirt itself, the winding is lifted, and a liner ends at the tip.
     """
     if fit.sleeve is not None:
@@ -220,7 +220,7 @@ def _edge_points(
         far, near, floor = face - inwards * (near + width), face - inwards * near, radius + depth
         return (end, radius), (far, radius), (far, floor), (near, floor), (near, radius)
     low, step = float(fit.radius), end + inwards * float(fit.length)
-    if turned and float(fit.length) > 0 and low < radius:
+    if float(fit.length) > 0 and low < turned:
         return (end, low), (step, low), (step, radius)
     return ((end, radius),)
 

@@ -519,3 +519,19 @@ def test_interference_beyond_yield_is_one_line():
     free += "variables:\n  retention.interference:\n    lower: 1 um\n    upper: 200 um\n"
     metrics, _ = computed(free)
     assert plain(metrics["yield_factor"]["shrink ring"]) < 1
+
+
+def test_a_varied_angle_of_the_plies_is_that_of_a_stated_one():
+    """The plies that hold the pins follow the variable, and not the angle in the file."""
+    text = PINNED.replace("angle: 45 deg", "angle: 40 deg")
+    assert text != PINNED
+    stated, subject = ao.read(text).subject(), ao.read(PINNED).subject()
+    varied = subject.values({"barrel.layup[2].angle": np.array([np.radians(40.0)])})
+    rows = [
+        run.computed.metrics["retention_factor"]["plies between the holes"]
+        for run in (compute(subject, varied), compute(stated, stated.values()))
+    ]
+    assert plain(rows[0]) == pytest.approx(plain(rows[1]), rel=1e-12)
+    assert plain(rows[0]) != pytest.approx(
+        plain(computed(PINNED)[0]["retention_factor"]["plies between the holes"]), rel=1e-3
+    )
