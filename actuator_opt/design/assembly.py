@@ -1,7 +1,7 @@
 """Order of assembly: how piston, rod and seals enter the barrel, and what prevents it.
 
 Piston and rod go in together, through the head's end with the head, or through the cap's end if the
-head is made with the barrel. The joint of each end states how it opens (`Opening`).
+head is made with the barrel. The joint of each end states how it opens (`BarrelOpening`).
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from ..base.errors import Fault
 from ..base.quantities import length_text
-from ..joints.joint import ROUNDING, Opening
+from ..joints.joint import ROUNDING, BarrelOpening
 from .model import Design
 from .structure import FileView, Loc
 from .wall_faults import ends
@@ -22,7 +22,7 @@ _EYE = 2.0
 """Outer diameter of an eye, in pin diameters; see `models.mass.eye_volume`."""
 
 
-def _openings(view: FileView) -> dict[str, tuple[Loc, Opening]]:
+def _openings(view: FileView) -> dict[str, tuple[Loc, BarrelOpening]]:
     """Location of the joint's block and opening, by cap and head; empty if a joint is unknown."""
     views = ends(view)
     stated = [(end.at, end.joint.opening(end)) for end in views if end.joint is not None]
@@ -82,7 +82,7 @@ def warnings(design: Design) -> Iterator[str]:
     bore, ring = view.number("cylinder", "bore"), _largest_ring(view)
     if bore is None or ring is None:
         return
-    (height, section), done = ring, set[Opening]()
+    (height, section), done = ring, set[BarrelOpening]()
     for name, (_, opening) in _openings(view).items():
         if opening.crossed is None or opening in done or opening.opens == "never":
             continue

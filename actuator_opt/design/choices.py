@@ -14,7 +14,7 @@ from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
 from ..models.seals import LAWS as CONTACT_LAWS
 from ..models.strength import CRITERIA
 from ..seals.kinds import TYPES as SEAL_TYPES
-from .kinds import Choice, Row, choice_of
+from .kinds import Choice, TableRow, choice_of
 
 Paper: TypeAlias = Annotated[
     Literal["ElAsswad2018", "AaltoThesis", "Huang2017"] | None,
@@ -70,7 +70,7 @@ Criterion: TypeAlias = Annotated[
 ]
 PortThread: TypeAlias = Annotated[
     str | None,
-    Row(
+    TableRow(
         "thread of both ports, in the rims of the end plates, or in bosses on a barrel that "
         "encloses them",
         "ports",
@@ -78,7 +78,7 @@ PortThread: TypeAlias = Annotated[
 ]
 Bearing: TypeAlias = Annotated[
     str | None,
-    Row(
+    TableRow(
         "spherical plain bearing of both eyes, series E of ISO 12240-1, steel on steel",
         "spherical_bearings",
     ),

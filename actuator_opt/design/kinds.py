@@ -330,7 +330,7 @@ def choice_of(help: str, registry: kinds.Kinds[Any]) -> Choice:
     return Choice(f"{help}; {registry.help}", registry.names)
 
 
-class Row(Choice):
+class TableRow(Choice):
     """A row of a table of standard sizes, by its name; the table is read when first used."""
 
     def __init__(self, help: str, table: str) -> None:

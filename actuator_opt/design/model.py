@@ -695,7 +695,7 @@ class Limit(Section):
     max: float | None = None
 
 
-class Required(Limit):
+class RequirementLimit(Limit):
     """Limits of a metric (SI) that the design must meet, and why they are what they are."""
 
     reason: Annotated[str | None, Text("where the limit comes from, for the report", 400)] = None
@@ -770,7 +770,7 @@ class Design(Section):
     load_cases: Annotated[tuple[LoadCase, ...], Field(min_length=1, max_length=100)]
     variables: dict[str, Variable] = {}  # noqa: RUF012 (pydantic copies it)
     choices: dict[str, tuple[float | bool | str | Fraction, ...]] = {}  # noqa: RUF012 (pydantic copies it)
-    requirements: dict[str, Required] = {}  # noqa: RUF012 (pydantic copies it)
+    requirements: dict[str, RequirementLimit] = {}  # noqa: RUF012 (pydantic copies it)
     waivers: dict[str, Annotated[str, Text("why the check does not apply")]] = {}  # noqa: RUF012 (pydantic copies it)
     measured: dict[str, TestBounds] = {}  # noqa: RUF012 (pydantic copies it)
     """Confidence bounds of values from a test record, by PATH."""

@@ -9,6 +9,7 @@ from ..base.numeric import Array
 from ..base.quantities import Quantity
 from . import overlap
 from .joint import (
+    BarrelOpening,
     End,
     EndDimensions,
     Fatigue,
@@ -16,7 +17,6 @@ from .joint import (
     JointField,
     Loaded,
     MaterialProperties,
-    Opening,
     Strength,
     WallPressures,
     nothing,
@@ -86,7 +86,7 @@ JOINT = Joint(
     without={},
     faults=nothing,
     material_faults=nothing,
-    opening=lambda _: Opening("once", "Bond the skirt of the {end} over the barrel."),
+    opening=lambda _: BarrelOpening("once", "Bond the skirt of the {end} over the barrel."),
     form="skirts",
     fit=_fit,
     clamping=None,

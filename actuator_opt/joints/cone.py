@@ -24,6 +24,7 @@ from .joint import (
     HELICAL,
     LEAST_METAL,
     ROUNDING,
+    BarrelOpening,
     DrawnPart,
     End,
     EndDimensions,
@@ -34,7 +35,6 @@ from .joint import (
     KnownMaterials,
     Loaded,
     MaterialProperties,
-    Opening,
     Pulsed,
     StatedValues,
     Strength,
@@ -683,7 +683,7 @@ JOINT = Joint(
     },
     faults=_faults,
     material_faults=_material_faults,
-    opening=lambda _: Opening(
+    opening=lambda _: BarrelOpening(
         "once", "Wind the plies over the plug of the {end}, with its seal, piston and rod in place."
     ),
     form="wound",

@@ -410,8 +410,8 @@ class Strength:
     cured: bool = False
 
 
-class Opening(NamedTuple):
-    """Opening at an end of the barrel through which parts enter, and what closes it.
+class BarrelOpening(NamedTuple):
+    """BarrelOpening at an end of the barrel through which parts enter, and what closes it.
 
     An end `opens` "again" at any time, "once" if it is closed for good, as by a bond, or "never" if
     it is made with the barrel. `closing` is a sentence with the word {end} for cap or head.
@@ -449,7 +449,7 @@ class Joint:
     """Function that yields errors in the values of a design file."""
     material_faults: Callable[[StatedValues, KnownMaterials], Iterable[Fault]]
     """Function that yields errors in a design file that depend on material properties."""
-    opening: Callable[[StatedValues], Opening]
+    opening: Callable[[StatedValues], BarrelOpening]
     """Function that describes how parts enter the barrel at this end."""
     form: Form
     fit: Callable[[End], EndDimensions]

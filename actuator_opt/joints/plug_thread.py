@@ -18,6 +18,7 @@ from ..models.rod import section_area
 from .joint import (
     ON_METAL,
     ROUNDING,
+    BarrelOpening,
     DrawnPart,
     End,
     EndDimensions,
@@ -28,7 +29,6 @@ from .joint import (
     KnownMaterials,
     Loaded,
     MaterialProperties,
-    Opening,
     Pulsed,
     StatedValues,
     Strength,
@@ -99,14 +99,14 @@ def _material_faults(view: StatedValues, materials: KnownMaterials) -> Iterator[
         )
 
 
-def _opening(view: StatedValues) -> Opening:
+def _opening(view: StatedValues) -> BarrelOpening:
     """The minor diameter of the thread in the barrel, and its length."""
     sizes, length = _stated(view), view.number("retention", "length")
     closing = "Screw the {end} into the bore."
     if sizes is None or length is None:
-        return Opening("again", closing)
+        return BarrelOpening("again", closing)
     _, pitch, diameter = sizes
-    return Opening("again", closing, diameter - MINOR * pitch, ("thread", length))
+    return BarrelOpening("again", closing, diameter - MINOR * pitch, ("thread", length))
 
 
 # --- dimensions and mass --------------------------------------------------------------------

@@ -19,6 +19,7 @@ from ..models import mass, retaining_ring as model
 from .joint import (
     ON_METAL,
     ROUNDING,
+    BarrelOpening,
     DrawnPart,
     End,
     EndDimensions,
@@ -29,7 +30,6 @@ from .joint import (
     KnownMaterials,
     Loaded,
     MaterialProperties,
-    Opening,
     Pulsed,
     StatedValues,
     Strength,
@@ -97,12 +97,12 @@ def _material_faults(view: StatedValues, materials: KnownMaterials) -> Iterator[
     yield from innermost_faults(view, materials, "the groove of the retaining ring", depth, varied)
 
 
-def _opening(view: StatedValues) -> Opening:
+def _opening(view: StatedValues) -> BarrelOpening:
     """The groove, which is as wide as the ring is thick."""
     width = view.number("retention", "ring_thickness")
     crossed = None if width is None else ("groove", width)
     closing = "Push the {end} into the bore and set its split ring into the groove."
-    return Opening("again", closing, crossed=crossed)
+    return BarrelOpening("again", closing, crossed=crossed)
 
 
 # --- dimensions and mass --------------------------------------------------------------------

@@ -20,6 +20,7 @@ from ..models.layered_tube import LayeredTube, TubeLayer, layered_tube
 from ..models.solid_ply import solid_stiffness
 from .joint import (
     NOT_BONDED,
+    BarrelOpening,
     DrawnPart,
     End,
     EndDimensions,
@@ -30,7 +31,6 @@ from .joint import (
     KnownMaterials,
     Loaded,
     MaterialProperties,
-    Opening,
     Pulsed,
     StatedValues,
     Strength,
@@ -174,7 +174,7 @@ def _notes(end: End) -> Iterator[str]:
 
 
 @dataclass(frozen=True, slots=True)
-class Contact:
+class RingContact:
     """Contact of ring and barrel.
 
     `pressures` are the contact pressures [Pa]: "at assembly", "cold" and "hot", each without and
@@ -193,15 +193,15 @@ class Contact:
     most: Array
 
 
-def _contact(loaded: Loaded) -> Contact | str:
+def _contact(loaded: Loaded) -> RingContact | str:
     """Contact of an end, or the reason why it is unknown; the result is cached."""
     if "contact" not in loaded.end.cache:
         loaded.end.cache["contact"] = _contact_of(loaded)
-    contact: Contact | str = loaded.end.cache["contact"]
+    contact: RingContact | str = loaded.end.cache["contact"]
     return contact
 
 
-def _contact_of(loaded: Loaded) -> Contact | str:
+def _contact_of(loaded: Loaded) -> RingContact | str:
     end, materials, tube = loaded.end, loaded.materials, loaded.tube()
     if end.material is None:
         return "a shrunk ring needs a metal: add retention.material"
@@ -247,7 +247,7 @@ def _contact_of(loaded: Loaded) -> Contact | str:
         if word in grips:
             idle = pressure if idle is None else maximum(idle, pressure)
     rise = maximum(pressed, pressed + pulled) / (give["tube_give"] + give["give"])
-    return Contact(tube, pressures, grips, length, rise, idle, most)
+    return RingContact(tube, pressures, grips, length, rise, idle, most)
 
 
 def _warmed(loaded: Loaded, tube: LayeredTube) -> Iterator[tuple[str, Array, Array]]:
@@ -392,7 +392,9 @@ JOINT = Joint(
     without={},
     faults=nothing,
     material_faults=_material_faults,
-    opening=lambda _: Opening("once", "Heat the ring of the {end} and shrink it over the barrel."),
+    opening=lambda _: BarrelOpening(
+        "once", "Heat the ring of the {end} and shrink it over the barrel."
+    ),
     form="skirts",
     fit=_fit,
     clamping=None,

@@ -21,6 +21,7 @@ from ..models.strength_modes import load_multiplier
 from . import overlap
 from .joint import (
     ROUNDING,
+    BarrelOpening,
     DrawnPart,
     End,
     EndDimensions,
@@ -30,7 +31,6 @@ from .joint import (
     JointField,
     Loaded,
     MaterialProperties,
-    Opening,
     StatedValues,
     Strength,
     WallPressures,
@@ -231,7 +231,7 @@ JOINT = Joint(
     without={},
     faults=_faults,
     material_faults=nothing,
-    opening=lambda _: Opening("once", "Bond the tapered skirt of the {end} over the barrel."),
+    opening=lambda _: BarrelOpening("once", "Bond the tapered skirt of the {end} over the barrel."),
     form="skirts",
     fit=_fit,
     clamping=None,

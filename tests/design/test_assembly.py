@@ -11,11 +11,11 @@ import actuator_opt as ao
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import assembly, wall_faults
 from actuator_opt.evaluation.outline import notes
-from actuator_opt.joints.joint import Opening
+from actuator_opt.joints.joint import BarrelOpening
 from actuator_opt.joints.kinds import JOINTS
 
 DESIGNS = Path(__file__).parents[2] / "designs"
-FIXED = Opening("never", "")
+FIXED = BarrelOpening("never", "")
 
 
 def design(name="steel_baseline", text=None, **changes):
@@ -66,13 +66,13 @@ def test_two_ends_that_do_not_open(monkeypatch):
 def test_an_opening_that_the_piston_does_not_pass(monkeypatch):
     """The narrower end is named, and both sizes; an end of the bore's size is wide enough."""
     text = apart("thread", "bond")
-    opened(monkeypatch, "bond", Opening("once", "", diameter=22e-3))
+    opened(monkeypatch, "bond", BarrelOpening("once", "", diameter=22e-3))
     ((path, message),) = faults(text)
     assert path == "retention.head.type"
     assert message.startswith("the opening of 22 mm is narrower than the piston (23 mm)")
-    opened(monkeypatch, "bond", Opening("once", "", diameter=23e-3))
+    opened(monkeypatch, "bond", BarrelOpening("once", "", diameter=23e-3))
     assert ao.read(text)
-    opened(monkeypatch, "bond", Opening("never", "", diameter=22e-3))
+    opened(monkeypatch, "bond", BarrelOpening("never", "", diameter=22e-3))
     assert ao.read(text)  # nothing passes an end that never opens
 
 

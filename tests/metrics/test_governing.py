@@ -189,13 +189,15 @@ def test_an_objective_is_its_metric(name, aim, pick):
         assert row.value == (min(values) if sense == "min" else max(values)), metric
 
 
-def test_the_terminal_prints_the_value_its_margin_is_of():
+def test_the_terminal_prints_the_value_its_margin_is_of(monkeypatch):
     """`power >= 1 kW` printed 1600 W at -40 %: 600 W of the slower load case are."""
+    monkeypatch.setenv("COLUMNS", "100")
     found = run("evaluate", "designs/knee_bonded.yaml", "--set", "requirements.power.min=1 kW")
     (line,) = [line for line in found.out.splitlines() if line.lstrip("✘ ").startswith("power ")]
     assert "600.0" in line
     assert "1600" not in line
     assert "40.0 %" in line
+    assert "stance" in line
 
 
 def test_an_optimum_shows_its_objective():
