@@ -31,10 +31,20 @@ def _openings(view: FileView) -> dict[str, tuple[Loc, BarrelOpening]]:
     return {"cap": stated[0], "head": stated[-1]}
 
 
+def _wound(view: FileView) -> bool:
+    """Whether the barrel is wound over the plugs of both ends."""
+    joints = [end.joint for end in ends(view)]
+    return bool(joints) and all(joint is not None and joint.form == "wound" for joint in joints)
+
+
 def faults(view: FileView) -> Iterator[Fault]:
-    """Check that an end can be opened, and that the piston passes every end that can."""
+    """Check that an end can be opened, and that the piston passes every end that can.
+
+    Ends that are both wound in are left to `warnings`: piston and rod can be inside beforehand.
+    """
     openings = _openings(view)
-    if openings and all(opening.opens == "never" for _, opening in openings.values()):
+    shut = openings and all(opening.opens == "never" for _, opening in openings.values())
+    if shut and not _wound(view):
         yield Fault(
             (*openings["head"][0], "type"),
             "neither end of the barrel can be opened, so the piston cannot be inserted",
@@ -73,8 +83,7 @@ def warnings(design: Design) -> Iterator[str]:
     """Sentences on parts that may not pass at assembly."""
     view = FileView(design.model_dump())
     yield from _eye(view)
-    joints = [end.joint for end in ends(view)]
-    if joints and all(joint is not None and joint.form == "wound" for joint in joints):
+    if _wound(view):
         yield (
             "assembly: both ends are wound into the barrel, so piston, rod and seals must be "
             "inside during winding and cure: hold one end by another joint"

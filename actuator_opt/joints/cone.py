@@ -683,9 +683,7 @@ JOINT = Joint(
     },
     faults=_faults,
     material_faults=_material_faults,
-    opening=lambda _: BarrelOpening(
-        "once", "Wind the plies over the plug of the {end}, with its seal, piston and rod in place."
-    ),
+    opening=lambda _: BarrelOpening("never", "Wind the barrel over the plug of the {end}."),
     form="wound",
     fit=_fit,
     clamping=None,

@@ -15,6 +15,7 @@ from step_reader import StepFile, volume
 
 import actuator_opt as ao
 from actuator_opt.base.errors import InputError
+from actuator_opt.design import assembly
 from actuator_opt.evaluation import compute
 from actuator_opt.exports.step import bodies, step
 from actuator_opt.models import fibre_trap, mass, winding_path
@@ -401,6 +402,7 @@ def test_warnings():
     assert f"{1e3 * play:.3g}"[:4] in sentence
     assert any("(flank)" in text for text in evaluation.warnings)
     assert not any("both ends are wound" in text for text in evaluation.warnings)
+    assert "The cap is made with the barrel." in assembly.order(evaluation.design)
     block = CONE[CONE.index("    type: cone") : CONE.index("  head:")]
     both = KNEE.replace(CONE, "retention:\n" + block.replace("    ", "  "))
     assert any("both ends are wound" in text for text in ao.evaluate(ao.read(both)).warnings)
