@@ -11,6 +11,7 @@ from math import inf
 from pathlib import Path
 
 import pytest
+from cases.digests import digests
 from cli_runner import KNEE, PLIES, bench, command, run, surroundings
 
 import actuator_opt as ao
@@ -49,11 +50,6 @@ def optimised(design, *options):
     return result
 
 
-def files(folder):
-    """Bytes of every file by name."""
-    return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
-
-
 def test_a_record_holds_the_whole_run(folder, design):
     """Input, overrides, versions, seed, hash, trace and the JSON result, as the command gave it."""
     printed = optimised(design, "--set", "load.mass=21 kg", "--seed", 3).json
@@ -85,7 +81,7 @@ def test_its_report_is_the_report_of_the_command(folder, design, tmp_path, optio
     monkeypatch.setattr("actuator_opt.optimisation.run.solve", None)
     result = run("report", "last", "--out", again)
     assert result.code == 0, result.err
-    assert files(made) == files(again)
+    assert digests(made) == digests(again)
 
 
 def test_infeasible_and_chosen_designs_are_reported_again(folder, tmp_path):
@@ -106,7 +102,7 @@ def test_infeasible_and_chosen_designs_are_reported_again(folder, tmp_path):
         code = optimised(path, "--starts", 1, "--report", "--out", tmp_path / name / "a").code
         assert run("report", "last", "--out", tmp_path / name / "b").code == code
         assert run("runs", "list", "--json").json["runs"][0]["met"] == (code == 0)
-        assert files(tmp_path / name / "a") == files(tmp_path / name / "b")
+        assert digests(tmp_path / name / "a") == digests(tmp_path / name / "b")
 
 
 def test_own_metrics_come_back_where_their_file_is_named(folder, design, tmp_path):
@@ -124,12 +120,12 @@ def test_own_metrics_come_back_where_their_file_is_named(folder, design, tmp_pat
     assert refused.errors[0]["remedy"] == "name it with --plugin to run it"
     named = run("report", "last", "--out", tmp_path / "b", "--plugin", plugin)
     assert (named.code, named.err.count("SHA-256")) == (0, 0)
-    assert files(tmp_path / "a") == files(tmp_path / "b")
+    assert digests(tmp_path / "a") == digests(tmp_path / "b")
     plugin.write_text(text + "\n")
     named = run("report", "last", "--out", tmp_path / "c", "--plugin", plugin)
     assert named.code == 0
     assert f"was made with another version of {plugin} (its SHA-256 differs)" in named.err
-    assert files(tmp_path / "a") == files(tmp_path / "c")
+    assert digests(tmp_path / "a") == digests(tmp_path / "c")
 
 
 def test_an_optimisation_goes_through_json_and_back():
@@ -359,7 +355,7 @@ def test_convergence_of_any_search_can_be_drawn(folder, design, tmp_path):
     for place in ("a", "b"):
         result = run("runs", "show", "last", "--out", tmp_path / place, "--json")
         assert [Path(one["path"]).suffix for one in result.json["files"]] == [".png", ".svg"]
-    assert files(tmp_path / "a") == files(tmp_path / "b")
+    assert digests(tmp_path / "a") == digests(tmp_path / "b")
     traces = [
         [], [(1, 0.2, 0.0)], [(1, 0.0, 5e3), (9, 1e-9, 0.0)], [(1, -3.0, 0.1), (2, -5.0, 1e-9)],
         [(k + 1, 1e6 / (k + 1), 10.0 ** (-k / 100)) for k in range(1000)],

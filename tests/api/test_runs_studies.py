@@ -13,6 +13,7 @@ import time
 from pathlib import Path
 
 import pytest
+from cases.digests import digest, digests
 from cli_runner import BENCH, command, run, spawn, surroundings
 
 import actuator_opt as ao
@@ -63,11 +64,6 @@ def front(design, *options):
     done = run("pareto", design, *BOTH, "-n", 5, "--checks", 0, "--json", *options)
     assert (done.code, done.err) == (0, ""), done.out
     return done.json
-
-
-def files(folder):
-    """Bytes of every file by name."""
-    return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
 
 
 def told(*words):
@@ -150,18 +146,18 @@ def test_a_sweep_is_reported_out_of_its_store(folder, design, tmp_path, more, mo
     made, again, store = tmp_path / "made", tmp_path / "again", tmp_path / "rows.db"
     swept(design, "--store", store, "--csv", tmp_path / "rows.csv", *more, "--out", made)
     design.unlink()
-    before = store.read_bytes()
+    before = digest(store)
     monkeypatch.setattr(Study, "chunk", None)
     result = run("report", "last", "--out", again, "--json")
     assert result.code == 0, result.out
-    assert {Path(one["path"]).name for one in result.json["files"]} == set(files(again))
-    found = files(again)
+    assert {Path(one["path"]).name for one in result.json["files"]} == set(digests(again))
+    found = digests(again)
     assert found.pop("test_bench-sweep.csv") == (tmp_path / "rows.csv").read_bytes()
     if more:
-        assert found == files(made)
+        assert found == digests(made)
     else:
         assert list(found) == ["test_bench-sweep-parallel.png", "test_bench-sweep-parallel.svg"]
-    assert store.read_bytes() == before
+    assert digest(store) == before
 
 
 @pytest.mark.parametrize("method", ["grid", "sobol", "lhs"])
@@ -182,7 +178,7 @@ def test_a_parquet_file_comes_again(folder, design, tmp_path):
     made = tmp_path / "rows.parquet"
     swept(design, "--store", tmp_path / "rows.db", "--parquet", made)
     assert run("report", "last", "--out", tmp_path / "again", "--quiet").code == 0
-    found = files(tmp_path / "again")
+    found = digests(tmp_path / "again")
     assert found["test_bench-sweep.parquet"] == made.read_bytes()
     assert "test_bench-sweep.csv" in found
     assert str(made) in run("runs", "show", "last", environment={"COLUMNS": "300"}).out
@@ -232,7 +228,7 @@ def test_explore_takes_a_run(folder, design, tmp_path):
     assert [Path(one["path"]).name for one in result.json["files"]] == [
         "rows_explore.html", "rows_explore_base.yaml",
     ]  # fmt: skip
-    assert files(tmp_path / "a") == files(tmp_path / "b")
+    assert digests(tmp_path / "a") == digests(tmp_path / "b")
     assert run("explore", folder / f"{name}.run", "--out", tmp_path / "b", "--quiet").code == 0
     assert "no run" in told("explore", "20240101")
     assert "one study" in told("explore", name, "--study", "1")
@@ -262,7 +258,7 @@ def test_a_front_goes_through_its_record(folder, design, tmp_path):
     design.unlink()
     result = run("report", "last", "--out", again)
     assert result.code == 0, result.err
-    assert files(made) == files(again)
+    assert digests(made) == digests(again)
 
 
 def test_a_front_is_not_solved_to_be_shown(folder, design, tmp_path, monkeypatch):
@@ -305,7 +301,7 @@ def test_rerun_repeats_a_front(folder, design, tmp_path):
     data = result.json
     assert data["rerun"]["repeats"] is True
     assert data["points"] == printed["points"]
-    assert files(tmp_path / "a") == files(tmp_path / "b")
+    assert digests(tmp_path / "a") == digests(tmp_path / "b")
     assert [one["kind"] for one in run("runs", "list", "--json").json["runs"]] == ["pareto"] * 2
     assert run("rerun", pdf, "--no-record", "--quiet").out == ""
     assert len(list(folder.iterdir())) == 2
@@ -324,9 +320,9 @@ def test_own_metrics_travel_with_the_record(folder, design, tmp_path, monkeypatc
         assert "name it with --plugin to run it" in told(verb, "last", "--out", tmp_path / "c")
     named = ["--plugin", plugin, "--quiet"]
     assert run("report", "last", "--out", tmp_path / "again", *named).code == 0
-    found = files(tmp_path / "again")
+    found = digests(tmp_path / "again")
     assert found.pop("test_bench-sweep.csv") == (tmp_path / "rows.csv").read_bytes()
-    assert found == files(tmp_path / "made")
+    assert found == digests(tmp_path / "made")
     assert run("explore", "last", "--out", tmp_path / "page", *named).code == 0
     plugin.write_text(OWN + "\n")
     for verb in ("report", "explore"):

@@ -8,6 +8,7 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from cases.digests import digests
 from cli_runner import BENCH, DESIGNS, run
 
 import actuator_opt as ao
@@ -204,10 +205,6 @@ BEFORE = {
 UNDATED = ("Comparison", "Rerun")
 
 
-def _contents(folder):
-    return {path.name: path.read_bytes() for path in Path(folder).iterdir()}
-
-
 def _ended(result):
     assert result.code in (ExitCode.MET, ExitCode.MISSED), result.err
 
@@ -224,8 +221,8 @@ def test_the_terminal_and_the_library_write_the_same_bytes(name):
     _ended(run(*words, *dated, "--out", "terminal", "-q"))
     command = ["actuator-opt", *(str(word) for word in [*words, *dated] if word != "--report")]
     files = call(folder="library", date=DATE, command=shlex.join(command))
-    assert {file.path.name for file in files} == set(_contents("library"))
-    assert _contents("library") == _contents("terminal")
+    assert {file.path.name for file in files} == set(digests("library"))
+    assert digests("library") == digests("terminal")
 
 
 def test_what_a_report_needs_is_asked_for_in_one_line():

@@ -9,6 +9,7 @@ import math
 import jsonschema
 import pytest
 import scatter_case as case
+from cases.digests import digests
 from cli_runner import KNEE, run
 
 import actuator_opt as ao
@@ -199,7 +200,7 @@ def test_the_command_writes_draws_and_pages(tmp_path):
             "--out", tmp_path, "--quasi",
         )  # fmt: skip
         assert "knee_bonded_uncertainty.pdf" in result.err
-        files[number] = {p.name: p.read_bytes() for p in sorted(tmp_path.iterdir())}
+        files[number] = digests(tmp_path)
     assert files[0] == files[1]
     with (tmp_path / "draws.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.reader(file))
