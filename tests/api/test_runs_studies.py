@@ -152,7 +152,7 @@ def test_a_sweep_is_reported_out_of_its_store(folder, design, tmp_path, more, mo
     assert result.code == 0, result.out
     assert {Path(one["path"]).name for one in result.json["files"]} == set(digests(again))
     found = digests(again)
-    assert found.pop("test_bench-sweep.csv") == (tmp_path / "rows.csv").read_bytes()
+    assert found.pop("test_bench-sweep.csv") == digest(tmp_path / "rows.csv")
     if more:
         assert found == digests(made)
     else:
@@ -179,7 +179,7 @@ def test_a_parquet_file_comes_again(folder, design, tmp_path):
     swept(design, "--store", tmp_path / "rows.db", "--parquet", made)
     assert run("report", "last", "--out", tmp_path / "again", "--quiet").code == 0
     found = digests(tmp_path / "again")
-    assert found["test_bench-sweep.parquet"] == made.read_bytes()
+    assert found["test_bench-sweep.parquet"] == digest(made)
     assert "test_bench-sweep.csv" in found
     assert str(made) in run("runs", "show", "last", environment={"COLUMNS": "300"}).out
 
@@ -321,7 +321,7 @@ def test_own_metrics_travel_with_the_record(folder, design, tmp_path, monkeypatc
     named = ["--plugin", plugin, "--quiet"]
     assert run("report", "last", "--out", tmp_path / "again", *named).code == 0
     found = digests(tmp_path / "again")
-    assert found.pop("test_bench-sweep.csv") == (tmp_path / "rows.csv").read_bytes()
+    assert found.pop("test_bench-sweep.csv") == digest(tmp_path / "rows.csv")
     assert found == digests(tmp_path / "made")
     assert run("explore", "last", "--out", tmp_path / "page", *named).code == 0
     plugin.write_text(OWN + "\n")
