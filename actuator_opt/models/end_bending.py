@@ -358,7 +358,7 @@ def groove_shear(*, wall: Shell, growth: Array, groove_moment: Array) -> Array:
     --------
     >>> wall = Shell(20.0, 320e9, 1e12, 1e-3, 1e-2, 1e8, 3e7)
     >>> print(f"{groove_shear(wall=wall, growth=4e-6, groove_moment=50.0):.1f}")
-    9380.0
+    9380.3
     """
     middle = sqrt(wall.foundation * wall.bending)
     beta2 = middle / (2 * wall.bending)

@@ -240,7 +240,7 @@ def springing(
     >>> sigma = springing(groove_depth=0.4e-3, inner_radius=8.7e-3, outer_radius=11.1e-3,
     ...                   youngs_modulus=206e9)
     >>> print(f"{sigma / 1e6:.1f}")
-    1195.5
+    1196.4
     """
     middle = (inner_radius + outer_radius) / 2
     width = outer_radius - inner_radius

@@ -242,19 +242,21 @@ def test_the_coefficient_is_friction_over_normal_force():
 def stiffness_by_hand(x, modulus=1.6e9):
     """Oil, wall and barrel stretch of both chambers as one compliance matrix; the rod in series.
 
-    The cap carries the rod side's force by the wall: p2 A2 along all 138 mm stretches it, hoop
-    stress shortens it, and its stretch narrows the chambers, nu as often in either direction.
+    The cap carries the rod side's force by the wall: p2 A2 stretches it along stroke, piston, head
+    and the cap's spigot, whose groove is 1.3655 sections wide between 1 mm of metal on either side;
+    hoop stress shortens it, and its stretch narrows the chambers, nu as often in either direction.
     """
     inside, outside = 0.0115, 0.0135
     wall = STEEL * (outside**2 - inside**2)
     a1, a2 = AREA, AREA - ROD_AREA
+    length = STROKE + 0.014 + 0.014 + 1.3655 * SECTION + 0.002
     swell = 2 * pi * inside * LAME
     cross = a2 * POISSON * 2 * inside**2 / wall
     give = np.zeros((2, 2))
     give[0, 0] = (3e-6 + a1 * x) / modulus + swell * x
     rest = STROKE - x
     give[1, 1] = (3e-6 + a2 * rest) / modulus + swell * rest
-    give[1, 1] += a2**2 * 0.138 / (pi * wall) - 2 * cross * rest
+    give[1, 1] += a2**2 * length / (pi * wall) - 2 * cross * rest
     give[0, 1] = give[1, 0] = -cross * x
     push = np.array([a1, -a2])
     oil = push @ np.linalg.solve(give, push)

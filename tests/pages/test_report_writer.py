@@ -13,6 +13,7 @@ from full_disk import fill
 
 from actuator_opt.base.errors import InputError
 from actuator_opt.pages import read_attachment
+from actuator_opt.rendering import paper
 from actuator_opt.rendering.blocks import text_table
 
 TESTS = Path(__file__).parents[1]
@@ -134,8 +135,9 @@ def test_pages_of_an_older_longer_report_go(tmp_path):
     assert "r-page-5.png" not in left
 
 
-def test_a_ruler_on_the_print_reads_the_stroke(tmp_path):
+def test_a_ruler_on_the_print_reads_the_stroke(tmp_path, monkeypatch):
     """On the 150 dpi PNG of an A4 sheet the 110 mm oil column at 1:2 is 55 mm wide."""
+    monkeypatch.setattr(paper, "PIXELS_PER_INCH", 150.0)
     image_module = pytest.importorskip("PIL.Image")
     files = write(fixture.build_evaluation(), tmp_path)
     image = image_module.open(io.BytesIO(files[1].path.read_bytes())).convert("RGB")
