@@ -1,58 +1,86 @@
-"""First-ply failure of the barrel beside a joint, where the wall bends.
+"""Strength of the barrel beside a joint, where the wall bends.
 
-Beside a skirt, the stiffness of the wall changes. The change of the plies' strains there, from the
+Beside a skirt or sleeve, the stiffness of the wall changes. The change of strain there, from the
 wall as a shell, is added to the stresses of the exact wall, with cure stresses and the criterion
-of the design. Beside a plug's groove or thread, only shear through the thickness is checked: the
-liner carries the axial force there.
+of the design. Beside a plug's groove or thread, only shear through the thickness of the plies is
+checked: the liner carries the axial force there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import reduce
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 
 from ..base.numeric import Array, minimum
-from ..joints.joint import EndDimensions, Loaded
-from ..joints.overlap import EdgeBeside, edge_beside
+from ..joints.joint import EdgeBeside, EndDimensions, Loaded
 from ..models import end_bending, ply
 from ..models.strength_modes import Stress, load_multiplier
 from .barrel import laminate
-from .barrel.wall import Plies, Wall
+from .barrel.wall import Cycle, Metal, Plies, Wall
 from .geometry import EndJoint
 from .plies import Layer, stress_of
 
-SKIRT, GROOVE = "beside the skirt", "beside the plug's groove"
-"""Ends of the names of locations. A plug's thread counts as a groove."""
+GROOVE = "beside the plug's groove"
+"""End of the names of locations. A plug's thread counts as a groove."""
 
 INTERLAMINAR = "interlaminar shear"
 """Start of the names of locations of shear through the thickness."""
 
 
-def first_ply(
-    end_joint: EndJoint, loaded: Loaded, fit: EndDimensions, wall: Wall, supply: Array
-) -> dict[str, Array]:
-    """Pressures at which the first ply fails beside a joint, by layer.
+class RowsBeside(NamedTuple):
+    """Pressures at first-ply failure and at yield [Pa], and pulses of metals, by location."""
 
-    The result is empty for a wall without plies of known strength or with unbalanced plies, for
-    caps that are plates, and if an elastic constant is unknown.
+    first_ply: Mapping[str, Array] = {}
+    yields: Mapping[str, Array] = {}
+    cycles: Mapping[str, Cycle] = {}
+
+
+def rows(
+    end_joint: EndJoint, loaded: Loaded, fit: EndDimensions, wall: Wall, supply: Array
+) -> RowsBeside:
+    """Strength of the barrel where it bends beside a joint.
+
+    There are no rows for caps that are plates, for unbalanced plies, and if an elastic constant is
+    unknown.
     """
-    plies, form = wall.plies, end_joint.joint.form
-    if plies is None or not loaded.shells or not all(ply.balanced for ply in plies.layers):
-        return {}
+    joint, plies = end_joint.joint, wall.plies
+    if not loaded.shells or (plies and not all(ply.balanced for ply in plies.layers)):
+        return RowsBeside()
+    beside = None if joint.beside is None else joint.beside(loaded)
+    if beside is None:
+        if plies is None or joint.form != "plugs" or not fit.groove:
+            return RowsBeside()
+        return RowsBeside(_interlaminar(loaded, plies, *_groove(loaded, fit), GROOVE, supply))
     pressures: dict[str, Array] = {}
-    if form == "skirts" and (beside := edge_beside(loaded)) is not None:
-        rows = laminate.first_ply_changed(plies, _change(plies, beside, supply))
-        pressures = {f"{name}, {SKIRT}": pressure for name, pressure in rows}
-        shell, force, place = beside.wall, beside.edge.force, SKIRT
-    elif form == "plugs" and fit.groove:
-        shell, force = _groove(loaded, fit)
-        place = GROOVE
-    else:
-        return {}
+    if plies is not None:
+        change = _change(plies, beside, supply)
+        pressures = {
+            f"{name}, {beside.place}": pressure
+            for name, pressure in laminate.first_ply_changed(plies, change)
+        }
+        shear = (beside.wall, beside.edge.force, beside.place)
+        pressures |= _interlaminar(loaded, plies, *shear, supply)
+    yields: dict[str, Array] = {}
+    cycles: dict[str, Cycle] = {}
+    for metal in wall.metals:
+        bent = replace(metal, load=_metal_load(metal, loaded, beside, supply))
+        at_yield, pulses = laminate.metal_rows(bent, (beside.place,), supply)
+        yields |= at_yield
+        cycles |= pulses
+    return RowsBeside(pressures, yields, cycles)
+
+
+def _interlaminar(
+    loaded: Loaded, plies: Plies, shell: end_bending.Shell, force: Array, place: str, supply: Array
+) -> dict[str, Array]:
+    """Pressures at which plies fail by shear through the thickness."""
     shears = end_bending.interlaminar_shear(layers=loaded.shells, wall=shell, force=force)
+    pressures = {}
     for i in plies.rows:
         layer = plies.layers[i]
         known = [
@@ -64,6 +92,27 @@ def first_ply(
         pressure = supply * load_multiplier(shears[i] / reduce(minimum, known))
         pressures[f"{INTERLAMINAR} of {layer.label}, {place}"] = pressure
     return pressures
+
+
+def _metal_load(metal: Metal, loaded: Loaded, beside: EdgeBeside, supply: Array) -> Stress:
+    """Stress of a metal layer per unit pressure, where the wall bends; axes as `Metal.load`."""
+    first, second, third, fourth = metal.load
+    if beside.metal_peak is not None:
+        return stress_of(beside.metal_peak * part for part in metal.load)
+    shell = loaded.shells[metal.layer]
+    start = sum((layer.thickness for layer in loaded.shells[: metal.layer]), 0.0)
+    along, around = [], []
+    for place in (start, start + shell.thickness):
+        axial, hoop = (
+            np.atleast_1d(strain / supply)
+            for strain in end_bending.strain_changes(
+                place=place, wall=beside.wall, edge=beside.edge, growth=beside.growth
+            )
+        )
+        along.append(shell.axial * axial + shell.coupling * hoop)
+        around.append(shell.coupling * axial + shell.hoop * hoop)
+    axes = (slice(None), None, None, None)
+    return (first + np.stack(along)[axes], second + np.stack(around)[axes], third, fourth)
 
 
 def _groove(loaded: Loaded, fit: EndDimensions) -> tuple[end_bending.Shell, Array]:

@@ -65,6 +65,8 @@ def _endurance(
 ) -> None:
     """Compute the pressure-cycle life of metal layers, the rod (push and pull) and thread roots."""
     cycles = wall.cycles | rod_strength.cycles(design, section, supply, push, pull)
+    for end in loaded_joints:
+        cycles |= end.placed(end.beside.cycles)
     loads = [(place, c.material, c.span, c.mean) for place, c in cycles.items()]
     if design.rod.thread is not None:
         stress = THREAD_NOTCH * rod.thread_stress(

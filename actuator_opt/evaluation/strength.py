@@ -23,6 +23,7 @@ from ..models.layered_tube import LayeredTube, layered_tube
 from . import beside, piston_nut, plies, rod_strength, rods
 from .barrel import Wall
 from .barrel.wall import largest_area
+from .beside import RowsBeside
 from .geometry import (
     EndJoint,
     Geometry,
@@ -52,6 +53,7 @@ class LoadedJoint:
 
     end_joint: EndJoint
     loaded: Loaded
+    beside: RowsBeside
 
     @property
     def joint(self) -> Joint:
@@ -105,27 +107,26 @@ def joints_under_load(
 
     climates = plies.climates(v, design)
     since_cure = tuple(climate.change for climate in climates) if len(climates) > 1 else ()
-    return tuple(
-        LoadedJoint(
-            end_joint,
-            Loaded(
-                end=end_at(design, end_joint, Numbers(v, end_joint.path), g),
-                materials=stock,
-                force=v["supply.pressure"] * largest_area(design, g),
-                paths=wall.path.per_pressure,
-                line_stiffness=wall.axial_line_stiffness,
-                expansion=None if wall.expansion is None else wall.expansion[0],
-                warm_liner=wall.warm_liner,
-                clamp=wall.path.clamp,
-                shells=shells,
-                pressure=v["supply.pressure"],
-                tube=tube,
-                warmings=plies.warmings(v, design),
-                since_cure=since_cure,
-            ),
+    supply, joints = v["supply.pressure"], []
+    for end_joint, fit in zip(joints_of(design), g.fits, strict=False):
+        loaded = Loaded(
+            end=end_at(design, end_joint, Numbers(v, end_joint.path), g),
+            materials=stock,
+            force=supply * largest_area(design, g),
+            paths=wall.path.per_pressure,
+            line_stiffness=wall.axial_line_stiffness,
+            expansion=None if wall.expansion is None else wall.expansion[0],
+            warm_liner=wall.warm_liner,
+            clamp=wall.path.clamp,
+            shells=shells,
+            pressure=supply,
+            tube=tube,
+            warmings=plies.warmings(v, design),
+            since_cure=since_cure,
         )
-        for end_joint in joints_of(design)
-    )
+        rows = beside.rows(end_joint, loaded, fit, wall, supply)
+        joints.append(LoadedJoint(end_joint, loaded, rows))
+    return tuple(joints)
 
 
 def compute(
@@ -144,14 +145,12 @@ def compute(
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
     yields, bursts = wall.yield_pressure, wall.burst_pressure
+    first_ply = dict(wall.first_ply_pressure)
     for end in loaded_joints:
         joint_walls = end.joint.wall(end.loaded)
-        yields = {**yields, **end.placed(joint_walls.yields)}
+        yields = {**yields, **end.placed(joint_walls.yields), **end.placed(end.beside.yields)}
+        first_ply |= end.placed(end.beside.first_ply)
         bursts = {**bursts, **end.placed(joint_walls.bursts)}
-    first_ply = dict(wall.first_ply_pressure)
-    for i, end in enumerate(loaded_joints):
-        rows = beside.first_ply(end.end_joint, end.loaded, g.fits[i], wall, supply)
-        first_ply |= end.placed(rows)
     _pressure_factors(v, wall, supply, yields, first_ply, bursts, out)
     parts = {place: p / supply for place, p in yields.items()}
     parts |= rod_strength.yields(stock, design, g, state, section, beam)

@@ -195,18 +195,17 @@ def _strength(loaded: Loaded) -> Strength | str:
 
 
 def _yields(loaded: Loaded) -> dict[str, Array]:
-    """Yield strength divided by stress, of both skirts and of the barrel beside them."""
-    beside = overlap.beside_yields(loaded)
+    """Yield strength divided by stress, of both skirts."""
     bond = overlap.of_skirt(loaded)
     strength = loaded.materials.allowable(loaded.end.cap, "yield_strength")
     if isinstance(bond, str) or strength is None:
-        return beside
+        return {}
     edges, sections = _loaded_edges(loaded, bond), _sections(loaded, bond)
     modulus = loaded.materials.get(loaded.end.cap, "youngs_modulus")
     return {
         "outer skirt": strength * sections["outer_stiffness"] / modulus / edges.outer_force,
         "inner skirt": strength * sections["inner_stiffness"] / modulus / edges.inner_force,
-    } | beside
+    }
 
 
 def _own(loaded: Loaded) -> dict[str, Array]:
@@ -286,7 +285,8 @@ JOINT = Joint(
     strength=_strength,
     yields=_yields,
     wall=lambda loaded: WallPressures(),
-    fatigue=lambda loaded: Fatigue(overlap.beside_pulsed(loaded)),
+    beside=overlap.edge_beside,
+    fatigue=lambda loaded: Fatigue(),
     own=_own,
     envelope=overlap.mean_envelope,
     metrics={OVERHANG: "no skirt in the bore"},

@@ -16,6 +16,7 @@ from ..base.dataclass import dataclass
 from ..base.errors import Fault
 from ..base.numeric import Array, real, where
 from ..base.quantities import Quantity
+from ..models import end_bending
 from ..models.end_bending import ShellLayer
 from ..models.layered_tube import LayeredTube
 
@@ -392,6 +393,21 @@ class WallPressures(NamedTuple):
     bursts: Mapping[str, Array] = {}
 
 
+class EdgeBeside(NamedTuple):
+    """The barrel where it leaves a joint and bends.
+
+    `place` ends the names of its rows. `wall` is the barrel as a shell, `edge` its edge, and
+    `growth` its growth far from the edge [m]. `metal_peak` is the stress of a metal layer divided
+    by that far from the edge; None to calculate it from the shell.
+    """
+
+    place: str
+    wall: end_bending.Shell
+    edge: end_bending.Edge
+    growth: Array
+    metal_peak: float | None = None
+
+
 @dataclass(frozen=True, slots=True)
 class Strength:
     """Safety factors (strength divided by load) of the joint at an end of the barrel.
@@ -469,6 +485,9 @@ class Joint:
     """Further safety factors against yielding (elastic limit divided by stress), by location."""
     wall: Callable[[Loaded], WallPressures]
     """Failure pressures of the barrel wall itself, where the joint weakens it."""
+    beside: Callable[[Loaded], EdgeBeside | None] | None
+    """Function for the barrel's edge beside the joint, None without known constants; or None if the
+    barrel has no such edge."""
     fatigue: Callable[[Loaded], Fatigue]
     own: Callable[[Loaded], Mapping[str, Array | Mapping[str, Array]]]
     """Values of the metrics that only this joint has; `metrics` lists their names."""

@@ -12,21 +12,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import partial
 from math import pi
-from typing import NamedTuple
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, absolute, maximum, minimum
+from ..base.numeric import Array, absolute, minimum
 from ..models import end_bending, lap_joint, mass
-from ..models.barrel import von_mises
 from ..models.strength_modes import load_multiplier
 from .joint import (
     DrawnPart,
+    EdgeBeside,
     End,
     EndDimensions,
     EndSpan,
     Loaded,
     MaterialProperties,
-    Pulsed,
     Thermal,
 )
 
@@ -249,31 +247,8 @@ def outline(end: End, fit: EndDimensions, span: EndSpan) -> Iterator[DrawnPart]:
         yield DrawnPart("caps", end.cap, span.over(length, inner, inner + float(fit.wall)))
 
 
-BESIDE = "barrel beside the skirt"
-"""Location where the barrel leaves a skirt and bends."""
-
-
-class EdgeBeside(NamedTuple):
-    """The wall of the barrel, its edge beside a joint, and growth and line force far from it."""
-
-    wall: end_bending.Shell
-    edge: end_bending.Edge
-    growth: Array
-    line_force: Array
-
-
-def _beside(loaded: Loaded) -> tuple[tuple[str, Array], ...]:
-    """Equivalent stress of each metal layer of the barrel beside a skirt; the result is cached.
-
-    Skirt and barrel are one wall up to the skirt's edge, where the force passes from one to the
-    other. This changes growth and middle of the wall, so that the barrel bends. A skirt in the
-    bore is part of this wall too, and a tapered one counts with its full wall, which is an upper
-    bound. Residual stresses of cure and autofrettage are not included.
-    """
-    if "beside" not in loaded.end.cache:
-        loaded.end.cache["beside"] = tuple(_bent(loaded))
-    stresses: tuple[tuple[str, Array], ...] = loaded.end.cache["beside"]
-    return stresses
+BESIDE = "beside the skirt"
+"""End of the names of rows where the barrel leaves a skirt and bends."""
 
 
 def metal_shell(
@@ -289,32 +264,14 @@ def metal_shell(
     )
 
 
-def _bent(loaded: Loaded) -> Iterator[tuple[str, Array]]:
-    end, materials, step = loaded.end, loaded.materials, edge_beside(loaded)
-    if step is None:
-        return
-    start: Array = 0.0
-    for layer, shell in zip(end.layers, loaded.shells, strict=True):
-        if materials.kind(layer.material) == "metal":
-            inner, outer = end_bending.edge_stresses(
-                layer=shell,
-                start=start,
-                wall=step.wall,
-                edge=step.edge,
-                line_force=step.line_force,
-            )
-            yield (
-                layer.material,
-                maximum(
-                    von_mises(hoop=inner[1], radial=-loaded.pressure, axial=inner[0]),
-                    von_mises(hoop=outer[1], radial=0.0, axial=outer[0]),
-                ),
-            )
-        start = start + layer.thickness
-
-
 def edge_beside(loaded: Loaded) -> EdgeBeside | None:
-    """The edge of the barrel beside a skirt; None if an elastic constant is unknown."""
+    """The edge of the barrel beside a skirt; None if an elastic constant is unknown.
+
+    Skirt and barrel are one wall up to the skirt's edge, where the force passes from one to the
+    other. This changes growth and middle of the wall, so that the barrel bends. A skirt in the
+    bore is part of this wall too, and a tapered one counts with its full wall, which is an upper
+    bound.
+    """
     if "edge beside" not in loaded.end.cache:
         loaded.end.cache["edge beside"] = _edge_beside(loaded)
     edge: EdgeBeside | None = loaded.end.cache["edge beside"]
@@ -348,36 +305,10 @@ def _edge_beside(loaded: Loaded) -> EdgeBeside | None:
         right_growth=free,
         offset_moment=line_force * (barrel.centre + inside - whole.centre),
     )
-    return EdgeBeside(barrel, edge, free, line_force)
-
-
-def beside_yields(loaded: Loaded) -> dict[str, Array]:
-    """Yield strength of the barrel's metal divided by its stress beside a skirt; least value."""
-    weakest: Array = None
-    for name, stress in _beside(loaded):
-        strength = loaded.materials.allowable(name, "yield_strength")
-        if strength is not None:
-            factor = strength / stress
-            weakest = factor if weakest is None else minimum(weakest, factor)
-    return {} if weakest is None else {BESIDE: weakest}
-
-
-def beside_pulsed(loaded: Loaded) -> tuple[Pulsed, ...]:
-    """Stress of the barrel beside a skirt under pulsating pressure."""
-    stresses = _beside(loaded)
-    places = [BESIDE] if len(stresses) == 1 else [f"{BESIDE}, {name}" for name, _ in stresses]
-    return tuple(
-        Pulsed(place, name, stress, stress / 2)
-        for place, (name, stress) in zip(places, stresses, strict=True)
-    )
+    return EdgeBeside(BESIDE, barrel, edge, free)
 
 
 def yields(loaded: Loaded) -> dict[str, Array]:
-    """Yield strength divided by stress, of the skirt and of the barrel beside it."""
-    return _skirt_yield(loaded) | beside_yields(loaded)
-
-
-def _skirt_yield(loaded: Loaded) -> dict[str, Array]:
     """Yield strength of the skirt divided by its stress under the separating force."""
     end = loaded.end
     strength = loaded.materials.allowable(end.cap, "yield_strength")

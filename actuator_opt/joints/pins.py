@@ -613,6 +613,7 @@ JOINT = Joint(
     strength=_strength,
     yields=_yields,
     wall=lambda loaded: WallPressures(),
+    beside=None,
     fatigue=_fatigue,
     own=_own,
     envelope=None,

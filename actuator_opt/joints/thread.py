@@ -347,7 +347,7 @@ def _yields(loaded: Loaded) -> dict[str, Array]:
         return overlap.yields(loaded)
     strength = loaded.materials.allowable(end_thread.female, "yield_strength")
     skirt = {"skirt under the thread": strength * end_thread.skirt_section / loaded.force}
-    return skirt | overlap.beside_yields(loaded)
+    return skirt
 
 
 def _lands(loaded: Loaded) -> dict[str, Array]:
@@ -455,7 +455,7 @@ def _fatigue(loaded: Loaded) -> Fatigue:
         stress = loaded.force / section
         notch = notch_factor(loaded.materials, name, CUT, CUT_HARD)
         pulsed.append(Pulsed(place, name, notch * stress, stress / 2))
-    return Fatigue((*pulsed, *overlap.beside_pulsed(loaded)))
+    return Fatigue(tuple(pulsed))
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
@@ -499,6 +499,7 @@ JOINT = Joint(
     strength=_strength,
     yields=_yields,
     wall=_wall,
+    beside=overlap.edge_beside,
     fatigue=_fatigue,
     own=_lands,
     envelope=None,

@@ -228,6 +228,7 @@ JOINT = Joint(
     strength=_strength,
     yields=lambda loaded: {},
     wall=lambda loaded: WallPressures(),
+    beside=None,
     fatigue=_fatigue,
     own=_own,
     envelope=None,

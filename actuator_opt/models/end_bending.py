@@ -213,22 +213,18 @@ def stepped(
     left_growth: Array,
     right_growth: Array,
     offset_moment: Array,
-    sheared: bool = False,
 ) -> Edge:
     """Edge of the right wall where two long walls meet.
 
-    Each wall has K = D [[4 beta^3, -+2 beta^2], [-+2 beta^2, 2 beta]] for displacement and slope of
-    its edge, upper sign on the left. (K_1 + K_2) (w, theta) = K_1 (w_1, 0) + K_2 (w_2, 0) - (0, m).
-    With shear, K = D/(1 + sqrt(k D)/S) [[4 a beta^2, -+2 beta^2], [-+2 beta^2, 2 a]], where
-    a^2 = beta^2 + k/(4 S) and theta is the rotation of the section.
+    Each wall has K = D/(1 + sqrt(k D)/S) [[4 a beta^2, -+2 beta^2], [-+2 beta^2, 2 a]] for
+    displacement and rotation of its edge, upper sign on the left, with a^2 = beta^2 + k/(4 S).
+    (K_1 + K_2) (w, theta) = K_1 (w_1, 0) + K_2 (w_2, 0) - (0, m).
 
     Parameters
     ----------
     left, right : walls, from `shell`
     left_growth, right_growth : w_1 and w_2, free growth far from the step [m]
     offset_moment : m = N (R_2 - R_1) of the line force N at the middles of both walls [N]
-    sheared : whether the shear stiffness S of the walls counts; without it, the moment in a wound
-        wall is too high
 
     Returns
     -------
@@ -244,14 +240,14 @@ def stepped(
 
     Examples
     --------
-    >>> left = Shell(20.0, 400e9, 1e12, 0.0, 1e-2, 1e8, 3e7)
-    >>> right = Shell(160.0, 800e9, 1e12, 0.0, 1e-2, 2e8, 6e7)
+    >>> left = Shell(20.0, 400e9, 1e15, 0.0, 1e-2, 1e8, 3e7)
+    >>> right = Shell(160.0, 800e9, 1e15, 0.0, 1e-2, 2e8, 6e7)
     >>> edge = stepped(left=left, right=right, left_growth=10e-6, right_growth=5e-6,
     ...                offset_moment=82.5)
     >>> print(f"{edge.growth * 1e6:.5f} {edge.moment:.4f}")
     9.02837 65.5957
     """
-    first, second = _edge(left, sheared), _edge(right, sheared)
+    first, second = _edge(left), _edge(right)
     stiff, cross, turn = first[0] + second[0], second[1] - first[1], first[2] + second[2]
     push = first[0] * left_growth + second[0] * right_growth
     twist = second[1] * right_growth - first[1] * left_growth - offset_moment
@@ -266,16 +262,12 @@ def stepped(
     )
 
 
-def _edge(wall: Shell, sheared: bool) -> tuple[Array, Array, Array]:
-    """4 D beta^3, 2 D beta^2 and 2 D beta of a wall, with the effect of shear if `sheared`."""
+def _edge(wall: Shell) -> tuple[Array, Array, Array]:
+    """4 D a beta^2, 2 D beta^2 and 2 D a of a wall, each divided by 1 + sqrt(k D)/S."""
     middle = sqrt(wall.foundation * wall.bending)  # 2 D beta^2
-    if sheared:
-        beta2 = middle / (2 * wall.bending)
-        root = sqrt(beta2 + wall.foundation / (4 * wall.shear))
-        share = 1 / (1 + middle / wall.shear)
-        return 2 * middle * root * share, middle * share, 2 * wall.bending * root * share
-    beta = sqrt(middle / (2 * wall.bending))
-    return 2 * middle * beta, middle, 2 * wall.bending * beta
+    root = sqrt(middle / (2 * wall.bending) + wall.foundation / (4 * wall.shear))
+    share = 1 / (1 + middle / wall.shear)
+    return 2 * middle * root * share, middle * share, 2 * wall.bending * root * share
 
 
 def edge_stresses(

@@ -101,8 +101,11 @@ def solved(
     loads: Sequence[tuple[Place, Place]] = (),
     fixed_r: Place | None = None,
     fixed_z: Place | None = None,
+    shaped: Callable[[Any, Any], Any] | None = None,
 ) -> Wall:
     """Solve a wall on the grid of `radii` and `stations`.
+
+    `shaped` maps the grid to radii; `absent` belongs to the grid, all else to the shaped wall.
 
     `loads` are pairs: the part of the boundary, by the midpoints of its edges, and the traction
     (2,) there as a function of (r, z). `fixed_r` and `fixed_z` select nodes without radial or
@@ -114,6 +117,8 @@ def solved(
     if absent is not None:
         middle = mesh.p[:, mesh.t].mean(axis=1)
         mesh = mesh.remove_elements(np.flatnonzero(absent(*middle)))
+    if shaped is not None:
+        mesh = skfem.MeshQuad(np.stack([shaped(*mesh.p), mesh.p[1]]), mesh.t)
     element = skfem.ElementVector(skfem.ElementQuad2())
     basis = skfem.Basis(mesh, element, intorder=5)
 

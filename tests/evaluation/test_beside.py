@@ -93,6 +93,69 @@ def test_a_thin_skirt_changes_nothing():
         assert found[f"{label}, hot, beside the skirt"] == pytest.approx(far, rel=5e-3)
 
 
+def lame(run):
+    """Principal stresses of a metal tube at supply pressure and its pull, by face: z, t, r."""
+    (end, *_), geometry = run.joints, run.geometry
+    p, inner, outer = (
+        number(x) for x in (end.loaded.pressure, geometry.inner_radius, geometry.outer_radius)
+    )
+    along = number(end.loaded.force) / (np.pi * (outer**2 - inner**2))
+    share = p * inner**2 / (outer**2 - inner**2)
+    return [(along, share * (1 + (outer / r) ** 2), share * (1 - (outer / r) ** 2))
+            for r in (inner, outer)]  # fmt: skip
+
+
+def test_metal_beside_a_skirt_by_hand():
+    """Lame's stresses plus those of the changed strains, by Hooke's law; pulse from zero."""
+    run = ran("steel_baseline")
+    (end,) = run.joints
+    beside = edge_beside(end.loaded)
+    wall, edge = beside.wall, beside.edge
+    modulus, ratio = 206e9, 0.3
+    thickness = number(end.loaded.shells[0].thickness)
+    around = number(edge.growth - beside.growth) / number(wall.radius)
+    worst = 0.0
+    for (z, t, r), place in zip(lame(run), (0.0, thickness), strict=True):
+        along = number(edge.moment) * (thickness / 2 - place) / number(wall.bending)
+        along -= ratio * around
+        z += modulus / (1 - ratio**2) * (along + ratio * around)
+        t += modulus / (1 - ratio**2) * (around + ratio * along)
+        worst = max(worst, np.sqrt(((z - t) ** 2 + (t - r) ** 2 + (r - z) ** 2) / 2))
+    strength = number(end.loaded.materials.allowable("steel_e355", "yield_strength"))
+    place = "barrel, beside the skirt"
+    assert rows(run, "yield_factor")[place] == pytest.approx(strength / worst, rel=1e-9)
+    proof = rows(run, "yield_factor")[place] / 1.5
+    assert rows(run, "proof_factor")[place] == pytest.approx(proof, rel=1e-9)
+    cycle = end.beside.cycles[place]
+    assert (number(cycle.span), number(cycle.mean)) == pytest.approx((worst, worst / 2), rel=1e-9)
+
+
+def test_liner_beside_a_skirt_counts_cure():
+    """Residual stress of the exact wall, plus load and change of strain: equivalent at yield."""
+    run = ran("knee_bonded")
+    (end,), (metal,) = run.joints, run.wall.metals
+    beside, shell = edge_beside(end.loaded), run.joints[0].loaded.shells[0]
+    supply = number(end.loaded.pressure)
+    around = number(beside.edge.growth - beside.growth) / number(beside.wall.radius)
+    for k, climate in enumerate(metal.climates):
+        place = f"{metal.label}, {climate.name}, beside the skirt"
+        factor = rows(run, "yield_factor")[place]
+        highest = 0.0
+        for face, start in ((0, 0.0), (1, number(shell.thickness))):
+            lever = (number(beside.wall.centre) - start) / number(beside.wall.bending)
+            along = number(beside.edge.moment) * lever
+            along -= number(beside.wall.coupling) / number(beside.wall.axial) * around
+            stiff = [number(x) for x in (shell.axial, shell.coupling, shell.hoop)]
+            change = (stiff[0] * along + stiff[1] * around, stiff[1] * along + stiff[2] * around, 0)
+            z, t, r = (
+                factor * (supply * number(metal.load[p][face]) + change[p])
+                + number(metal.residual[p][face, 0, k])
+                for p in range(3)
+            )
+            highest = max(highest, np.sqrt(((z - t) ** 2 + (t - r) ** 2 + (r - z) ** 2) / 2))
+        assert highest == pytest.approx(number(metal.yields[k]), rel=1e-9)
+
+
 def test_shear_beside_a_groove():
     """The moment is that of the ring's force at half the groove's depth; weakest shear strength."""
     run = ran("knee")

@@ -118,7 +118,7 @@ def test_step_against_the_equations_of_both_shells(soft):
     assert answer.success
     edge = end_bending.stepped(
         left=left, right=right, left_growth=1e-3 * far[0], right_growth=1e-3 * far[1],
-        offset_moment=offset, sheared=True,
+        offset_moment=offset,
     )  # fmt: skip
     w, force, _, curve = answer.sol(0.0)[4:]
     assert w == near(1e3 * edge.growth, 1e-4)
@@ -322,7 +322,7 @@ def test_sleeve_at_the_end_of_its_winding_against_finite_elements():
     ]  # fmt: skip
     edge = end_bending.stepped(
         left=whole, right=bare, left_growth=growths[0], right_growth=growths[1],
-        offset_moment=along * (bare.centre - whole.centre), sheared=True,
+        offset_moment=along * (bare.centre - whole.centre),
     )  # fmt: skip
     (axial, _), (outside, _) = end_bending.edge_stresses(
         layer=own, start=0.0, wall=bare, edge=edge, line_force=along

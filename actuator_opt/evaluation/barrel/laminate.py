@@ -38,6 +38,7 @@ from .wall import (
     WARMTH,
     Cycle,
     LoadPath,
+    Metal,
     Plies,
     Swelling,
     Wall,
@@ -306,7 +307,20 @@ def _strengths(
     for i, layer in enumerate(layers):
         if layer.yields:
             load = _load(residual.solution, [i], axial)
-            _metal(layer, load, residual.of([i]), residual.states, supply, paths, wall)
+            metal = Metal(
+                label=layer.label,
+                layer=i,
+                material=layer.name,
+                yields=layer.yields,
+                climates=residual.states,
+                load=load,
+                residual=residual.of([i]),
+            )
+            yields, cycles = metal_rows(metal, paths, supply)
+            wall.yield_pressure |= yields
+            wall.cycles |= cycles
+            largest = plies.stress_of(part[:, :, :, -1:] for part in load)
+            wall.metals.append(replace(metal, load=largest))
 
 
 def first_ply_changed(known: Plies, change: Stress) -> Iterator[tuple[str, Array]]:
@@ -340,25 +354,23 @@ def _rows(
             yield ", ".join(x for x in (states[t].name, place) if x), values[t, p]
 
 
-def _metal(
-    layer: Layer,
-    load: Stress,
-    residual: Stress | None,
-    states: Sequence[Climate],
-    supply: Array,
-    paths: tuple[str, ...],
-    wall: Wall,
-) -> None:
-    """Calculate the yield pressure of a metal layer, and its stress under pulsating pressure.
+def metal_rows(
+    metal: Metal, paths: tuple[str, ...], supply: Array
+) -> tuple[dict[str, Array], dict[str, Cycle]]:
+    """Pressure at yield of a metal layer, and its stress under pulsating pressure, by location.
 
-    The pulse goes from the residual stress to the stress at supply pressure. The mean stress is the
-    larger of the equivalent stresses at both ends of the pulse, minus half the range. A negative
-    mean counts as zero, so compression does not increase the life.
+    `paths` name the load paths of `metal.load`. The pulse goes from the residual stress to the
+    stress at supply pressure. The mean stress is the larger of the equivalent stresses at both ends
+    of the pulse, minus half the range. A negative mean counts as zero, so compression does not
+    increase the life.
     """
-    limit = _by_climate(layer.yields)
+    load, residual = metal.load, metal.residual
+    limit = _by_climate(metal.yields)
     utilisation = strength.yield_utilisation(stress=load, yield_strength=limit, residual=residual)
-    for place, pressure in _rows(states, paths, 1 / plies.worst(utilisation, (0, 1))):
-        wall.yield_pressure[f"{layer.label}, {place}"] = pressure
+    pressures = {
+        f"{metal.label}, {place}": pressure
+        for place, pressure in _rows(metal.climates, paths, 1 / plies.worst(utilisation, (0, 1)))
+    }
     pulse = liner.liner_cycle(
         stress=(supply * load[0], supply * load[1], supply * load[2], supply * load[3]),
         yield_strength=1.0,
@@ -368,8 +380,10 @@ def _metal(
     peak = maximum(pulse.at_rest, pulse.at_pressure)
     mean = plies.worst(maximum(peak - pulse.strain_range / 2, 0.0 * peak), (0, 1, 2))
     span = plies.worst(pulse.strain_range, (0, 1, 2))
-    for p, place in enumerate(paths):
-        wall.cycles[f"{layer.label}, {place}"] = Cycle(layer.name, span[p], mean[p])
+    return pressures, {
+        f"{metal.label}, {place}": Cycle(metal.material, span[p], mean[p])
+        for p, place in enumerate(paths)
+    }
 
 
 def _cooling(

@@ -238,6 +238,24 @@ class Plies:
     residual: Stress | None
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Metal:
+    """A metal layer of the wall under its largest axial load.
+
+    `label` names the layer of index `layer`. `yields` are its yield strengths, by climate. `load`
+    is its stress along, around and through the wall and its shear, per unit pressure, and
+    `residual` that at zero pressure, None if there is none; axes as for `Plies`.
+    """
+
+    label: str
+    layer: int
+    material: str
+    yields: Sequence[Array]
+    climates: Sequence[Climate]
+    load: Stress
+    residual: Stress | None
+
+
 @dataclass(slots=True)
 class Wall:
     """The wall of a design.
@@ -252,7 +270,7 @@ class Wall:
     `missing` names unknown strengths. `axial_line_stiffness` is axial modulus times thickness of
     the wall, N/m. After cool-down from cure, `mismatch` is yield strength divided by stress of the
     liner, and `bond` is bond strength divided by the tension between liner and plies. `plies` is
-    None for a wall without plies of known strength.
+    None for a wall without plies of known strength. `metals` are layers of known yield strength.
     """
 
     swelling: Swelling
@@ -276,6 +294,7 @@ class Wall:
     ply_fatigue: dict[str, Array] = field(default_factory=dict)
     autofrettage: Autofrettage | None = None
     plies: Plies | None = None
+    metals: list[Metal] = field(default_factory=list)
     why_no_mismatch: str = "the wall has a single material"
     missing: list[str] = field(default_factory=list)
 
@@ -345,6 +364,23 @@ def _strengths(
     if strength is None:
         wall.missing.append(f"{name} has no yield or fibre strength")
         return
+    axial = tuple(path.per_pressure.values())[-1]
+    hoop, radial, along = barrel.bore_stresses(pressure=1.0, axial_force=axial, **size)
+    faces = ((along, along), (hoop, hoop + radial), (radial, 0.0 * radial), (0.0 * hoop,) * 2)
+    wall.metals.append(
+        Metal(
+            label="barrel",
+            layer=0,
+            material=name,
+            yields=(strength,),
+            climates=(Climate("", 0.0, cold=False),),
+            load=stress_of(
+                np.stack([np.atleast_1d(face) for face in part])[:, None, None, None]
+                for part in faces
+            ),
+            residual=None,
+        )
+    )
     for place, axial in path.per_pressure.items():
         utilisation = _utilisation(axial, path, size, strength)
         wall.yield_pressure[f"barrel, {place}"] = 1 / utilisation
