@@ -10,13 +10,10 @@ from collections.abc import Iterator
 
 from ..base.errors import Fault
 from ..base.quantities import length_text
-from ..joints.joint import ROUNDING, BarrelOpening
+from ..joints.joint import ROUNDING, BarrelOpening, ring_height, stated_rings
 from .model import Design
 from .structure import FileView, Loc
 from .wall_faults import ends
-
-_RINGS = (("seals", "piston"), ("seals", "piston", "secondary"), ("seals", "static"))
-"""Places of the rings that enter through an end."""
 
 _EYE = 2.0
 """Outer diameter of an eye, in pin diameters; see `models.mass.eye_volume`."""
@@ -68,17 +65,6 @@ def faults(view: FileView) -> Iterator[Fault]:
             )
 
 
-def _largest_ring(view: FileView) -> tuple[float, float] | None:
-    """Largest free height above the bore of a ring, and least section [m]; None without rings."""
-    heights, sections = [], []
-    for loc in _RINGS:
-        section, squeeze = view.number(*loc, "section"), view.number(*loc, "squeeze")
-        if view.has(*loc) and section is not None and squeeze is not None:
-            heights.append(section * squeeze)
-            sections.append(section)
-    return (max(heights), min(sections)) if heights else None
-
-
 def warnings(design: Design) -> Iterator[str]:
     """Sentences on parts that may not pass at assembly."""
     view = FileView(design.model_dump())
@@ -88,10 +74,11 @@ def warnings(design: Design) -> Iterator[str]:
             "assembly: both ends are wound into the barrel, so piston, rod and seals must be "
             "inside during winding and cure: hold one end by another joint"
         )
-    bore, ring = view.number("cylinder", "bore"), _largest_ring(view)
-    if bore is None or ring is None:
+    bore, rings = view.number("cylinder", "bore"), stated_rings(ends(view)[0])
+    done = set[BarrelOpening]()
+    if bore is None or not rings:
         return
-    (height, section), done = ring, set[BarrelOpening]()
+    height, section = ring_height(rings), min(section for section, _ in rings)
     for name, (_, opening) in _openings(view).items():
         if opening.crossed is None or opening in done or opening.opens == "never":
             continue

@@ -17,11 +17,12 @@ from ..base.numeric import Array, absolute, maximum
 from ..design.lengths import closed_length, spigot_length
 from ..design.material import Material
 from ..design.model import Design, EndRetention, Ply
-from ..design.seals import Seal, SealElement
+from ..design.seals import Seal, SealElement, StaticSeal
 from ..design.standard_sizes import SphericalBearing, spherical_bearing
 from ..joints.joint import (
     ENCLOSED,
     HELICAL,
+    RINGS,
     BarrelLayer,
     End,
     EndDimensions,
@@ -29,6 +30,7 @@ from ..joints.joint import (
     Joint,
     JointSizes,
     StaticPlace,
+    ring_height,
 )
 from ..joints.kinds import JOINTS
 from ..joints.sleeve import in_sleeve
@@ -141,9 +143,13 @@ def end_of(
     plate: Array,
     rod_radius: Array,
     head_length: Array,
+    rings: Array,
     static: Sequence[Groove] = (),
 ) -> End:
-    """Describe an end of the barrel; `thicknesses` and `angles` are those of its layers."""
+    """Describe an end of the barrel; `thicknesses` and `angles` are those of its layers.
+
+    `rings` is the largest height of a ring above the bore.
+    """
     layers = zip(design.barrel.layup, thicknesses, angles, strict=True)
     joint = end_joint.joint
     return End(
@@ -161,8 +167,23 @@ def end_of(
         rod_radius=rod_radius,
         head_length=None if end_joint.name == "cap" else head_length,
         seal_depth=static[0].gland_depth if static and joint.static_seal == "rim" else 0.0,
+        ring_height=rings,
         sleeve=None if end_joint.section.sleeve is None else end_joint.section.sleeve.material,
     )
+
+
+def entering_rings(design: Design) -> list[tuple[str, SealElement | StaticSeal]]:
+    """The rings that enter the barrel, with their PATHs."""
+    seals = design.seals
+    stated = (seals.piston, seals.piston.secondary, seals.static)
+    places = zip(RINGS, stated, strict=True)
+    return [(".".join(place), seal) for place, seal in places if seal is not None]
+
+
+def _rings(v: Values, design: Design) -> Array:
+    """Largest height above the bore of a ring that enters the barrel [m]."""
+    paths = [path for path, _ in entering_rings(design)]
+    return ring_height((v[f"{path}.section"], v[f"{path}.squeeze"]) for path in paths)
 
 
 class GroovePart(NamedTuple):
@@ -351,6 +372,8 @@ class Geometry:
     closed_length: Array
     piston_grooves: tuple[Groove, ...]
     rod_grooves: tuple[Groove, ...]
+    rings: Array
+    """Largest height above the bore of a ring that enters the barrel."""
     static_grooves: tuple[Groove, ...]
     """Groove of the static seal, equal in cap and head; empty without static seals."""
     static_places: tuple[StaticPlace, ...]
@@ -471,6 +494,7 @@ def derive(v: Values, design: Design) -> Geometry:
         "barrel_length": barrel_length,
         "plate": plate,
         "head_length": head_length,
+        "rings": _rings(v, design),
     }
     static, places = static_grooves(v, design), static_places(design)
     fits = _fits(v, design, **sizes, rod_radius=rod / 2, static=static)
@@ -528,6 +552,7 @@ def end_at(design: Design, end_joint: EndJoint, sizes: JointSizes, g: Geometry) 
         plate=g.plate,
         rod_radius=g.rod_diameter / 2,
         head_length=g.head_length,
+        rings=g.rings,
         static=g.static_grooves,
     )
 

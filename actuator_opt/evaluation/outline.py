@@ -29,6 +29,7 @@ from ..joints.joint import (
     Polygon,
     SleeveFit,
     rectangle,
+    ring_height,
 )
 from ..models.piston_nut import FLATS
 from . import geometry as geometry_module
@@ -39,6 +40,7 @@ from .geometry import (
     bearing_of,
     end_at,
     end_of,
+    entering_rings,
     groove_totals,
     joints_of,
 )
@@ -561,6 +563,7 @@ def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
             plate=lengths["plate"],
             rod_radius=lengths["rod"] / 2,
             head_length=lengths["head_length"],
+            rings=ring_height((seal.section, seal.squeeze) for _, seal in entering_rings(design)),
         )
         sentences += [end_joint.placed(sentence) for sentence in end_joint.joint.notes(end)]
     return [*sentences, *numbered(design)]

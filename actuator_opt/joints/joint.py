@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
+from functools import reduce
 from math import radians
 from typing import Any, Literal, NamedTuple, Protocol, TypeAlias
 
@@ -14,7 +15,7 @@ import numpy as np
 
 from ..base.dataclass import dataclass
 from ..base.errors import Fault
-from ..base.numeric import Array, real, where
+from ..base.numeric import Array, maximum, real, where
 from ..base.quantities import Quantity
 from ..models import end_bending
 from ..models.end_bending import ShellLayer
@@ -186,6 +187,8 @@ class End:
     """Length of the head's plug in the barrel; None at the end of the cap alone."""
     seal_depth: Array = 0.0
     """Depth of the groove for the static seal in the rim of the end plate; 0 without one."""
+    ring_height: Array = 0.0
+    """Height above the bore of the largest ring that enters the barrel."""
     sleeve: str | None = None
     """Metal of the sleeve into which the joint is cut; None without one."""
     cache: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
@@ -524,6 +527,26 @@ class Joint:
     def plural(self) -> bool:
         """Whether the noun is plural."""
         return not self.noun.startswith(("a ", "an "))
+
+
+RINGS = (("seals", "piston"), ("seals", "piston", "secondary"), ("seals", "static"))
+"""Places of the rings that enter the barrel through its ends."""
+
+
+def stated_rings(view: StatedValues) -> list[tuple[float, float]]:
+    """Section [m] and squeeze of the rings that enter through an end."""
+    return [
+        (section, squeeze)
+        for place in RINGS
+        if view.has(*place)
+        and (section := view.number(*place, "section")) is not None
+        and (squeeze := view.number(*place, "squeeze")) is not None
+    ]
+
+
+def ring_height(rings: Iterable[tuple[Array, Array]]) -> Array:
+    """Largest height of a free ring above the bore [m], section times squeeze; 0 without rings."""
+    return reduce(maximum, (section * squeeze for section, squeeze in rings), 0.0)
 
 
 def nothing(*_: object) -> Iterator[Any]:

@@ -2,7 +2,7 @@
 
 The end plate is a plug inside the barrel. Outside its static seal, a threaded skirt of the plug
 engages with a thread in the innermost layer of the barrel, which must be a metal. Unless stated,
-the thread is as small as a piston that passes it allows: its minor diameter is that of the bore.
+the thread is as small as the seals of piston and plug, which pass it at assembly, allow.
 """
 
 from __future__ import annotations
@@ -35,6 +35,8 @@ from .joint import (
     WallPressures,
     metal_strengths,
     notch_factor,
+    ring_height,
+    stated_rings,
     too_thin,
 )
 from .plug import innermost_faults
@@ -43,6 +45,9 @@ from .winding import with_winding
 
 LAND = "geometry_bore_thread"
 """Metric of the metal left under the thread in the bore."""
+
+OPENING = "geometry_plug_opening"
+"""Metric of the room that the thread leaves for the piston."""
 
 MINOR = 1.25 * thread.HEIGHT
 """Nominal less minor diameter of the thread, in pitches [ISO68-1]."""
@@ -57,7 +62,8 @@ def _stated(view: StatedValues) -> tuple[float, float, float] | None:
     if bore is None or pitch is None:
         return None
     diameter = view.number("retention", "thread", "diameter")
-    return bore, pitch, bore + MINOR * pitch if diameter is None else diameter
+    least = bore + 2 * ring_height(stated_rings(view)) + MINOR * pitch
+    return bore, pitch, least if diameter is None else diameter
 
 
 def _faults(view: StatedValues) -> Iterator[Fault]:
@@ -113,9 +119,8 @@ def _opening(view: StatedValues) -> BarrelOpening:
 
 
 def _diameter(end: End) -> Array:
-    return end.sizes.get(
-        "thread.diameter", 2 * end.inner_radius + MINOR * end.sizes["thread.pitch"]
-    )
+    opening = 2 * (end.inner_radius + end.ring_height)
+    return end.sizes.get("thread.diameter", opening + MINOR * end.sizes["thread.pitch"])
 
 
 def _size(end: End) -> dict[str, Array]:
@@ -282,13 +287,15 @@ def _fatigue(loaded: Loaded) -> Fatigue:
 
 
 def _own(loaded: Loaded) -> Mapping[str, Array]:
-    """Metal left under the thread in the bore [m]; optimisations limit it."""
-    return {LAND: _land(loaded.end)}
+    """Metal under the thread, and its opening less the bore [m]; optimisations limit both."""
+    end = loaded.end
+    opening = _diameter(end) - MINOR * end.sizes["thread.pitch"]
+    return {LAND: _land(end), OPENING: opening - 2 * end.inner_radius}
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
     """Warn of too little metal under the thread."""
-    yield from too_thin(_own(loaded), quantities)
+    yield from too_thin({LAND: _land(loaded.end)}, quantities)
 
 
 JOINT = Joint(
@@ -329,7 +336,7 @@ JOINT = Joint(
     fatigue=_fatigue,
     own=_own,
     envelope=None,
-    metrics={LAND: "no thread in the bore"},
+    metrics={LAND: "no thread in the bore", OPENING: "no thread in the bore"},
     judged=ON_METAL,
     models={
         ("retention_factor", "thread in the bore"): "thread.female_strip_area",
