@@ -17,6 +17,16 @@ from actuator_opt.models import thread
 
 DESIGNS = Path(__file__).parents[2] / "designs"
 KNEE = (DESIGNS / "knee.yaml").read_text("utf-8")
+SLEEVE = KNEE[KNEE.index("  sleeve:") : KNEE.index("\nclevis:")]
+FREE = KNEE[KNEE.index("  retention.sleeve.wall:") : KNEE.index("  seals.piston.squeeze:")]
+PLAIN = (
+    KNEE.replace(SLEEVE, "")
+    .replace(FREE, "")
+    .replace("thickness: 1 mm", "thickness: 2.3 mm")
+    .replace("thickness: 3.3 mm", "thickness: 2.7 mm")
+)
+"""The knee with a liner that is as thick everywhere as at its ends."""
+
 FORCE = 7273.57
 
 
@@ -28,7 +38,7 @@ def near(value, rel=1e-9):
 def complaints(**changes):
     """Every (path, message) with which the knee is refused."""
     with pytest.raises(InputError) as error:
-        ao.read(KNEE, set={path: str(value) for path, value in changes.items()})
+        ao.read(PLAIN, set={path: str(value) for path, value in changes.items()})
     return [(one.path, one.message) for one in error.value.diagnostics]
 
 
@@ -122,7 +132,7 @@ def test_couples_along_the_thread_by_quadrature():
     ("changes", "path", "said"),
     [
         ({"barrel.layup[0].material": "t700_epoxy"}, "barrel.layup[0].material", "plies"),
-        ({"barrel.layup[0].thickness": "1.2 mm"}, "barrel.layup[0].thickness", "leaves 0.794"),
+        ({"barrel.layup[0].thickness": "1.2 mm"}, "barrel.layup[0].thickness", "leaves 0.438"),
         ({"caps.material": "pa12_mjf"}, "caps.material", "needs a metal"),
         ({"retention.length": "1 mm"}, "retention.length", "less than one turn"),
         ({"retention.material": "steel_42crmo4"}, "retention.material", "has no effect"),
@@ -137,23 +147,24 @@ def test_a_thread_that_cannot_be_cut_is_refused(changes, path, said):
 def test_masses_by_hand():
     """The barrel encloses plate and thread, which counts at its pitch diameter."""
     static = KNEE[KNEE.index("  static:") : KNEE.index("load:\n")]
-    parts = ao.evaluate(ao.read(KNEE.replace(static, ""))).mass_parts
+    parts = ao.evaluate(ao.read(PLAIN.replace(static, ""))).mass_parts
     inner, plate, length, pitch = 10.9e-3, 4.7e-3, 7e-3, 0.75e-3
     height = sqrt(3) / 2 * pitch
-    middle = inner + (5 / 8 - 3 / 8) * height  # minor diameter of the thread is the bore
-    root = inner + (5 / 8 - 17 / 24) * height
-    radii = np.array([inner, inner + 1.8e-3, inner + 4.5e-3])
+    minor = inner + 0.14 * 1.78e-3  # the piston's ring passes
+    middle = minor + (5 / 8 - 3 / 8) * height
+    root = minor + (5 / 8 - 17 / 24) * height
+    radii = np.array([inner, inner + 2.3e-3, inner + 5.0e-3])
     wall = pi * np.sum(np.array([2810.0, 1570.0]) * np.diff(radii**2))
     barrel = wall * (110e-3 + 12.5e-3 + 8e-3 + 2 * (plate + length))
     cut = 2810.0 * 2 * pi * (middle**2 - inner**2) * length
     assert parts["barrel"] == near(barrel - cut)
-    plates = 2810.0 * pi * plate * (2 * inner**2 - (6e-3 + 30e-6) ** 2)
+    plates = 2810.0 * pi * plate * (2 * inner**2 - (6.15e-3 + 30e-6) ** 2)
     skirts = 2810.0 * 2 * pi * (middle**2 - (root - 1.1e-3) ** 2) * length
     assert parts["caps"] == near(plates + skirts)
 
 
 def test_the_screwed_knee_beats_the_bonded_knee():
-    """Without the nut, which the bonded knee does not have, by at least 12 %."""
+    """Without the nut, which the bonded knee does not have, by at least 15 %."""
     bonded = ao.optimise(ao.read(DESIGNS / "knee_bonded.yaml"), prices=False)
     nut = KNEE[KNEE.index("  nut:") : KNEE.index("\nhead:")]
     free = KNEE[KNEE.index("  piston.nut.preload:") : KNEE.index("  cylinder.bore:\n")]
@@ -161,4 +172,4 @@ def test_the_screwed_knee_beats_the_bonded_knee():
     assert screwed.status == "optimal"
     assert screwed.kkt.residual < 1e-6
     masses = [one.evaluation.metrics["mass"].value for one in (screwed, bonded)]
-    assert masses[0] < 0.88 * masses[1]
+    assert masses[0] < 0.85 * masses[1]
