@@ -2,8 +2,8 @@
 
 Five actuators are optimised for least mass at each pressure and bore: a composite barrel with
 bonded caps, composite barrels whose plugs are held by a split ring or a thread in the liner, or by
-a thread in a sleeve, and a steel barrel with screwed caps. The knee is scaled by the rules of
-`RULES`, so that all five do the same work.
+a thread in a liner that is thicker at its ends, and a steel barrel with screwed caps. The knee is
+scaled by the rules of `RULES`, so that all five do the same work.
 
     python designs/scripts/knee_joints.py                  # prints the tables
     python designs/scripts/knee_joints.py --out reports    # and writes the report there
@@ -38,7 +38,7 @@ Data = dict[str, Any]
 DESIGNS = Path(__file__).resolve().parents[1]
 JOINTS = {
     "bond": ("knee_bonded.yaml", "bonded caps", GREY),
-    "sleeve": ("knee_bonded.yaml", "plugs in sleeves", OCHRE),
+    "sleeve": ("knee.yaml", "plugs in a thicker liner", OCHRE),
     "retaining_ring": ("knee.yaml", "split rings", BLUE),
     "plug_thread": ("knee.yaml", "screwed plugs", BLACK),
     "thread": ("steel_baseline.yaml", "steel, screwed caps", RED),
@@ -61,25 +61,12 @@ BLOCKS: dict[str, tuple[Data, dict[str, tuple[str, str]]]] = {
             "ring_width": ("1 mm", "5 mm"),
         },
     ),
-    "sleeve": (
-        {
-            "type": "plug_thread",
-            "length": "7 mm",
-            "wall": "1.5 mm",
-            "thread": {"pitch": "0.75 mm"},
-            "sleeve": {"material": "al_7075_t6", "wall": "2.2 mm", "inner_length": "15 mm"},
-        },
-        {
-            "length": ("3 mm", "20 mm"),
-            "wall": ("1 mm", "5 mm"),
-            "sleeve.wall": ("0.8 mm", "6 mm"),
-            "sleeve.inner_length": ("3 mm", "50 mm"),
-        },
+    "plug_thread": (
+        {"type": "plug_thread", "length": "7 mm", "wall": "1.1 mm", "thread": {"pitch": "0.75 mm"}},
+        {"length": ("3 mm", "20 mm"), "wall": ("1 mm", "5 mm")},
     ),
 }
 """Joints that replace that of the design they scale: their block, and bounds of their variables."""
-STATIC = {"compound": "nbr_90", "section": "1.78 mm", "squeeze": "20 %", "tolerance": "0.05 mm"}
-"""Static seals of plugs in sleeves; the bonded knee, from which they are derived, has none."""
 PRESSURES = (100, 210, 350)
 BORES = (16, 20, 25, 32, 40, 50, 63, 80)
 QUICK = ((210,), (25, 40))
@@ -98,12 +85,11 @@ RULES = (
     "Friction, seal extrusion, trapped oil and bearing pressure are not limited, as they depend on "
     "the seals and not on the joint. All other requirements are those of the knee.",
     "Cones and double bonds are left out: their searches often end without an optimum, and their "
-    "optima in samples were heavier than plugs in sleeves.",
+    "optima in samples were heavier than plugs in a thicker liner.",
 )
 WHY = {
     "bond": "they need no thread, whose least size is too heavy for small and weak ends.",
-    "sleeve": "only the ends are thick enough for the thread; between them, a thinner liner shares "
-    "the force with plies along the barrel.",
+    "sleeve": "only the ends are thick enough for the thread; between them, the liner is thinner.",
     "retaining_ring": "the tube is thick enough for the groove without more metal at its ends.",
     "plug_thread": "the tube is thick enough for the thread without more metal at its ends.",
     "thread": "stiffness and not pressure sets the wall; steel is as stiff for its mass as "
@@ -111,7 +97,8 @@ WHY = {
 }
 """Why a joint is the lightest."""
 LEAST = {
-    "retention.wall": 1.2, "caps.thickness": 4.6, "retention.length": 3.0, "sleeve.wall": 1.9,
+    "retention.wall": 1.2, "caps.thickness": 4.6, "retention.length": 3.0, "sleeve.wall": 2.6,
+    "sleeve.inner_length": 8.6,
 }  # fmt: skip
 """Smallest start of some sizes [mm]."""
 SMALLER = (
@@ -155,14 +142,12 @@ def scaled(joint: str, pressure: float, bore: float) -> Data:
         data[part]["length"] = times(data[part]["length"], max(size, 1))
     data["caps"]["thickness"] = times(data["caps"]["thickness"], strong, LEAST["caps.thickness"])
     data["clevis"]["pin_diameter"] = times(data["clevis"]["pin_diameter"], strong)
-    wound = JOINTS[joint][0] == JOINTS["bond"][0]
+    liners = {"bond": 0.45, "sleeve": 0.9}  # the others have a groove or thread in their tube
     for index, layer in enumerate(data["barrel"]["layup"]):
-        least = 0.45 if wound else 0.3 if index else 2.4
+        least = 0.3 if index and joint != "bond" else liners.get(joint, 2.6)
         layer["thickness"] = times(layer["thickness"], strong, least)
     if data["piston"].pop("nut", None):
         data["variables"].pop("piston.nut.preload", None)
-    if joint == "sleeve":
-        data["seals"]["static"] = dict(STATIC)
     _seals(data["seals"], bore)
     for case in data["load_cases"]:
         for key in case.keys() & {"force", "side_load"}:

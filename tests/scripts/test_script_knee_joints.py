@@ -85,7 +85,7 @@ def test_joints_that_replace_that_of_the_knee() -> None:
         own = {path for path in design.variables if path.startswith("retention.")}
         if joint in study.BLOCKS:
             assert own == {f"retention.{key}" for key in study.BLOCKS[joint][1]}
-    plug = _read("plug_thread", row).design
+    plug = _read("sleeve", row).design
     assert plug.retention.length == pytest.approx(knee.retention.length)
     assert plug.retention.thread == knee.retention.thread
     assert {path for path in knee.variables if path.startswith("retention.")} == {
@@ -103,10 +103,9 @@ def test_a_sleeve_saves_metal_between_the_ends() -> None:
 
 
 def test_what_the_committed_map_shows() -> None:
-    """Bonds win at little force, steel for stiffness, plugs in thick tubes; else sleeves."""
+    """Bonds win at little force, steel for stiffness; else plugs in a thicker liner."""
     rows = {(row["pressure"], row["bore"]): row for row in carried(REPORT)["rows"]}
     assert len(rows) == len(study.PRESSURES) * len(study.BORES)
-    others = {(100, 16): "bond", (100, 80): "thread"}
-    others |= dict.fromkeys(((350, 63), (350, 80)), "plug_thread")
+    others = {(100, 80): "thread"} | dict.fromkeys(((100, b) for b in (16, 20, 25, 32)), "bond")
     for point, row in rows.items():
         assert study.lightest(row) == others.get(point, "sleeve")
