@@ -38,7 +38,7 @@ Data = dict[str, Any]
 DESIGNS = Path(__file__).resolve().parents[1]
 JOINTS = {
     "bond": ("knee_bonded.yaml", "bonded caps", GREY),
-    "sleeve": ("knee.yaml", "plugs in a thicker liner", OCHRE),
+    "sleeve": ("knee.yaml", "thickened liner", OCHRE),
     "retaining_ring": ("knee.yaml", "split rings", BLUE),
     "plug_thread": ("knee.yaml", "screwed plugs", BLACK),
     "thread": ("steel_baseline.yaml", "steel, screwed caps", RED),
@@ -85,7 +85,7 @@ RULES = (
     "Friction, seal extrusion, trapped oil and bearing pressure are not limited, as they depend on "
     "the seals and not on the joint. All other requirements are those of the knee.",
     "Cones and double bonds are left out: their searches often end without an optimum, and their "
-    "optima in samples were heavier than plugs in a thicker liner.",
+    "optima in samples were heavier than a thickened liner.",
 )
 WHY = {
     "bond": "they need no thread, whose least size is too heavy for small and weak ends.",
@@ -320,8 +320,8 @@ def lead(study: Data) -> list[str]:
     if level:
         points = (f"{fixed(bar, 0)} bar and {', '.join(bores)} mm" for bar, bores in level.items())
         sentences.append(
-            f"At {'; '.join(points)}, the sleeve is as thick as its liner: plies along the barrel "
-            "save the mass there, and not the sleeve."
+            f"At {'; '.join(points)}, stiffness makes the liner as thick as its ends. It then "
+            "differs from screwed plugs only in that the winding ends before the thread."
         )
     return [*sentences, *RULES]
 
