@@ -85,7 +85,8 @@ ENDS: dict[str, tuple[str, Data, dict[str, tuple[str, str]]]] = {
 """
 CUT = ("retaining_ring", "plug_thread")
 """Joints whose groove or thread is cut into the liner, which starts thicker."""
-THICK = "2.5 mm"
+THICK = {"start": "3 mm", "upper": "8 mm"}
+"""Start and upper bound of such a liner."""
 SEAL = {"compound": "nbr_90", "section": "2.62 mm", "squeeze": "20 %", "tolerance": "0.05 mm"}
 """Static seals, with the section of the moving ones."""
 QUICK = ("tie_rods", "plug_thread")
@@ -111,7 +112,8 @@ def stated(joint: str) -> Data:
         for key, (lower, upper) in bounds.items():
             variables[f"retention.{key}"] = {"lower": lower, "upper": upper}
     if joint in CUT:
-        data["barrel"]["layup"][0]["thickness"] = THICK
+        data["barrel"]["layup"][0]["thickness"] = THICK["start"]
+        data["variables"]["barrel.layup[0].thickness"]["upper"] = THICK["upper"]
     if joint != "bond":
         data["seals"]["static"] = dict(SEAL)
     return data
