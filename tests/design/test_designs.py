@@ -121,6 +121,21 @@ def test_the_steel_baseline_has_the_duty_of_the_knee() -> None:
         assert knee.variables[path] == steel.variables[path], path
 
 
+def test_seals_that_bear_a_wider_gap_save_mass(optima) -> None:
+    """The duty of the knee, and its limits but for the gap; at least a tenth lighter."""
+    knee, tolerant = (verbs.read(DESIGNS / f"{n}.yaml") for n in ("knee", "knee_gap_tolerant"))
+    for block in ("fluid", "supply", "environment", "load", "load_cases", "objective", "clevis"):
+        assert getattr(knee.design, block) == getattr(tolerant.design, block), block
+    limits = [dict(one.design.requirements) for one in (knee, tolerant)]
+    gaps = [one.pop("seal_gap").max for one in limits]
+    assert limits[0] == limits[1]
+    assert gaps == [34e-6, 60e-6]
+    best = verbs.optimise(tolerant, prices=False)
+    assert best.status == "optimal"
+    assert best.objective_value < 0.9 * optima["knee"].objective_value
+    assert best.evaluation.metrics["extrusion_factor"].value > 2
+
+
 def test_the_steel_baseline_is_all_metal_and_heavier(optima) -> None:
     """One isotropic wall; at equal requirements the composite saves more than a tenth."""
     knee, steel = optima["knee_bonded"], optima["steel_baseline"]
