@@ -62,7 +62,7 @@ def check_masses(evaluation, densities, read):
     """Every fully turned group weighs what the mass model says."""
     found = masses(evaluation, densities, read)
     groups = {
-        "barrel": sum(v for k, v in found.items() if k.startswith("layup")),
+        "barrel": sum(v for k, v in found.items() if k.startswith("layup") or k == "sleeves"),
         "rod": sum(v for k, v in found.items() if k == "rod" or k.startswith("rod.layup")),
         "piston": found["piston"],
         "caps": found["caps"],
