@@ -16,8 +16,18 @@ from . import choice_list, requirements
 from .faults import cross_field, material_faults
 from .kinds import Fraction, Section, ValueFault, shape_in_words
 from .model import Design, Ply
-from .paths import put, resolve, spell
-from .structure import KeyEntry, Loc, MaterialLookup, child_at, entries, how_to_add, leaves
+from .paths import put, remove, resolve, spell
+from .structure import (
+    NONE,
+    Loc,
+    MaterialLookup,
+    child_at,
+    entries,
+    how_to_add,
+    is_removed_by_none,
+    leaves,
+    section_at,
+)
 
 MOST_FAULTS = 100
 
@@ -151,20 +161,6 @@ def _unless_known(faults: Iterable[Fault], reported: Sequence[Fault]) -> list[Fa
     return new
 
 
-def _section_at(root: type[Section], loc: Loc) -> tuple[type[Section] | None, KeyEntry | None]:
-    """Class of the block and entry of the key at a location; None inside tables with free keys."""
-    section: type[Section] | None = root
-    entry: KeyEntry | None = None
-    for key in loc:
-        if isinstance(key, int):
-            continue
-        if section is None:
-            return None, None
-        entry = entries(section).get(key)
-        section = entry.section if entry is not None and entry.shape != "table" else None
-    return section, entry
-
-
 def _translate(error: ValidationError, root: type[Section]) -> Iterator[Fault]:
     """Translate pydantic's validation errors into faults in the terms of the file."""
     for item in error.errors(include_url=False):
@@ -172,7 +168,7 @@ def _translate(error: ValidationError, root: type[Section]) -> Iterator[Fault]:
         kind, value = item["type"], item["input"]
         if kind == "default_factory_not_called":  # only repeats another fault
             continue
-        section, entry = _section_at(root, loc)
+        section, entry = section_at(root, loc)
         if kind == "value":
             yield Fault(loc, item["ctx"]["message"], item["ctx"]["remedy"])
         elif kind == "missing":
@@ -211,7 +207,7 @@ def _word(value: object) -> str:
 
 
 def _unknown_key(loc: Loc, root: type[Section]) -> Fault:
-    section, _ = _section_at(root, loc[:-1])
+    section, _ = section_at(root, loc[:-1])
     table = entries(root).get(str(loc[0]))
     if table is not None and table.shape == "table" and table.section and len(loc) == 3:
         names = list(entries(table.section))
@@ -246,7 +242,8 @@ def with_values(
 ) -> Design:
     """Copy a design with changed values by PATH (SI numbers, or texts with units); check it.
 
-    If an optimisation variable started at the old value, it now starts at the new value. Without
+    The value `none` removes an optional block, with its variables (see `is_removed_by_none`). If an
+    optimisation variable started at the old value, it now starts at the new value. Without
     `contradictions` values may contradict each other; this is needed where a search found no
     feasible design.
 
@@ -256,7 +253,7 @@ def with_values(
         if a PATH has no value, a value is unsuitable, or the new values contradict each other
     """
     tree = to_tree(design)
-    diagnostics = []
+    diagnostics, removed = [], []
     for path, value in values.items():
         try:
             target = resolve(path, tree, metrics)
@@ -264,12 +261,17 @@ def with_values(
             message = fault.message.removeprefix(f"{path}: ")
             diagnostics.append(Diagnostic(message, fault.remedy, path=path))
             continue
+        if value == NONE and is_removed_by_none(target.loc):
+            removed.append(target.loc[:-1])
+            continue
         number = float(value) if isinstance(value, (int, float)) else value
         old = child_at(tree, target.loc)
         put(tree, target, number)
         variable = tree.get("variables", {}).get(target.path)
         if variable is not None and variable.get("start") == old:
             variable["start"] = number
+    for block in removed:
+        remove(tree, block)
     if not diagnostics:
         built = build(tree, materials=materials, metrics=metrics, contradictions=contradictions)
         diagnostics = [

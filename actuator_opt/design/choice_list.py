@@ -1,8 +1,9 @@
 """Block `choices`: the discrete values that the optimiser may try for each PATH.
 
 Allowed values are written like the value they replace: numbers with their unit, counts, names of
-materials, words. `recheck` replaces them in the tree by values in SI and yields their faults. The
-optimiser skips combinations whose values contradict each other.
+materials, words. For a key that an optional block requires, `none` removes this block. `recheck`
+replaces allowed values in the tree by values in SI and yields their faults. The optimiser skips
+combinations whose values contradict each other.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from .material import ROLES
 from .model import Design, EndRetention
 from .paths import Target, resolve
 from .requirements import in_faulty_block
-from .structure import KeyEntry, MaterialLookup, number_of, value_at
+from .structure import NONE, MaterialLookup, is_removed_by_none, number_of, value_at
 
 Value: TypeAlias = float | bool | str | Fraction
 """An allowed value: SI number, boolean, name or word, or fraction of the stroke."""
@@ -145,7 +146,7 @@ def _values(loc: tuple[str, str], values: list[Any], target: Target) -> Iterator
         if raw is None:
             continue  # already reported as a fault
         try:
-            value = values[index] = _read(raw, target.entry)
+            value = values[index] = _read(raw, target)
         except ValueFault as fault:
             yield Fault((*loc, index), fault.message, fault.remedy)
             continue
@@ -156,8 +157,16 @@ def _values(loc: tuple[str, str], values: list[Any], target: Target) -> Iterator
         valid.append((index, value))
 
 
-def _read(raw: Any, entry: KeyEntry) -> Value:
+def _read(raw: Any, target: Target) -> Value:
     """Read an allowed value like a value of its target field; raise `ValueFault` if invalid."""
+    entry = target.entry
+    assert entry is not None
+    if raw == NONE and entry.required:
+        if not is_removed_by_none(target.loc):
+            block = target.path.rpartition(".")[0]
+            message = f"{NONE}: the block {block} is needed and cannot be left out"
+            raise ValueFault(message, f"remove {NONE} from the list")
+        return NONE
     if entry.choices:
         if raw in entry.choices:
             return str(raw)
@@ -194,7 +203,7 @@ def material_faults(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
         suitable = ROLES[entry.kind.role]
         candidates = [name for name in materials.names() if materials.kind(name) in suitable]
         for index, name in enumerate(values):
-            if not isinstance(name, str) or name in candidates:
+            if not isinstance(name, str) or name in candidates or (name == NONE and entry.required):
                 continue
             loc = ("choices", path, index)
             if name not in materials:
@@ -244,8 +253,9 @@ def left_out(design: Design) -> tuple[str, ...]:
     remarks = []
     block: Mapping[str, Sequence[Value]] = design.choices
     for path, values in block.items():
-        file_value = value_at(design, resolve(path, design).loc)
-        if file_value is None or not any(same(file_value, value) for value in values):
-            suffix = "" if file_value is None else f" ({shown(path, file_value, design)})"
+        stated = value_at(design, resolve(path, design).loc)
+        file_value = NONE if stated is None else stated
+        if not any(same(file_value, value) for value in values):
+            suffix = f" ({shown(path, file_value, design)})"
             remarks.append(f"{path}: the value in the file{suffix} is not among the choices")
     return tuple(remarks)

@@ -294,3 +294,12 @@ def put(tree: dict[str, Any], target: Target, value: object) -> None:
         is_share = target.quantity.name == "fraction"
         value = Fraction(value) if is_share and target.entry.name == "position" else value
     node[key] = value
+
+
+def remove(tree: dict[str, Any], block: Loc) -> None:
+    """Remove a block from a tree, with the entries of other tables for its values."""
+    (child_at(tree, block[:-1]) or {}).pop(block[-1], None)
+    for table in _ENDS:
+        paths = tree.get(table, {})
+        for path in [path for path in paths if path.startswith(f"{spell(block)}.")]:
+            del paths[path]

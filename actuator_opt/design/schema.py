@@ -33,7 +33,7 @@ from .material import ROLES
 from .model import Design, Ply, Uncertain
 from .sizes import MOST_SIZES
 from .standard_sizes import SERIES
-from .structure import KeyEntry, MaterialLookup, entries
+from .structure import NONE, KeyEntry, MaterialLookup, entries, is_removed_by_none
 from .uncertain import NUMBERS, quantity_of_entry
 
 Schema = dict[str, Any]
@@ -435,19 +435,22 @@ def _set(materials: MaterialLookup | None, definitions: Schema) -> Schema:
 
 def _choices() -> Schema:
     lists: dict[str, Schema] = {}
+    none: Schema = {"description": "the design without this block", "const": NONE}
     for path, entry in _of_parts().items():
         kind = entry.kind
         if isinstance(kind, Text) and not isinstance(kind, MaterialName):
             continue
         place = path.replace("[*]", ".items").replace(".", "/properties/")
         place = place.replace("/properties/items", "/items")
+        removable = is_removed_by_none(tuple(path.split(".")))
+        value: Schema = {"$ref": f"#/properties/{place}"}
         lists[path] = {
             "title": path,
             "type": "array",
             "minItems": 1,
             "maxItems": choice_list.MOST_VALUES,
             "uniqueItems": True,
-            "items": {"$ref": f"#/properties/{place}"},
+            "items": {"anyOf": [none, value]} if removable else value,
         }
     help = "Choices of the optimiser: PATH with a list of allowed values."
     return {"description": help} | _by_path(lists)

@@ -179,6 +179,38 @@ def value_at(tree: Any, loc: Loc, section: type[Section] = Design) -> Any:
     return default if node is None else node
 
 
+def section_at(root: type[Section], loc: Loc) -> tuple[type[Section] | None, KeyEntry | None]:
+    """Class of the block and entry of the key at a location; None inside tables with free keys."""
+    section: type[Section] | None = root
+    entry: KeyEntry | None = None
+    for key in loc:
+        if isinstance(key, int):
+            continue
+        if section is None:
+            return None, None
+        entry = entries(section).get(key)
+        section = entry.section if entry is not None and entry.shape != "table" else None
+    return section, entry
+
+
+NONE = "none"
+"""Word that removes an optional block, as the value of a key that the block requires."""
+
+
+def is_removed_by_none(loc: Loc) -> bool:
+    """Whether the value `none` at a location removes its block: an optional block with this key.
+
+    >>> is_removed_by_none(("retention", "sleeve", "material"))
+    True
+    >>> is_removed_by_none(("caps", "material")), is_removed_by_none(("head", "bearing"))
+    (False, False)
+    """
+    block, key = (section_at(Design, at)[1] for at in (loc[:-1], loc))
+    if key is None or not key.required or block is None:
+        return False
+    return block.shape == "section" and not block.required and block.default is None
+
+
 def how_to_add(name: str, entry: KeyEntry | None) -> str:
     """Line of YAML that adds a missing key."""
     if entry is None:

@@ -576,15 +576,19 @@ def chosen(stated: StatedValues, path: str) -> bool:
     return stated.has("choices", path)
 
 
+_PARTS = ("retention.type", "retention.sleeve.material")
+"""Choices of the parts of a joint."""
+
+
 def judged_later(stated: StatedValues, varied: Iterable[str]) -> bool:
     """Whether some sizes are checked only later, when the search tries each combination of choices.
 
     `varied` are the PATHs of the sizes. They are checked later if one of them is a variable of the
-    optimisation, and one of them or the type of joint has several choices.
+    optimisation, and one of them, the type of joint or its sleeve has several choices.
     """
     paths = tuple(varied)
     free = any(stated.has("variables", path) for path in paths)
-    return free and any(chosen(stated, path) for path in (*paths, "retention.type"))
+    return free and any(chosen(stated, path) for path in (*paths, *_PARTS))
 
 
 def metal_strengths(

@@ -18,6 +18,7 @@ from actuator_opt.design import read_design
 from actuator_opt.evaluation import compute
 from actuator_opt.exports.step import bodies, step
 from actuator_opt.joints import sleeve
+from actuator_opt.optimisation.choices import possible
 
 DESIGNS = Path(__file__).parents[2] / "designs"
 BONDED = (DESIGNS / "knee_bonded.yaml").read_text("utf-8").partition("\nvariables:")[0] + "\n"
@@ -319,13 +320,24 @@ def test_each_end_variables_and_choices():
     rest = BONDED[BONDED.index("clevis:\n") :]
     text = text + ends + rest + (
         "variables:\n  retention.cap.sleeve.wall:\n    lower: 2 mm\n    upper: 4 mm\n"
-        "choices:\n  retention.cap.sleeve.material: [al_7075_t6, steel_42crmo4]\n"
+        "choices:\n  retention.cap.sleeve.material: [none, al_7075_t6, steel_42crmo4]\n"
         "  retention.cap.type: [plug_thread, bond]\n"
     )  # fmt: skip
     text = text.replace(
         "    type: plug_thread\n", "    type: plug_thread\n    material: epoxy_structural\n"
     )
     actuator = ao.read(text)
+    looks = possible(actuator.subject())
+    assert "of plies, whose fibres it would cut" in looks[0].fault
+    found = [
+        (design.retention.cap.type, design.retention.cap.sleeve, len(design.variables))
+        for design in (look.subject.design for look in looks if not look.fault)
+    ]
+    assert [(kind, one and one.material, count) for kind, one, count in found] == [
+        ("bond", None, 0),
+        ("plug_thread", "al_7075_t6", 1),
+        ("plug_thread", "steel_42crmo4", 1),
+    ]
     assert actuator.design.retention.cap.sleeve.wall == pytest.approx(2.2e-3)
     subject = actuator.subject()
     rows = compute(subject, subject.values()).computed.metrics["retention_factor"]

@@ -20,7 +20,9 @@ from actuator_opt.base import units
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import choice_list, read_design
 from actuator_opt.design.schema import json_schema
+from actuator_opt.design.structure import child_at
 from actuator_opt.design.writer import to_yaml
+from actuator_opt.optimisation.choices import possible
 from actuator_opt.pages.optimum import MOST_ROWS, heads, sizes_and_choices
 
 BENCH = cli_runner.BENCH.replace("12.2 %", "16 %")
@@ -78,6 +80,10 @@ FAULTS = [
     ("load_cases[stance].name: [walk]", "is free text", "write the PATH of a part's number"),
     ("load_cases[0].force: [1 kN]", "is not the canonical PATH", "load_cases[stance].force"),
     ("barrel.layup[7].material: [t700_epoxy]", "has no entry 7", "use one of"),
+    ("caps.material: [none, steel_e355]", "none: the block caps is needed", "remove none from"),
+    ("barrel.layup[0].material: [none]", "the block barrel.layup[0] is needed", "remove none from"),
+    ("head.bearing: [none]", '"none": unknown material', "use one of"),
+    ("clevis.pin_diameter: [none, 8 mm]", '"none" is not a number', "mm"),
     (f"seals.rod.count: [{', '.join(['1'] * 51)}]", "51 values are too many", "at most 50"),
 ]
 
@@ -334,6 +340,99 @@ def test_check_warns_of_a_choice_that_is_never_possible():
     assert examine(DESIGNS / "knee_choices.yaml").warnings == []
 
 
+SLEEVE = (
+    "  sleeve:\n    material: al_7075_t6\n    wall: 2.6 mm\n    inner_length: 8 mm\n",
+    "  retention.sleeve.wall:\n    lower: 1 mm\n    upper: 5 mm\n"
+    "  retention.sleeve.inner_length:\n    lower: 3 mm\n    upper: 20 mm\n",
+)
+"""Keys of a sleeve that is one piece with the knee's liner, and its variables."""
+
+
+def sleeved(text):
+    """The text of a knee with plugs in sleeves."""
+    return text.replace("clevis:\n", f"{SLEEVE[0]}\nclevis:\n", 1).replace(
+        "variables:\n", f"variables:\n{SLEEVE[1]}", 1
+    )
+
+
+KNEE = (DESIGNS / "knee.yaml").read_text("utf-8")
+
+
+def test_without_and_with_a_sleeve_is_the_better_of_two_files():
+    """`none` is the file without the block and its variables.
+
+    The liner in the file is too thin for the thread, which the search without a sleeve mends.
+    """
+    thin = sleeved(KNEE).replace("thickness: 1.8 mm", "thickness: 0.7 mm")
+    result = optimum(listed({"retention.sleeve.material": "[none, al_7075_t6]"}, thin))
+    plain, sleeve = (optimum(text) for text in (KNEE, sleeved(KNEE)))
+    assert sleeve.objective_value < 0.95 * plain.objective_value
+    assert result.objective_value == pytest.approx(sleeve.objective_value, rel=1e-6)
+    assert result.choices.best == {"retention.sleeve.material": "al_7075_t6"}
+    _, other = result.choices.combinations
+    assert other.objective == pytest.approx(plain.objective_value, rel=1e-3)
+    assert ao.read(sleeved(KNEE)).changed({"retention.sleeve.material": "none"}).design == (
+        ao.read(KNEE).design
+    )
+
+
+def test_equal_combinations_are_tried_once():
+    """A bond has no sleeve, and a sleeve that is left out has no wall."""
+    looks = possible(ao.read(DESIGNS / "knee_choices.yaml").subject())
+    kept = [tuple(look.values.values())[::2] for look in looks if not look.fault]
+    assert kept == [
+        ("bond", "none"),
+        ("plug_thread", "none"),
+        ("plug_thread", "al_7075_t6"),
+        ("retaining_ring", "none"),
+        ("retaining_ring", "al_7075_t6"),
+    ]
+    (bond,) = (look for look in looks if "the same design" in look.fault and look.order == 1)
+    assert bond.fault.endswith(
+        "retention.type: bond, retention.material: epoxy_structural, "
+        "retention.sleeve.material: none"
+    )
+    lists = {
+        "retention.sleeve.material": "[none, al_7075_t6]",
+        "retention.sleeve.inner_length": "[8 mm, 9 mm]",
+    }
+    text = sleeved(KNEE).replace(SLEEVE[1], "")
+    looks = possible(ao.read(listed(lists, text)).subject())
+    assert [bool(look.fault) for look in looks] == [False, True, False, False]
+    assert [look.subject.design.retention.sleeve for look in looks[:1]] == [None]
+
+
+def test_none_removes_an_optional_block_with_its_entries_in_tables():
+    """Variables, measured values and uncertainty of the block's numbers are removed too."""
+    text = sleeved(KNEE) + (
+        "measured:\n  retention.sleeve.wall:\n    lower: 2.5 mm\n    upper: 2.7 mm\n"
+        "    record: wall.csv\n"
+        "uncertainty:\n  retention.sleeve.wall:\n    distribution: uniform\n"
+        "    half_width: 0.1 mm\n    source: drawing\n"
+    )
+    before = ao.read(text)
+    design = before.changed({"retention.sleeve.material": "none"}).design
+    assert "retention.sleeve.wall" in before.design.measured
+    assert "retention.sleeve.wall" in before.design.uncertainty
+    assert not {**design.measured, **design.uncertainty}
+    assert not any("sleeve" in path for path in design.variables)
+    for path in ("seals.static.compound", "piston.nut.diameter", "clevis.material"):
+        block = path.rpartition(".")[0]
+        changed = before.changed({path: "none"}).design
+        assert child_at(changed, tuple(block.split("."))) is None
+        assert not any(variable.startswith(block) for variable in changed.variables)
+
+
+def test_none_is_impossible_where_another_block_needs_it():
+    """A plug that is screwed in has a thread in every combination; check says so."""
+    lists = {"retention.thread.pitch": "[none, 0.75 mm]"}
+    (warning,) = examine(listed(lists, KNEE)).warnings
+    assert "choices.retention.thread.pitch: no combination with none is possible" in warning
+    assert "retention.thread: missing" in warning
+    (fault,) = refused(listed({"retention.thread.pitch": "[none]"}, KNEE), command="check")
+    assert "retention.thread: missing" in fault["message"]
+
+
 def test_impossible_choices_are_refused_in_one_line():
     """Where every combination contradicts itself, check and optimise say why; evaluate works."""
     text = listed({"retention.type": "[thread, tie_rods]"})
@@ -503,12 +602,15 @@ def test_the_schema_offers_every_list():
         ("seals.rod.count", []),
         ("seals.rod.type", ["o_rng"]),
         ("cylinder.boer", ["1 mm"]),
+        ("piston.clearance", ["none"]),
         ("barrel.layup[1].thickness", ["2 bar"]),
     ]:
         assert list(validator.iter_errors(tree | {"choices": {path: values}})), path
     for path, values in [
         ("load_cases[swing].position", ["50 %", "worst"]),
         ("barrel.layup[0].material", ["al_7075_t6"]),
+        ("retention.sleeve.material", ["none", "al_7075_t6"]),
+        ("piston.nut.diameter", ["none", "8 mm"]),
         ("environment.wet", ["yes"]),
     ]:
         assert not list(validator.iter_errors(tree | {"choices": {path: values}})), path
