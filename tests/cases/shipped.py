@@ -9,6 +9,18 @@ import actuator_opt as ao
 
 DESIGNS = Path(__file__).parents[2] / "designs"
 
+KNEE = (DESIGNS / "knee.yaml").read_text("utf-8").replace("thickness: 1 mm", "thickness: 2.3 mm")
+"""The shipped knee, whose liner starts as thick as its ends."""
+
+SLEEVE = (
+    KNEE[KNEE.index("  sleeve:") : KNEE.index("\nclevis:")],
+    KNEE[KNEE.index("  retention.sleeve.wall:") : KNEE.index("  seals.piston.squeeze:")],
+)
+"""Keys and variables of its thicker ends."""
+
+PLAIN_KNEE = KNEE.replace(SLEEVE[0], "").replace(SLEEVE[1], "")
+"""The knee with plugs screwed into a liner of one thickness."""
+
 
 @cache
 def shipped(name: str) -> ao.Optimisation:

@@ -13,6 +13,7 @@ import pytest
 import report_fixture as fixture
 from cli_runner import DESIGNS, evaluated, refused, run
 from hypothesis import given, settings, strategies as st
+from shipped import KNEE, PLAIN_KNEE, SLEEVE
 
 import actuator_opt as ao
 from actuator_opt.api import examine
@@ -340,39 +341,21 @@ def test_check_warns_of_a_choice_that_is_never_possible():
     assert examine(DESIGNS / "knee_choices.yaml").warnings == []
 
 
-SLEEVE = (
-    "  sleeve:\n    material: al_7075_t6\n    wall: 2.6 mm\n    inner_length: 8 mm\n",
-    "  retention.sleeve.wall:\n    lower: 1 mm\n    upper: 5 mm\n"
-    "  retention.sleeve.inner_length:\n    lower: 3 mm\n    upper: 20 mm\n",
-)
-"""Keys of a sleeve that is one piece with the knee's liner, and its variables."""
-
-
-def sleeved(text):
-    """The text of a knee with plugs in sleeves."""
-    return text.replace("clevis:\n", f"{SLEEVE[0]}\nclevis:\n", 1).replace(
-        "variables:\n", f"variables:\n{SLEEVE[1]}", 1
-    )
-
-
-KNEE = (DESIGNS / "knee.yaml").read_text("utf-8")
-
-
 def test_without_and_with_a_sleeve_is_the_better_of_two_files():
     """`none` is the file without the block and its variables.
 
     The liner in the file is too thin for the thread, which the search without a sleeve mends.
     """
-    thin = sleeved(KNEE).replace("thickness: 1.8 mm", "thickness: 0.7 mm")
+    thin = KNEE.replace("thickness: 2.3 mm", "thickness: 0.7 mm")
     result = optimum(listed({"retention.sleeve.material": "[none, al_7075_t6]"}, thin))
-    plain, sleeve = (optimum(text) for text in (KNEE, sleeved(KNEE)))
+    plain, sleeve = (optimum(text) for text in (PLAIN_KNEE, KNEE))
     assert sleeve.objective_value < 0.95 * plain.objective_value
     assert result.objective_value == pytest.approx(sleeve.objective_value, rel=1e-6)
     assert result.choices.best == {"retention.sleeve.material": "al_7075_t6"}
     _, other = result.choices.combinations
     assert other.objective == pytest.approx(plain.objective_value, rel=1e-3)
-    assert ao.read(sleeved(KNEE)).changed({"retention.sleeve.material": "none"}).design == (
-        ao.read(KNEE).design
+    assert ao.read(KNEE).changed({"retention.sleeve.material": "none"}).design == (
+        ao.read(PLAIN_KNEE).design
     )
 
 
@@ -396,7 +379,7 @@ def test_equal_combinations_are_tried_once():
         "retention.sleeve.material": "[none, al_7075_t6]",
         "retention.sleeve.inner_length": "[8 mm, 9 mm]",
     }
-    text = sleeved(KNEE).replace(SLEEVE[1], "")
+    text = KNEE.replace(SLEEVE[1], "")
     looks = possible(ao.read(listed(lists, text)).subject())
     assert [bool(look.fault) for look in looks] == [False, True, False, False]
     assert [look.subject.design.retention.sleeve for look in looks[:1]] == [None]
@@ -404,7 +387,7 @@ def test_equal_combinations_are_tried_once():
 
 def test_none_removes_an_optional_block_with_its_entries_in_tables():
     """Variables, measured values and uncertainty of the block's numbers are removed too."""
-    text = sleeved(KNEE) + (
+    text = KNEE + (
         "measured:\n  retention.sleeve.wall:\n    lower: 2.5 mm\n    upper: 2.7 mm\n"
         "    record: wall.csv\n"
         "uncertainty:\n  retention.sleeve.wall:\n    distribution: uniform\n"
@@ -426,7 +409,7 @@ def test_none_removes_an_optional_block_with_its_entries_in_tables():
 def test_none_is_impossible_where_another_block_needs_it():
     """A plug that is screwed in has a thread in every combination; check says so."""
     lists = {"retention.thread.pitch": "[none, 0.75 mm]"}
-    (warning,) = examine(listed(lists, KNEE)).warnings
+    (warning,) = examine(listed(lists, PLAIN_KNEE)).warnings
     assert "choices.retention.thread.pitch: no combination with none is possible" in warning
     assert "retention.thread: missing" in warning
     (fault,) = refused(listed({"retention.thread.pitch": "[none]"}, KNEE), command="check")
