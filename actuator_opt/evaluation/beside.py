@@ -16,12 +16,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base.numeric import Array, minimum
+from ..base.numeric import Array, maximum, minimum
 from ..joints.joint import EdgeBeside, EndDimensions, Loaded
 from ..models import end_bending, ply
+from ..models.barrel import von_mises
 from ..models.strength_modes import Stress, load_multiplier
 from .barrel import laminate
-from .barrel.wall import Cycle, Metal, Plies, Wall
+from .barrel.wall import Cycle, Metal, Plies, Tube, Wall
 from .geometry import EndJoint
 from .plies import Layer, stress_of
 
@@ -72,6 +73,10 @@ def rows(
         at_yield, pulses = laminate.metal_rows(bent, (beside.place,), supply)
         yields |= at_yield
         cycles |= pulses
+    if wall.tube is not None:
+        place, stress = f"barrel, {beside.place}", _tube_stress(wall.tube, loaded, beside, supply)
+        yields[place] = supply * wall.tube.strength / stress
+        cycles[place] = Cycle(wall.tube.material, stress, stress / 2)
     return RowsBeside(pressures, yields, cycles)
 
 
@@ -99,20 +104,44 @@ def _metal_load(metal: Metal, loaded: Loaded, beside: EdgeBeside, supply: Array)
     first, second, third, fourth = metal.load
     if beside.metal_peak is not None:
         return stress_of(beside.metal_peak * part for part in metal.load)
-    shell = loaded.shells[metal.layer]
-    start = sum((layer.thickness for layer in loaded.shells[: metal.layer]), 0.0)
-    along, around = [], []
-    for place in (start, start + shell.thickness):
-        axial, hoop = (
-            np.atleast_1d(strain / supply)
-            for strain in end_bending.strain_changes(
-                place=place, wall=beside.wall, edge=beside.edge, growth=beside.growth
-            )
+    along, around = (
+        np.stack([np.atleast_1d(stress / supply) for stress in part])[:, None, None, None]
+        for part in zip(*_metal_change(loaded, metal.layer, beside), strict=True)
+    )
+    return (first + along, second + around, third, fourth)
+
+
+def _tube_stress(tube: Tube, loaded: Loaded, beside: EdgeBeside, supply: Array) -> Array:
+    """Largest equivalent stress of a metal tube at supply pressure, where it bends."""
+    equivalents = [
+        von_mises(axial=supply * z + along, hoop=supply * t + around, radial=supply * r)
+        for (z, t, r), (along, around) in zip(
+            tube.faces, _metal_change(loaded, 0, beside), strict=True
         )
-        along.append(shell.axial * axial + shell.coupling * hoop)
-        around.append(shell.coupling * axial + shell.hoop * hoop)
-    axes = (slice(None), None, None, None)
-    return (first + np.stack(along)[axes], second + np.stack(around)[axes], third, fourth)
+    ]
+    return reduce(maximum, equivalents)
+
+
+def _metal_change(
+    loaded: Loaded, layer: int, beside: EdgeBeside
+) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    """Change of axial and hoop stress of a layer at its inner and outer face, at supply pressure.
+
+    By Hooke's law from the changes of strain, without radial stress.
+    """
+    shell = loaded.shells[layer]
+    start: Array = sum((inner.thickness for inner in loaded.shells[:layer]), 0.0)
+
+    def change(place: Array) -> tuple[Array, Array]:
+        axial, hoop = end_bending.strain_changes(
+            place=place, wall=beside.wall, edge=beside.edge, growth=beside.growth
+        )
+        return (
+            shell.axial * axial + shell.coupling * hoop,
+            shell.coupling * axial + shell.hoop * hoop,
+        )
+
+    return change(start), change(start + shell.thickness)
 
 
 def _groove(loaded: Loaded, fit: EndDimensions) -> tuple[end_bending.Shell, Array]:

@@ -33,7 +33,7 @@ def test_the_default_agrees_with_itself_on_shipped_designs(name):
     """
     case = bench_strategies.case(name)
     assert [*bench_strategies.shipped()] == [
-        "aerospace", "knee", "knee_bonded", "steel_baseline", "servo_knee",
+        "aerospace", "knee", "knee_bonded", "knee_gap_tolerant", "steel_baseline", "servo_knee",
     ]  # fmt: skip
     first, other = (solve(case.problem, samples=1024, seed=seed, starts=2) for seed in (11, 12))
     assert first.outcome is other.outcome is Outcome.OPTIMUM

@@ -256,6 +256,19 @@ class Metal:
     residual: Stress | None
 
 
+@dataclass(frozen=True, slots=True)
+class Tube:
+    """A wall of one metal under its largest axial load, and its yield strength.
+
+    `faces` are the stresses along, around and through the wall per unit pressure, at the bore and
+    outside.
+    """
+
+    material: str
+    strength: Array
+    faces: tuple[tuple[Array, Array, Array], ...]
+
+
 @dataclass(slots=True)
 class Wall:
     """The wall of a design.
@@ -270,7 +283,8 @@ class Wall:
     `missing` names unknown strengths. `axial_line_stiffness` is axial modulus times thickness of
     the wall, N/m. After cool-down from cure, `mismatch` is yield strength divided by stress of the
     liner, and `bond` is bond strength divided by the tension between liner and plies. `plies` is
-    None for a wall without plies of known strength. `metals` are layers of known yield strength.
+    None for a wall without plies of known strength. `metals` are layers of known yield strength;
+    a wall of one metal has `tube` instead.
     """
 
     swelling: Swelling
@@ -295,6 +309,7 @@ class Wall:
     autofrettage: Autofrettage | None = None
     plies: Plies | None = None
     metals: list[Metal] = field(default_factory=list)
+    tube: Tube | None = None
     why_no_mismatch: str = "the wall has a single material"
     missing: list[str] = field(default_factory=list)
 
@@ -366,21 +381,7 @@ def _strengths(
         return
     axial = tuple(path.per_pressure.values())[-1]
     hoop, radial, along = barrel.bore_stresses(pressure=1.0, axial_force=axial, **size)
-    faces = ((along, along), (hoop, hoop + radial), (radial, 0.0 * radial), (0.0 * hoop,) * 2)
-    wall.metals.append(
-        Metal(
-            label="barrel",
-            layer=0,
-            material=name,
-            yields=(strength,),
-            climates=(Climate("", 0.0, cold=False),),
-            load=stress_of(
-                np.stack([np.atleast_1d(face) for face in part])[:, None, None, None]
-                for part in faces
-            ),
-            residual=None,
-        )
-    )
+    wall.tube = Tube(name, strength, ((along, hoop, radial), (along, hoop + radial, 0.0 * radial)))
     for place, axial in path.per_pressure.items():
         utilisation = _utilisation(axial, path, size, strength)
         wall.yield_pressure[f"barrel, {place}"] = 1 / utilisation
