@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import tempfile
 
 import pytest
@@ -12,8 +13,9 @@ from hypothesis import settings
 for library in ("OPENBLAS", "OMP", "MKL"):
     os.environ.setdefault(f"{library}_NUM_THREADS", "1")
 
-# The processes that tests start keep what they compiled: each would compile the package anew.
+# This process and those that tests start keep what they compiled: each would compile it anew.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 # A loaded machine is no failure; continuous integration tries the same examples every time.
 SAME_EVERY_TIME = "CI" in os.environ

@@ -81,7 +81,10 @@ def killer(cluster, monkeypatch, at):
     return killed
 
 
-@pytest.mark.parametrize("study", [yields, quasi_random, front, choices, evaluated])
+@pytest.mark.parametrize(
+    "study",
+    [yields, quasi_random, pytest.param(front, marks=pytest.mark.long), choices, evaluated],
+)
 def test_a_cluster_with_a_killed_worker_gives_the_same_numbers(study, cluster, monkeypatch):
     """All of the JSON, digit by digit; a worker is killed while it has tasks."""
     here = numbers(study())

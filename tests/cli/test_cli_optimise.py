@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from cli_runner import BENCH, KNEE, bench, evaluated, refused, run
+from cli_runner import BENCH, KNEE, bench, evaluated, one_object, refused, run, spawn
 
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import read_design, with_values
@@ -315,10 +315,13 @@ def test_the_knee_end_to_end(tmp_path):
 
 
 def test_a_certificate_is_proven_and_repeats():
-    """The steel knee is within 1.1 % of the best possible; the same input gives the same proof."""
+    """The steel knee is within 1.1 % of the best possible; the same input gives the same proof.
+
+    In a process of its own a solver that prints by itself would end up before the JSON.
+    """
     steel = Path(__file__).parents[2] / "designs" / "steel_baseline.yaml"
     words = ("optimise", steel, "--certify", "--json", "--starts", "2")
-    first, again = (run(*words).json for _ in range(2))
+    first, again = run(*words).json, one_object(spawn(*words).stdout)
     found, value = first["certificate"], first["objective"]["value"]
     assert found == again["certificate"]
     assert 0 < found["gap"] < 0.011

@@ -180,7 +180,6 @@ WANTED = bench(("requirements:\n", "requirements:\n  own:\n    min: 0\n"))
     [
         ("b = v['cylinder.bore']\n    if np.any(b > 0.025): raise ValueError('big')\n    return b",
          0, "optimal", "% of the points tried; these points count as infeasible: "),
-        ("return np.floor(1e9 * v['cylinder.bore'])", 0, "optimal", "is computed by finite differ"),
         ("return v['cylinder.bore'] * np.nan", 4, "undefined", "own had no value at 100 %"),
     ],
 )  # fmt: skip

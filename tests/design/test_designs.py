@@ -33,7 +33,7 @@ GROUPS = {
 def optima() -> dict[str, Optimisation]:
     """Every shipped design that has variables, optimised from few starts."""
     return {
-        path.stem: verbs.optimise(actuator, starts=3, prices=False)
+        path.stem: verbs.optimise(actuator, starts=2, prices=False)
         for path in ALL
         if (actuator := verbs.read(path)).design.variables
     }

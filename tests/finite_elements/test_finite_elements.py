@@ -139,7 +139,7 @@ def test_slightly_squeezed_ring_is_a_line_contact():
     assert approach == pytest.approx(0.02 * SECTION, rel=0.03)
 
 
-@pytest.mark.parametrize("squeeze", [0.10, 0.15, 0.20, 0.25, 0.30])
+@pytest.mark.parametrize("squeeze", [0.10, 0.20, 0.30])
 def test_mounted_ring_meets_the_closed_form(squeeze):
     """Line load to 2.5 %, width to 5 %, peak to 6 %, and to 2.5 % with its own load and width."""
     contact = ring(squeeze, around=128).contacts[0]

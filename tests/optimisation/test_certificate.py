@@ -34,6 +34,7 @@ ROUNDING = 1e-9
 
 
 LONG = {
+    "knee sized by strength",
     "knee of free pressure",
     "steel of free pressure",
     "knee sized by growth",

@@ -167,7 +167,11 @@ def brute_force(text, result, **options):
 @pytest.mark.parametrize(
     ("name", "lists"),
     [
-        (None, SEALS | {"caps.material": "[ti_6al4v, steel_42crmo4]"}),
+        pytest.param(
+            None,
+            SEALS | {"caps.material": "[ti_6al4v, steel_42crmo4]"},
+            marks=pytest.mark.long,
+        ),
         ("steel_baseline", {"rod.material": "[steel_42crmo4, steel_17_4ph_h1025]"}),
         ("knee_bonded", {"barrel.layup[2].material": "[t700_epoxy, im7_8552]"}),
         pytest.param(

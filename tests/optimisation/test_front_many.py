@@ -110,7 +110,7 @@ def searched(evaluate, bounds, names, count, **more) -> Front:
     [
         (full_ball, 3, 60, 1.35, 0.03),
         (hollow_ball, 3, 60, 1.35, 0.03),
-        (skew_ball, 3, 60, 1.35, 0.03),
+        pytest.param(skew_ball, 3, 60, 1.35, 0.03, marks=pytest.mark.long),
         (angles, 3, 40, 1.45, 0.03),
         (plane, 3, 60, 1.6, 0.05),
         (hollow_ball, 4, 60, 1.35, 0.03),

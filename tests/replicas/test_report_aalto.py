@@ -18,19 +18,23 @@ from actuator_opt.replicas import aalto, aalto_figures, aalto_models, published
 
 DESIGN = Path(__file__).parents[2] / "designs" / "aalto_40_25_220.yaml"
 OTHERS = (
-    {"cylinder.stroke": "120 mm"},
-    {"cylinder.stroke": "800 mm", "rod.outer_diameter": "28 mm"},
-    {"cylinder.bore": "63 mm", "retention.thread.diameter": "73 mm"},
+    {"cylinder.stroke": "120 mm", "fluid.material": "iso_vg_46", "fluid.air_content": "3 %"},
+    {
+        "cylinder.stroke": "800 mm",
+        "rod.outer_diameter": "28 mm",
+        "ports.throttle.area": "0.02 cm^2",
+        "lines[2].length": "5 m",
+    },
     {
         "cylinder.bore": "32 mm",
         "rod.outer_diameter": "18 mm",
         "rod.extension": "0 mm",
         "retention.thread.diameter": "42 mm",
     },
-    {"fluid.material": "iso_vg_46", "fluid.air_content": "3 %"},
-    {"ports.throttle.area": "0.02 cm^2", "lines[2].length": "5 m"},
-    {"ports.reducing_valve.natural_frequency": "60 Hz"},
-    {"ports.reducing_valve.conductance": "20 ml/s/bar"},
+    {
+        "ports.reducing_valve.natural_frequency": "60 Hz",
+        "ports.reducing_valve.conductance": "20 ml/s/bar",
+    },
     {
         "barrel.layup[0].thickness": "2 mm",
         "retention.thread.diameter": "44 mm",

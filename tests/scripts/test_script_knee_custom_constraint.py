@@ -29,10 +29,10 @@ def quick(tmp_path_factory) -> tuple[str, Path]:
     return printed, folder / "knee_custom_constraint.pdf"
 
 
-@pytest.fixture(params=["quick", "committed"])
-def numbers(request, quick) -> dict[str, Any]:
+@pytest.fixture(params=[pytest.param("quick", marks=pytest.mark.long), "committed"])
+def numbers(request) -> dict[str, Any]:
     """The numbers of a quick run, and those that the committed report carries inside."""
-    return carried(quick[1] if request.param == "quick" else REPORT)
+    return carried(request.getfixturevalue("quick")[1] if request.param == "quick" else REPORT)
 
 
 def test_the_width_by_hand() -> None:
@@ -109,6 +109,7 @@ def test_the_committed_report_is_made_of_its_own_numbers() -> None:
     assert text_of(study.page(carried(REPORT))[0]) == text_of(REPORT.read_bytes())
 
 
+@pytest.mark.long
 def test_the_quick_run_prints_what_it_writes(quick) -> None:
     """Every sentence of the attached numbers is printed."""
     printed, pdf = quick
