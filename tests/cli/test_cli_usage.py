@@ -248,3 +248,15 @@ def test_as_a_process():
     done = spawn("evaluate", "--help")
     assert done.returncode == 0
     assert done.stdout == run("evaluate", "--help").out
+
+
+@pytest.mark.parametrize(("stated", "threads"), [({}, "1"), ({"OPENBLAS_NUM_THREADS": "2"}, "2")])
+def test_linear_algebra_runs_on_one_thread_unless_stated(stated, threads):
+    """Small dense systems, such as those of oil films, wait longer for threads than they take."""
+    script = "import actuator_opt.cli, os; print(os.environ['OPENBLAS_NUM_THREADS'])"
+    environment = surroundings()
+    environment.pop("OPENBLAS_NUM_THREADS", None)
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, env=environment | stated
+    )
+    assert done.stdout.strip() == threads
