@@ -108,8 +108,8 @@ CLOSE = 0.05
 starts."""
 
 FEW_STARTS = 2
-"""Number of starts of a combination nearly as good as the best: the point of the quick look, and the
-best point of a sweep."""
+"""Number of starts of a combination nearly as good as the best: the point of the quick look, and
+the best point of a sweep."""
 
 FEW_SAMPLES = 512
 """Number of points of this sweep."""
