@@ -48,6 +48,31 @@ LOCAL_EVALUATIONS = 150
 """Maximum number of evaluations in one local SLSQP run on the default path."""
 
 
+def across_kink(evaluator: Evaluator, point: Point) -> Point | None:
+    """An optimum beside a feasible point, on the other side of a kink; None if there is none.
+
+    Where a limit is the greater of two values, an optimum often lies where both are equal. The
+    gradients on one side may then satisfy the optimality conditions, those on the other not.
+    """
+    if not evaluator.exact:
+        return None
+    slope = kkt.lagrangian_slope(evaluator, point)
+    largest = float(np.abs(slope).max(initial=0.0))
+    if not largest > 0:
+        return None
+    known = kkt.check(evaluator, point).residual
+    for distance in ACROSS:
+        for step in (distance * slope / largest, -distance * slope / largest):
+            z = np.clip(point.z + step, evaluator.space.lower, evaluator.space.upper)
+            trial = evaluator.point(z)
+            if not trial.valid or kkt.check(evaluator, trial).residual > 0.5 * known:
+                continue
+            trial = polish(evaluator, trial)
+            if trial.violation <= MET and kkt.check(evaluator, trial).residual <= RESIDUAL:
+                return trial
+    return None
+
+
 @dataclass
 class SearchResult:
     """A point at which runs ended, with its residual, algorithm, and the number of these runs."""
@@ -156,7 +181,7 @@ class Descents:
         """Refine a point by Newton steps, and add it to the optima."""
         polished = polish(self.evaluator, point)
         if polished.valid and polished.violation <= MET and self.residual(polished) > RESIDUAL:
-            polished = self._across_kink(polished)
+            polished = across_kink(self.evaluator, polished) or polished
         if polished is not point:
             algorithm = f"{algorithm}, {FINISH}"
         optimum = self.same(polished) if polished.valid else None
@@ -166,30 +191,6 @@ class Descents:
         optimum = SearchResult(polished, self.residual(polished), algorithm)
         self.optima.append(optimum)
         return optimum
-
-    def _across_kink(self, point: Point) -> Point:
-        """An optimum beside the point, on the other side of a kink; the point itself if none is.
-
-        Where a limit is the greater of two values, an optimum often lies where both are equal. The
-        gradients on one side may then satisfy the optimality conditions, those on the other not.
-        """
-        evaluator = self.evaluator
-        if not evaluator.exact:
-            return point
-        slope = kkt.lagrangian_slope(evaluator, point)
-        largest = float(np.abs(slope).max(initial=0.0))
-        if not largest > 0:
-            return point
-        for distance in ACROSS:
-            for step in (distance * slope / largest, -distance * slope / largest):
-                z = np.clip(point.z + step, evaluator.space.lower, evaluator.space.upper)
-                trial = evaluator.point(z)
-                if not trial.valid or self.residual(trial) > 0.5 * self.residual(point):
-                    continue
-                trial = polish(evaluator, trial)
-                if trial.violation <= MET and self.residual(trial) <= RESIDUAL:
-                    return trial
-        return point
 
     def best(self, further: Sequence[SearchResult] = ()) -> SearchResult | None:
         """The best of the optima and of further points: by violation first, then by objective.
