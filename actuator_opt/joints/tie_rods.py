@@ -152,7 +152,8 @@ def _strength(loaded: Loaded) -> Strength | str:
     forces |= {at: clamp.largest + change for at, change in clamp.changes.items()}
     stresses = {at: _stress(end, force) for at, force in forces.items()}
     working = {f"tie rods, {at}" if at else "tie rods": strength / x for at, x in stresses.items()}
-    return Strength(working, {at: ultimate / x for at, x in stresses.items()}, NOT_BONDED)
+    burst = {f"with temperature, {at}" if at else "": ultimate / x for at, x in stresses.items()}
+    return Strength(working, burst, NOT_BONDED)
 
 
 def _fatigue(loaded: Loaded) -> Fatigue:
