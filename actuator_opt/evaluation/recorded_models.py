@@ -34,8 +34,8 @@ def recorded_models(
 ) -> RecordedFunction:
     """Objectives and margins (rows) as a recorded function.
 
-    Its inputs are the variables, the other numbers that the models read unless zero, the knock-down
-    factors of strengths, and the tables of material properties.
+    Its inputs are the variables, the other numbers that the models read, the knock-down factors of
+    strengths, and the tables of material properties. Numbers of zero are no inputs, except limits.
 
     Parameters
     ----------
@@ -47,8 +47,15 @@ def recorded_models(
     goals : JSON data that describe the objectives
     """
     neutral = _Neutral(subject)
+    bounds = {row.limit_of.path for row in limits}
     numbers = sorted(
-        (path for path in read if path not in paths and subject.numbers.get(path)), key=neutral.path
+        (
+            path
+            for path in read
+            if path not in paths
+            and (subject.numbers.get(path) or (path in bounds and path in subject.numbers))
+        ),
+        key=neutral.path,
     )
     factors = sorted(
         (key for key, value in subject.factors.items() if value),

@@ -291,14 +291,14 @@ class Clamp:
     `preload` is the total preload at assembly [N], and `largest` the largest total force at supply
     pressure and the temperature of assembly [N]. `closed` is the preload divided by the clamping
     force that proof pressure takes away, by temperature; the joint stays closed if it is above 1.
-    `changes` are the changes of the preload at the lowest and the highest temperature [N]; empty if
-    unknown.
+    `changes` are the changes of the preload at the lowest and the highest temperature [N], with the
+    keys "cold" and "hot"; empty if unknown.
     """
 
     preload: Array
     largest: Array
     closed: Mapping[str, Array]
-    changes: tuple[Array, ...] = ()
+    changes: Mapping[str, Array] = field(default_factory=dict)
 
 
 class Clamping(NamedTuple):

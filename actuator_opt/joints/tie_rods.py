@@ -8,7 +8,7 @@ from math import asin, pi, sin
 import numpy as np
 
 from ..base.errors import Fault
-from ..base.numeric import Array, maximum
+from ..base.numeric import Array
 from ..base.quantities import Quantity, length_text
 from ..models import endurance, mass, piston_nut, retention
 from .joint import (
@@ -148,11 +148,12 @@ def _strength(loaded: Loaded) -> Strength | str:
     if strength is None or ultimate is None:
         return "tie rods need a thread and a material with yield and ultimate strength"
     clamp = _clamp(loaded)
-    largest = clamp.largest
-    for change in clamp.changes:
-        largest = maximum(largest, clamp.largest + change)
-    stress = _stress(end, largest)
-    return Strength({"tie rods": strength / stress}, {"": ultimate / stress}, NOT_BONDED)
+    forces = {"": clamp.largest}
+    forces |= {at: clamp.largest + change for at, change in clamp.changes.items()}
+    stresses = {at: _stress(end, force) for at, force in forces.items()}
+    working = {f"tie rods, {at}" if at else "tie rods": strength / x for at, x in stresses.items()}
+    burst = {f"with temperature, {at}" if at else "": ultimate / x for at, x in stresses.items()}
+    return Strength(working, burst, NOT_BONDED)
 
 
 def _fatigue(loaded: Loaded) -> Fatigue:
@@ -235,7 +236,8 @@ JOINT = Joint(
     metrics={"joint_factor": "no tie rods"},
     judged=ON_METAL,
     models={
-        ("retention_factor", "tie rods"): "retention.tie_rod_stress",
+        ("retention_factor", place): "retention.tie_rod_stress"
+        for place in ("tie rods", "tie rods, cold", "tie rods, hot")
     },
     usual=(),
     warnings=_warnings,

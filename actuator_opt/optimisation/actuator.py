@@ -643,6 +643,9 @@ def _row_slopes(
     room = 1e-4 * np.abs(crude).max(axis=0) + 1e-6 * (1 + np.abs(point.rows).max()) / np.abs(steps)
     room = np.minimum(room, 1e-4 * np.abs(crude).max(axis=0) + 1e-9 / np.abs(steps))
     wrong = ~(np.abs(fine - crude) <= room).all(axis=0)
+    # A margin is relative, except for a limit of 0, so it jumps between this limit and its
+    # neighbours; differences are then wrong.
+    wrong &= (parametric.parameters != 0) | ~fine.any(axis=0)
     names = tuple(parametric.parameter_names[int(k)] for k in np.flatnonzero(wrong))
     return np.where(wrong, crude, fine), names
 

@@ -1,8 +1,9 @@
 """Finds the best combination of the design's choices: a quick look at each, then full solutions.
 
 A quick look descends from the nearest known design. It usually finds the optimum of a combination
-but may miss it. The best combination, and combinations nearly as good, are then solved from many
-starts. The record of each combination states how it was searched.
+but may miss it. The best combination is then solved from many starts, and combinations nearly as
+good from a few. One that becomes the best by this is solved from many starts too. The record of
+each combination states how it was searched.
 
 If variables take listed sizes, the sizes of each combination are searched, starting with the best
 combination. The continuous optimum bounds the result with sizes, so a combination is skipped if
@@ -103,14 +104,23 @@ def _distance(rows: Vector, slopes: Vector) -> Vector:
 
 
 CLOSE = 0.05
-"""A combination worse than the best by at most this relative amount is solved from many starts."""
+"""A combination worse than the best by at most this relative amount is solved again, from a few
+starts."""
+
+FEW_STARTS = 2
+"""Number of starts of a combination nearly as good as the best: the point of the quick look, and
+the best point of a sweep."""
+
+FEW_SAMPLES = 512
+"""Number of points of this sweep."""
 
 MOST_DOUBTFUL = 2
 """Once this number of combinations had no feasible design even from many starts, no further such
 combination is tried from many starts, as these searches take long."""
 
-MOST_SOLVED = 6
-"""Maximum number of combinations solved from many starts."""
+MOST_SOLVED = 3
+"""Maximum number of combinations solved from many or a few starts (our choice). Ten combinations of
+joints of the knee then take about four times the time of one."""
 
 BETTER = 1e-3
 """If many starts improve a design by this relative amount, all feasible combinations get a second
@@ -179,7 +189,7 @@ class ChoiceSearch:
             for look in looks
             if best.feasible
             and rank(look)[:3] == rank(best)[:3]
-            and look.how in (best.how, "multistart")
+            and (look.how == best.how or look.solution is not None)
             and look.objective - best.objective <= EQUAL * abs(best.objective)
         ]
         first = min(equal, key=lambda look: look.order, default=best)
@@ -267,7 +277,7 @@ def search_choices(
     ----------
     subject : the design with its choices
     settings : settings of the full searches
-    max_solved : maximum number of combinations solved from many starts
+    max_solved : maximum number of combinations solved from many or a few starts
     cluster : workers for independent combinations
 
     Raises
@@ -343,6 +353,7 @@ def _evaluate(look: Look, subject: PreparedDesign, goal: Goal) -> None:
 def _look_at_all(choice_search: ChoiceSearch, settings: ChoiceSettings) -> None:
     """Take a quick look at every combination, in half of the available time."""
     began = time.perf_counter()
+    last = {look.actuator.paths: look.order for look in choice_search.looks if look.actuator}
     for look in choice_search.looks:
         seconds = settings.left(0.5, began)
         if look.actuator is None or (seconds is not None and seconds <= 0 and _any(choice_search)):
@@ -352,7 +363,8 @@ def _look_at_all(choice_search: ChoiceSearch, settings: ChoiceSettings) -> None:
             look_quickly(look, _starts(choice_search, look), settings.seed, seconds)
         except InputError as error:
             _give_up(look, error)
-        if look.hessian is None and look.feasible:
+        needed = look.order < last[look.actuator.paths]  # by a later one with the same variables
+        if look.hessian is None and look.feasible and needed:
             look.hessian = hessian_of(look)
 
 
@@ -422,7 +434,7 @@ def _starts(choice_search: ChoiceSearch, look: Look) -> list[LookStart]:
 def _solve_best(
     choice_search: ChoiceSearch, settings: ChoiceSettings, max_solved: int, cluster: Cluster
 ) -> None:
-    """Solve the best combination from many starts, and those that are nearly as good."""
+    """Solve the best combination from many starts, and those nearly as good from a few."""
     first_gain = True
     ahead: dict[int, _SolvedTask] = {}
     for number in range(max_solved):
@@ -434,7 +446,7 @@ def _solve_best(
         if cluster and (look.order not in ahead or ahead[look.order].start is not look.x):
             looks = [look, *(other for other in _close(choice_search) if other is not look)]
             ahead = _solved_ahead(looks[: max_solved - number], settings, cluster)
-        many_starts(look, settings, ahead.get(look.order))
+        solve_again(look, settings, ahead.get(look.order), few=_nearly_best(choice_search, look))
         gained = look.feasible and look.objective < previous - BETTER * abs(look.objective)
         if first_gain and gained and look.x is not None:
             first_gain = False
@@ -447,18 +459,23 @@ def _solve_best(
                         other, [LookStart(start, descend=True)], settings.seed, settings.left()
                     )
     best = choice_search.ranked()[0]
-    if best.solution is None:
-        many_starts(best, settings)
+    if best.how != "multistart":
+        solve_again(best, settings)
 
 
 def _promising(choice_search: ChoiceSearch) -> Look | None:
-    """The next combination to solve from many starts; None if all others are clearly worse."""
-    ranked = choice_search.ranked()
-    return ranked[0] if ranked[0].solution is None else next(iter(_close(choice_search)), None)
+    """The next combination to solve; None if all others are clearly worse."""
+    best = choice_search.ranked()[0]
+    return best if best.how != "multistart" else next(iter(_close(choice_search)), None)
+
+
+def _nearly_best(choice_search: ChoiceSearch, look: Look) -> bool:
+    """Whether a few starts are enough: a feasible combination that is not the best."""
+    return look.feasible and look is not choice_search.ranked()[0]
 
 
 def _close(choice_search: ChoiceSearch) -> list[Look]:
-    """Combinations that are not solved from many starts and nearly as good as the best."""
+    """Combinations with a quick look only that are nearly as good as the best."""
     ranked, mendable = choice_search.ranked(), choice_search.mendable()
     best, looks = ranked[0], []
     solved = sum(look.solution is not None and not look.feasible for look in ranked)
@@ -476,23 +493,30 @@ def _close(choice_search: ChoiceSearch) -> list[Look]:
 
 
 class _SolveTask(NamedTuple):
-    """A combination to solve from many starts: its problem, known point and time limit."""
+    """A combination to solve: its problem, known point and time limit, and starts and samples."""
 
     problem: BoxProblem
     start: Vector | None
     seconds: float | None
+    starts: int
+    samples: int
 
 
 class _SolvedTask(NamedTuple):
     start: Vector | None
     solution: Solution
+    few: bool
 
 
-def _task(look: Look, settings: ChoiceSettings) -> _SolveTask:
+def _task(look: Look, settings: ChoiceSettings, *, few: bool) -> _SolveTask:
     assert look.actuator is not None
     seconds = settings.left()
     seconds = None if seconds is None else max(seconds, LEAST_SECONDS)
-    return _SolveTask(look.actuator.problem, look.x, seconds)
+    problem, starts, samples = look.actuator.problem, settings.starts, settings.samples
+    if few:  # the quick look has started from the problem's own start, or from a better design
+        problem = replace(problem, start=look.x)
+        return _SolveTask(problem, None, seconds, FEW_STARTS, min(samples, FEW_SAMPLES))
+    return _SolveTask(problem, look.x, seconds, starts, samples)
 
 
 @np.errstate(all="ignore")
@@ -500,8 +524,8 @@ def _solution(settings: ChoiceSettings, task: _SolveTask) -> Solution:
     return solve(
         task.problem,
         algorithm=settings.algorithm,
-        starts=settings.starts,
-        samples=settings.samples,
+        starts=task.starts,
+        samples=task.samples,
         seed=settings.seed,
         max_seconds=task.seconds,
         more_starts=[] if task.start is None else [task.start],
@@ -511,25 +535,31 @@ def _solution(settings: ChoiceSettings, task: _SolveTask) -> Solution:
 def _solved_ahead(
     looks: Sequence[Look], settings: ChoiceSettings, cluster: Cluster
 ) -> dict[int, _SolvedTask]:
-    """Solve combinations on a cluster; the results by the place of the combination in the file."""
-    tasks = [_task(look, settings) for look in looks]
+    """Solve combinations on a cluster; the results by the place of the combination in the file.
+
+    The first is solved from many starts, as are those without a feasible design.
+    """
+    few = [number > 0 and look.feasible for number, look in enumerate(looks)]
+    tasks = [_task(look, settings, few=k) for look, k in zip(looks, few, strict=True)]
     solutions = cluster.map(partial(_solution, settings), tasks)
     return {
-        look.order: _SolvedTask(task.start, solution)
-        for look, task, solution in zip(looks, tasks, solutions, strict=True)
+        look.order: _SolvedTask(look.x, solution, k)
+        for look, solution, k in zip(looks, solutions, few, strict=True)
     }
 
 
-def many_starts(look: Look, settings: ChoiceSettings, ahead: _SolvedTask | None = None) -> None:
-    """Solve a combination from many starts and from its best known point.
+def solve_again(
+    look: Look, settings: ChoiceSettings, ahead: _SolvedTask | None = None, *, few: bool = False
+) -> None:
+    """Solve a combination from many or a `few` starts, and from its best known point.
 
-    A solution `ahead` is used if it started from this point.
+    A solution `ahead` is used if it started from this point, with as many starts.
     """
-    if ahead is not None and ahead.start is look.x:
+    if ahead is not None and ahead.start is look.x and ahead.few == few:
         solution = ahead.solution
     else:
-        solution = _solution(settings, _task(look, settings))
-    look.how, look.solution = "multistart", solution
+        solution = _solution(settings, _task(look, settings, few=few))
+    look.how, look.solution = "few starts" if few else "multistart", solution
     look.x, look.objective, look.violation = solution.x, solution.objective, solution.violation
     if len(solution.constraints):
         assert look.actuator is not None
@@ -616,7 +646,12 @@ _WITHOUT = ("none", "none better", "no size fits")
 """Results of the size search that give no design to compare."""
 
 
-_WAYS: dict[How, str] = {"multistart": "many starts: ", "quick": "quick look: ", "evaluated": ""}
+_WAYS: dict[How, str] = {
+    "multistart": "many starts: ",
+    "few starts": "a few starts: ",
+    "quick": "quick look: ",
+    "evaluated": "",
+}
 
 
 def _sentence(choices: Choices) -> str:
@@ -643,6 +678,7 @@ def _counts(choices: Choices) -> Iterator[str]:
     texts: dict[How, str] = {
         "evaluated": "evaluated",
         "multistart": "solved from many starts",
+        "few starts": "solved from a few starts",
         "quick": "quick look only",
         "not possible": "not possible",
         "not tried": "not tried within the time limit",
@@ -686,8 +722,8 @@ def best_of_sizes(
         return None
     if improved:
         _runners_up(winner, searched)
-    if winner.look.solution is None:
-        many_starts(winner.look, settings)
+    if winner.look.how != "multistart":
+        solve_again(winner.look, settings)
     return winner
 
 

@@ -353,8 +353,24 @@ class Evaluator:
             undefined = np.isnan(exact).all(axis=1) & np.isfinite(slopes).all(axis=1)
             wrong &= differs.any(axis=1) | undefined
             if not wrong.any():
-                break
-        return wrong
+                return wrong
+        return wrong & ~self._at_kink(point, exact, rows, step, room)
+
+    @staticmethod
+    def _at_kink(
+        point: Point, exact: Vector, rows: Vector, step: float, room: Vector
+    ) -> npt.NDArray[np.bool_]:
+        """Rows whose gradient is between the one-sided slopes in all directions.
+
+        An optimum often lies on a kink, where the greatest of several values changes. The complex
+        step then gives the gradient of one of them. `rows` are those at distances `step` above and
+        below the point in every direction; `room` is the tolerance of every row.
+        """
+        n, here = exact.shape[1], point.rows[:, None]
+        above, below = (rows[:, :n] - here) / step, (here - rows[:, n:]) / step
+        least, most = np.minimum(above, below), np.maximum(above, below)
+        between = (exact >= least - room[:, None]) & (exact <= most + room[:, None])
+        return np.asarray(between.all(axis=1))
 
 
 def points_together(requests: Sequence[tuple[Evaluator, Vector]]) -> list[Point]:

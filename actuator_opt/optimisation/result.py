@@ -233,7 +233,9 @@ class Rounding:
         }
 
 
-How: TypeAlias = Literal["multistart", "quick", "evaluated", "not possible", "not tried"]
+How: TypeAlias = Literal[
+    "multistart", "few starts", "quick", "evaluated", "not possible", "not tried"
+]
 """Method that gave the best design of a combination of choices (see `Combination`)."""
 
 
@@ -241,8 +243,9 @@ How: TypeAlias = Literal["multistart", "quick", "evaluated", "not possible", "no
 class Combination:
     """A combination of the choices, and its best design.
 
-    `how` is the method that gave the design. "multistart" means a search from many starts, and
-    "quick" a search only from the nearest known design, which may miss the optimum. "evaluated"
+    `how` is the method that gave the design. "multistart" means a search from many starts, "few
+    starts" one from up to three, and "quick" a search only from the nearest known design, which may
+    miss the optimum. "evaluated"
     means that there are no variables, "not possible" that the values contradict each other, and
     "not tried" that the time limit was reached before. `feasible` is True if all requirements are
     met. `cost` is the difference of the objective from the best combination (in its SI unit), and
@@ -286,7 +289,7 @@ class Choices:
     @property
     def tried(self) -> int:
         """Number of combinations that were solved or evaluated."""
-        return self.count("multistart", "quick", "evaluated")
+        return self.count("multistart", "few starts", "quick", "evaluated")
 
     @property
     def feasible(self) -> int:

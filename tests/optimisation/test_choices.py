@@ -23,6 +23,7 @@ from actuator_opt.design import choice_list, read_design
 from actuator_opt.design.schema import json_schema
 from actuator_opt.design.structure import child_at
 from actuator_opt.design.writer import to_yaml
+from actuator_opt.optimisation import choices
 from actuator_opt.optimisation.choices import possible
 from actuator_opt.pages.optimum import MOST_ROWS, heads, sizes_and_choices
 
@@ -202,6 +203,26 @@ def test_the_winner_is_that_of_brute_force(name, lists):
         assert one.feasible == math.isfinite(alone_found)
         if one.feasible:
             assert one.objective == pytest.approx(alone_found, rel=1e-3)
+
+
+def test_many_starts_for_the_best_and_few_for_the_next(monkeypatch):
+    """Of eight combinations, the best has all starts, the next a few, all others a quick look."""
+    solved = []
+    solve = choices.solve
+
+    def counted(problem, **options):
+        solved.append((options["starts"], options["samples"]))
+        return solve(problem, **options)
+
+    monkeypatch.setattr(choices, "solve", counted)
+    lists = SEALS | {"caps.material": "[ti_6al4v, steel_42crmo4]"}
+    found = optimum(listed(lists), starts=6).choices
+    assert len(found.combinations) == 8
+    assert found.combinations[0].how == "multistart"
+    assert found.count("multistart") == 1
+    assert 1 <= found.count("few starts") < choices.MOST_SOLVED
+    few = [(choices.FEW_STARTS, choices.FEW_SAMPLES)] * found.count("few starts")
+    assert solved == [(6, 2048), *few]
 
 
 def test_the_result_is_that_of_the_chosen_combination_alone():

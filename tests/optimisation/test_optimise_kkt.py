@@ -11,6 +11,25 @@ from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.problem import BoxProblem, PointValues
 
 
+def test_gradients_at_a_kink_are_exact():
+    """Where max(a, 2 b) has its kink, either gradient is exact; one that lacks a term is not."""
+
+    def evaluate(x):
+        larger = np.where(x[0].real >= 2 * x[1].real, x[0], 2 * x[1])
+        lacking = np.where(x[0].real >= 2 * x[1].real, x[0], 2 * x[1].real) + x[1] ** 2
+        return PointValues(x[0] + x[1], np.stack([larger, lacking]))
+
+    problem = BoxProblem(("a", "b"), np.ones(2), np.full(2, 9.0), evaluate, ("larger", "lacking"))
+    evaluator = Evaluator(problem)
+    assert (
+        evaluator.check_gradients(evaluator.point(evaluator.space.to_z(np.array([4.0, 2.0])))) == ()
+    )
+    (warning,) = evaluator.check_gradients(
+        evaluator.point(evaluator.space.to_z(np.array([3.0, 2.0])))
+    )
+    assert "lacking" in warning
+
+
 @given(st.integers(0, 10**6), st.integers(1, 8), st.integers(1, 14), st.booleans())
 def test_nnls_matches_scipy(seed, height, width, dependent):
     """Our non-negative least squares reaches SciPy's residual, copies of columns included."""

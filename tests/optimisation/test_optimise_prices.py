@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, strategies as st
 from hypothesis.extra.numpy import arrays
 
+from actuator_opt.evaluation.limits import margin
 from actuator_opt.optimisation import prices as price_table
 from actuator_opt.optimisation.prices import prices
 from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, PointValues
@@ -219,6 +220,16 @@ def test_parameter_without_complex_step():
     # limit L(p) = 4 + 5 (p - 2) = 6.5, f = 2 sqrt(L), df/dp = 5/sqrt(L)
     assert rows["p0"].price == pytest.approx(5 / np.sqrt(6.5), rel=1e-6)
     assert rows["p0"].resolved_up == pytest.approx(2 * np.sqrt(7.75), rel=1e-9)
+
+
+def test_price_of_a_limit_of_zero():
+    """A margin is relative, but absolute for a limit of 0; its price is no difference of both."""
+
+    def evaluate(x, p):
+        return PointValues(x[0], margin(x[0] - 2 * x[1], p[0], "min")[None])
+
+    _, rows = priced(parametric(evaluate, [0.0], ("difference",)))
+    assert rows["p0"].price == pytest.approx(1.0, rel=1e-9)  # x0 = 2 x1 + p, x1 at its bound
 
 
 def test_idle_parameter_costs_nothing():

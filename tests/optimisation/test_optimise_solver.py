@@ -8,10 +8,11 @@ import problems
 import pytest
 
 from actuator_opt.base.errors import InputError
-from actuator_opt.optimisation import solver
+from actuator_opt.optimisation import kkt, solver
 from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.kkt import Curvature
 from actuator_opt.optimisation.problem import BoxProblem, PointValues, Space
+from actuator_opt.optimisation.resolve import parallel_descents
 from actuator_opt.optimisation.solution import Outcome
 from actuator_opt.optimisation.solver import Halton, solve
 
@@ -375,3 +376,25 @@ def test_normal_path_imports_no_scipy():
         [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
+
+
+def test_an_optimum_on_a_kink_is_optimal(monkeypatch):
+    """Both values of max(x + 2 y, 2 x + y) limit x + y, but only one gives the gradient at x = y.
+
+    Newton steps are left out, as they may end on either side of the kink.
+    """
+
+    def evaluate(x):
+        one, other = x[0] + 2 * x[1], 2 * x[0] + x[1]
+        larger = np.where(other.real > one.real + 1e-15, other, one)
+        return PointValues(20 - x[0] - x[1], np.stack([6 - one, 6 - larger]))
+
+    monkeypatch.setattr(parallel_descents, "polish", lambda _, point: point)
+    evaluator = Evaluator(box(evaluate, constraints=("one", "larger")))
+    search = parallel_descents.Descents(evaluator, 0)
+    point = evaluator.point(evaluator.space.to_z(np.array([2.0, 2.0])))
+    assert search.residual(point) > 0.1
+    end = search.finish(point, "none")
+    assert end.good
+    np.testing.assert_allclose(end.point.x, 2, rtol=1e-6)
+    np.testing.assert_allclose(kkt.check(evaluator, end.point).multipliers, 1 / 3, rtol=1e-6)

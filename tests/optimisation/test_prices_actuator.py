@@ -16,6 +16,7 @@ from actuator_opt.optimisation import actuator as actuator_module
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.prices import prices, ranked, sensitivities
 from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, PointValues
+from actuator_opt.optimisation.resolve import ladder
 from actuator_opt.optimisation.solver import solve
 from actuator_opt.pages import prices as told
 from actuator_opt.pages.prices import tornado
@@ -209,3 +210,26 @@ def test_a_price_table_takes_few_calls_of_the_model(monkeypatch):
     rows = sensitivities(actuator, solution)
     assert 2 * len(rows) == 46
     assert len(calls) < 46
+
+
+def test_prices_at_a_limit_of_zero_and_a_kink_take_few_calls(monkeypatch):
+    """Between tie rods at equal growth, damping at its limit of 0: all ends are solved together."""
+    calls = {"models": 0, "single": 0}
+    compute, search_near = actuator_module.compute, ladder.search_near
+
+    def counted(*given):
+        calls["models"] += 1
+        return compute(*given)
+
+    def searched(*given, **options):
+        calls["single"] += 1
+        return search_near(*given, **options)
+
+    monkeypatch.setattr(actuator_module, "compute", counted)
+    monkeypatch.setattr(ladder, "search_near", searched)
+    best = ao.optimise(DESIGNS / "aerospace.yaml")
+    rows = {row.parameter: row for row in best.sensitivities}
+    assert rows["requirements.damping_ratio.min"].active
+    assert rows["requirements.damping_ratio.min"].limit == 0
+    assert calls["models"] < 10
+    assert calls["single"] < len(rows)

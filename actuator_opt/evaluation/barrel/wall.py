@@ -173,7 +173,7 @@ def _clamped(
         {NONE: relaxed, name: unit},
         -preload,
         barrel - preload,
-        Clamp(preload, supply * (area - unit) + preload, closed, tuple(changes.values())),
+        Clamp(preload, supply * (area - unit) + preload, closed, changes),
         springs["barrel_stiffness"] / (springs["barrel_stiffness"] + springs["tie_rod_stiffness"]),
         tuple(-change for change in changes.values()),
     )

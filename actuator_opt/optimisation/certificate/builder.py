@@ -156,9 +156,10 @@ class Builder:
         sign, argument = self.form(lead)
         if sign < 0:
             raise Unknown("the model contains a function whose argument is negative")
-        t = np.linspace(*self.relaxation.reach(argument), SAMPLES)
-        if not 0 < t[-1] - t[0] < WIDEST:
+        low, high = self.relaxation.reach(argument)
+        if not 0 < high - low < WIDEST:
             raise Unknown("the model contains a function whose argument is constant or unbounded")
+        t = np.linspace(low, high, SAMPLES)
         values = function([node], lead)(t)[0]
         with np.errstate(all="ignore"):
             logs = np.log(np.abs(values))

@@ -25,6 +25,7 @@ from ..solution import MET, Solution
 from ..solver import solve
 from . import steps
 from .changed import ChangedProblems, applicable
+from .parallel_descents import across_kink
 from .steps import Valley
 
 BETTER = 1e-8
@@ -252,8 +253,12 @@ def search_near(
         feasible_z = restored.z
     feasible = changed.point(feasible_z)
     polished = polish(changed, feasible, iterations=8, tolerance=1e-10)
-    if _optimal(changed, polished) and polished.objective <= feasible.objective:
-        return polished
+    if steps.is_met(polished) and polished.objective <= feasible.objective:
+        if _optimal(changed, polished):
+            return polished
+        beside = across_kink(changed, polished)
+        if beside is not None and _lower(beside, feasible):
+            return beside
     further = [p.x for p in (feasible, *starts)]
     for samples in (0, SAMPLES):
         solution = solve(problem, starts=len(further), samples=samples, more_starts=further)
@@ -266,6 +271,11 @@ def search_near(
     if solution.feasible and solution.objective < feasible.objective:
         return point_of(changed, solution)
     return feasible
+
+
+def _lower(point: Point, other: Point) -> bool:
+    """Whether a point's objective is not above another's, except by rounding."""
+    return point.objective <= other.objective + BETTER * abs(other.objective)
 
 
 def _optimal(evaluator: Evaluator, point: Point) -> bool:
