@@ -9,8 +9,15 @@ import actuator_opt as ao
 
 DESIGNS = Path(__file__).parents[2] / "designs"
 
-KNEE = (DESIGNS / "knee.yaml").read_text("utf-8").replace("thickness: 1 mm", "thickness: 2.3 mm")
-"""The shipped knee, whose liner starts as thick as its ends."""
+KNEE = (DESIGNS / "knee.yaml").read_text("utf-8")
+for stated, changed in (
+    ("      thickness: 1 mm", "      thickness: 1.8 mm"),
+    ("      thickness: 3.3 mm", "      thickness: 2.7 mm"),
+    ("  outer_diameter: 12.3 mm", "  outer_diameter: 12 mm"),
+):
+    assert stated in KNEE
+    KNEE = KNEE.replace(stated, changed)
+"""The shipped knee, whose liner starts thick enough for the thread of its plugs."""
 
 SLEEVE = (
     KNEE[KNEE.index("  sleeve:") : KNEE.index("\nclevis:")],

@@ -6,6 +6,7 @@ from math import pi, sqrt
 from pathlib import Path
 
 import pytest
+from shipped import PLAIN_KNEE
 
 import actuator_opt as ao
 from actuator_opt.base.errors import InputError
@@ -28,7 +29,7 @@ def near(value, rel=1e-6):
 
 def pair():
     """The shipped knee with its nut, and the same without it."""
-    text = (DESIGNS / "knee.yaml").read_text("utf-8")
+    text = PLAIN_KNEE
     assert NUT in text
     return ao.evaluate(ao.read(text)), ao.evaluate(ao.read(text.replace(NUT, "")))
 
@@ -89,7 +90,7 @@ def test_rows_of_the_knee_by_hand():
     life = 2e6 * (endured / amplitude) ** 3
     alone = ao.evaluate(
         ao.read(
-            DESIGNS / "knee.yaml",
+            PLAIN_KNEE,
             set={"barrel.layup[0].thickness": "5 mm", "retention.wall": "3 mm"},
         )
     )
@@ -157,13 +158,13 @@ def test_an_optimum_keeps_the_web():
 def test_a_nut_that_cannot_be_is_refused(changes, path, said):
     """Each with its place and what to do."""
     with pytest.raises(InputError) as error:
-        ao.read(DESIGNS / "knee.yaml", set=changes)
+        ao.read(PLAIN_KNEE, set=changes)
     assert any(one.path == path and said in one.message for one in error.value.diagnostics)
 
 
 def test_a_nut_without_preload_is_refused():
     """Nothing would clamp the piston; as a variable, the preload may start anywhere."""
-    text = (DESIGNS / "knee.yaml").read_text("utf-8")
+    text = PLAIN_KNEE
     free = "  piston.nut.preload:\n    lower: 3 kN\n    upper: 20 kN\n"
     assert free in text
     with pytest.raises(InputError) as error:
@@ -177,7 +178,7 @@ def test_a_nut_without_preload_is_refused():
 
 def test_a_laminated_rod_has_no_nut():
     """Its shoulder would crush plies."""
-    text = (DESIGNS / "knee.yaml").read_text("utf-8")
+    text = PLAIN_KNEE
     layered = "  material: steel_42crmo4\n  outer_diameter: 12 mm\n  inner_diameter: 8 mm\n"
     assert layered in text
     plies = (

@@ -143,12 +143,12 @@ def test_masses_by_hand():
     minor = inner + 0.14 * 1.78e-3  # the piston's ring passes
     middle = minor + (5 / 8 - 3 / 8) * height
     root = minor + (5 / 8 - 17 / 24) * height
-    radii = np.array([inner, inner + 2.3e-3, inner + 5.6e-3])
+    radii = np.array([inner, inner + 1.8e-3, inner + 4.5e-3])
     wall = pi * np.sum(np.array([2810.0, 1570.0]) * np.diff(radii**2))
     barrel = wall * (110e-3 + 12.5e-3 + 8e-3 + 2 * (plate + length))
     cut = 2810.0 * 2 * pi * (middle**2 - inner**2) * length
     assert parts["barrel"] == near(barrel - cut)
-    plates = 2810.0 * pi * plate * (2 * inner**2 - (6.15e-3 + 30e-6) ** 2)
+    plates = 2810.0 * pi * plate * (2 * inner**2 - (6e-3 + 30e-6) ** 2)
     skirts = 2810.0 * 2 * pi * (middle**2 - (root - 1.1e-3) ** 2) * length
     assert parts["caps"] == near(plates + skirts)
 
