@@ -64,7 +64,7 @@ def test_rows_and_sentences_of_numbers() -> None:
 
 @pytest.mark.long
 def test_the_script_as_a_person_runs_it(tmp_path) -> None:
-    """Screwed plugs are 15 % lighter than tie rods or more; their dimensions give this mass again."""
+    """Screwed plugs are at least 15 % lighter than tie rods; their sizes give this mass again."""
     out, report = ran("aerospace_ends", tmp_path)
     assert report.exists()
     assert "Lightest: screwed plugs" in out
