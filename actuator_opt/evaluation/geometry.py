@@ -151,7 +151,7 @@ def end_of(
     `rings` is the largest height of a ring above the bore.
     """
     layers = zip(design.barrel.layup, thicknesses, angles, strict=True)
-    joint = end_joint.joint
+    sealed = bool(static) and end_joint.joint.static_seal == "rim"
     return End(
         sizes=sizes,
         material=end_joint.section.material,
@@ -166,7 +166,8 @@ def end_of(
         plate=plate,
         rod_radius=rod_radius,
         head_length=None if end_joint.name == "cap" else head_length,
-        seal_depth=static[0].gland_depth if static and joint.static_seal == "rim" else 0.0,
+        seal_depth=static[0].gland_depth if sealed else 0.0,
+        seal_lip=(plate - static[0].width) / 2 if sealed else 0.0,
         ring_height=rings,
         sleeve=None if end_joint.section.sleeve is None else end_joint.section.sleeve.material,
     )

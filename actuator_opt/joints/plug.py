@@ -9,11 +9,36 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from ..base.errors import Fault
+from ..base.numeric import Array
 from ..base.quantities import length_text
-from .joint import LEAST_METAL, ROUNDING, KnownMaterials, StatedValues, judged_later
+from ..models.end_plate import rim_tear_factor
+from .joint import LEAST_METAL, ROUNDING, KnownMaterials, Loaded, StatedValues, judged_later
+
+BEHIND_SEAL = "plug behind its static seal"
+"""Location of the row of the rim between the groove of the seal and what holds the plug."""
 
 NEEDED = ("yield_strength", "ultimate_strength", "poissons_ratio")
 """Material properties that the innermost layer needs."""
+
+
+def behind_seal(loaded: Loaded, held_radius: Array) -> dict[str, Array]:
+    """Plastic load of the rim behind the groove of the static seal, over the load.
+
+    `held_radius` is the inner radius of what holds the plug. There is no row without a stated
+    static seal, or without the ultimate strength of the plug.
+    """
+    end = loaded.end
+    strength = loaded.materials.allowable(end.cap, "ultimate_strength")
+    if strength is None or (isinstance(end.seal_depth, float) and end.seal_depth == 0.0):
+        return {}
+    factor = rim_tear_factor(
+        force=loaded.force,
+        groove_radius=end.inner_radius - end.seal_depth,
+        skirt_radius=held_radius,
+        lip=end.seal_lip,
+        strength=strength,
+    )
+    return {BEHIND_SEAL: factor}
 
 
 def innermost_faults(

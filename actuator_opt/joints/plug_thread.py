@@ -14,6 +14,7 @@ from ..base.errors import Fault
 from ..base.numeric import Array, minimum
 from ..base.quantities import Quantity, length_text
 from ..models import mass, retaining_ring, thread
+from ..models.barrel import von_mises
 from ..models.rod import section_area
 from .joint import (
     ON_METAL,
@@ -39,7 +40,7 @@ from .joint import (
     stated_rings,
     too_thin,
 )
-from .plug import innermost_faults
+from .plug import BEHIND_SEAL, behind_seal, innermost_faults
 from .thread import CUT, CUT_HARD
 from .winding import with_winding
 
@@ -227,6 +228,13 @@ def _plug_section(end: End) -> Array:
     return section_area(outer_diameter=root, inner_diameter=root - 2 * end.sizes["wall"])
 
 
+def _pulled_and_squeezed(end: End, force: Array) -> Array:
+    """Equivalent stress of the plug's skirt: axial tension, and hoop compression by the flanks."""
+    return von_mises(
+        axial=force / _plug_section(end), hoop=-_spread(end, force, end.sizes["wall"]), radial=0.0
+    )
+
+
 def _spread(end: End, force: Array, thickness: Array) -> Array:
     """Hoop stress that the inclined flanks cause in a ring of this thickness."""
     engagement = thread.engaged_length(length=end.sizes["length"], pitch=end.sizes["thread.pitch"])
@@ -250,8 +258,8 @@ def _strength(loaded: Loaded) -> Strength | str:
     burst = {
         "thread in the bore": of_female * wall_ultimate / sqrt(3) * female / force,
         "thread of the plug": of_male * plug_ultimate / sqrt(3) * male / force,
-        "plug under its thread": plug_ultimate * _plug_section(end) / force,
-        "plug squeezed by its thread": plug / _spread(end, force, end.sizes["wall"]),
+        "plug under its thread": plug_ultimate / _pulled_and_squeezed(end, force),
+        **behind_seal(loaded, _root_radius(end) - end.sizes["wall"]),
         "barrel spread by the plug": wall / _spread(end, force, _land(end)),
         "barrel under the plug's thread": retaining_ring.collapse_factor(
             axial=axial, bending=bending, strength=wall_ultimate
@@ -267,7 +275,7 @@ def _yields(loaded: Loaded) -> Mapping[str, Array]:
     (wall, _), (plug, _) = strengths
     return {
         "barrel under the plug's thread": wall / sum(_under_thread(loaded)),
-        "plug under its thread": plug * _plug_section(loaded.end) / loaded.force,
+        "plug under its thread": plug / _pulled_and_squeezed(loaded.end, loaded.force),
     }
 
 
@@ -344,15 +352,15 @@ JOINT = Joint(
         ("retention_factor", "flanks of the plug's thread"): "thread.flank_area",
         ("retention_burst_factor", "thread in the bore"): "thread.stripping_reductions",
         ("retention_burst_factor", "thread of the plug"): "thread.stripping_reductions",
-        ("retention_burst_factor", "plug under its thread"): "rod.section_area",
-        ("retention_burst_factor", "plug squeezed by its thread"): "thread.spread_stress",
+        ("retention_burst_factor", "plug under its thread"): "thread.spread_stress",
+        ("retention_burst_factor", BEHIND_SEAL): "end_plate.rim_tear_factor",
         ("retention_burst_factor", "barrel spread by the plug"): "thread.spread_stress",
         (
             "retention_burst_factor",
             "barrel under the plug's thread",
         ): "retaining_ring.collapse_factor",
         ("yield_factor", "barrel under the plug's thread"): "thread.internal_wall_stresses",
-        ("yield_factor", "plug under its thread"): "rod.section_area",
+        ("yield_factor", "plug under its thread"): "thread.spread_stress",
     },
     usual=(),
     warnings=_warnings,

@@ -39,7 +39,7 @@ from .joint import (
     notch_factor,
     too_thin,
 )
-from .plug import innermost_faults
+from .plug import behind_seal, innermost_faults
 from .winding import WINDING_EDGE, with_winding
 
 EDGE_BREAK = 0.2e-3
@@ -242,6 +242,7 @@ def _strength(loaded: Loaded) -> Strength | str:
         "barrel under the groove": model.collapse_factor(
             axial=axial, bending=bending, strength=wall_ultimate
         ),
+        **behind_seal(loaded, _ring(end, force)["inner_radius"]),
     }
     return with_winding(loaded, working, burst)
 

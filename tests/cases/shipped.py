@@ -14,6 +14,7 @@ for stated, changed in (
     ("      thickness: 1 mm", "      thickness: 1.8 mm"),
     ("      thickness: 3.3 mm", "      thickness: 2.7 mm"),
     ("  outer_diameter: 12.3 mm", "  outer_diameter: 12 mm"),
+    ("  length: 5 mm\n  wall: 2.2 mm", "  length: 7 mm\n  wall: 1.1 mm"),
 ):
     assert stated in KNEE
     KNEE = KNEE.replace(stated, changed)

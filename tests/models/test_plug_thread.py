@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi, sqrt
+from math import pi, radians, sqrt, tan
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,7 @@ from shipped import KNEE, PLAIN_KNEE
 
 import actuator_opt as ao
 from actuator_opt.base.errors import InputError
+from actuator_opt.evaluation import compute
 from actuator_opt.models import thread
 
 DESIGNS = Path(__file__).parents[2] / "designs"
@@ -151,6 +152,38 @@ def test_masses_by_hand():
     plates = 2810.0 * pi * plate * (2 * inner**2 - (6e-3 + 30e-6) ** 2)
     skirts = 2810.0 * 2 * pi * (middle**2 - (root - 1.1e-3) ** 2) * length
     assert parts["caps"] == near(plates + skirts)
+
+
+def burst_rows(text):
+    """Rows of the breaking load of a knee, and its joint under load."""
+    subject = ao.read(text).subject()
+    run = compute(subject, subject.values())
+    found = run.computed.metrics["retention_burst_factor"]
+    return {place: float(np.ravel(x)[0]) for place, x in found.items()}, run.joints[0].loaded
+
+
+def test_rim_and_skirt_of_the_plug_by_hand():
+    """The force crosses the lip behind the seal's groove; the skirt is pulled and squeezed."""
+    for wall in (1.1, 3.0):
+        rows, loaded = burst_rows(PLAIN_KNEE.replace("wall: 1.1 mm", f"wall: {wall} mm"))
+        strength = float(loaded.materials.allowable("al_7075_t6", "ultimate_strength"))
+        force = 21.0 * pi / 4 * 21.8**2  # N, mm, MPa from here on
+        height = sqrt(3) / 2 * 0.75
+        minor = 10.9 + 0.2 * 1.78
+        root = minor + (5 / 8 - 17 / 24) * height
+        bottom, lip = 10.9 - 0.8 * 1.78, (4.7 - 1.3655 * 1.78) / 2
+        shear = strength * 1e-6 / sqrt(3) * 2 * pi * bottom * lip / force
+        inner = root - wall
+        if inner > bottom:  # a fully plastic lip, M_p = sigma b^2/4
+            bend = strength * 1e-6 * lip**2 / 4 / (force / (2 * pi * bottom) * (inner - bottom) / 2)
+            expected = 1 / sqrt(1 / shear**2 + 1 / bend**2)
+        else:
+            expected = shear + strength * 1e-6 * pi * (bottom**2 - inner**2) / force
+        assert rows["plug behind its static seal"] == near(expected)
+        axial = force / (pi * (root**2 - inner**2))
+        hoop = force * tan(radians(30)) / (2 * pi * wall * (7.0 - 0.8 * 0.75))
+        equivalent = sqrt(axial**2 + axial * hoop + hoop**2)
+        assert rows["plug under its thread"] == near(strength * 1e-6 / equivalent, 1e-6)
 
 
 def test_the_screwed_knee_beats_the_bonded_knee():
