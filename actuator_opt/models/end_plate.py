@@ -185,8 +185,7 @@ def rim_tear_factor(
 
     Notes
     -----
-    Valid: ductile metals. Axisymmetric plastic finite elements of cap and head of a knee give 1.00
-    to 1.10 of it.
+    Valid: ductile metals; plastic finite elements of two plugs give 1.00 to 1.10 of it.
 
     References
     ----------

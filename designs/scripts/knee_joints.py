@@ -62,7 +62,7 @@ BLOCKS: dict[str, tuple[Data, dict[str, tuple[str, str]]]] = {
         },
     ),
     "plug_thread": (
-        {"type": "plug_thread", "length": "7 mm", "wall": "1.1 mm", "thread": {"pitch": "0.75 mm"}},
+        {"type": "plug_thread", "length": "7 mm", "wall": "2.2 mm", "thread": {"pitch": "0.75 mm"}},
         {"length": ("3 mm", "20 mm"), "wall": ("1 mm", "5 mm")},
     ),
 }
@@ -231,13 +231,17 @@ def best(joint: str, pressure: float, bore: float, starts: int) -> Data:
     found = ao.optimise(subject, starts=starts, prices=False)
     if found.status == "feasible":  # no optimum yet: search on from there
         reached = {variable.path: variable.value for variable in found.variables}
-        found = ao.optimise(subject.changed(reached), starts=1, prices=False)
-    if found.status != "optimal":
+        further = ao.optimise(subject.changed(reached), starts=1, prices=False)
+        found = further if further.status == "optimal" else found
+    elif found.status != "optimal":
+        found = ao.optimise(subject, starts=8, prices=False)
+    if found.status not in ("optimal", "feasible"):
         card = found.infeasibility
         return {"mass": None, "why": found.status if card is None else card.sentence}
     active = [] if found.kkt is None else sorted(set(found.kkt.active))
     return {
         "mass": found.objective_value,
+        "status": found.status,
         "parts": dict(found.evaluation.mass_parts),
         "binds": active,
         "values": {variable.path: variable.value for variable in found.variables},
@@ -399,9 +403,11 @@ def _names(ink: Ink, row: Data, left: float) -> None:
 
 def page(study: Data) -> Sheets:
     """The report as PDF and as images of its sheets."""
+    rough = sum(row[joint].get("status") == "feasible" for row in study["rows"] for joint in JOINTS)
     note = (
-        "Each mass is an optimum of its own at a fixed bore. None: no design meets all "
-        "requirements within the bounds."
+        "Each mass is an optimum of its own at a fixed bore"
+        f"{f', apart from {rough} that only meet all limits' if rough else ''}. None: no design "
+        "meets all requirements within the bounds."
     )
     return study_report(
         __file__,

@@ -502,6 +502,10 @@ SAMPLES = {
         "pressure": 1e7, "loaded_radius": 12e-3, "support_radius": 14e-3, "thickness": 5e-3,
         "poissons_ratio": 0.3,
     },
+    "end_plate.rim_tear_factor": {
+        "force": 7824.0, "groove_radius": 9.476e-3, "skirt_radius": 10.1e-3, "lip": 1.135e-3,
+        "strength": 572e6,
+    },
     "end_plate.hub_plate_stress": {
         "pressure": 1e7, "edge_force": 5e3, "hub_radius": 6e-3, "edge_radius": 15e-3,
         "thickness": 5e-3, "poissons_ratio": 0.3,
