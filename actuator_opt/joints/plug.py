@@ -35,7 +35,7 @@ def behind_seal(loaded: Loaded, held_radius: Array) -> dict[str, Array]:
         force=loaded.force,
         groove_radius=end.inner_radius - end.seal_depth,
         skirt_radius=held_radius,
-        lip=end.seal_lip,
+        lip_thickness=end.seal_lip,
         strength=strength,
     )
     return {BEHIND_SEAL: factor}

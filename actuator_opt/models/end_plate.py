@@ -162,7 +162,12 @@ def hub_plate_stress(
 
 @geometry
 def rim_tear_factor(
-    *, force: Array, groove_radius: Array, skirt_radius: Array, lip: Array, strength: Array
+    *,
+    force: Array,
+    groove_radius: Array,
+    skirt_radius: Array,
+    lip_thickness: Array,
+    strength: Array,
 ) -> Array:
     """Plastic load of a plug's rim between the groove of its seal and its skirt, over the load.
 
@@ -176,7 +181,7 @@ def rim_tear_factor(
     force : F, force of the plug on its skirt [N]
     groove_radius : r_g [m]
     skirt_radius : r_s [m]
-    lip : b [m]
+    lip_thickness : b [m]
     strength : sigma, flow or tensile strength [Pa]
 
     Returns
@@ -194,14 +199,14 @@ def rim_tear_factor(
     Examples
     --------
     >>> factor = rim_tear_factor(force=7824.0, groove_radius=9.476e-3, skirt_radius=10.1e-3,
-    ...                          lip=1.135e-3, strength=572e6)
+    ...                          lip_thickness=1.135e-3, strength=572e6)
     >>> print(f"{factor:.3f}")
     2.408
     """
     line = force / (2 * pi * groove_radius)
     arm = maximum(skirt_radius - groove_radius, 0.0 * skirt_radius) / 2
-    sheared = 3**0.5 * line / (strength * lip)
-    bent = 4 * line * arm / (strength * lip * lip)
+    sheared = 3**0.5 * line / (strength * lip_thickness)
+    bent = 4 * line * arm / (strength * lip_thickness * lip_thickness)
     inside = minimum(skirt_radius, groove_radius)
     direct = strength * pi * (groove_radius * groove_radius - inside * inside) / force
     return 1 / sqrt(sheared * sheared + bent * bent) + direct

@@ -503,7 +503,8 @@ SAMPLES = {
         "poissons_ratio": 0.3,
     },
     "end_plate.rim_tear_factor": {
-        "force": 7824.0, "groove_radius": 9.476e-3, "skirt_radius": 10.1e-3, "lip": 1.135e-3,
+        "force": 7824.0, "groove_radius": 9.476e-3, "skirt_radius": 10.1e-3,
+        "lip_thickness": 1.135e-3,
         "strength": 572e6,
     },
     "end_plate.hub_plate_stress": {

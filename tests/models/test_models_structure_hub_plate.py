@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from math import pi
+
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from scipy.integrate import solve_bvp
 
-from actuator_opt.models.end_plate import end_plate_stress, hub_plate_stress, hung_plate_stress
+from actuator_opt.models.end_plate import (
+    end_plate_stress,
+    hub_plate_stress,
+    hung_plate_stress,
+    rim_tear_factor,
+)
 
 
 def by_integration(pressure, force, b, a, t, nu):
@@ -70,3 +77,25 @@ def test_hung_plate_bends_more_the_wider_it_hangs(ratio):
     }
     near = hung_plate_stress(support_radius=10e-3, **common)
     assert hung_plate_stress(support_radius=ratio * 10e-3, **common) >= near * (1 - 1e-12)
+
+
+@pytest.mark.parametrize(("force", "low", "high"), [(5924.0, 2.65, 2.7), (7825.0, 2.1, 2.2)])
+def test_rim_behind_a_seal_against_plastic_finite_elements(force, low, high):
+    """Collapse of cap and head of a knee at a flow stress of 476 MPa, by a second reader."""
+    factor = rim_tear_factor(
+        force=force,
+        groove_radius=9.476e-3,
+        skirt_radius=10.1e-3,
+        lip_thickness=1.135e-3,
+        strength=476e6,
+    )
+    assert high / 1.11 < factor < low * 1.001
+
+
+def test_rim_of_a_deep_skirt_is_sheared_and_pulled():
+    """Without an arm, pure shear; further inside, also the tension of the annulus."""
+    size = {"force": 8000.0, "groove_radius": 9e-3, "lip_thickness": 1e-3, "strength": 500e6}
+    shear = 500.0 / 3**0.5 * 2 * pi * 9 * 1 / 8000
+    assert rim_tear_factor(skirt_radius=9e-3, **size) == pytest.approx(shear)
+    pull = 500.0 * pi * (9**2 - 8.5**2) / 8000
+    assert rim_tear_factor(skirt_radius=8.5e-3, **size) == pytest.approx(shear + pull)
