@@ -16,7 +16,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import field, replace
-from functools import cache
 from typing import Any, Final
 
 import numpy as np
@@ -636,12 +635,8 @@ def _projected(
     scale = float(np.max(np.abs(damping))) or 1.0
     target = root * damping / scale
 
-    @cache
-    def column(rate: float) -> Array:
-        return root * basis(rate)
-
     def linear(rates: Array) -> tuple[Array, Array]:
-        columns = np.stack([column(float(rate)) for rate in rates], axis=-1)
+        columns = np.stack([root * basis(float(rate)) for rate in rates], axis=-1)
         amplitudes = np.linalg.lstsq(columns, target, rcond=None)[0]
         return amplitudes, columns @ amplitudes - target
 

@@ -22,7 +22,7 @@ from ..models import end_bending, ply
 from ..models.barrel import von_mises
 from ..models.strength_modes import Stress, load_multiplier
 from .barrel import laminate
-from .barrel.wall import Cycle, Metal, Plies, Tube, Wall
+from .barrel.wall import Cycle, Metal, MetalTube, Plies, Wall
 from .geometry import EndJoint
 from .plies import Layer, stress_of
 
@@ -111,7 +111,7 @@ def _metal_load(metal: Metal, loaded: Loaded, beside: EdgeBeside, supply: Array)
     return (first + along, second + around, third, fourth)
 
 
-def _tube_stress(tube: Tube, loaded: Loaded, beside: EdgeBeside, supply: Array) -> Array:
+def _tube_stress(tube: MetalTube, loaded: Loaded, beside: EdgeBeside, supply: Array) -> Array:
     """Largest equivalent stress of a metal tube at supply pressure, where it bends."""
     equivalents = [
         von_mises(axial=supply * z + along, hoop=supply * t + around, radial=supply * r)

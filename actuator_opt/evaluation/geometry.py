@@ -167,7 +167,7 @@ def end_of(
         rod_radius=rod_radius,
         head_length=None if end_joint.name == "cap" else head_length,
         seal_depth=static[0].gland_depth if sealed else 0.0,
-        seal_lip=(plate - static[0].width) / 2 if sealed else 0.0,
+        seal_lip=(plate - static[0].width) / 2 if sealed else None,
         ring_height=rings,
         sleeve=None if end_joint.section.sleeve is None else end_joint.section.sleeve.material,
     )

@@ -108,6 +108,7 @@ def joints_under_load(
     climates = plies.climates(v, design)
     since_cure = tuple(climate.change for climate in climates) if len(climates) > 1 else ()
     supply, joints = v["supply.pressure"], []
+    # without `retention`, there is no joint, but one entry in `g.fits`
     for end_joint, fit in zip(joints_of(design), g.fits, strict=False):
         loaded = Loaded(
             end=end_at(design, end_joint, Numbers(v, end_joint.path), g),

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import lru_cache
 
 import numpy as np
 
@@ -131,7 +130,6 @@ def pass_cutoff(*, cutoff: float, order: int) -> float:
     return cutoff / math.pow(math.sqrt(2.0) - 1, 1 / (2 * order))
 
 
-@lru_cache(maxsize=256)
 def low_pass(*, cutoff: float, order: int, sample_time: float, compensated: bool) -> Array:
     """Second-order sections of one of the filter's two passes.
 

@@ -187,8 +187,8 @@ class End:
     """Length of the head's plug in the barrel; None at the end of the cap alone."""
     seal_depth: Array = 0.0
     """Depth of the groove for the static seal in the rim of the end plate; 0 without one."""
-    seal_lip: Array = 0.0
-    """Metal of the rim beside that groove, on either side."""
+    seal_lip: Array | None = None
+    """Thickness of the rim beside that groove, on either side; None without one."""
     ring_height: Array = 0.0
     """Height above the bore of the largest ring that enters the barrel."""
     sleeve: str | None = None

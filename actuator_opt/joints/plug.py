@@ -29,7 +29,7 @@ def behind_seal(loaded: Loaded, held_radius: Array) -> dict[str, Array]:
     """
     end = loaded.end
     strength = loaded.materials.allowable(end.cap, "ultimate_strength")
-    if strength is None or (isinstance(end.seal_depth, float) and end.seal_depth == 0.0):
+    if strength is None or end.seal_lip is None:
         return {}
     factor = rim_tear_factor(
         force=loaded.force,

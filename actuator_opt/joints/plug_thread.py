@@ -2,7 +2,7 @@
 
 The end plate is a plug inside the barrel. Outside its static seal, a threaded skirt of the plug
 engages with a thread in the innermost layer of the barrel, which must be a metal. Unless stated,
-the thread is as small as the seals of piston and plug, which pass it at assembly, allow.
+the thread is as small as the rings of piston and plug allow, which pass it at nominal size.
 """
 
 from __future__ import annotations

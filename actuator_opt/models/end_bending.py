@@ -224,7 +224,7 @@ def stepped(
     ----------
     left, right : walls, from `shell`
     left_growth, right_growth : w_1 and w_2, free growth far from the step [m]
-    offset_moment : m = N (R_2 - R_1) of the line force N at the middles of both walls [N]
+    offset_moment : m = N (R_2 - R_1) of the line force N at the stiffness centres of both walls [N]
 
     Returns
     -------

@@ -245,13 +245,12 @@ class Combination:
 
     `how` is the method that gave the design. "multistart" means a search from many starts, "few
     starts" one from up to three, and "quick" a search only from the nearest known design, which may
-    miss the optimum. "evaluated"
-    means that there are no variables, "not possible" that the values contradict each other, and
-    "not tried" that the time limit was reached before. `feasible` is True if all requirements are
-    met. `cost` is the difference of the objective from the best combination (in its SI unit), and
-    `percent` the relative difference; both are None without a comparison. `rounded` is the
-    objective with listed sizes if these were requested and if it beats all combinations solved
-    before. `cost` then refers to the best rounded objective.
+    miss the optimum. "evaluated" means that there are no variables, "not possible" that the values
+    contradict each other, and "not tried" that the time limit was reached before. `feasible` is
+    True if all requirements are met. `cost` is the difference of the objective from the best
+    combination (in its SI unit), and `percent` the relative difference; both are None without a
+    comparison. `rounded` is the objective with listed sizes if these were requested and if it beats
+    all combinations solved before. `cost` then refers to the best rounded objective.
     """
 
     values: Mapping[str, choice_list.Value]

@@ -257,7 +257,7 @@ class Metal:
 
 
 @dataclass(frozen=True, slots=True)
-class Tube:
+class MetalTube:
     """A wall of one metal under its largest axial load, and its yield strength.
 
     `faces` are the stresses along, around and through the wall per unit pressure, at the bore and
@@ -309,7 +309,7 @@ class Wall:
     autofrettage: Autofrettage | None = None
     plies: Plies | None = None
     metals: list[Metal] = field(default_factory=list)
-    tube: Tube | None = None
+    tube: MetalTube | None = None
     why_no_mismatch: str = "the wall has a single material"
     missing: list[str] = field(default_factory=list)
 
@@ -381,7 +381,9 @@ def _strengths(
         return
     axial = tuple(path.per_pressure.values())[-1]
     hoop, radial, along = barrel.bore_stresses(pressure=1.0, axial_force=axial, **size)
-    wall.tube = Tube(name, strength, ((along, hoop, radial), (along, hoop + radial, 0.0 * radial)))
+    wall.tube = MetalTube(
+        name, strength, ((along, hoop, radial), (along, hoop + radial, 0.0 * radial))
+    )
     for place, axial in path.per_pressure.items():
         utilisation = _utilisation(axial, path, size, strength)
         wall.yield_pressure[f"barrel, {place}"] = 1 / utilisation
