@@ -25,6 +25,7 @@ from ..evaluation.build import limits_of, margins_many
 from ..evaluation.rings import EXTRUSION_TABLE
 from ..models.gland import extrusion_gap_limit, extrusion_pressure_end
 from ..optimisation.result import Optimisation
+from ..optimisation.solution import MET
 from .actuator import Actuator, read
 
 DUTY: Mapping[str, tuple[Quantity, str]] = {
@@ -62,6 +63,7 @@ class Wall:
 
     `strength` [Pa] is that of the wall, for its first size. A layer is a material, its angle (empty
     for metal) and its share of the wall; `thinnest` is the lower bound of a metal layer [m].
+    `clearance` is the radial clearance of a large piston, divided by the bore.
     """
 
     words: str
@@ -70,6 +72,7 @@ class Wall:
     caps: str
     joint: str
     thinnest: float = 1e-3
+    clearance: float = 1 / 2000
 
 
 _PLIES = "t700_epoxy"
@@ -90,10 +93,13 @@ WALLS: Mapping[str, Wall] = {
         500e6,
         "al_7075_t6",
         "tie_rods",
+        clearance=1 / 1300,
     ),
 }
 """The walls. Lined carbon has the joint of the robot knee (designs/knee.yaml), metal that of
-designs/steel_baseline.yaml."""
+designs/steel_baseline.yaml, carbon alone that of designs/aerospace.yaml. In carbon alone, which
+hardly expands, an aluminium piston takes (24e-6/K)(60 K)/2 of the bore as clearance. The ratio for
+the others is our choice."""
 
 BURST, BUCKLING = 4.0, 3.5
 """Safety factors, as in the check list."""
@@ -105,9 +111,9 @@ LARGEST = 0.6
 """Largest bore of a start [m]; its bounds stay within the range of bores."""
 
 CLEARANCE = 30e-6
-"""Radial clearance of piston and head [m], as in the shipped designs."""
-GAP = 75e-6
-"""Gap that the seals must bear [m]: `CLEARANCE`, and as much again for the growth of the bore."""
+"""Least radial clearance of piston and head [m], as in the shipped designs."""
+GAP_RATIO = 2.5
+"""Gap that the seals must bear, divided by the clearance: the bore grows. Our choice."""
 
 SECTION = 1 / 15
 """Largest section of a ring, divided by bore or rod diameter. Our choice: 1.78 mm up to 39 mm."""
@@ -241,6 +247,8 @@ def solved_start(duty: Duty, name: str = "my actuator") -> Start:
         title = Text().validate(name)
     except ValueFault as fault:
         raise UsageError(Diagnostic(f"name: {fault.message}", fault.remedy)) from None
+    if duty.push == 0 and duty.pull == 0:
+        raise UsageError(Diagnostic("push and pull: both are 0", "state a force"))
     sizes = _first_sizes(duty)
     light = _solved(replace(duty, goal="mass"), sizes, title)
     if duty.goal == "mass" or not light.met:
@@ -260,10 +268,20 @@ def _solved(duty: Duty, sizes: _Sizes, title: str, lightest: Design | None = Non
     for reserve in (True, False):
         for template in templates:
             optimum = _optimum(template, reserve=reserve)
-            if _met(optimum.design):
+            missed = _missed(optimum.design)
+            if not missed:
                 return Start(_written(template, optimum.design), True, "")
-    advice = optimum.infeasibility.sentence if optimum.infeasibility else optimum.sentence
-    return Start(_written(template, optimum.design, advice), False, advice)
+            if optimum.status != "infeasible":  # no variable affects what is missed
+                return _unfit(template, optimum, missed)
+    return _unfit(template, optimum, missed)
+
+
+def _unfit(template: Actuator, optimum: Optimisation, missed: Sequence[str]) -> Start:
+    """A start that misses limits, with the nearest repair, or else with these limits."""
+    sentence = f"missed: {', '.join(missed)}"
+    if optimum.infeasibility is not None:
+        sentence = optimum.infeasibility.sentence.removeprefix("infeasible: ")
+    return Start(_written(template, optimum.design, sentence), False, sentence)
 
 
 def _mass(design: Design) -> float:
@@ -289,9 +307,10 @@ def _optimum(actuator: Actuator, *, reserve: bool) -> Optimisation:
     return optimise(subject, prices=False, starts=STARTS, explain=not reserve)
 
 
-def _met(design: Design) -> bool:
-    """Whether a design meets all its limits: requirements, checks and geometry."""
-    return all(bool(margin[0] >= -1e-6) for margin in margins_many(prepare(design), {}, 1).values())
+def _missed(design: Design) -> tuple[str, ...]:
+    """The limits that a design misses: requirements, checks and geometry."""
+    margins = margins_many(prepare(design), {}, 1)
+    return tuple(name for name, margin in margins.items() if not margin[0] >= -MET)
 
 
 def _values(source: Design, target: Design) -> dict[str, float]:
@@ -309,11 +328,11 @@ def _written(template: Actuator, design: Design, remark: str = "") -> Actuator:
     chosen = design
     for finer in (0, 2):
         rounded = with_values(design, _rounded(design, finer), contradictions=False)
-        if _met(rounded):
+        if not _missed(rounded):
             chosen = rounded
             break
     text = to_yaml(chosen, template.source)
-    return read(f"# Nothing fits yet: {remark}\n{text}" if remark else text)
+    return read(f"# Nothing fits yet: {remark}.\n{text}" if remark else text)
 
 
 def _rounded(design: Design, finer: int) -> dict[str, float]:
@@ -340,6 +359,7 @@ class _Sizes:
     rod: float
     wall: float
     layers: tuple[float, ...]
+    clearance: float
     stop_outside: bool
     rod_thread: tuple[float, float]
     stall: float
@@ -403,7 +423,16 @@ def _first_sizes(duty: Duty) -> _Sizes:
     layers = tuple(max(share * thickness, 0.6e-3) for _, _, share in wall.layers)
     thread = _thread(ROD_THREADS, 4 / pi * 2 * pressure * area / _ROD_YIELD)
     outside = peak > 1.35 * pressure
-    return _Sizes(bore, max(rod, thread[0]), thickness, layers, outside, thread, pressure * area)
+    return _Sizes(
+        bore,
+        max(rod, thread[0]),
+        thickness,
+        layers,
+        max(CLEARANCE, wall.clearance * bore),
+        outside,
+        thread,
+        pressure * area,
+    )
 
 
 def _thread(sizes: Sequence[tuple[float, float]], square: float) -> tuple[float, float]:
@@ -423,12 +452,12 @@ def _section(diameter: float) -> float:
     return max((x for x in sections if x <= SECTION * diameter), default=sections[0])
 
 
-def _compound(pressure: float) -> tuple[str, bool]:
-    """The softest O-ring that bears `GAP` at a pressure, and whether it needs back-up rings."""
+def _compound(pressure: float, needed: float) -> tuple[str, bool]:
+    """The softest O-ring that bears a gap at a pressure, and whether it needs back-up rings."""
     table = extrusion_tables()[EXTRUSION_TABLE].rows
     for compound, hardness in (("nbr_70", 70.0), ("nbr_90", 90.0)):
         gap = extrusion_gap_limit(hardness=hardness, pressure=pressure, table=table)
-        if gap >= GAP and pressure <= extrusion_pressure_end(hardness=hardness, table=table):
+        if gap >= needed and pressure <= extrusion_pressure_end(hardness=hardness, table=table):
             return compound, False
     return compound, True
 
@@ -532,7 +561,7 @@ def _text(duty: Duty, sizes: _Sizes, title: str, stop: str, mass: float | None) 
         _bounds("caps.thickness", 1e-3, 0.5 * bore + 2e-3),
     ]
     joint = _JOINTS[wall.joint](sizes)
-    compound, back_up = _compound(duty.pressure)
+    compound, back_up = _compound(duty.pressure, GAP_RATIO * sizes.clearance)
     seals = []
     for place, diameter, rings in (("piston", bore, "both"), ("rod", rod, "one")):
         section = _section(diameter)
@@ -591,7 +620,7 @@ def _text(duty: Duty, sizes: _Sizes, title: str, stop: str, mass: float | None) 
             f"{{diameter: {_mm(sizes.rod_thread[0])}, pitch: {_mm(sizes.rod_thread[1])}}}}}",
             *(
                 f"{part}: {{material: {wall.caps}, length: {_mm(length)}, "
-                f"clearance: {1e6 * CLEARANCE:g} um}}"
+                f"clearance: {1e6 * sizes.clearance:.0f} um}}"
                 for part, length in (("piston", short), ("head", max(long, short)))
             ),
             f"caps: {{material: {wall.caps}, thickness: {_mm(0.18 * bore)}}}",
