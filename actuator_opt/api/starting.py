@@ -7,6 +7,7 @@ its result is written with round numbers.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import ceil, pi, sqrt
@@ -93,19 +94,22 @@ WALLS: Mapping[str, Wall] = {
         500e6,
         "al_7075_t6",
         "tie_rods",
-        clearance=1 / 1300,
+        clearance=1 / 1000,
     ),
 }
 """The walls. Lined carbon has the joint of the robot knee (designs/knee.yaml), metal that of
 designs/steel_baseline.yaml, carbon alone that of designs/aerospace.yaml. In carbon alone, which
-hardly expands, an aluminium piston takes (24e-6/K)(60 K)/2 of the bore as clearance. The ratio for
+hardly expands, an aluminium piston takes (24e-6/K)(60 K)/2 of the bore and 5 um. The ratio for
 the others is our choice."""
 
 BURST, BUCKLING = 4.0, 3.5
-"""Safety factors, as in the check list."""
+"""Safety factors, as in the check list and in the template."""
 
 SPEED = 0.1
 """Piston speed of both load cases [m/s], at which the friction coefficients of the seals apply."""
+
+PORT_SPEED = 4.0
+"""Oil speed in the ports, related to the bore [m/s]: half the limit of the check list."""
 
 LARGEST = 0.6
 """Largest bore of a start [m]; its bounds stay within the range of bores."""
@@ -376,6 +380,11 @@ class _Sizes:
         return _section(self.bore)
 
     @property
+    def piston(self) -> float:
+        """Length of a piston with one groove."""
+        return 1.4 * self.section + 2e-3
+
+    @property
     def pin(self) -> float:
         """Diameter of the pins in double shear, with a factor of 2.2 on shear yield."""
         return max(4e-3, sqrt(2.2 * self.stall / (2 * pi / 4 * 0.577 * _ROD_YIELD)))
@@ -522,6 +531,50 @@ _JOINTS = {"thread": _screwed_caps, "plug_thread": _screwed_plugs, "tie_rods": _
 
 # --- the text -------------------------------------------------------------------------------
 
+_TEMPLATE = """\
+# @wall@ actuator, @goal@: @asked@.
+# The sizes are solved. After a change, look at them, or solve them again:
+#   actuator-opt evaluate FILE      actuator-opt optimise FILE
+# Every value has a PATH, such as cylinder.bore, for --set and for `variables`.
+name: @name@
+
+# Duty: every requirement holds in the worst load case. The speeds are assumed.
+load_cases:
+@cases@
+requirements:                   # besides those of the check list
+  burst_factor: {min: 4}        # burst divided by supply pressure
+  proof_factor: {min: 1}        # first damage divided by proof pressure
+  buckling_factor: {min: 3.5}   # extended, stalled at supply pressure
+@mass_limit@
+objective: {@objective@}
+
+# Oil and surroundings
+supply: {pressure: @pressure@, return_pressure: @return_pressure@}
+fluid: {material: iso_vg_32, temperature: 40 degC}
+environment: {temperature_min: 0 degC, temperature_max: 80 degC@cure@}
+
+# Parts
+cylinder: {bore: @bore@, stroke: @stroke@, mount: cap_clevis, end_stop: @stop@,
+  port_diameter: @port@, stop_travel: 1 mm}
+barrel:
+  layup:                        # from the bore outwards
+@layers@
+rod: {material: steel_42crmo4, outer_diameter: @rod@, inner_diameter: @inner@,
+  extension: @extension@, thread: {diameter: @thread@, pitch: @pitch@}}
+piston: {material: @metal@, length: @piston@, clearance: @clearance@ um}
+head: {material: @metal@, length: @head@, clearance: @clearance@ um}
+caps: {material: @metal@, thickness: @cap@}
+retention: @joint@
+clevis: {material: steel_42crmo4, pin_diameter: @pin@}
+seals:
+@seals@
+
+# Sizes that the optimiser varies between these bounds; all others are fixed.
+variables:
+@bounds@
+"""
+"""The file; names between @ are replaced."""
+
 
 def _mm(value: float) -> str:
     return f"{1e3 * value:.2f}".rstrip("0").rstrip(".") + " mm"
@@ -535,106 +588,92 @@ def _text(duty: Duty, sizes: _Sizes, title: str, stop: str, mass: float | None) 
     """The template with first sizes; `mass` is the largest mass, if limited."""
     wall, bore, rod = WALLS[duty.wall], sizes.bore, sizes.rod
     stated = {key: exact_text(getattr(duty, key), DUTY[key][0]) for key in DUTY}
-    asked = "{push} push, {pull} pull, {stroke} stroke at {pressure}".format(
-        **{key: quantity.text(getattr(duty, key)) for key, (quantity, _) in DUTY.items()}
-    )
+    short = {key: quantity.text(getattr(duty, key)) for key, (quantity, _) in DUTY.items()}
+    limit = "" if mass is None else f"  mass: {{max: {1e3 * mass:.4g} g}}".ljust(32)
     cases = [
         f"  - {{name: {key}, direction: {key}, force: {stated[key]}, speed: {SPEED} m/s}}"
         for key in ("push", "pull")
         if getattr(duty, key) > 0
     ]
-    cure = ", cure_temperature: 120 degC" if len(wall.layers) > 1 else ""
-    layers, bounds = [], [_bounds("cylinder.bore", bore / 1.4, 1.4 * bore)]
-    for index, ((material, angle, _), thickness) in enumerate(
-        zip(wall.layers, sizes.layers, strict=True)
-    ):
-        turned = f"angle: {angle}, " if angle else ""
-        layers.append(f"    - {{material: {material}, {turned}thickness: {_mm(thickness)}}}")
-        path = f"barrel.layup[{index}].thickness"
-        bounds.append(_bounds(path, 0.2e-3 if angle else wall.thinnest, 3 * thickness + 2e-3))
-    short, long = 1.4 * sizes.section + 2e-3, 1.5 * rod
-    bounds += [
-        _bounds("rod.outer_diameter", max(sizes.rod_thread[0], rod / 1.5), 1.5 * rod),
-        _bounds("rod.inner_diameter", 1e-3, 1.4 * rod),
-        _bounds("piston.length", short - 1e-3, 2 * short + 2 * long),
-        _bounds("head.length", short - 1e-3, 2 * short + 2 * long),
-        _bounds("caps.thickness", 1e-3, 0.5 * bore + 2e-3),
+    layers = [
+        f"    - {{material: {material}, {f'angle: {angle}, ' if angle else ''}"
+        f"thickness: {_mm(thickness)}}}"
+        for (material, angle, _), thickness in zip(wall.layers, sizes.layers, strict=True)
     ]
     joint = _JOINTS[wall.joint](sizes)
+    fields = {
+        "wall": wall.words.capitalize(),
+        "goal": GOALS[duty.goal].words,
+        "asked": "{push} push, {pull} pull, {stroke} stroke at {pressure}".format(**short),
+        "name": scalar(title),
+        "cases": "\n".join(cases),
+        "mass_limit": limit and f"{limit}# {HEAVIER} x the lightest",
+        "objective": GOALS[duty.goal].objective,
+        "pressure": stated["pressure"],
+        "return_pressure": exact_text(duty.return_pressure, DUTY["pressure"][0]),
+        "cure": ", cure_temperature: 120 degC" if len(wall.layers) > 1 else "",
+        "bore": _mm(bore),
+        "stroke": stated["stroke"],
+        "stop": stop,
+        "port": f"{ceil(max(3.0, 1e3 * bore * sqrt(SPEED / PORT_SPEED)))} mm",
+        "layers": "\n".join(layers),
+        "rod": _mm(rod),
+        "inner": _mm(min(_HOLLOW * rod, rod - 2.2e-3)),
+        "extension": _mm(0.5 * rod + 5e-3),
+        "thread": _mm(sizes.rod_thread[0]),
+        "pitch": _mm(sizes.rod_thread[1]),
+        "metal": wall.caps,
+        "piston": _mm(sizes.piston),
+        "head": _mm(max(1.5 * rod, sizes.piston)),
+        "clearance": f"{1e6 * sizes.clearance:.0f}",
+        "cap": _mm(0.18 * bore),
+        "joint": joint.line,
+        "pin": f"{ceil(1e3 * sizes.pin)} mm",
+        "seals": "\n".join(_seals(duty, sizes)),
+        "bounds": "\n".join([*_part_bounds(wall, sizes), *joint.bounds]),
+    }
+    text = _TEMPLATE if mass is not None else _TEMPLATE.replace("@mass_limit@\n", "")
+    return re.sub(r"@(\w+)@", lambda match: fields[match[1]], text)
+
+
+def _part_bounds(wall: Wall, sizes: _Sizes) -> list[str]:
+    """Bounds of the variables that every joint has, around the first sizes."""
+    bore, rod, longest = sizes.bore, sizes.rod, 2 * sizes.piston + 3 * sizes.rod
+    bounds = [_bounds("cylinder.bore", bore / 1.4, 1.4 * bore)]
+    for index, (layer, thickness) in enumerate(zip(wall.layers, sizes.layers, strict=True)):
+        least = 0.2e-3 if layer[1] else wall.thinnest
+        bounds.append(_bounds(f"barrel.layup[{index}].thickness", least, 3 * thickness + 2e-3))
+    return [
+        *bounds,
+        _bounds("rod.outer_diameter", max(sizes.rod_thread[0], rod / 1.5), 1.5 * rod),
+        _bounds("rod.inner_diameter", 1e-3, 1.4 * rod),
+        _bounds("piston.length", sizes.piston - 1e-3, longest),
+        _bounds("head.length", sizes.piston - 1e-3, longest),
+        _bounds("caps.thickness", 1e-3, 0.5 * bore + 2e-3),
+        *(f"  seals.{place}.squeeze: {{lower: 8 %, upper: 25 %}}" for place in ("piston", "rod")),
+    ]
+
+
+def _seals(duty: Duty, sizes: _Sizes) -> list[str]:
+    """O-rings of piston, rod and ends, with back-up rings where their gap needs them."""
     compound, back_up = _compound(duty.pressure, GAP_RATIO * sizes.clearance)
-    seals = []
-    for place, diameter, rings in (("piston", bore, "both"), ("rod", rod, "one")):
+    lines = []
+    for place, diameter, rings in (("piston", sizes.bore, "both"), ("rod", sizes.rod, "one")):
         section = _section(diameter)
-        seals.append(
+        line = (
             f"  {place}: {{type: o_ring, compound: {compound}, section: {_mm(section)}, "
             "squeeze: 14 %, tolerance: 0.05 mm"
         )
         if back_up:
             gland = standard_sizes.gland(section)
             ring = (sum(gland.widths(1)) - sum(gland.widths(0))) / 2
-            seals[-1] += (
+            line += (
                 f",\n    back_up: {rings}, back_up_material: back_up_ptfe, "
                 f"back_up_thickness: {_mm(ring)}"
             )
-        seals[-1] += "}"
-        bounds.append(f"  seals.{place}.squeeze: {{lower: 8 %, upper: 25 %}}")
-    static = _section(bore)
-    limit = []
-    if mass is not None:
-        limit = [f"  mass: {{max: {1e3 * mass:.4g} g}}".ljust(32) + f"# {HEAVIER} x the lightest"]
-    return "\n".join(
-        [
-            f"# {wall.words.capitalize()} actuator, {GOALS[duty.goal].words}: {asked}.",
-            "# The sizes are solved. After a change, look at them, or solve them again:",
-            "#   actuator-opt evaluate FILE      actuator-opt optimise FILE",
-            "# Every value has a PATH, such as cylinder.bore, for --set and for `variables`.",
-            f"name: {scalar(title)}",
-            "",
-            "# Duty: every requirement holds in the worst load case. The speeds are assumed.",
-            "load_cases:",
-            *cases,
-            "requirements:                   # besides those of the check list",
-            f"  burst_factor: {{min: {BURST:g}}}        # burst divided by supply pressure",
-            "  proof_factor: {min: 1}        # first damage divided by proof pressure",
-            f"  buckling_factor: {{min: {BUCKLING}}}   # extended, stalled at supply pressure",
-            *limit,
-            f"objective: {{{GOALS[duty.goal].objective}}}",
-            "",
-            "# Oil and surroundings",
-            f"supply: {{pressure: {stated['pressure']}, "
-            f"return_pressure: {exact_text(duty.return_pressure, DUTY['pressure'][0])}}}",
-            "fluid: {material: iso_vg_32, temperature: 40 degC}",
-            f"environment: {{temperature_min: 0 degC, temperature_max: 80 degC{cure}}}",
-            "",
-            "# Parts",
-            f"cylinder: {{bore: {_mm(bore)}, stroke: {stated['stroke']}, mount: cap_clevis, "
-            f"end_stop: {stop},",
-            f"  port_diameter: {ceil(max(3.0, 1e3 * bore * sqrt(SPEED / 4)))} mm, "
-            "stop_travel: 1 mm}",
-            "barrel:",
-            "  layup:                        # from the bore outwards",
-            *layers,
-            f"rod: {{material: steel_42crmo4, outer_diameter: {_mm(rod)}, "
-            f"inner_diameter: {_mm(min(_HOLLOW * rod, rod - 2.2e-3))},",
-            f"  extension: {_mm(0.5 * rod + 5e-3)}, thread: "
-            f"{{diameter: {_mm(sizes.rod_thread[0])}, pitch: {_mm(sizes.rod_thread[1])}}}}}",
-            *(
-                f"{part}: {{material: {wall.caps}, length: {_mm(length)}, "
-                f"clearance: {1e6 * sizes.clearance:.0f} um}}"
-                for part, length in (("piston", short), ("head", max(long, short)))
-            ),
-            f"caps: {{material: {wall.caps}, thickness: {_mm(0.18 * bore)}}}",
-            f"retention: {joint.line}",
-            f"clevis: {{material: steel_42crmo4, pin_diameter: {ceil(1e3 * sizes.pin)} mm}}",
-            "seals:",
-            *seals,
-            f"  static: {{compound: {compound}, section: {_mm(static)}, squeeze: 20 %, "
-            "tolerance: 0.05 mm}",
-            "",
-            "# Sizes that the optimiser varies between these bounds; all others are fixed.",
-            "variables:",
-            *bounds,
-            *joint.bounds,
-            "",
-        ]
+        lines.append(f"{line}}}")
+    static = (
+        f"  static: {{compound: {compound}, section: {_mm(sizes.section)}, squeeze: 20 %, "
+        "tolerance: 0.05 mm}"
     )
+    return [*lines, static]

@@ -36,12 +36,18 @@ if TYPE_CHECKING:
 
 def _named_file(name: str) -> tuple[str, Path]:
     """Title and file for `init NAME`: ``"left knee"`` is written to left_knee.yaml."""
+    from ..design.kinds import Text, ValueFault
+
     folder, base = os.path.split(name)
     title = base.removesuffix(".yaml").removesuffix(".yml")
     if base and not title.strip(". "):
         raise UsageError(
             Diagnostic(f"NAME: {shown(name)} is not a file name", "write e.g. left_knee")
         )
+    try:
+        Text().validate(title)
+    except ValueFault as fault:
+        raise UsageError(Diagnostic(f"NAME: {fault.message}", fault.remedy)) from None
     stem = re.sub(r"[^\w.+-]+", "_", title).strip("_.")
     return title, Path(folder, f"{stem or 'actuator'}.yaml")
 

@@ -55,8 +55,8 @@ def test_a_start_meets_its_limits_on_one_page(duty):
 
 def test_other_goals_weigh_little_more_than_the_lightest():
     """Friction falls below that of the lightest, and the mass stays within its limit."""
-    light = ao.evaluate(ao.start(push="4 kN", stroke=0.05))
-    smooth = ao.evaluate(ao.start(push=4e3, stroke="50 mm", goal="friction"))
+    light = ao.evaluate(ao.start(push="4 kN", stroke=0.05)).metrics
+    smooth = ao.evaluate(ao.start(push=4e3, stroke="50 mm", goal="friction")).metrics
     assert smooth["friction_running"].value < light["friction_running"].value
     assert smooth["mass"].value <= starting.HEAVIER * light["mass"].value
 
