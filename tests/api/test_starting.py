@@ -18,10 +18,16 @@ DUTIES = [
     Duty(500.0, 500.0, 0.5, 350e5),
     Duty(50e3, 50e3, 0.5, 50e5),
     Duty(3e3, 1e3, 0.3, 100e5, wall="aluminium"),
-    Duty(6e3, 4e3, 0.11, 210e5, wall="lined_carbon"),
+    Duty(1.2e3, 1e3, 0.04, 60e5, wall="lined_carbon"),
     Duty(2e3, 1e3, 0.06, 120e5, wall="linerless"),
 ]
 """The corners of forces, stroke and pressure, and each wall."""
+
+
+@pytest.fixture(autouse=True)
+def _one_search(monkeypatch):
+    """The first sizes alone lead to a design."""
+    monkeypatch.setattr(starting, "STARTS", 1)
 
 
 def missed_checks(evaluation):
@@ -68,10 +74,7 @@ def test_what_does_not_fit_says_why(monkeypatch):
     assert not start.met
     assert start.sentence == "missed: piston speed"
     assert start.text.startswith("# Nothing fits yet: missed: piston speed.\n")
-    missed = [
-        check.name for check in ao.evaluate(start.actuator).checks if check.status == "missed"
-    ]
-    assert missed == ["piston speed"]
+    assert missed_checks(ao.evaluate(start.actuator)) == {"piston speed"}
 
 
 @pytest.mark.parametrize(
