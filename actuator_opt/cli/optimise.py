@@ -30,6 +30,7 @@ from .options import (
     Shop,
     StandardSizes,
     Starts,
+    Verbose,
     VerifyDynamics,
     WholePlies,
     Write,
@@ -73,6 +74,7 @@ def optimise(
     no_record: NoRecord = False,
     as_json: Json = False,
     quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> ExitCode:
     """Find the best design and what each limit costs."""
     from .. import api as verbs
@@ -80,7 +82,7 @@ def optimise(
     job = Job(
         design, sets=sets, plugins=plugin, write=write, report=report or not as_json, out=out,
         date=date, all_pages=all_pages, format=format,
-        as_json=as_json, quiet=quiet, record=not no_record,
+        as_json=as_json, quiet=quiet, verbose=verbose, record=not no_record,
     )  # fmt: skip
     trial = None if verify is None else _scenario(verify, job.actuator)
     result = job.run(

@@ -89,16 +89,16 @@ class YieldEstimate:
         """The estimate in a sentence, or the reason why it is missing."""
         if self.value is None or self.lower is None or self.upper is None:
             return f"Yield not estimated ({self.why}); `actuator-opt uncertainty` estimates it."
-        shown = f"{_percent(self.lower)} to {_percent(self.upper)} %, {self.draws} samples"
+        shown = f"{percent_text(self.lower)} to {percent_text(self.upper)} %, {self.draws} samples"
         text = (
-            f"About {_percent(self.value)} % of the actuators built to this design would meet "
+            f"About {percent_text(self.value)} % of the actuators built to this design would meet "
             f"every requirement ({shown})"
         )
         if self.with_checks is not None and self.with_checks < self.value:
-            text += f", and {_percent(self.with_checks)} % would also pass every check"
+            text += f", and {percent_text(self.with_checks)} % would also pass every check"
         if self.worst is not None and self.worst_fails:
             text += (
-                f"; {self.worst} is missed most often, by {_percent(self.worst_fails)} % of them"
+                f"; {self.worst} is missed most often, by {percent_text(self.worst_fails)} % of them"
             )
         return f"{text}."
 
@@ -130,10 +130,10 @@ def sentences(names: Sequence[str], estimate: YieldEstimate, *, movable: bool) -
     return tuple(lines)
 
 
-def _percent(share: float) -> str:
+def percent_text(share: float) -> str:
     """Format a share in per cent, with a decimal below 10 and above 90.
 
-    >>> _percent(0.026), _percent(0.436), _percent(0.9967), _percent(1.0), _percent(0.0)
+    >>> percent_text(0.026), percent_text(0.436), percent_text(0.9967), percent_text(1.0), percent_text(0.0)
     ('2.6', '44', '99.7', '100', '0')
     """
     percent = 100 * share

@@ -21,7 +21,7 @@ from ..base.progress import tell
 from ..base.quantities import Quantity
 from ..design import quantity_of
 from ..evaluation.limits import LimitRow
-from ..metrics import METRICS
+from ..metrics import METRICS, is_safety
 from . import kkt, repairs
 from .actuator import ActuatorProblem
 from .cures import DIGITS, Cure, Cures, cures, outward
@@ -333,7 +333,7 @@ def entry_of(actuator: ActuatorProblem, relaxed: RelaxedConstraint) -> dict[str,
 
 def _protects_safety(row: LimitRow) -> bool:
     """Whether a limit protects safety: it belongs to the check list or to a safety factor."""
-    return row.limit_of.origin == "check" or row.limit_of.metric.endswith("_factor")
+    return row.limit_of.origin == "check" or is_safety(row.limit_of.metric)
 
 
 def _relaxed(row: LimitRow, limit: float, amount: float) -> float:
