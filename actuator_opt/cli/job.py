@@ -173,7 +173,7 @@ class Job:
 
     def _again(self) -> str:
         """The words of the command line that name the design, its changes and plug-ins."""
-        words = [self.design]
+        words = ["DESIGN.yaml" if self.design == "-" else self.design]
         words += [word for change in self.sets or () for word in ("--set", change)]
         words += [word for file in self.plugins or () for word in ("--plugin", str(file))]
         return shlex.join(words)

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from ..base.quantities import Quantity
 from ..design.paths import words_of
-from ..evaluation.result import Check, Evaluation, Requirement, count_words, percent_text
+from ..evaluation.result import Check, Evaluation, Requirement, count_words, percent
 from ..metrics import term_of
 from ..optimisation.prices import PER_CENT, Sensitivity
 from ..optimisation.result import Optimisation, VariableResult
@@ -115,7 +115,10 @@ def _head(subject: Evaluation | Optimisation) -> Iterator[Block]:
     name, words = evaluation.name, ", ".join(filter(None, parts))
     style = PAINTS[report.verdict(subject).state]
     if optimisation is not None and optimisation.rounding is not None and not optimisation.made:
-        name, words = f"{name}: no design with {optimisation.rounding.name}", f"without them: {words}"
+        name, words = (
+            f"{name}: no design with {optimisation.rounding.name}",
+            f"without them: {words}",
+        )
         yield _line(name, style)
         yield _line(words)
     else:
@@ -309,9 +312,7 @@ def _held(optimisation: Optimisation) -> list[Block]:
     return blocks
 
 
-def _changes(
-    optimisation: Optimisation, row: Requirement, price: Sensitivity | None
-) -> list[Cell]:
+def _changes(optimisation: Optimisation, row: Requirement, price: Sensitivity | None) -> list[Cell]:
     """Change of the objective if a limit is 10 % looser, then 10 % tighter."""
     if price is None or not price.ends:
         return [DASH, DASH]
@@ -386,9 +387,7 @@ def _dimensions(optimisation: Optimisation) -> list[Block]:
     for row in variables[:MOST_DIMENSIONS]:
         quantity = text.input_quantity(row.quantity)
         start = None if row.start is None else quantity.to_display(row.start)
-        rows.append(
-            [names[row.path], text.number(start), text.value_text(quantity, row.value)]
-        )
+        rows.append([names[row.path], text.number(start), text.value_text(quantity, row.value)])
     columns = [
         Column("dimension", width=1.0, least=12),
         Column("start", "right", style="dim"),
@@ -426,8 +425,7 @@ def _bound(row: VariableResult) -> str:
 
 
 def _masses(evaluation: Evaluation) -> list[Block]:
-    """Masses of the heaviest parts, in two columns; below them mass with oil, and what is left out.
-    """
+    """Masses of the heaviest parts in two columns, mass with oil, and what is left out."""
     quantity = text.metric("mass")
     parts = sorted(evaluation.mass_parts.items(), key=lambda part: -part[1])
     total = sum(evaluation.mass_parts.values())
@@ -504,15 +502,15 @@ def _yield(evaluation: Evaluation) -> Iterator[Block]:
     known = evaluation.yield_estimate
     if known.value is None or known.lower is None or known.upper is None or not evaluation.met:
         return
-    shares = [percent_text(share) for share in (known.value, known.lower, known.upper)]
+    shares = [percent(share) for share in (known.value, known.lower, known.upper)]
     words = "yield: {} % of the actuators built would meet all requirements ({} to {} %)"
     words = words.format(*shares)
     if known.with_checks is not None and known.with_checks < known.value:
-        words += f", {percent_text(known.with_checks)} % also all checks"
+        words += f", {percent(known.with_checks)} % also all checks"
     if known.worst is not None and known.worst_fails:
         row = next((r for r in evaluation.requirements if r.name == known.worst), None)
         name = known.worst if row is None else _name(row, evaluation)
-        words += f"; {percent_text(known.worst_fails)} % miss {name}"
+        words += f"; {percent(known.worst_fails)} % miss {name}"
     yield _line(words, "" if known.value >= 0.99 else "yellow")
 
 
