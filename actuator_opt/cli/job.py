@@ -42,7 +42,7 @@ class Job:
         `all_pages` adds images of all pages
     as_json, quiet, verbose : form of the answer; `verbose`: the whole text, not only the card
     record : whether to record the run
-    paper : keyword arguments that only the report of this command has
+    paper, card : keyword arguments that only the report and the card of this command have
     """
 
     design: str = ""
@@ -61,6 +61,7 @@ class Job:
     verbose: bool = True
     record: bool = False
     paper: dict[str, Any] = field(default_factory=dict)
+    card: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for path in filter(None, (self.csv, self.write)):
@@ -134,7 +135,7 @@ class Job:
             style = streams.style()
             if self.verbose:
                 return "\n".join(results.text(x, **style) for x in shown)
-            card = {"again": self._again(), "written": self.write is not None}
+            card = {"again": self._again(), "written": self.write is not None, **self.card}
             return "\n".join(results.card(x, card, **style) for x in shown)
 
         listed = [*({"path": path} for path in saved if path is not None), *written]
@@ -220,8 +221,10 @@ def _wrote(paths: Sequence[str], *, each: bool) -> list[str]:
 _TARGETS = ("--out", "--write", "--csv", "--parquet", "--format", "--scheduler")
 """Options with a value that do not affect the result: where it is written or computed."""
 
-_SILENT = ("--json", "--report", "--all-pages", "--quiet", "-q", "--verbose", "-v", "--no-record",
-           "--debug")  # fmt: skip
+_SILENT = (
+    "--json", "--report", "--all-pages", "--quiet", "-q", "--verbose", "-v", "--relax-safety",
+    "--no-record", "--debug",
+)  # fmt: skip
 """Flags that do not affect the result."""
 
 

@@ -53,6 +53,10 @@ def optimise(
     certify: Certify = False,
     target: Yield = None,
     verify: VerifyDynamics = None,
+    relax_safety: Annotated[
+        bool,
+        typer.Option("--relax-safety", help="If nothing fits, offer lower safety factors, too."),
+    ] = False,
     scheduler: Annotated[
         str | None,
         typer.Option(
@@ -83,6 +87,7 @@ def optimise(
         design, sets=sets, plugins=plugin, write=write, report=report or not as_json, out=out,
         date=date, all_pages=all_pages, format=format,
         as_json=as_json, quiet=quiet, verbose=verbose, record=not no_record,
+        card={"relax_safety": relax_safety},
     )  # fmt: skip
     trial = None if verify is None else _scenario(verify, job.actuator)
     result = job.run(

@@ -249,6 +249,7 @@ def _card(
         evidence=_evidence(explanation, solution),
         cures=tuple(sufficient),
         untried=remedies.untried,
+        failed=remedies.failed,
     )
 
 
@@ -264,6 +265,7 @@ def _limit_entry(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
         "parameter": entry["parameter"] or entry["requirement"],
         "advised": kind != "safety factor",
         "now": entry["value"] if kind == "bound" else entry["limit"],
+        "objective": None,
     } | {name: entry[name] for name in ("needed", "change", "limit_text", "needed_text")}
 
 
@@ -277,6 +279,7 @@ def _joint_entry(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[
         "now": None,
         "needed": None,
         "change": None,
+        "objective": parts[0]["objective"],
     }
     return entry | {name: " + ".join(part[name] for part in parts) for name in texts} | {
         "together": parts
@@ -286,6 +289,8 @@ def _joint_entry(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[
 def _cure_entry(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, Any]:
     """Record of a cure: a dimension or choice whose change alone is enough."""
     entry: dict[str, Any] = {"kind": kind, "parameter": cure.path, "advised": True, "now": cure.now}
+    best = cure.objective
+    entry["objective"] = None if best is None else actuator.goal.shown(best)
     if isinstance(cure.now, str) or isinstance(cure.needed, str):
         further = ", ".join(
             f"{path.rpartition('.')[2]} {text}" for path, text in cure.beside.items()

@@ -8,14 +8,16 @@ page (`report.page`) follows with ``--verbose``.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+import shlex
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
 from ..base.quantities import Quantity
 from ..design.paths import words_of
 from ..evaluation.result import Check, Evaluation, Requirement, count_words, percent
 from ..metrics import term_of
 from ..optimisation.prices import PER_CENT, Sensitivity
-from ..optimisation.result import Optimisation, VariableResult
+from ..optimisation.result import Infeasibility, Optimisation, VariableResult
 from ..rendering import text
 from ..rendering.blocks import Block, Cell, Column, Notes, Pair, Row, Status, Table
 from ..rendering.terminal import PAINTS
@@ -26,6 +28,8 @@ MOST_LIMITS = 11
 """Largest number of limits in a table: misses first, then the smallest margins."""
 MOST_MISSES, MOST_HELD = 6, 7
 """Largest number of missed limits and of active limits on the card of an optimisation."""
+MOST_REMEDIES = 6
+"""Largest number of remedies of each kind if nothing fits."""
 MOST_DIMENSIONS = 18
 """Largest number of dimensions, in two columns."""
 LONGEST_NAME = 20
@@ -43,7 +47,11 @@ MORE = "(-v)"
 
 
 def blocks(
-    subject: Evaluation | Optimisation, *, again: str = "DESIGN.yaml", written: bool = False
+    subject: Evaluation | Optimisation,
+    *,
+    again: str = "DESIGN.yaml",
+    written: bool = False,
+    relax_safety: bool = False,
 ) -> list[Block]:
     """The card of an evaluation or an optimisation.
 
@@ -52,9 +60,12 @@ def blocks(
     subject : the evaluation or optimisation
     again : design file and options that repeat the command, for the line "next"
     written : whether the design was saved, so that the line "next" need not say how
+    relax_safety : whether to offer lower safety factors, too, if nothing fits
     """
     evaluation, optimisation = report.parts_of(subject)
-    if optimisation is None:
+    if optimisation is not None and optimisation.infeasibility is not None:
+        body = _remedies(optimisation, optimisation.infeasibility, relax_safety=relax_safety)
+    elif optimisation is None:
         body = [_limits(evaluation), [*_masses(evaluation), *_others(evaluation)]]
     else:
         body = [
@@ -113,6 +124,8 @@ def _head(subject: Evaluation | Optimisation) -> Iterator[Block]:
     if optimisation is not None:
         parts.append(_quality(optimisation))
     name, words = evaluation.name, ", ".join(filter(None, parts))
+    if optimisation is not None and optimisation.infeasibility is not None:
+        words = _nearest(evaluation, optimisation.infeasibility)
     style = PAINTS[report.verdict(subject).state]
     if optimisation is not None and optimisation.rounding is not None and not optimisation.made:
         name, words = (
@@ -367,6 +380,120 @@ def _spare(optimisation: Optimisation) -> list[Block]:
     return [_line(_listed("to spare: ", words))] if words else []
 
 
+# ---- nothing fits ----
+
+
+def _nearest(evaluation: Evaluation, card: Infeasibility) -> str:
+    """The limit that the nearest design misses most, or the geometry that no design can meet."""
+    if card.laws:
+        return f"nothing fits, whatever is asked for: {_listed('', [*map(term_of, card.laws)])}"
+    rows = [row for row in evaluation.requirements if not row.met]
+    rows.sort(key=lambda row: -math.inf if row.margin is None else row.margin)
+    if not rows:
+        return "nothing fits"
+    row, quantity = rows[0], text.metric(rows[0].metric)
+    words = f"nothing fits. Nearest: {_name(row, evaluation)}"
+    if row.value is None or row.margin is None:
+        return f"{words} not computed"
+    limit = text.limit_text(quantity, row.sense, row.limit)
+    words += f" {text.value_text(quantity, row.value)}, {limit}"
+    if row.limit:
+        side = "under" if row.sense == "min" else "over"
+        words += f" ({text.number(-100 * row.margin, 2)} % {side})"
+    return words if len(rows) == 1 else f"{words}, {len(rows) - 1} more missed"
+
+
+_KEPT = ("dimension", "choice", "bound")
+"""Kinds of remedy that keep every requirement."""
+
+
+def _remedies(
+    optimisation: Optimisation, card: Infeasibility, *, relax_safety: bool
+) -> list[list[Block]]:
+    """Changes that make a design possible: with all requirements kept, then with less asked for.
+
+    Safety factors are only offered with `relax_safety`.
+    """
+    kept = [cure for cure in card.cures if cure["kind"] in _KEPT]
+    less = [c for c in card.cures if c["kind"] == "requirement"]
+    safety = [c for c in card.cures if c["kind"] == "safety factor"]
+    together = [] if less else [*card.joint]
+    unsafe = bool(safety) or any(entry["safety_factor"] for entry in together)
+    if relax_safety:
+        less += safety
+    elif any(entry["safety_factor"] for entry in together):
+        together = []
+    groups: list[list[Block]] = []
+    number = 0
+    for title, entries in (
+        ("keep every requirement and change", kept[:MOST_REMEDIES]),
+        ("or ask for less" if kept else "ask for less", less[:MOST_REMEDIES]),
+        ("or ask for less of all these together", together[:MOST_REMEDIES]),
+    ):
+        if not entries:
+            continue
+        rows = [
+            [str(number + k), _what(entry), _then(optimisation, entry)]
+            for k, entry in enumerate(entries, 1)
+        ]
+        number += len(entries)
+        then = "then" if any(row[-1] for row in rows) else ""
+        columns = [
+            Column("", "right"),
+            Column(title, width=1.0, least=30, wraps=True),
+            Column(then, "right", strong=True),
+        ]
+        groups.append([Table("", columns, rows)])
+    if not groups:
+        groups.append(
+            [_line("No single change of a number, choice or limit was found to be enough.")]
+        )
+    notes: list[Block] = []
+    if card.failed:
+        notes.append(_line(_listed("no help alone: ", card.failed)))
+    if card.untried:
+        notes.append(_line(_listed("not tried: ", card.untried)))
+    if unsafe and not relax_safety:
+        notes.append(_line("lower safety factors would also do: not advised, see --relax-safety"))
+    notes.append(_line("No design found is not a proof that there is none; -v shows the search."))
+    return [*groups, notes]
+
+
+def _what(entry: Mapping[str, Any]) -> str:
+    """The change in words: PATH, present and needed value, change in per cent."""
+    if "together" in entry:
+        return " and ".join(map(_what, entry["together"]))
+    name = str(entry["parameter"] or entry["requirement"])
+    change = entry["change"]
+    if beside := entry.get("beside"):
+        further = " and ".join(f"{path} → {word}" for path, word in beside.items())
+        return f"{name}  {entry['now']} → {entry['needed']} and {further}"
+    share = "" if change is None else f" ({text.number(100 * change, 2, signed=True)} %)"
+    return text.pretty(f"{name}  {entry['limit_text']} -> {entry['needed_text']}{share}").replace(
+        "->", "→"
+    )
+
+
+def _settings(card: Infeasibility) -> str:
+    """Options ``--set`` that make the first remedy that keeps every requirement; "" without one."""
+    cure = next((cure for cure in card.cures if cure["kind"] in _KEPT), None)
+    if cure is None:
+        return ""
+    pairs: list[tuple[str, str]] = []
+    for entry in cure.get("together", [cure]):
+        needed = entry["needed"] if isinstance(entry["needed"], str) else entry["needed_text"]
+        pairs += [(entry["parameter"], needed), *entry.get("beside", {}).items()]
+    return "".join(f" --set {shlex.quote(f'{path}={value}')}" for path, value in pairs)
+
+
+def _then(optimisation: Optimisation, entry: Mapping[str, Any]) -> str:
+    """The objective with a change."""
+    value = entry.get("objective")
+    return (
+        "" if value is None else text.value_text(text.metric(optimisation.objective_metric), value)
+    )
+
+
 # ---- dimensions and masses ----
 
 
@@ -569,7 +696,11 @@ def _next(subject: Evaluation | Optimisation, again: str, *, written: bool) -> I
             words = f"actuator-opt report {again}"
         else:
             words = f'state "variables" in the file, then actuator-opt optimise {again}'
-    elif optimisation.infeasibility is not None or not evaluation.met:
+    elif optimisation.infeasibility is not None:
+        if not (settings := _settings(optimisation.infeasibility)):
+            return
+        words = f"actuator-opt optimise {again}{settings}"
+    elif not evaluation.met:
         return
     elif known.value is not None and known.value < 0.99 and optimisation.robust is None:
         words = f"actuator-opt optimise {again} --yield 0.99"
