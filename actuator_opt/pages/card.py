@@ -254,10 +254,10 @@ def _limit_table(
     columns = [
         Column(""),
         Column(head, width=2.0, least=16),
-        Column("limit", "right"),
+        Column("limit", "right", drop=1),
         Column("result", "right", style="bold"),
         Column("margin", "right", style="state"),
-        Column("where", width=1.0, drop=1, style="dim"),
+        Column("where", width=1.0, drop=2, style="dim"),
     ]
     cells = [Row(_limit_cells(row, evaluation), row.state) for row in rows[:most]]
     blocks: list[Block] = [Table("", columns, cells)]
@@ -309,8 +309,8 @@ def _held(optimisation: Optimisation) -> list[Block]:
         rows.append([f"  {name}", limit, result, *changes])
     columns = [
         Column("what holds it" if priced else "without reserve", width=1.0, least=18),
-        Column("limit", "right"),
-        Column("result", "right", style="bold"),
+        Column("limit", "right", drop=1),
+        Column("result", "right", drop=2, style="bold"),
         *(Column(f"{PER_CENT} % {word}", "right") for word in ("looser", "tighter") if priced),
         *([] if priced else [Column("margin", "right")]),
     ]
