@@ -104,7 +104,7 @@ def test_an_eye_made_with_the_rod():
 
 
 def test_rings_that_pass_a_thread_or_a_groove():
-    """Static rings stand 20 % of 1.78 mm and 0.05 mm of tolerance above the bore; or fall into a groove."""
+    """Static rings stand 20 % of 1.78 mm and 0.05 mm above the bore; a wide groove catches them."""
     changes = {"retention.type": "plug_thread"}
     assert not list(assembly.warnings(design("knee_choices", **changes)))
     for step, count in ((0.001, 0), (-0.1, 1)):
