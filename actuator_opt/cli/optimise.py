@@ -55,14 +55,11 @@ def optimise(
     certify: Certify = False,
     target: Yield = None,
     verify: VerifyDynamics = None,
-<<<<<<< HEAD
     relax_safety: Annotated[
         bool,
         typer.Option("--relax-safety", help="If nothing fits, offer lower safety factors, too."),
     ] = False,
-=======
     seconds: Seconds = None,
->>>>>>> main
     scheduler: Annotated[
         str | None,
         typer.Option(
