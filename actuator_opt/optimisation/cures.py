@@ -51,8 +51,11 @@ MOST_DIMENSIONS = 8
 MOST_CHOICES = 4
 """Maximum number of choices solved, the least infeasible first: our choice, to limit the time."""
 
+MOST_PAIRED = 4
+"""Number of choices, the least infeasible, that are paired with each other: our choice."""
+
 MOST_PAIRS = 4
-"""Maximum number of pairs of choices solved if no single one suffices: our choice."""
+"""Maximum number of pairs of choices solved if no single change suffices: our choice."""
 
 ENOUGH = 3
 """The search for a kind of remedy stops after this number of remedies: our choice."""
@@ -123,7 +126,9 @@ def cures(actuator: ActuatorProblem, conflict: Conflict) -> Cures:
         path: gain for path, gain in _gains(actuator, conflict).items() if abs(gain) >= threshold
     }
     dimensions, together, untried, failed = _dimensions(actuator, conflict.x, gains)
-    choices, untried_choices, failed_choices = _choices(actuator, conflict, gains)
+    choices, untried_choices, failed_choices = _choices(
+        actuator, conflict.x, gains, paired=not dimensions and not together
+    )
     return Cures(
         dimensions,
         together,
@@ -331,29 +336,29 @@ def outward(value: float, digits: int, upwards: bool) -> float:
 
 
 def _choices(
-    actuator: ActuatorProblem, conflict: Conflict, gains: Mapping[str, float]
+    actuator: ActuatorProblem, x: Vector, gains: Mapping[str, float], *, paired: bool
 ) -> tuple[tuple[Cure, ...], list[str], list[str]]:
     """Choices that make the design feasible, those not tried, and those that do not suffice.
 
-    If no single choice suffices, pairs of choices are tried.
+    With `paired`, pairs of choices are tried if no single choice suffices.
     """
     subject, library = actuator.subject, load_library()
-    present = _missed(actuator.problem, conflict.x)
+    present = _missed(actuator.problem, x)
     offered: list[_Offer] = []
-    margins = np.ravel(actuator.evaluate(conflict.x[:, None]).constraints)
+    margins = np.ravel(actuator.evaluate(x[:, None]).constraints)
     rows = zip(actuator.rows, margins.tolist(), strict=True)
     places = {row.place for row, margin in rows if not margin >= -repairs.NOTHING}
     for path, word, beside in _candidate_choices(subject, library, gains, places):
         now = _word_at(subject.design, path)
         problem = None if word == now else _with_choice(actuator, {path: word, **beside}, library)
-        missed = math.inf if problem is None else _missed(problem, conflict.x)
+        missed = math.inf if problem is None else _missed(problem, x)
         if problem is not None and missed < present - repairs.NOTHING:
             offered.append((missed, Cure(path, now, word, beside), problem))
     offered.sort(key=lambda offer: (offer[0], offer[1].path))
-    sufficient, failed, left = _sufficient(offered, conflict.x, MOST_CHOICES)
-    if not sufficient:
-        sufficient, _, _ = _sufficient(_pairs(actuator, conflict.x, offered, library), conflict.x,
-                                       MOST_PAIRS)  # fmt: skip
+    sufficient, failed, left = _sufficient(offered, x, MOST_CHOICES)
+    if paired and not sufficient:
+        pairs = _pairs(actuator, x, offered[:MOST_PAIRED], present, library)
+        sufficient = _sufficient(pairs, x, MOST_PAIRS)[0]
     solved = {cure.path for cure in sufficient} | {cure.path for cure in failed}
     untried = dict.fromkeys(cure.path for cure in left if cure.path not in solved)
     return tuple(sufficient), [*untried], [f"{cure.path} {cure.needed}" for cure in failed]
@@ -385,19 +390,22 @@ def _sufficient(
 
 
 def _pairs(
-    actuator: ActuatorProblem, x: Vector, offered: Sequence[_Offer], library: Library
+    actuator: ActuatorProblem,
+    x: Vector,
+    single: Sequence[_Offer],
+    present: float,
+    library: Library,
 ) -> list[_Offer]:
-    """Pairs of the offered choices at different PATHs, the least infeasible first."""
-    least = min((missed for missed, _, _ in offered), default=0.0)
+    """Pairs of single choices at different PATHs that miss less than at present, least first."""
     pairs: list[_Offer] = []
-    for (_, first, _), (_, second, _) in itertools.combinations(offered[: 2 * MOST_CHOICES], 2):
+    for (_, first, _), (_, second, _) in itertools.combinations(single, 2):
         if first.path == second.path:
             continue
         beside = {second.path: str(second.needed), **first.beside, **second.beside}
         values = {first.path: str(first.needed), **beside}
         problem = _with_choice(actuator, values, library)
         missed = math.inf if problem is None else _missed(problem, x)
-        if problem is not None and missed < least - repairs.NOTHING:
+        if problem is not None and missed < present - repairs.NOTHING:
             pairs.append((missed, replace(first, beside=beside), problem))
     return sorted(pairs, key=lambda offer: (offer[0], offer[1].path))
 
