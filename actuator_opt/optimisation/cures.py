@@ -343,7 +343,7 @@ def _choices(
     With `paired`, pairs of choices are tried if no single choice suffices.
     """
     subject, library = actuator.subject, load_library()
-    present = _missed(actuator.problem, x)
+    present, values = _missed(actuator.problem, x), dict(zip(actuator.paths, x, strict=True))
     offered: list[_Offer] = []
     margins = np.ravel(actuator.evaluate(x[:, None]).constraints)
     rows = zip(actuator.rows, margins.tolist(), strict=True)
@@ -351,14 +351,14 @@ def _choices(
     for path, word, beside in _candidate_choices(subject, library, gains, places):
         now = _word_at(subject.design, path)
         problem = None if word == now else _with_choice(actuator, {path: word, **beside}, library)
-        missed = math.inf if problem is None else _missed(problem, x)
+        missed = math.inf if problem is None else _missed(problem, _point(problem, values))
         if problem is not None and missed < present - repairs.NOTHING:
             offered.append((missed, Cure(path, now, word, beside), problem))
     offered.sort(key=lambda offer: (offer[0], offer[1].path))
-    sufficient, failed, left = _sufficient(offered, x, MOST_CHOICES)
+    sufficient, failed, left = _sufficient(offered, values, MOST_CHOICES)
     if paired and not sufficient:
-        pairs = _pairs(actuator, x, offered[:MOST_PAIRED], present, library)
-        sufficient = _sufficient(pairs, x, MOST_PAIRS)[0]
+        pairs = _pairs(actuator, values, offered[:MOST_PAIRED], present, library)
+        sufficient = _sufficient(pairs, values, MOST_PAIRS)[0]
     solved = {cure.path for cure in sufficient} | {cure.path for cure in failed}
     untried = dict.fromkeys(cure.path for cure in left if cure.path not in solved)
     return tuple(sufficient), [*untried], [f"{cure.path} {cure.needed}" for cure in failed]
@@ -369,7 +369,7 @@ _Offer: TypeAlias = tuple[float, Cure, BoxProblem]
 
 
 def _sufficient(
-    offered: Sequence[_Offer], x: Vector, most: int
+    offered: Sequence[_Offer], values: Mapping[str, float], most: int
 ) -> tuple[list[Cure], list[Cure], list[Cure]]:
     """The offers that make the design feasible, those that do not, and those not tried."""
     sufficient: list[Cure] = []
@@ -381,7 +381,7 @@ def _sufficient(
             "infeasible: searching for a choice whose change makes the design feasible",
             number / len(offered),
         )
-        best = _best_near(problem, x)
+        best = _best_near(problem, _point(problem, values))
         if best is None:
             failed.append(cure)
         else:
@@ -391,7 +391,7 @@ def _sufficient(
 
 def _pairs(
     actuator: ActuatorProblem,
-    x: Vector,
+    values: Mapping[str, float],
     single: Sequence[_Offer],
     present: float,
     library: Library,
@@ -402,12 +402,17 @@ def _pairs(
         if first.path == second.path:
             continue
         beside = {second.path: str(second.needed), **first.beside, **second.beside}
-        values = {first.path: str(first.needed), **beside}
-        problem = _with_choice(actuator, values, library)
-        missed = math.inf if problem is None else _missed(problem, x)
+        words = {first.path: str(first.needed), **beside}
+        problem = _with_choice(actuator, words, library)
+        missed = math.inf if problem is None else _missed(problem, _point(problem, values))
         if problem is not None and missed < present - repairs.NOTHING:
             pairs.append((missed, replace(first, beside=beside), problem))
     return sorted(pairs, key=lambda offer: (offer[0], offer[1].path))
+
+
+def _point(problem: BoxProblem, values: Mapping[str, float]) -> Vector:
+    """Values of the problem's variables; another joint has fewer variables than the design."""
+    return np.array([values[name] for name in problem.names])
 
 
 def _missed(problem: BoxProblem, x: Vector) -> float:

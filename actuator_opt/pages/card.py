@@ -17,6 +17,7 @@ from ..design.paths import words_of
 from ..evaluation.result import Check, Evaluation, Requirement, count_words, percent
 from ..metrics import term_of
 from ..optimisation.prices import PER_CENT, Sensitivity
+from ..optimisation.problem import Robust
 from ..optimisation.result import Infeasibility, Optimisation, VariableResult
 from ..rendering import text
 from ..rendering.blocks import Block, Cell, Column, Notes, Pair, Row, Status, Table
@@ -126,6 +127,9 @@ def _head(subject: Evaluation | Optimisation) -> Iterator[Block]:
     name, words = evaluation.name, ", ".join(filter(None, parts))
     if optimisation is not None and optimisation.infeasibility is not None:
         words = _nearest(evaluation, optimisation.infeasibility)
+        if optimisation.robust is not None:
+            target = percent(optimisation.robust.target)
+            words = words.replace("nothing fits", f"nothing fits with a yield of {target} %", 1)
     style = PAINTS[report.verdict(subject).state]
     if optimisation is not None and optimisation.rounding is not None and not optimisation.made:
         name, words = (
@@ -619,9 +623,27 @@ def _outcomes(subject: Evaluation | Optimisation) -> Iterator[Block]:
         if certificate is not None and certificate.gap is None:
             yield _line(text.pretty(f"no proof: {certificate.sentence}"), "yellow")
         if optimisation.robust is not None:
-            yield _line(f"yield: {text.pretty(optimisation.robust.sentence)}")
+            yield from _robust(optimisation, optimisation.robust)
             return
     yield from _yield(evaluation)
+
+
+def _robust(optimisation: Optimisation, robust: Robust) -> Iterator[Block]:
+    """Yield of a search with margins for scatter, beside the yield asked for, and the margins."""
+    evaluation = optimisation.best_evaluation
+    rate, low, high = (percent(share) for share in (robust.rate, robust.lower, robust.upper))
+    words = f"yield: {rate} % ({low} to {high} %), asked for {percent(robust.target)} %"
+    nominal = robust.nominal_objective
+    if math.isfinite(nominal):
+        quantity = text.metric(optimisation.objective_metric)
+        share = percent(robust.nominal_rate)
+        words += f"; without margins {text.value_text(quantity, nominal)}, yield {share} %"
+    yield _line(words, "" if robust.reached else "yellow")
+    rows = {row.name: _name(row, evaluation) for row in evaluation.requirements}
+    kept = [(x, rows.get(name, name)) for name, x in robust.reserves.items() if x >= LEAST_GAIN]
+    names = [f"{name} {100 * x:.2g} %" for x, name in sorted(kept, reverse=True)]
+    if names:
+        yield _line(_listed("margins for scatter: ", names))
 
 
 def _yield(evaluation: Evaluation) -> Iterator[Block]:
@@ -700,6 +722,8 @@ def _next(subject: Evaluation | Optimisation, again: str, *, written: bool) -> I
         if not (settings := _settings(optimisation.infeasibility)):
             return
         words = f"actuator-opt optimise {again}{settings}"
+        if optimisation.robust is not None:
+            words += f" --yield {optimisation.robust.target:g}"
     elif not evaluation.met:
         return
     elif known.value is not None and known.value < 0.99 and optimisation.robust is None:

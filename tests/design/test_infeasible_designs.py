@@ -250,7 +250,7 @@ def test_two_choices_that_are_only_enough_together(monkeypatch):
     monkeypatch.setattr(cures, "_with_choice", lambda actuator, values, library: problem(
         sum(word == "better" for word in values.values())
     ))  # fmt: skip
-    x = np.array([0.2])
+    x = {"x": 0.2}
     single = [(1.3, Cure(path, "old", "better"), problem(1)) for path in ("rod.a", "caps.b")]
     assert cures._sufficient(single, x, 4)[0] == []
     pairs = cures._pairs(None, x, [*single, single[0]], 2.3, None)
