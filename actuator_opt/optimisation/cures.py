@@ -127,7 +127,10 @@ def cures(actuator: ActuatorProblem, conflict: Conflict) -> Cures:
     }
     dimensions, together, untried, failed = _dimensions(actuator, conflict.x, gains)
     choices, untried_choices, failed_choices = _choices(
-        actuator, conflict.x, gains, paired=not dimensions and not together
+        actuator,
+        conflict.x,
+        gains,
+        paired=not together and all(is_property(actuator, cure) for cure in dimensions),
     )
     return Cures(
         dimensions,
@@ -136,6 +139,11 @@ def cures(actuator: ActuatorProblem, conflict: Conflict) -> Cures:
         (*untried, *untried_choices),
         (*failed, *failed_choices),
     )
+
+
+def is_property(actuator: ActuatorProblem, cure: Cure) -> bool:
+    """Whether a cure changes a property of a material or surface, not a dimension."""
+    return quantity_of(cure.path, actuator.subject.design).name == "friction_coefficient"
 
 
 def _gains(actuator: ActuatorProblem, conflict: Conflict) -> dict[str, float]:

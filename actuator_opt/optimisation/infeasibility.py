@@ -24,7 +24,7 @@ from ..evaluation.limits import LimitRow
 from ..metrics import METRICS, is_safety
 from . import kkt, repairs
 from .actuator import ActuatorProblem
-from .cures import DIGITS, Cure, Cures, cures, outward
+from .cures import DIGITS, Cure, Cures, cures, is_property, outward
 from .evaluator import Evaluator, Point
 from .problem import BoxProblem, Vector
 from .repairs import NOTHING, WIDEST, Conflict, Opening, RelaxedConstraint
@@ -193,8 +193,9 @@ MORE_DIGITS = 6
 """Number of digits for changes below one per cent."""
 
 
-KINDS = ("dimension", "choice", "bound", "requirement", "safety factor")
-"""Kinds of change, the most advisable first."""
+KINDS = ("dimension", "choice", "bound", "number", "requirement", "safety factor")
+"""Kinds of change, the most advisable first. A "number" is a property, such as the friction
+coefficient of a seal, that another finish or coating would have to reach."""
 
 
 _ORIGINS = {"requirement": "requirement", "case": "load case", "check": "check list"}
@@ -232,7 +233,10 @@ def _card(
     )
     bounds = tuple(_bound_entry(actuator, bound) for bound in explanation.bounds)
     sufficient = [
-        *(_cure_entry(actuator, "dimension", cure) for cure in remedies.dimensions),
+        *(
+            _cure_entry(actuator, "number" if is_property(actuator, cure) else "dimension", cure)
+            for cure in remedies.dimensions
+        ),
         *([_joint_entry(actuator, remedies.together)] if remedies.together else []),
         *(_cure_entry(actuator, "choice", cure) for cure in remedies.choices),
         *(_limit_entry(bound, "bound") for bound in bounds if bound["needed"] is not None),

@@ -407,7 +407,7 @@ def _nearest(evaluation: Evaluation, card: Infeasibility) -> str:
     return words if len(rows) == 1 else f"{words}, {len(rows) - 1} more missed"
 
 
-_KEPT = ("dimension", "choice", "bound")
+_KEPT = ("dimension", "choice", "bound", "number")
 """Kinds of remedy that keep every requirement."""
 
 

@@ -30,7 +30,11 @@ MOST_COLUMNS = 4
 WORTH = 10.0
 """Margins added for scatter are not shown if they exceed this multiple of their limit, as the
 design is then far from the limit."""
-_KINDS = {"dimension": "fixed dimension", "safety factor": "safety: not advised"}
+_KINDS = {
+    "dimension": "fixed dimension",
+    "number": "fixed number",
+    "safety factor": "safety: not advised",
+}
 """Clearer words for some kinds of remedy."""
 
 
