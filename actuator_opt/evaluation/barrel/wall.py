@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import field
+from functools import reduce
 from math import pi
 
 import numpy as np
@@ -33,6 +34,7 @@ from ..state import LoadState
 from ..values import Values
 
 NONE = "no axial load"
+OWN = ""
 STOP = "piston at the end stop"
 LARGEST = "largest axial load"
 RUPTURE = "axial rupture"
@@ -289,7 +291,7 @@ class Wall:
 
     swelling: Swelling
     path: LoadPath
-    growth: Array
+    growths: dict[str, Array]
     case_growth: Array
     bending_stiffness: Array
     shear_stiffness: Array
@@ -312,6 +314,11 @@ class Wall:
     tube: MetalTube | None = None
     why_no_mismatch: str = "the wall has a single material"
     missing: list[str] = field(default_factory=list)
+
+    @property
+    def growth(self) -> Array:
+        """Bore growth at supply pressure, the largest of the load paths, (cases, designs) [m]."""
+        return reduce(maximum, self.growths.values())
 
 
 def metal_swelling(
@@ -340,22 +347,22 @@ def metal_swelling(
     alpha = stock.get(name, "thermal_expansion", "thermal_expansion_2")
     path = load_path(v, design, stock, g, state, swelling, alpha)
     supply = v["supply.pressure"]
-    free = supply * swelling.growth
+    force_growth = swelling.growth_by_force * path.cases
+    driven = state.driven_pressure
     if as_published:
         growth = barrel.bore_growth_as_published(pressure=supply, **size, **elastic)
+        growths, case_growth = {OWN: growth}, growth * (driven / supply)
     else:
-        growth = maximum(free + swelling.growth_by_force * path.cases, free)
-    driven = state.driven_pressure
-    driven_growth = swelling.growth * driven
+        free, driven_growth = supply * swelling.growth, driven * swelling.growth
+        growths = {OWN: free + force_growth, NONE: free}
+        case_growth = maximum(driven_growth + force_growth, driven_growth)
     outer, inner = 2 * g.outer_radius, 2 * g.inner_radius
     shear = modulus / (2 * (1 + ratio)) * area
     wall = Wall(
         swelling=swelling,
         path=path,
-        growth=growth,
-        case_growth=growth * (driven / supply)
-        if as_published
-        else maximum(driven_growth + swelling.growth_by_force * path.cases, driven_growth),
+        growths=growths,
+        case_growth=case_growth,
         bending_stiffness=modulus * rod.second_moment(outer_diameter=outer, inner_diameter=inner),
         shear_stiffness=shear
         * column.cowper_tube(poissons_ratio=ratio, radius_ratio=inner / outer),

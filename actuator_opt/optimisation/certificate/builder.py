@@ -19,7 +19,7 @@ from ...base.symbolic import Symbol
 from ...base.symbolic.expression import bounds_of
 from ...design.model import Design
 from ...evaluation import PreparedDesign, plies, rod_strength
-from ...evaluation.barrel import LAMINATES, Swelling, Wall, compute, kind, wall
+from ...evaluation.barrel import LAMINATES, OWN, Swelling, Wall, compute, kind, wall
 from ...evaluation.barrel.wall import LoadPath
 from ...evaluation.geometry import Geometry, clamped
 from ...evaluation.kernel import Implicit, ModelRun, Statics
@@ -550,7 +550,7 @@ class Envelopes:
         return Wall(
             swelling=rigid,
             path=self._path(v, design, stock, g, state, rigid),
-            growth=supply_growth,
+            growths={OWN: supply_growth},
             case_growth=case_growth,
             bending_stiffness=bending,
             shear_stiffness=shear,
