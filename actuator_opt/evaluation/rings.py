@@ -266,9 +266,7 @@ def gland_metrics(
             path: squeezes(ring, growth=growth, aside=0.0, ratio=least)[0]
             for path, growth in growths.items()
         }
-        metrics["seal_squeeze_max"] = {
-            OWN: squeezes(ring, growth=0.0, aside=0.0, ratio=most)[1]
-        }
+        metrics["seal_squeeze_max"] = {OWN: squeezes(ring, growth=0.0, aside=0.0, ratio=most)[1]}
     if ring.element.seal_type.o_ring_gland:
         metrics["seal_fill"] = {OWN: _fill(ring) * most}
         metrics["seal_stretch"] = {OWN: ring["stretch"]}

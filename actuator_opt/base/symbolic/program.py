@@ -240,12 +240,21 @@ class _Writer:
     def program(self) -> Program:
         """Write all instructions."""
         codes = {name: k for k, name in enumerate(OPERATIONS)}
-        last = {_owner(a).index: k for k, node in enumerate(self.nodes) for a in node.operands}
+        slot, steep = self.slot, bool(self.nodes) and self.nodes[0].graph.truth is None
+        last = {
+            (a if a.op not in SHARED else _owner(a)).index: k
+            for k, node in enumerate(self.nodes)
+            for a in node.args
+            if type(a) is Symbol
+        }
         kept = {_owner(out).index for out in self.outputs if isinstance(out, Symbol)}
         kept |= {node.index for node in self.inputs}
         free: list[int] = []
         for k, node in enumerate(self.nodes):
-            places = [self._place(a) for a in node.args]
+            places = [
+                slot[a.index] if type(a) is Symbol and a.op not in SHARED else self._place(a)
+                for a in node.args
+            ]
             wide, words = 1, places
             if node.op == "roots":
                 kept.add(node.index)  # its slots are neighbours and are not used again
@@ -259,17 +268,17 @@ class _Writer:
                     index = (operand if operand.op not in SHARED else _owner(operand)).index
                     if last[index] == k and index not in kept:
                         last[index] = -1
-                        free.append(self.slot[index])
+                        free.append(slot[index])
             if wide == 1 and free:
-                slot = free.pop()
+                at = free.pop()
             else:
-                slot, self.count = self.count, self.count + wide
-            self.slot[node.index] = slot
+                at, self.count = self.count, self.count + wide
+            slot[node.index] = at
             # a place without an operand repeats the first
             words = words + [words[0]] * (3 - len(words))
-            self.code.append((codes[node.op] | flags << 8, slot, *words))
-            if is_steep_at_zero(node):
-                self.code.append((codes["where"], slot, slot, slot, self._place(0.0)))
+            self.code.append((codes[node.op] | flags << 8, at, *words))
+            if steep and is_steep_at_zero(node):
+                self.code.append((codes["where"], at, at, at, self._place(0.0)))
         return self._finished()
 
     def _place(self, value: Any) -> int:
