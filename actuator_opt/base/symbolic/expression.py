@@ -570,15 +570,26 @@ def needed(outputs: Sequence[Any], known: Container[int] = ()) -> list[Symbol]:
 
     Nodes with an index in `known` are omitted, and so are nodes on which only they depend.
     """
-    symbols: dict[int, Symbol] = {}
-    stack = [out for out in outputs if isinstance(out, Symbol)]
-    while stack:
-        node = stack.pop()
-        index = node.index
-        if index not in symbols and index not in known:
-            symbols[index] = node
-            stack += [a for a in node.args if type(a) is Symbol]
-    return [symbols[index] for index in sorted(symbols)]
+    symbols = [out for out in outputs if isinstance(out, Symbol) and out.index not in known]
+    if not symbols:
+        return []
+    nodes, index = symbols[0].graph.nodes, max(symbol.index for symbol in symbols)
+    wanted = bytearray(index + 1)
+    for symbol in symbols:
+        wanted[symbol.index] = 1
+    left, result = sum(wanted), []
+    while left:  # operands precede results
+        if wanted[index]:
+            node = nodes[index]
+            result.append(node)
+            left -= 1
+            for a in node.args:
+                if type(a) is Symbol and not wanted[a.index] and a.index not in known:
+                    wanted[a.index] = 1
+                    left += 1
+        index -= 1
+    result.reverse()
+    return result
 
 
 xp = Namespace

@@ -251,24 +251,28 @@ class _Writer:
         kept |= {node.index for node in self.inputs}
         free: list[int] = []
         for k, node in enumerate(self.nodes):
-            places = [
-                slot[a.index] if type(a) is Symbol and a.op not in SHARED else self._place(a)
-                for a in node.args
-            ]
+            flags = _MISSING[len(node.args)] if len(node.args) < 3 else 0
+            places: list[int] = []
+            for operand in node.args:
+                if type(operand) is not Symbol:
+                    places.append(self._place(operand))
+                    continue
+                index = operand.index
+                if operand.op in SHARED:
+                    index = _owner(operand).index
+                    if operand.op == "real" and len(places) < 3:
+                        flags |= _FROZEN << len(places)
+                    places.append(self._place(operand))
+                else:
+                    places.append(slot[index])
+                if last[index] == k and index not in kept:
+                    last[index] = -1
+                    free.append(slot[index])
             wide, words = 1, places
             if node.op == "roots":
                 kept.add(node.index)  # its slots are neighbours and are not used again
                 wide, words = 2 * (len(places) - 1), [len(self.extra), len(places) - 1, 0]
                 self.extra += places
-            flags = _MISSING[len(node.args)] if len(node.args) < 3 else 0
-            for place, operand in enumerate(node.args[:3]):
-                if type(operand) is Symbol:
-                    if operand.op == "real":
-                        flags |= _FROZEN << place
-                    index = (operand if operand.op not in SHARED else _owner(operand)).index
-                    if last[index] == k and index not in kept:
-                        last[index] = -1
-                        free.append(slot[index])
             if wide == 1 and free:
                 at = free.pop()
             else:
