@@ -35,6 +35,7 @@ from ..values import Values
 
 NONE = "no axial load"
 OWN = ""
+"""Location of values with the axial force of each load case itself."""
 STOP = "piston at the end stop"
 LARGEST = "largest axial load"
 RUPTURE = "axial rupture"
@@ -280,8 +281,10 @@ class Wall:
     pressure, by location. `ply_fatigue` is the fatigue strength of fibres divided by their stress
     amplitude.
 
-    `growth` is the bore growth at supply pressure: the larger of the values with and without the
-    axial force of the load cases. `case_growth` is the growth at the pressures of the load cases.
+    `growths` are the bore growths at supply pressure by load path: with the axial force of the load
+    cases, (cases, designs), and without axial force, (designs,). The larger governs. Each is a
+    smooth limit of the optimiser, as an optimum may lie where both are equal. `case_growth` is the
+    larger growth at the pressures of the load cases.
     `missing` names unknown strengths. `axial_line_stiffness` is axial modulus times thickness of
     the wall, N/m. After cool-down from cure, `mismatch` is yield strength divided by stress of the
     liner, and `bond` is bond strength divided by the tension between liner and plies. `plies` is
