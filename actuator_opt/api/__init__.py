@@ -18,6 +18,13 @@ if TYPE_CHECKING:
         comparison_json as comparison_json,
         draw_comparison as draw_comparison,
     )
+    from .explaining import (
+        Catalogue as Catalogue,
+        Entry as Entry,
+        Explanation as Explanation,
+        catalogue as catalogue,
+        explain as explain,
+    )
     from .exports import explore as explore, export as export
     from .installation import Installation as Installation, doctor as doctor
     from .optimum import (
@@ -95,6 +102,7 @@ _PUBLIC = {
     "actuator": "Actuator read",
     "checking": "check examine",
     "comparing": "compare comparison_json draw_comparison",
+    "explaining": "Catalogue Entry Explanation catalogue explain",
     "exports": "explore export",
     "installation": "Installation doctor",
     "optimum": """

@@ -26,12 +26,13 @@ from .structure import (
     how_to_add,
     is_removed_by_none,
     leaves,
+    meanings,
     section_at,
 )
 
 MOST_FAULTS = 100
 
-_TABLE_KEYS = {
+TABLE_KEYS = {
     "variables": "PATHs such as cylinder.bore, each with a lower and an upper bound",
     "requirements": "metrics, each with a smallest (min) or largest (max) value",
     "choices": "PATHs such as seals.rod.compound, each with a list of allowed values",
@@ -189,7 +190,7 @@ def _translate(error: ValidationError, root: type[Section]) -> Iterator[Fault]:
             remedy = 'add one, starting with "- "' if few else f"keep at most {limit}"
             yield Fault(loc, "the list is empty" if few else "too many entries", remedy)
         elif kind in ("model_type", "model_attributes_type", "dict_type"):
-            keys = ", ".join(list(entries(section))[:6]) if section else _TABLE_KEYS[str(loc[0])]
+            keys = ", ".join(list(entries(section))[:6]) if section else TABLE_KEYS[str(loc[0])]
             yield Fault(
                 loc, f"need a block, not {_word(value)}", f"write its keys below it: {keys}"
             )
@@ -210,10 +211,10 @@ def _unknown_key(loc: Loc, root: type[Section]) -> Fault:
     section, _ = section_at(root, loc[:-1])
     table = entries(root).get(str(loc[0]))
     if table is not None and table.shape == "table" and table.section and len(loc) == 3:
-        names = list(entries(table.section))
+        names = dict(meanings(table.section))
     else:
-        names = list(entries(section)) if section else []
-        names += ["plies"] if section is Ply else []
+        names = {} if section is None else dict(meanings(section))
+        names |= {"plies": "lay-up in compact notation"} if section is Ply else {}
     return Fault(loc, "unknown key", errors.remedy(str(loc[-1]), names), at_key=True)
 
 
