@@ -1,87 +1,27 @@
-"""Reference of everything that a design file or a result can name, for `explain` and `list`.
-
-Each kind of name yields `Entry` records from its own declarations: keys of the design file, table
-of metrics with its check list, registries of joints, seal types and friction laws, material
-library, glossary. Modules load only when their kind of name is needed.
-"""
+"""Explains a name: what it is, how to ask for it, what moves it, where its number comes from."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..base.dataclass import dataclass
-from ..base.errors import Diagnostic, UsageError, shown
 from ..base.quantities import INFINITY, MATERIAL_PROPERTIES, Quantity, short
 from ..base.tables import Displayed
-from ..base.words import fold, ranked
+from .reference import Entry, actuator_of, checked_word, find, unknown, used_at, word_of
 
 if TYPE_CHECKING:
     from ..design.model import Design
-    from ..design.structure import KeyEntry
     from ..evaluation import Evaluation
     from ..metrics.documentation import ModelDocumentation
     from ..rendering.console import Style
     from .actuator import Actuator, Plugins
 
-NEAREST = 5
-"""Number of names offered for an unknown word."""
 MOST_MOVERS = 5
 """Largest number of influences listed."""
-MATCH = 0.75
-"""Least score of an entry that a word of `list` keeps."""
-NO_UNIT = "none"
-
-
-@dataclass(frozen=True, slots=True)
-class Entry:
-    """A name with its kind, its meaning in a phrase, and its value in a design, if one is given.
-
-    Parameters
-    ----------
-    name, kind : the name, and what it names
-    phrase : what it means
-    quantity : its physical quantity; None for texts, blocks and other names without a unit
-    value : its value in the design: a number in SI, or words
-    aliases : further spellings of the name
-    """
-
-    name: str
-    kind: str
-    phrase: str
-    quantity: Quantity | None = None
-    value: float | str | None = None
-    aliases: tuple[str, ...] = ()
-
-    @property
-    def unit(self) -> str:
-        """Display unit, or ``none``."""
-        return (self.quantity.unit if self.quantity else "") or NO_UNIT
-
-    def number(self, digits: int = 4) -> str:
-        """The value in the display unit, without the unit; "" if there is none."""
-        if not isinstance(self.value, float):
-            return self.value or ""
-        return short(self.quantity.to_display(self.value) if self.quantity else self.value, digits)
-
-    @property
-    def text(self) -> str:
-        """The value with its display unit; "" if there is none."""
-        unit = "" if self.unit == NO_UNIT or not isinstance(self.value, float) else self.unit
-        return f"{self.number()} {unit}".rstrip()
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain data for JSON, SI."""
-        return {
-            "name": self.name,
-            "kind": self.kind,
-            "phrase": self.phrase,
-            "unit": None if self.quantity is None else self.quantity.si_unit,
-            "value": self.value,
-        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,365 +66,22 @@ class Explanation(Displayed):
 
     def text(self, **style: Unpack[Style]) -> str:
         """Terminal text of at most one screen."""
-        from ..pages.reference import explanation
+        from ..pages.reference import Part, explanation
         from ..rendering.terminal import blocks_text
 
-        return blocks_text(explanation(self), **style)
-
-
-@dataclass(frozen=True, slots=True)
-class Catalogue(Displayed):
-    """Entries of one kind, such as all metrics; `valued` states whether a design gives values."""
-
-    kind: str
-    entries: tuple[Entry, ...]
-    valued: bool = False
-
-    def __len__(self) -> int:
-        """Number of entries."""
-        return len(self.entries)
-
-    def __iter__(self) -> Iterator[Entry]:
-        """The entries in order."""
-        return iter(self.entries)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain data for JSON, SI."""
-        return {"kind": self.kind, "entries": [entry.to_dict() for entry in self.entries]}
-
-    def tsv(self) -> str:
-        """Name, value in the display unit, unit and phrase, parted by tabs, a line for each."""
-        rows = [("name", "now", "unit", "phrase")]
-        rows += [(e.name, e.number(12), e.unit, e.phrase) for e in self.entries]
-        return "".join("\t".join(" ".join(cell.split()) for cell in row) + "\n" for row in rows)
-
-    def text(self, **style: Unpack[Style]) -> str:
-        """Terminal text: a table with aligned columns."""
-        from ..pages.reference import catalogue
-        from ..rendering.terminal import blocks_text
-
-        return blocks_text([catalogue(self)], **style)
-
-
-# --- entries of every kind -----------------------------------------------------------------------
-
-
-def _metrics() -> Iterator[Entry]:
-    from ..metrics.table import ROWS
-
-    return (Entry(name, "metric", row.label, row.quantity) for name, row in ROWS.items())
-
-
-def _checks() -> Iterator[Entry]:
-    from ..metrics.table import CHECKS
-
-    for row, line in CHECKS:
-        yield Entry(line.number, "check", line.name, row.quantity, aliases=(line.name,))
-
-
-def _joints() -> Iterator[Entry]:
-    from ..joints.kinds import JOINTS
-
-    return (Entry(joint.name, "joint", joint.help) for joint in JOINTS.values())
-
-
-def _seals() -> Iterator[Entry]:
-    from ..seals.kinds import TYPES
-
-    return (Entry(kind.name, "seal type", kind.help) for kind in TYPES.values())
-
-
-def _laws() -> Iterator[Entry]:
-    from ..friction.kinds import LAWS
-
-    return (Entry(law.name, "friction law", law.help) for law in LAWS.values())
-
-
-def _properties() -> Iterator[Entry]:
-    for name, quantity in MATERIAL_PROPERTIES.items():
-        yield Entry(name, "material property", quantity.label, quantity)
-
-
-def _materials() -> Iterator[Entry]:
-    from ..design.materials import load_library
-
-    for name, meaning in load_library().meanings().items():
-        yield Entry(name, "material", meaning)
-
-
-def _terms() -> Iterator[Entry]:
-    from .glossary import terms
-
-    for term in terms().values():
-        yield Entry(term.name, "term", term.definition)
-
-
-def _key(path: str, key: KeyEntry) -> Entry:
-    """Entry of a value of the design file."""
-    phrase = (key.kind.help if key.kind is not None else "") or path.replace("_", " ")
-    return Entry(path, "PATH", phrase.partition("; ")[0], key.quantity())
-
-
-def _paths() -> Iterator[Entry]:
-    from ..design.structure import templates
-
-    return (_key(path, key) for path, key in templates().items())
-
-
-def _blocks() -> Iterator[Entry]:
-    """Blocks, lists of blocks, and tables with free names."""
-    from ..design.build import TABLE_KEYS
-    from ..design.structure import blocks
-
-    for path, key in blocks().items():
-        yield Entry(path, "block", TABLE_KEYS.get(path) or key.meaning)
-
-
-LISTS: Mapping[str, Callable[[], Iterator[Entry]]] = {
-    "paths": _paths,
-    "metrics": _metrics,
-    "checks": _checks,
-    "materials": _materials,
-    "joints": _joints,
-    "seals": _seals,
-    "laws": _laws,
-    "properties": _properties,
-    "terms": _terms,
-}
-"""What `list` can list, each with the function that yields its entries."""
-
-_EXPLAINED = (
-    _metrics, _joints, _seals, _laws, _checks, _properties, _terms, _materials, _paths, _blocks,
-)  # fmt: skip
-"""Entries in the order in which `explain` searches them: those that load fastest first."""
-
-
-def all_entries() -> Iterator[Entry]:
-    """Every entry that `explain` knows."""
-    for entries in _EXPLAINED:
-        yield from entries()
-
-
-# --- search --------------------------------------------------------------------------------------
-
-
-def _checked_word(word: str) -> str:
-    """The word without spaces at its ends; raises `UsageError` if it cannot be a name."""
-    text = " ".join(word.split(" ")).strip()
-    remedy = "write a PATH, metric, check, material, joint, seal type, friction law or term"
-    if not text:
-        raise UsageError(Diagnostic("the word is empty", remedy))
-    if len(text) > 200:
-        message = f'"{shown(text, 40)}": {len(text)} characters are too many for a name'
-        raise UsageError(Diagnostic(message, remedy))
-    if not text.isprintable():
-        raise UsageError(Diagnostic(f'"{shown(text)}": contains control characters', remedy))
-    return text
-
-
-def find(word: str, metrics: Mapping[str, Quantity] | None = None) -> Entry | None:
-    """The entry of a name; None if it is unknown.
-
-    Lower and upper case, spaces and hyphens do not matter. A PATH may have any index or name in its
-    brackets; its last key alone is enough if only one PATH ends with it.
-    """
-    folded = fold(word)
-    if re.search(r"[a-z_]\.|\[", folded) is None:
-        if metrics is not None and word in metrics:
-            return Entry(word, "metric", metrics[word].label, metrics[word])
-        for entries in _EXPLAINED:
-            for entry in entries():
-                if folded in map(fold, (entry.name, *entry.aliases)):
-                    return entry
-    return _path(word, metrics)
-
-
-def _path(word: str, metrics: Mapping[str, Quantity] | None) -> Entry | None:
-    """Entry of a PATH with any index, of the only PATH with this last key, or of a table's PATH."""
-    from ..design.kinds import ValueFault
-    from ..design.paths import resolve
-    from ..design.structure import blocks, templates
-
-    generic = re.sub(r"\[[^\[\]]*\]", "[*]", fold(word))
-    known = templates()
-    if generic in known:
-        return replace(_key(generic, known[generic]), name=word.strip())
-    if generic in blocks():
-        return next(entry for entry in _blocks() if entry.name == generic)
-    ending = [path for path in known if path.endswith(f".{generic}")]
-    if len(ending) == 1:
-        return _key(ending[0], known[ending[0]])
-    head, _, rest = word.strip().partition(".")
-    if head not in ("requirements", "materials") or not rest:
-        return None
-    try:
-        target = resolve(word, {}, metrics)
-    except ValueFault:
-        return None
-    label = "" if target.quantity is None else target.quantity.label
-    name, _, last = rest.rpartition(".")
-    if head == "materials":
-        return Entry(target.path, "PATH", f"{label} of {name}, in place of the library's",
-                     target.quantity)  # fmt: skip
-    extreme = "smallest" if last == "min" else "largest"
-    return Entry(target.path, "PATH", f"{extreme} permitted {label}", target.quantity)
-
-
-def _unknown(word: str) -> UsageError:
-    """The error for an unknown word, with the nearest names by letters and meaning."""
-    known = {entry.name: f"{entry.phrase} {' '.join(entry.aliases)}" for entry in all_entries()}
-    near = [name for _, name, _ in ranked(word, known, 0.3)[:NEAREST]]
-    remedy = f"nearest: {', '.join(near)}" if near else "see: actuator-opt list metrics"
-    return UsageError(Diagnostic(f'"{shown(word)}" is no name known here', remedy))
-
-
-# --- lists ---------------------------------------------------------------------------------------
-
-
-def catalogue(
-    kind: str,
-    design: Actuator | Design | str | Path | None = None,
-    word: str = "",
-    *,
-    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
-    plugins: Plugins = (),
-) -> Catalogue:
-    """List what a design file or a result can name, with values of a design.
-
-    Parameters
-    ----------
-    kind : "paths", "metrics", "checks", "materials", "joints", "seals", "laws" (of friction),
-        "properties" (of materials) or "terms"
-    design : design whose values are listed; None for the names alone
-    word : keeps only entries whose name or meaning is near to it
-    set, plugins : changed values and user metrics of the design, as for `read`
-
-    Raises
-    ------
-    UsageError : unknown kind, or no entry is near to the word
-    InputError : the design has faults
-    """
-    from ..base.errors import remedy
-
-    if kind not in LISTS:
-        message = f'"{shown(kind)}" cannot be listed'
-        raise UsageError(Diagnostic(message, remedy(kind, LISTS)))
-    entries = list(LISTS[kind]())
-    if design is not None:
-        actuator = _actuator(design, set, plugins)
-        entries = _with_values(kind, entries, actuator)
-    if word:
-        entries = _near(_checked_word(word), entries, kind)
-    return Catalogue(kind, tuple(entries), design is not None)
-
-
-def _near(word: str, entries: Sequence[Entry], kind: str) -> list[Entry]:
-    """Entries that contain a word or are near to it, in their order."""
-    folded = fold(word)
-    known = {entry.name: f"{entry.phrase} {' '.join(entry.aliases)}" for entry in entries}
-    scores = {name: score for score, name, _ in ranked(word, known, 0.3)}
-    kept = [
-        entry
-        for entry in entries
-        if folded in fold(entry.name)
-        or folded in fold(known[entry.name])
-        or scores.get(entry.name, 0.0) >= MATCH
-    ]
-    if not kept:
-        near = ", ".join(sorted(scores, key=lambda name: -scores[name])[:NEAREST])
-        remedy = f"nearest: {near}" if near else f"see: actuator-opt list {kind}"
-        raise UsageError(Diagnostic(f'no {kind} match "{shown(word)}"', remedy))
-    return kept
-
-
-def _actuator(
-    design: Actuator | Design | str | Path,
-    changes: Mapping[str, str | float] | Sequence[tuple[str, str]],
-    plugins: Plugins,
-) -> Actuator:
-    from ..design.model import Design
-    from .actuator import Actuator, as_actuator, read
-
-    if isinstance(design, Actuator | Design):
-        return as_actuator(design, plugins).changed(dict(changes))
-    return read(design, set=changes, plugins=plugins)
-
-
-def _with_values(kind: str, entries: list[Entry], actuator: Actuator) -> list[Entry]:
-    """The entries with their values in a design; a list entry of the file has its own PATH."""
-    design = actuator.design
-    if kind == "paths":
-        return _stated(design, entries)
-    if kind == "properties":
-        return entries
-    if kind not in ("metrics", "checks"):
-        return [
-            replace(entry, value=", ".join(used_at(entry, design)) or None) for entry in entries
-        ]
-    from .optimum import evaluate
-
-    evaluation = evaluate(actuator)
-    if kind == "metrics":
-        own = [
-            Entry(name, "metric", metric.quantity.label, metric.quantity)
-            for name, metric in evaluation.metrics.items()
-            if metric.definition is not None
-        ]
-        return [
-            replace(e, value=evaluation.metrics[e.name].value) for e in (*entries, *own)
-            if e.name in evaluation.metrics
-        ]  # fmt: skip
-    checks = {check.name: check for check in evaluation.checks}
-    return [
-        replace(e, value=check.value, phrase=f"{e.phrase}: {check.status.replace('_', ' ')}")
-        if (check := checks.get(e.phrase)) is not None
-        else e
-        for e in entries
-    ]
-
-
-def _stated(design: Design, entries: Sequence[Entry]) -> list[Entry]:
-    """Every value that the design states, then the PATHs of values that it leaves out."""
-    from ..design.paths import spell
-    from ..design.structure import leaves, number_of
-
-    stated, templates = [], set()
-    for loc, key, value in leaves(design):
-        if len(loc) == 1:
-            continue
-        number = number_of(value)
-        entry = replace(_key(spell(loc, design), key), quantity=key.quantity(value))
-        stated.append(replace(entry, value=_word(value) if number is None else number))
-        templates.add(re.sub(r"\[\d+\]", "[*]", spell(loc)))
-    return [*stated, *(entry for entry in entries if entry.name not in templates)]
-
-
-def _word(value: object) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value)
-
-
-def used_at(entry: Entry, design: Design) -> list[str]:
-    """PATHs of a design whose value is this name."""
-    from ..design.kinds import MaterialName
-    from ..design.paths import spell
-    from ..design.structure import leaves
-
-    keys = {"joint": ("retention", "type"), "seal type": ("seals", "type"),
-            "friction law": ("seals", "friction")}  # fmt: skip
-    places = []
-    for loc, key, value in leaves(design):
-        if value != entry.name:
-            continue
-        if entry.kind == "material":
-            fits = isinstance(key.kind, MaterialName)
-        else:
-            fits = (loc[0], loc[-1]) == keys.get(entry.kind)
-        if fits:
-            places.append(spell(loc, design))
-    return places
-
-
-# --- explanations --------------------------------------------------------------------------------
+        parts: dict[Part, str] = {
+            "what": self.definition,
+            "now": self.value,
+            "model": self.model,
+            "valid": self.validity,
+            "source": self.source,
+            "see": ", ".join(self.related),
+        }
+        entry = self.entry
+        table = explanation(
+            entry.name, entry.kind, entry.quantity, parts, self.ask, self.influences
+        )
+        return blocks_text([table], **style)
 
 
 def explain(
@@ -511,18 +108,18 @@ def explain(
     >>> explain("stiffness_min").entry.unit
     'kN/mm'
     """
-    text = _checked_word(word)
+    text = checked_word(word)
     if design is None:
         entry = find(text)
         if entry is None:
-            raise _unknown(text)
+            raise unknown(text)
         return _EXPLAIN[entry.kind](entry, None)
     from ..evaluation.plugin import with_own
 
-    actuator = _actuator(design, set, plugins)
+    actuator = actuator_of(design, set, plugins)
     entry = find(text, with_own(actuator.plugins))
     if entry is None:
-        raise _unknown(text)
+        raise unknown(text)
     return _EXPLAIN[entry.kind](entry, actuator)
 
 
@@ -557,19 +154,11 @@ def _asked(entry: Entry, value: float | None, actuator: Actuator | None) -> tupl
     limits = {s: x for s in ("min", "max") if (x := getattr(stated, s, None)) is not None}
     if not limits:
         usual = None if row is None or row.check is None else row.check.limit
-        one = (quantity.to_display(0.0), 1.0) if not quantity.unit else None
-        unit_value = 1.0 if one is not None else _unit(quantity)
-        limits = {side: next(x for x in (value, usual, unit_value) if x is not None)}
-        limits = {s: x if abs(x) < INFINITY else unit_value for s, x in limits.items()}
+        one = _unit_or_one(quantity)
+        known = next(x for x in (value, usual, one) if x is not None)
+        limits = {side: known if abs(known) < INFINITY else one}
     verb = "maximise" if side == "min" else "minimise"
     return (*_limit_lines(entry.name, quantity, limits), f"objective: {{{verb}: {entry.name}}}")
-
-
-def _unit(quantity: Quantity) -> float:
-    """One display unit of a quantity, SI."""
-    from ..base.units import unit
-
-    return unit(quantity.unit, quantity.dimension).to_si(1.0)
 
 
 def _governed(entry: Entry, evaluation: Evaluation) -> str:
@@ -616,7 +205,7 @@ def _of_metric(entry: Entry, actuator: Actuator | None) -> Explanation:
             model = ", ".join(d.name for d in documented)
             definition = f"{entry.phrase}: {documented[0].summary}"
             source = "; ".join(dict.fromkeys(d.reference for d in documented))
-            validity = documented[0].valid
+            validity = documented[0].valid.removesuffix(".")
         if CRITERION in names:
             model += ", failure criterion of barrel.criterion"
         if row.check is not None:
@@ -695,10 +284,11 @@ def _of_path(entry: Entry, actuator: Actuator | None) -> Explanation:
 
     generic = re.sub(r"\[[^\[\]]*\]", "[*]", entry.name)
     key = templates().get(generic)
-    definition, related = entry.phrase, []
-    sample, choices = "", ()
+    definition, sample = entry.phrase, ""
+    choices: tuple[str, ...] = ()
     if key is not None:
-        definition = (key.kind.help if key.kind is not None else "") or entry.phrase
+        if key.kind is not None and not isinstance(key.kind, MaterialName):
+            definition = key.kind.help or entry.phrase
         choices = key.choices
         if not key.required and key.default is not None and not isinstance(key.default, tuple):
             definition += f"; default: {_shown(key.quantity(), key.default)}"
@@ -710,11 +300,12 @@ def _of_path(entry: Entry, actuator: Actuator | None) -> Explanation:
             definition += f", such as {sample}"
             related.append("actuator-opt list materials")
     else:
-        sample = "" if entry.quantity is None else entry.quantity.text(_unit_or_one(entry.quantity))
+        sample = "" if entry.quantity is None else _sample_limit(entry, actuator)
         related = [entry.name.rpartition(".")[0].partition(".")[2]]
     validity = "" if entry.quantity is None else _range(entry.quantity)
     path = entry.name.replace("[*]", "[0]")
-    now, value, moves = "", None, {}
+    now, value = "", None
+    moves: Mapping[str, float] = {}
     if actuator is not None:
         now, value, moves = _in_design(entry, actuator)
         path = entry.name if "[*]" not in entry.name else path
@@ -724,7 +315,7 @@ def _of_path(entry: Entry, actuator: Actuator | None) -> Explanation:
             sample = value
     ask = [f'--set "{path}={sample}"']
     if choices:
-        ask.append(f"choices: {{{path}: [{', '.join(choices[:4])}]}}")
+        ask.append(f"choices: {{{_quoted(path)}: [{', '.join(choices[:4])}]}}")
     elif key is not None and isinstance(key.kind, Of) and entry.quantity is not None:
         ask += _variable_lines(path, entry.quantity, value, sample, actuator)
     return Explanation(
@@ -733,8 +324,24 @@ def _of_path(entry: Entry, actuator: Actuator | None) -> Explanation:
     )  # fmt: skip
 
 
+def _sample_limit(entry: Entry, actuator: Actuator | None) -> str:
+    """A value for a PATH of a table: the present one of its metric, or one unit."""
+    assert entry.quantity is not None
+    head, _, rest = entry.name.partition(".")
+    if actuator is not None and head == "requirements":
+        from .optimum import evaluate
+
+        metric = evaluate(actuator).metrics[rest.rpartition(".")[0]]
+        if metric.value is not None:
+            return entry.quantity.text(metric.value)
+    return entry.quantity.text(_unit_or_one(entry.quantity))
+
+
 def _unit_or_one(quantity: Quantity) -> float:
-    return _unit(quantity) if quantity.unit else 1.0
+    """One display unit of a quantity, SI; 1 without a unit."""
+    from ..base.units import unit
+
+    return unit(quantity.unit, quantity.dimension).to_si(1.0) if quantity.unit else 1.0
 
 
 def _range(quantity: Quantity) -> str:
@@ -751,7 +358,12 @@ def _shown(quantity: Quantity | None, value: object) -> str:
     from ..design.structure import number_of
 
     number = number_of(value)
-    return _word(value) if quantity is None or number is None else quantity.text(number, 6)
+    return word_of(value) if quantity is None or number is None else quantity.text(number, 6)
+
+
+def _quoted(path: str) -> str:
+    """A PATH as a key inside braces, where YAML takes a bracket as the start of a list."""
+    return f'"{path}"' if "[" in path else path
 
 
 def _variable_lines(
@@ -773,7 +385,7 @@ def _variable_lines(
     ends = quantity.text(low, 4), quantity.text(high, 4)
     number = short(quantity.to_display(low), 4)
     return [
-        f"variables: {{{path}: {{lower: {ends[0]}, upper: {ends[1]}}}}}",
+        f"variables: {{{_quoted(path)}: {{lower: {ends[0]}, upper: {ends[1]}}}}}",
         f'sweep --vary "{path}={number}..{ends[1]}:5"',
     ]
 
@@ -798,11 +410,11 @@ def _in_design(
     value = get(design, path)
     if value is None:
         default = value_at(design, resolve(path, design).loc)
-        text = "not stated" if default is None else f"not stated; {_word(default)}"
+        text = "not stated" if default is None else f"not stated; {word_of(default)}"
         return text, None, {}
     known = numbers(design)
     if not isinstance(value, float) and path not in known:
-        return _word(value), _word(value), {}
+        return word_of(value), word_of(value), {}
     number = known.get(path, value)
     text = _shown(entry.quantity, number)
     bounds = design.variables.get(path)
@@ -975,8 +587,15 @@ def _of_seal(entry: Entry, actuator: Actuator | None) -> Explanation:
     from ..models.seals import LAWS
     from ..seals.kinds import TYPES
 
-    kind = TYPES[entry.name]
-    documented = describe(LAWS["energised"].line_load if kind.model is None else kind.model)
+    kind, law = TYPES[entry.name], LAWS["energised"]
+    model, source = f"contact law {law.name} (seals.piston.law)", law.reference
+    validity = (
+        f"squeeze {100 * law.squeeze_range[0]:g} to {100 * law.squeeze_range[1]:g} %, pressure up "
+        f"to {law.pressure_range[1]:g} times Young's modulus"
+    )
+    if kind.model is not None:
+        documented = describe(kind.model)
+        model, source, validity = documented.name, documented.reference, documented.valid
     compound = "ptfe_bronze_nbr_70" if kind.modulus_by == "hardness" else "nbr_90"
     sizes = {f.key: f.size.example for f in kind.fields if f.default is None}
     stated = {"type": kind.name, "compound": compound, "section": "3.53 mm", "squeeze": "12 %"}
@@ -984,11 +603,10 @@ def _of_seal(entry: Entry, actuator: Actuator | None) -> Explanation:
     optional = [f.key for f in kind.fields if f.default is not None]
     definition = f"{kind.title}: {entry.phrase}"
     definition += f"; optional sizes: {', '.join(optional)}" if optional else ""
-    law = "contact law of `law`: " if kind.model is None else ""
     return Explanation(
         entry, definition,
         (f"seals: {{piston: {{{inside}}}}}", f'--set "seals.piston.type={kind.name}"'),
-        f"{law}{documented.name}", documented.reference, documented.valid,
+        model, source, validity,
         ("friction_running", "seal_squeeze", "seal_gap", "seals.piston.friction"),
         _where(entry, actuator),
     )  # fmt: skip

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from functools import cache
+from functools import cache, lru_cache
 
 LONGEST = 80
 """Largest number of characters of a word for which near names are sought."""
@@ -100,6 +100,7 @@ def fold(word: str) -> str:
     return re.sub(r"[\s-]+", "_", word.strip().casefold())
 
 
+@lru_cache(maxsize=1 << 12)
 def tokens(text: str) -> tuple[str, ...]:
     """The words of a text or name in lower case, without articles and prepositions.
 
@@ -144,6 +145,7 @@ def _similarity(first: str, second: str, least: float) -> float:
     return ratio if ratio >= least else 0.0
 
 
+@lru_cache(maxsize=1 << 14)
 def _match(word: str, other: str, *, spelled: bool) -> float:
     """How well two single words match, from 0 to 1; with `spelled`, slips of the pen count too."""
     if word == other:
@@ -258,4 +260,5 @@ def nearest(word: str, names: Iterable[str] | Mapping[str, object], count: int =
     >>> nearest("bore", ["cylinder.bore", "rod.outer_diameter"])
     ['cylinder.bore']
     """
-    return [name for _, name, _ in ranked(word, names)[:count]]
+    exact = [name for name in names if fold(name) == fold(word)]
+    return exact[:count] if len(exact) >= count else [x for _, x, _ in ranked(word, names)[:count]]

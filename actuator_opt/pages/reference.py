@@ -2,64 +2,73 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Literal, TypeAlias
 
-from ..rendering.blocks import Block, Column, Table, short
+from ..base.quantities import Quantity
+from ..rendering.blocks import Column, Table, short
 from ..rendering.text import number
 
-if TYPE_CHECKING:
-    from ..api.explaining import Catalogue, Explanation
+Part: TypeAlias = Literal["what", "now", "model", "valid", "source", "see"]
+"""Parts of an explanation: definition, value in the design, model, valid range, source of the
+model or number, and names to look up next."""
 
 LINE = 62
-"""Characters of text that surely fit into a line of 80 columns beside the first column."""
-_LINES = {"what": 4, "now": 2, "ask": 4, "model": 2, "valid": 2, "source": 3, "see": 2}
-"""Largest number of lines of each part."""
+"""Characters that surely fit into a line of 80 columns beside the names of the parts."""
+_LINES: Mapping[Part, int] = {"what": 4, "now": 2, "model": 2, "valid": 2, "source": 3, "see": 2}
+"""Largest number of lines of each part; lines to copy are never cut."""
 
 
-def _cut(part: str, text: str) -> str:
-    return short(" ".join(text.split()), LINE * _LINES[part])
+def explanation(
+    name: str,
+    kind: str,
+    quantity: Quantity | None,
+    parts: Mapping[Part, str],
+    ask: Sequence[str],
+    influences: Mapping[str, float],
+) -> Table:
+    """Table of an explanation, at most 24 lines of 80 columns.
 
-
-def explanation(explained: Explanation) -> Sequence[Block]:
-    """Blocks of at most 24 lines of 80 columns: what, value, how to ask, what moves it, sources."""
-    entry = explained.entry
-    title = f"{entry.name}  {entry.kind}"
-    if entry.quantity is not None:
-        title += f", unit {entry.unit}"
-        if entry.quantity.symbol not in ("", "-"):
-            title += f", symbol {entry.quantity.symbol}"
-    moved = ", ".join(f"{name} {number(x, 3, signed=True)}" for name, x in moves(explained))
+    Parameters
+    ----------
+    name, kind, quantity : the name, what it names, and its physical quantity
+    parts : texts of the parts; empty ones are left out
+    ask : lines to copy into a design file or a command
+    influences : what moves a metric, or what a number moves, in % per %
+    """
+    title = f"{name}  {kind}"
+    if quantity is not None:
+        title += f", unit {quantity.unit or 'none'}"
+        title += f", symbol {quantity.symbol}" if quantity.symbol not in ("", "-") else ""
+    moves = ", ".join(f"{other} {number(x, 3, signed=True)}" for other, x in influences.items())
+    texts = {key: short(" ".join(text.split()), LINE * _LINES[key]) for key, text in parts.items()}
     facts = [
-        ("what", _cut("what", explained.definition)),
-        ("now", _cut("now", explained.value)),
-        *((("ask" if k == 0 else ""), _cut("ask", line)) for k, line in enumerate(explained.ask)),
-        ("moves" if entry.kind == "PATH" else "moved by", f"{moved} (% per %)" if moved else ""),
-        ("model", _cut("model", explained.model)),
-        ("valid", _cut("valid", explained.validity)),
-        ("source", _cut("source", explained.source)),
-        ("see", _cut("see", ", ".join(explained.related))),
+        *((key, texts[key]) for key in ("what", "now")),
+        *(("" if k else "ask", line) for k, line in enumerate(ask)),
+        ("moves" if kind == "PATH" else "moved by", f"{moves} (% per %)" if moves else ""),
+        *((key, texts[key]) for key in ("model", "valid", "source", "see")),
     ]
     columns = [Column("", style="dim"), Column("", width=1.0, breaks=30, wraps=True, least=24)]
-    return [Table(short(title, 80), columns, [fact for fact in facts if fact[1]])]
+    return Table(short(title, 80), columns, [fact for fact in facts if fact[1]])
 
 
-def moves(explained: Explanation) -> Sequence[tuple[str, float]]:
-    """The influences, the largest first."""
-    return list(explained.influences.items())
+def listing(rows: Iterable[tuple[str, str, str, str]], *, valued: bool) -> Table:
+    """Table of names with value, unit and phrase; a narrow terminal cuts the phrase.
 
-
-def catalogue(listed: Catalogue) -> Table:
-    """Table of entries: name, value, unit and phrase; a narrow terminal cuts the phrase."""
-    now = [Column("now", "right", drop=1)] if listed.valued else []
+    Parameters
+    ----------
+    rows : name, value, unit and phrase of each entry
+    valued : whether to show the column of values
+    """
+    now = [Column("now", "right", drop=1)] if valued else []
     columns = [
         Column("name", strong=True),
         *now,
         Column("unit", style="dim", drop=2),
-        Column("", width=1.0),
+        Column("meaning", width=1.0),
     ]
-    rows = [
-        (entry.name, *([short(entry.number(), 30)] if now else []), entry.unit, entry.phrase)
-        for entry in listed.entries
+    cells = [
+        (name, *([short(value, 30)] if valued else []), unit, phrase)
+        for name, value, unit, phrase in rows
     ]
-    return Table("", columns, rows)
+    return Table("", columns, cells)
