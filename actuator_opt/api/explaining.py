@@ -517,26 +517,28 @@ def _of_property(entry: Entry, actuator: Actuator | None) -> Explanation:
     from ..design.materials import load_library
 
     assert entry.quantity is not None
-    library = load_library()
-    now, names = "", [m.name for m in library if entry.name in m.properties]
+    now, materials = "", {material.name: material for material in load_library()}
     if actuator is not None:
         used = actuator.subject().materials
         texts = [
-            f"{name} {m.properties[entry.name].text}"
-            for name, m in used.items()
-            if entry.name in m.properties
+            f"{name} {material.properties[entry.name].text}"
+            for name, material in used.items()
+            if entry.name in material.properties
         ]
         now = ", ".join(texts) or "no material of this design states it"
-        names = [name for name in used if entry.name in used[name].properties] or names
-    ask: tuple[str, ...] = ()
-    if names:
-        text = library.get(names[0]).properties[entry.name].text if names[0] in library else ""
-        text = text or entry.quantity.text(_unit_or_one(entry.quantity))
-        ask = (f'--set "materials.{names[0]}.{entry.name}={text}"',)
+        materials = {**used, **materials}
+    stating = [m for m in materials.values() if entry.name in m.properties]
+    first, text = "NAME", entry.quantity.text(_unit_or_one(entry.quantity))
+    if stating:
+        first, text = stating[0].name, stating[0].properties[entry.name].text
+    examples = ", ".join(m.name for m in stating[:3])
+    definition = f"{entry.phrase}; " + (
+        f"a property of materials such as {examples}" if stating else "no library material has it"
+    )
     return Explanation(
-        entry, f"{entry.phrase}; a property of materials such as {', '.join(names[:3])}", ask,
-        "library value", "stated with each material: actuator-opt materials show NAME",
-        _range(entry.quantity), ("confidence", "scatter", "knock-down"), now,
+        entry, definition, (f'--set "materials.{first}.{entry.name}={text}"',), "library value",
+        "stated with each material: actuator-opt materials show NAME", _range(entry.quantity),
+        ("confidence", "scatter", "knock-down"), now,
     )  # fmt: skip
 
 

@@ -92,10 +92,8 @@ def test_lines_to_copy_are_accepted(file):
     that depend on other values.
     """
     design = ao.read(file)
-    names = ["mass", "stiffness_min", "push_force", "seal_gap", "burst_factor", "efficiency"]
-    paths = ["cylinder.bore", "supply.pressure", "fluid.temperature", "barrel.layup[1].angle",
-             "cylinder.mount", "load_cases[stance].force", "seals.piston.squeeze"]  # fmt: skip
-    for name in [*names, *paths]:
+    names = ["mass", "seal_gap", "cylinder.mount", "fluid.temperature", "barrel.layup[1].angle"]
+    for name in names:
         lines, sets = _lines_to_copy(ao.explain(name, design))
         assert lines
         for pair in sets:
