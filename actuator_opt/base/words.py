@@ -164,11 +164,26 @@ def _match(word: str, other: str, *, spelled: bool) -> float:
     return _TYPO * _similarity(word, other, _ALIKE)
 
 
+@lru_cache(maxsize=1 << 14)
+def _forms(word: str) -> frozenset[str]:
+    """Singular, first four letters and lines of synonyms of a word: matches share one of them."""
+    singular = _singular(word)
+    lines = {**_lines().get(word, {}), **_lines().get(singular, {})}
+    return frozenset({singular, f"{word[:4]}*", *map(str, lines)})
+
+
+@lru_cache(maxsize=1 << 12)
+def _forms_of(text: str) -> frozenset[str]:
+    """The forms of all words of a text."""
+    return frozenset().union(*map(_forms, tokens(text)))
+
+
 def _by_words(words: tuple[str, ...], name: str, meaning: str) -> float:
     """Mean match of the words with a name and its meaning, less a little for further parts."""
     parts, about = tokens(name), tokens(meaning)
     if not words or not parts:
         return 0.0
+    forms = _forms_of(meaning)
     total, used = 0.0, set()
     for word in words:
         best, at = max(
@@ -177,7 +192,9 @@ def _by_words(words: tuple[str, ...], name: str, meaning: str) -> float:
         )
         if best > 0:
             used.add(at)
-        meant = max((_match(word, other, spelled=False) for other in about), default=0.0)
+        meant = 0.0
+        if not _forms(word).isdisjoint(forms):
+            meant = max((_match(word, other, spelled=False) for other in about), default=0.0)
         total += max(best, _MEANING * meant)
     extra = sum(
         _EXTRA / 3 if part in _EXTREMES else _EXTRA for k, part in enumerate(parts) if k not in used

@@ -164,7 +164,7 @@ def _unless_known(faults: Iterable[Fault], reported: Sequence[Fault]) -> list[Fa
 
 def _translate(error: ValidationError, root: type[Section]) -> Iterator[Fault]:
     """Translate pydantic's validation errors into faults in the terms of the file."""
-    for item in error.errors(include_url=False):
+    for count, item in enumerate(error.errors(include_url=False)):
         loc: Loc = tuple(item["loc"])
         kind, value = item["type"], item["input"]
         if kind == "default_factory_not_called":  # only repeats another fault
@@ -175,7 +175,7 @@ def _translate(error: ValidationError, root: type[Section]) -> Iterator[Fault]:
         elif kind == "missing":
             yield Fault(loc, "missing", how_to_add(str(loc[-1]), entry))
         elif kind == "extra_forbidden":
-            yield _unknown_key(loc, root)
+            yield _unknown_key(loc, root, near=count < MOST_FAULTS)
         elif kind == "literal_error" and entry is not None:
             word = value if isinstance(value, str) else ""
             message = (
@@ -207,7 +207,10 @@ def _word(value: object) -> str:
     return f'"{errors.shown(value)}"' if isinstance(value, str) else shape_in_words(value)
 
 
-def _unknown_key(loc: Loc, root: type[Section]) -> Fault:
+def _unknown_key(loc: Loc, root: type[Section], *, near: bool) -> Fault:
+    """Fault of an unknown key; with near names, as these take time, only among the first faults."""
+    if not near:
+        return Fault(loc, "unknown key", "remove it", at_key=True)
     section, _ = section_at(root, loc[:-1])
     table = entries(root).get(str(loc[0]))
     if table is not None and table.shape == "table" and table.section and len(loc) == 3:
