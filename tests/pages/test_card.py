@@ -9,9 +9,10 @@ import report_fixture as fixture
 from cli_runner import DESIGNS, run
 from shipped import shipped
 
+import actuator_opt as ao
 from actuator_opt.evaluation.result import YieldEstimate
 from actuator_opt.metrics.table import ROWS, TERM, term_of
-from actuator_opt.pages import card
+from actuator_opt.pages import card, report
 from actuator_opt.rendering import terminal
 from actuator_opt.rendering.console import visible
 
@@ -50,6 +51,17 @@ def test_an_evaluation_fits_thirty_lines_of_eighty_columns(name):
     paths = [line for line in lines if str(DESIGNS) in line]
     assert all(visible(line) <= 80 for line in lines if line not in paths)
     assert "(-v)" in result.out
+
+
+def test_verbose_prints_the_whole_page():
+    """With -v, every metric, requirement and check as on the page of the library."""
+    design = DESIGNS / "course_cylinder.yaml"
+    page = report.page(ao.evaluate(design))
+    whole = terminal.text(page, colour=False, unicode=True, width=80)
+    for option in ("-v", "--verbose"):
+        shown = run("evaluate", design, option, environment={"COLUMNS": "80"})
+        assert shown.out == whole
+    assert len(whole.splitlines()) > 100
 
 
 @pytest.mark.parametrize("name", ["knee", "steel_baseline"])
