@@ -97,7 +97,9 @@ def _clamping(end: End, materials: MaterialProperties) -> Clamping:
     diameter = end.sizes["thread.diameter"]
     stiffness = end.sizes["count"] * modulus * pi * diameter * diameter / 4 / _length(end)
     expansion = materials.get(end.material, "thermal_expansion")
-    return Clamping(stiffness, None if expansion is None else expansion * _length(end))
+    growth = None if expansion is None else expansion * _length(end)
+    factor = end.sizes.get("tightening_factor", piston_nut.TIGHTENING)
+    return Clamping(stiffness, growth, factor)
 
 
 def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
@@ -160,7 +162,7 @@ def _fatigue(loaded: Loaded) -> Fatigue:
     """Fatigue of the tie-rod threads under pulsating pressure."""
     end, clamp = loaded.end, _clamp(loaded)
     diameter = end.sizes["thread.diameter"]
-    amplitude = _stress(end, (clamp.largest - clamp.preload) / 2)
+    amplitude = _stress(end, clamp.added / 2)
     life = Life(
         endurance.bolt_cycles(amplitude=amplitude, diameter=diameter),
         endurance.bolt_endurance_amplitude(diameter=diameter) / amplitude,
@@ -213,6 +215,11 @@ JOINT = Joint(
         JointField("thread.diameter", "missing: required by tie rods", 'add e.g. "diameter: 6 mm"'),
         JointField("thread.pitch"),
         JointField("preload"),
+        JointField(
+            "tightening_factor",
+            quantity="tightening_factor",
+            help="greatest divided by least preload after tightening; default 1.6",
+        ),
     ),
     kinds=("metal",),
     without={},
