@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import asin, pi, sin
+from math import asin, pi, sin, sqrt
 
 import numpy as np
 
@@ -31,7 +31,6 @@ from .joint import (
     Strength,
     WallPressures,
     nothing,
-    rectangle,
 )
 
 
@@ -103,28 +102,44 @@ def _clamping(end: End, materials: MaterialProperties) -> Clamping:
 
 
 def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
-    """Half the mass of all tie rods; as both ends count it, the sum is the full mass."""
+    """Mass of the nuts of this end, and half the mass of all tie rods, which end with their nuts."""
     assert end.material is not None
+    diameter, count = end.sizes["thread.diameter"], end.sizes["count"]
+    density = materials.get(end.material, "density")
     rods = mass.tie_rod_mass(
-        density=materials.get(end.material, "density"),
-        diameter=end.sizes["thread.diameter"],
-        length=_length(end),
-        count=end.sizes["count"],
+        density=density,
+        diameter=diameter,
+        length=_length(end) + 2 * piston_nut.HEIGHT * diameter,
+        count=count,
     )
-    return {"fastening": rods / 2}
+    nuts = count * density * piston_nut.nut_volume(diameter=diameter)
+    return {"fastening": rods / 2 + nuts}
 
 
 def _outline(end: End, fit: EndDimensions, span: EndSpan) -> Iterator[DrawnPart]:
-    """Outline of one tie rod in the section plane, between the outer faces of both plates."""
+    """Outline of one tie rod in the section plane, with a nut on the outer face of each plate.
+
+    The nuts are drawn round, with the section of the hexagon.
+    """
     if span.inwards < 0 or end.material is None:
         return
-    low, size = float(fit.radius), (float(fit.plate_radius) - float(fit.radius)) / 2
-    shape = rectangle(span.outside, span.opposite, low + size / 2, low + 3 * size / 2)
-    yield DrawnPart("tie rods", end.material, shape, bars=round(float(end.sizes["count"])))
+    diameter = (float(fit.plate_radius) - float(fit.radius)) / 2
+    axis, height = float(fit.radius) + diameter, piston_nut.HEIGHT * diameter
+    shank = diameter / 2
+    nut = sqrt(shank * shank + piston_nut.nut_volume(diameter=diameter) / (pi * height))
+    start, stop = sorted((span.outside, span.opposite))
+    above = [(start - height, nut), (start, nut), (start, shank)]
+    above += [(start + stop - x, radius) for x, radius in reversed(above)]
+    shape = [(x, axis + radius) for x, radius in above]
+    shape += [(x, axis - radius) for x, radius in reversed(above)]
+    yield DrawnPart("tie rods", end.material, tuple(shape), round(float(end.sizes["count"])))
 
 
 def _notes(end: End) -> Iterator[str]:
-    yield "Tie rods pass through the plates; their holes are not drawn."
+    yield (
+        "Tie rods pass through the plates; their holes are not drawn, and their hexagon nuts are "
+        "drawn round."
+    )
 
 
 def _stress(end: End, force: Array) -> Array:

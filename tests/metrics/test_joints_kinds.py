@@ -239,12 +239,11 @@ def test_its_outline(joint):
     for outline in drawn:
         size = 0.0
         for polygon in outline.polygons:
-            xs, rs = zip(*polygon, strict=True)
-            length, height = max(xs) - min(xs), max(rs) - min(rs)
-            if outline.radial:
-                length, height = height, length
-            bars = np.pi / 4 * height**2 * length * outline.bars
-            size += bars if outline.bars else volume(polygon)
+            shape = [point[:: -1 if outline.radial else 1] for point in polygon]
+            radii = [radius for _, radius in shape]
+            axis = (min(radii) + max(radii)) / 2 if outline.bars else 0.0
+            half = [(x, max(radius - axis, 0.0)) for x, radius in shape]
+            size += max(outline.bars, 1) * volume(half)
         density = numbers[f"materials.{outline.material}.density"]
         weights[names[outline.part]] += size * density
     for part, weight in weights.items():
