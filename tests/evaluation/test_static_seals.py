@@ -89,6 +89,17 @@ def test_gland_rows_of_the_static_seal(name):
     assert "static seal" in names
 
 
+@pytest.mark.parametrize(("pressure", "warned"), [("206 bar", False), ("210 bar", True)])
+def test_a_static_seal_beyond_its_pressure_is_a_warning(pressure, warned):
+    """NBR 90 bears 206.8 bar without a back-up ring; sliding rings of the knee have one."""
+    found = ao.evaluate(ao.read(KNEE, set={"supply.pressure": pressure}))
+    said = [text for text in found.warnings if "without a back-up ring" in text]
+    assert [text.startswith("static seal: the pressure is 210 bar") for text in said] == [True] * warned
+    gaps = [text for text in found.warnings if "limits of the extrusion gap" in text]
+    assert [text.startswith("static seal:") for text in gaps] == [True] * warned
+    assert not any(text.startswith("static seal: the speed") for text in found.warnings)
+
+
 def test_nothing_is_left_out_of_the_mass():
     """The report no longer lists static seals among the parts that the mass leaves out."""
     sealed, bare = pair("steel_baseline")
