@@ -418,7 +418,7 @@ class EdgeBeside(NamedTuple):
     wall: end_bending.Shell
     edge: end_bending.Edge
     growth: Array
-    metal_peak: float | None = None
+    metal_peak: Array | None = None
 
 
 @dataclass(frozen=True, slots=True)
