@@ -8,7 +8,7 @@ from math import asin, pi, sin, sqrt
 import numpy as np
 
 from ..base.errors import Fault
-from ..base.numeric import Array
+from ..base.numeric import Array, minimum
 from ..base.quantities import Quantity, length_text
 from ..models import endurance, mass, piston_nut, retention
 from .joint import (
@@ -164,12 +164,23 @@ def _strength(loaded: Loaded) -> Strength | str:
     ultimate = materials.allowable(end.material, "ultimate_strength")
     if strength is None or ultimate is None:
         return "tie rods need a thread and a material with yield and ultimate strength"
-    clamp = _clamp(loaded)
-    forces = {"": clamp.largest}
-    forces |= {at: clamp.largest + change for at, change in clamp.changes.items()}
-    stresses = {at: _stress(end, force) for at, force in forces.items()}
-    working = {f"tie rods, {at}" if at else "tie rods": strength / x for at, x in stresses.items()}
-    burst = {f"with temperature, {at}" if at else "": ultimate / x for at, x in stresses.items()}
+    clamp, per_stress = _clamp(loaded), _stress(end, 1.0)
+    preloads = {"": clamp.greatest}
+    preloads |= {at: clamp.greatest + change for at, change in clamp.changes.items()}
+
+    def factor(stress: Array, preload: Array) -> Array:
+        """Force on the ends at this stress of the rods, over the force; also of an open joint."""
+        borne = stress / per_stress
+        return minimum((borne - preload) / clamp.added, borne / loaded.force)
+
+    working = {
+        f"tie rods, {at}" if at else "tie rods": factor(strength, preload)
+        for at, preload in preloads.items()
+    }
+    burst = {
+        f"with temperature, {at}" if at else "": factor(ultimate, preload)
+        for at, preload in preloads.items()
+    }
     return Strength(working, burst, NOT_BONDED)
 
 
@@ -186,7 +197,18 @@ def _fatigue(loaded: Loaded) -> Fatigue:
 
 
 def _own(loaded: Loaded) -> dict[str, Mapping[str, Array]]:
-    return {"joint_factor": _clamp(loaded).closed}
+    """The joint stays closed; and the preload that tightening may cause, over the greatest."""
+    end, clamp = loaded.end, _clamp(loaded)
+    assert end.material is not None
+    factors = dict(clamp.closed)
+    strength = loaded.materials.allowable(end.material, "yield_strength")
+    if strength is not None:
+        twist = piston_nut.torsion_factor(
+            diameter=end.sizes["thread.diameter"], pitch=end.sizes["thread.pitch"]
+        )
+        stress = twist * _stress(end, clamp.greatest)
+        factors["while tightened"] = piston_nut.USED * strength / stress
+    return {"joint_factor": factors}
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:

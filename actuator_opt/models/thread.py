@@ -339,7 +339,12 @@ def spread_stress(*, force: Array, thickness: Array, engagement: Array) -> Array
 
 @geometry
 def skirt_stresses(
-    *, force: Array, root_diameter: Array, thickness: Array, engagement: Array, poissons_ratio: Array
+    *,
+    force: Array,
+    root_diameter: Array,
+    thickness: Array,
+    engagement: Array,
+    poissons_ratio: Array,
 ) -> tuple[Array, Array, Array]:
     """Stresses of a plug's skirt with a male thread, outside the plate that presses on it.
 

@@ -94,7 +94,9 @@ def test_a_static_seal_beyond_its_pressure_is_a_warning(pressure, warned):
     """NBR 90 bears 206.8 bar without a back-up ring; sliding rings of the knee have one."""
     found = ao.evaluate(ao.read(KNEE, set={"supply.pressure": pressure}))
     said = [text for text in found.warnings if "without a back-up ring" in text]
-    assert [text.startswith("static seal: the pressure is 210 bar") for text in said] == [True] * warned
+    assert [text.startswith("static seal: the pressure is 210 bar") for text in said] == [
+        True
+    ] * warned
     gaps = [text for text in found.warnings if "limits of the extrusion gap" in text]
     assert [text.startswith("static seal:") for text in gaps] == [True] * warned
     assert not any(text.startswith("static seal: the speed") for text in found.warnings)

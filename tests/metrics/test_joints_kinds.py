@@ -310,7 +310,9 @@ def test_an_unknown_word():
 def test_the_force_crosses_the_rim_behind_the_seal(name, inner):
     """Skirt and neck start outside the seal, inside its groove: lip in shear, metal in tension."""
     static = "  static: {compound: nbr_90, section: 1.78 mm, squeeze: 20 %}\n"
-    text = text_of(BLOCKS[name]).replace("\nload:\n", f"\n{static}\nload:\n".replace("\n\n", "\n"), 1)
+    text = text_of(BLOCKS[name]).replace(
+        "\nload:\n", f"\n{static}\nload:\n".replace("\n\n", "\n"), 1
+    )
     subject = ao.read(text, set={"caps.thickness": "6 mm"}).subject()
     run = compute(subject, subject.values())
     rows, loaded = run.computed.metrics["retention_burst_factor"], run.joints[0].loaded

@@ -172,7 +172,7 @@ def _clamped(
             least = maximum(least, proof * unit - change)
         preload = (least + settled) / scatter[0]
     least, greatest = (preload * share for share in scatter)
-    at = {"at assembly": 0.0, **changes} if changes else {"": 0.0}
+    at = {"at assembly": 0.0, **changes}
     closed = {place: (least - settled + change) / (proof * unit) for place, change in at.items()}
     pressure = maximum(state.moving_a, state.moving_b)
     barrel, _ = forces_of(cases, pressure)

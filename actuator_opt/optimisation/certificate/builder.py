@@ -31,8 +31,8 @@ from ...evaluation.values import Values
 from ...joints.joint import Clamp
 from ...models import column, rod as rod_models, stepped, tube_bounds
 from ...models.layered_tube import layered_tube, tube_state
-from ...models.solid_ply import solid_rotated
 from ...models.piston_nut import preload_range
+from ...models.solid_ply import solid_rotated
 from ...models.trial_motion import (
     Chamber,
     TrialMode,
@@ -666,7 +666,9 @@ class Envelopes:
         low, high = preload_range(preload=1.0, tightening_factor=springs.tightening_factor)
         preload = v.get("retention.preload", proof * share / low)
         added = supply * (wall.largest_area(design, g) - share)
-        rods = Clamp(preload, preload * high, added, {"": preload * low / (proof * share)})
+        rods = Clamp(
+            preload, preload * high, added, {"at assembly": preload * low / (proof * share)}
+        )
         barrel = 1 / (swelling.stretch * g.barrel_length)
         total = barrel + springs.stiffness
         return wall.LoadPath({name: share}, 0.0, 0.0, rods, barrel / total)
