@@ -131,10 +131,11 @@ def closed(
 def yields(
     v: Values, design: Design, stock: MaterialValues, g: Geometry, push: Array, pull: Array
 ) -> dict[str, Array]:
-    """Push at yield of the piston under the shoulder, over the push; and yield over stress of its web.
+    """Yield of the piston under the shoulder, and of its web.
 
-    The greatest preload presses on the shoulder too. It cannot exceed that, so that the factor is
-    one on the push. The push of the ring around the shoulder bends the web at the shoulder, and the pull at the nut.
+    The greatest preload presses on the shoulder too. It is known, so the factor is that of the
+    push: push at yield divided by the push. At the web, it is yield strength divided by stress. The
+    push of the ring around the shoulder bends the web at the shoulder, and the pull at the nut.
     """
     nut = _nut(v, design, stock, g)
     strengths = [

@@ -293,8 +293,8 @@ class Clamp:
     `preload` is the total preload at assembly [N], the mean of what tightening gives, and
     `greatest` the most of it. `added` is the force that supply pressure adds [N]. `closed` is the
     least preload, after settling, divided by the clamping force that proof pressure takes away, by
-    temperature; the joint stays closed if it is above 1. `changes` are the changes of the preload at the lowest and the highest temperature [N], with the
-    keys "cold" and "hot"; empty if unknown.
+    temperature; the joint stays closed if it is above 1. `changes` are the changes of the preload
+    at the lowest and the highest temperature [N], with the keys "cold" and "hot"; empty if unknown.
     """
 
     preload: Array

@@ -102,7 +102,7 @@ def _clamping(end: End, materials: MaterialProperties) -> Clamping:
 
 
 def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
-    """Mass of the nuts of this end, and half the mass of all tie rods, which end with their nuts."""
+    """Mass of this end's nuts, and half the mass of all tie rods, which end with their nuts."""
     assert end.material is not None
     diameter, count = end.sizes["thread.diameter"], end.sizes["count"]
     density = materials.get(end.material, "density")

@@ -16,7 +16,7 @@ THREADS = 0.9
 """Length of stud that gives as much as the engaged thread and the nut, in thread diameters: 0.5 and
 0.4 [VDI2230]."""
 SPREAD = 3**-0.5
-"""Tangent of the half angle at which pressure spreads in clamped parts, 30 degrees [Shigley2011]."""
+"""Tangent of the angle at which pressure spreads in clamped parts, 30 degrees [Shigley2011]."""
 TIGHTENING = 1.6
 """Greatest divided by least preload that one setting of a torque wrench gives. [VDI2230] states 1.4
 to 1.6 for torques found by trials on the joint, and 1.6 to 2 for estimated friction."""

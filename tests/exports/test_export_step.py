@@ -103,7 +103,7 @@ def test_places_are_those_of_the_section():
 
 
 def test_tie_rods_stand_around_the_barrel():
-    """Bars of the stated diameter through the plates and a hexagon nut at each end, spread evenly."""
+    """Bars of the stated diameter through plates and a hexagon nut at each end, evenly spread."""
     evaluation, densities, read = exported(DESIGNS / "aerospace.yaml")
     found = check_masses(evaluation, densities, read)
     bolt, length = 5e-3, evaluation.lengths["barrel_length"] + 2 * evaluation.lengths["plate"]
