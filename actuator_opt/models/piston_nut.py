@@ -240,8 +240,8 @@ def least_stud_share(
 
 def _frustum_give(seat: Array, diameter: Array, height: Array, modulus: Array) -> Array:
     """Give per force [m/N] of the half of the clamped piston under a seat of this diameter."""
-    wide = seat + 2 * SPREAD * height
-    ratio = (wide - diameter) * (seat + diameter) / ((wide + diameter) * (seat - diameter))
+    spread = 2 * SPREAD * height
+    ratio = 1 + 2 * diameter * spread / ((seat + spread + diameter) * (seat - diameter))
     return namespace(ratio).log(ratio) / (SPREAD * pi * modulus * diameter)
 
 
