@@ -20,7 +20,7 @@ from typer.exceptions import TyperException
 
 from ..base.errors import EXIT_CODES, ActuatorError, Diagnostic, ExitCode
 from ..version import VERSION
-from . import streams
+from . import completion, streams
 
 COMMANDS = {
     "init": "design",
@@ -82,7 +82,8 @@ def _leave(code: ExitCode | None, **options: object) -> None:
 def command_line(arguments: Sequence[str] = ()) -> Any:
     """Build the command line, with the option ``--debug`` for every command.
 
-    If the first argument names a command, only this command is imported, to save time.
+    If the first argument names a command, only this command is imported, to save time. The same
+    holds for the line of which a shell asks for words.
     """
     app = typer.Typer(
         name="actuator-opt",
@@ -91,13 +92,13 @@ def command_line(arguments: Sequence[str] = ()) -> Any:
         no_args_is_help=True,
         pretty_exceptions_enable=False,
         rich_markup_mode=None,
-        add_completion=False,
         context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
         invoke_without_command=True,
         callback=_main,
         result_callback=_leave,
     )
-    names = [name for name in COMMANDS if name in arguments[:1]]
+    first = arguments[:1] or completion.typed()
+    names = [name for name in COMMANDS if name in first]
     for name in names or ([] if list(arguments) == ["--version"] else COMMANDS):
         function = getattr(import_module(f".{COMMANDS[name]}", __package__), name)
         if isinstance(function, typer.Typer):

@@ -11,8 +11,8 @@ DESIGNS = Path(__file__).parents[2] / "designs"
 
 KNEE = (DESIGNS / "knee.yaml").read_text("utf-8")
 for stated, changed in (
-    ("      thickness: 1 mm", "      thickness: 1.8 mm"),
-    ("      thickness: 3.65 mm", "      thickness: 2.7 mm"),
+    ("      thickness: 1 mm", "      thickness: 1.85 mm"),
+    ("      thickness: 3.65 mm", "      thickness: 2.65 mm"),
     ("  bore: 22.3 mm", "  bore: 21.8 mm"),
     (
         "  outer_diameter: 12.85 mm\n  inner_diameter: 10 mm",
