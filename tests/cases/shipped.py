@@ -20,7 +20,7 @@ for stated, changed in (
     ),
     ("  length: 15.5 mm", "  length: 12.5 mm"),
     ("  length: 6.5 mm", "  length: 8 mm"),
-    ("  thickness: 4.75 mm", "  thickness: 4.7 mm"),
+    ("  thickness: 4.95 mm", "  thickness: 4.7 mm"),
     ("preload: 14.2 kN           # mean of a torque wrench: 10.9 kN to 17.5 kN", "preload: 8 kN"),
     ("  length: 5 mm\n  wall: 2.2 mm", "  length: 7 mm\n  wall: 1.1 mm"),
 ):
