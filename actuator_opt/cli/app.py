@@ -42,11 +42,14 @@ COMMANDS = {
     "rerun": "runs",
     "export": "design",
     "schema": "design",
+    "explain": "reference",
+    "list": "reference.list_names",
     "doctor": "runs",
     "materials": "materials",
     "runs": "runs",
 }
-"""All commands in the order of the help, each with the module of its function."""
+"""All commands in the order of the help, each with its module, and its function if this has another
+name."""
 
 HIDDEN = {"optimize"}
 """Alternative spellings of commands, which the help does not list."""
@@ -100,7 +103,8 @@ def command_line(arguments: Sequence[str] = ()) -> Any:
     first = arguments[:1] or completion.typed()
     names = [name for name in COMMANDS if name in first]
     for name in names or ([] if list(arguments) == ["--version"] else COMMANDS):
-        function = getattr(import_module(f".{COMMANDS[name]}", __package__), name)
+        module, _, other = COMMANDS[name].partition(".")
+        function = getattr(import_module(f".{module}", __package__), other or name)
         if isinstance(function, typer.Typer):
             app.add_typer(function, name=name)
         else:
