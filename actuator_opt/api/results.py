@@ -195,7 +195,7 @@ KINDS = kinds(
         text="text", report=None, csv=None, record=None,
     ),
     ResultKind(
-        "api.explaining:Explanation", _always, text="text", report=None, csv=None, record=None,
+        "api.explaining:Explanation", _always, text="text", report=None, csv=None, record=None
     ),
     ResultKind("api.reference:Catalogue", _always, text="text", report=None, csv=None, record=None),
     ResultKind(
