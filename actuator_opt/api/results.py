@@ -192,7 +192,9 @@ KINDS = kinds(
         "api.installation:Installation", lambda installation: _missed(not installation.ok),
         text="text", report=None, csv=None, record=None,
     ),
-    ResultKind("api.explaining:Explanation", _always, text="text", report=None, csv=None, record=None),
+    ResultKind(
+        "api.explaining:Explanation", _always, text="text", report=None, csv=None, record=None
+    ),
     ResultKind("api.reference:Catalogue", _always, text="text", report=None, csv=None, record=None),
     ResultKind(
         "api.recorded_runs:Run", _always, text="text",
