@@ -130,7 +130,7 @@ def _unit_fault(text: str, quantity: Quantity, error: units.UnitError) -> ValueF
 
 
 def _with_unit(bare: str, quantity: Quantity) -> str:
-    """How to write a bare number with its unit.
+    """Remedy for a bare number: the number with its unit.
 
     As in scripts and ``--set``, the number is taken as SI. If that is outside the quantity's range,
     the display unit is suggested instead, and if this is too, the example.
