@@ -57,6 +57,13 @@ class Installation(Displayed):
         """Whether everything that commands need is present."""
         return all(finding.status != "fault" for finding in self.findings)
 
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The version, and the number of faults."""
+        faults = sum(finding.status == "fault" for finding in self.findings)
+        state = "complete" if self.ok else f"{faults} fault{'' if faults == 1 else 's'}"
+        return "", f"actuator-opt {VERSION}, {state}"
+
     def to_dict(self) -> dict[str, Any]:
         """The object of `doctor --json`."""
         return {

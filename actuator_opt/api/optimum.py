@@ -162,6 +162,13 @@ class Prices(Displayed):
 
     optimisation: Optimisation
 
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The number of prices, and the objective of the optimum."""
+        optimisation = self.optimisation
+        count = len(optimisation.sensitivities)
+        return optimisation.design.name, f"{count} prices at {optimisation.objective_text}"
+
     def to_dict(self) -> dict[str, Any]:
         """The object of `sensitivity --json`; prices are those of the optimum before rounding."""
         data = replace(self.optimisation, rounding=None).to_dict()

@@ -222,6 +222,12 @@ class Run(Displayed):
     head: Mapping[str, Any]
     body: Mapping[str, Any]
 
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The command and its design."""
+        kind, name = (str(self.head.get(key, "")) for key in ("kind", "name"))
+        return self.id, f"{kind} of {name}"
+
     def to_dict(self) -> dict[str, Any]:
         """The object of `runs show --json`."""
         body = {key: value for key, value in self.body.items() if key not in ("state", "tables")}

@@ -215,6 +215,13 @@ class Calibrated(Displayed):
     calibration: Calibration
     redesign: Redesign
 
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The record, and the number of values found from it."""
+        record = self.calibration.identification.record.name
+        count = len(self.calibration.learned)
+        return self.actuator.design.name, f"{count} values from {record}"
+
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI."""
         calibration = self.calibration

@@ -56,6 +56,11 @@ class Rerun(Displayed):
     differences: Mapping[str, tuple[Any, Any]]
     sentence: str
 
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """Whether the report was repeated."""
+        return self.file.name, self.sentence
+
     def to_dict(self) -> dict[str, Any]:
         """The object of `rerun --json`: that of the repeated command, plus the key `rerun`."""
         return self.subject.to_dict() | {

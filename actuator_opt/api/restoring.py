@@ -35,6 +35,13 @@ class Restored(Displayed):
     doubts: tuple[str, ...] = ()
 
     @property
+    def in_short(self) -> tuple[str, str]:
+        """The run, and the number of values that the present models compute differently."""
+        count = len(self.doubts)
+        changed = f", {count} value{'' if count == 1 else 's'} changed" if count else ""
+        return self.actuator.design.name, f"run {self.run.id} of {self.run.head['kind']}{changed}"
+
+    @property
     def optimisation(self) -> Optimisation:
         """The result, if the command was `optimise`; raises `InputError` for other commands."""
         from ..optimisation.result import Optimisation

@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, Any, Unpack
 from ..base import runs as run_store
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, ExitCode, UsageError
-from ..base.tables import show_by
 from ..design import Design
 from ..evaluation import Evaluation
 from ..evaluation.result import UNKNOWN
@@ -249,19 +248,16 @@ def text(result: object, **style: Unpack[Style]) -> str:
 
 
 def html(result: object) -> str:
-    """A result as HTML for notebooks; "" for a result without text."""
+    """The main parts of a result as HTML for notebooks; "" for a result without text."""
     from ..rendering import html as markup
 
     kind = kind_of(result)
     if kind.page is not None:
-        return markup.fragment(piece(kind.page, result)())
+        return markup.summary(piece(kind.page, result)())
     if kind.blocks is not None:
         return markup.pieces(piece(kind.blocks, result)())
     words = text(result, colour=False, unicode=True, width=100)
     return markup.listing(words) if words else ""
-
-
-show_by(html)
 
 
 def data(result: object) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.numeric import Array
-from ..base.tables import Displayed
+from ..base.tables import Displayed, OneLine
 from ..design import Design
 from ..studies.plant import plant
 from .actuator import Actuator, as_actuator
@@ -35,13 +35,18 @@ _TABLES = (".csv", ".txt", ".tsv")
 
 
 @dataclass(frozen=True, slots=True)
-class Trial:
+class Trial(OneLine):
     """A scenario as read, with its records, and its design with the values that it changes."""
 
     scenario: Scenario
     actuator: Actuator
     records: Mapping[tuple[str, str], tuple[Array, Array]]
     loaded: LoadedScenario
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The scenario's duration and its design."""
+        return self.scenario.name, f"{self.scenario.duration:g} s with {self.actuator.design.name}"
 
     @property
     def files(self) -> list[Path]:
@@ -201,6 +206,15 @@ class Compared(Displayed):
     """Simulation and record together; if parameters were fitted, the simulation uses the fitted
     values."""
     fit: Fit | None = None
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The parameters that were fitted to the record."""
+        fit = self.fit
+        fitted = (
+            "no parameter fitted" if fit is None else f"{len(fit.parameters)} parameters fitted"
+        )
+        return self.simulation.scenario.name, f"with {self.overlay.measured.name}, {fitted}"
 
     @property
     def simulation(self) -> Simulation:

@@ -301,6 +301,11 @@ class KeptSweep(Displayed):
     run: Run
     study: Study
 
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The run, and its number of designs."""
+        return self.study.design.name, f"run {self.run.id}, {self.study.plan.count} designs"
+
 
 def kept_sweep(run: Run, actuator: Actuator) -> KeptSweep:
     """The sweep of a record; its rows are not read yet."""

@@ -6,12 +6,13 @@ The Pareto lines of the figures are exact, as they take all rows into account.
 from __future__ import annotations
 
 import heapq
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import combinations
 from typing import Any
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..base.tables import Displayed
 from ..version import VERSION
@@ -153,7 +154,7 @@ def _extended(study: Study, pair: tuple[str, str], previous: Array | None, rows:
     return line
 
 
-@dataclass(frozen=True, order=True)
+@dataclass(frozen=True)
 class Best:
     """One of the best designs, with its objective (to be minimised), point and row."""
 
@@ -192,6 +193,21 @@ class Swept(Displayed):
     seconds: float = 0.0
     sample: Sample = field(default_factory=Sample)
     """Rows for figures."""
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The number of designs, and how many of them are feasible."""
+        found = "" if self.feasible is None else f", {self.feasible} feasible"
+        best = ""
+        single = self.study.goal.single
+        if self.best and single is not None:
+            value = self.metrics(self.best[0])[single]
+            best = (
+                ""
+                if value is None
+                else f", best {single} {self.study.quantity(single).text(value)}"
+            )
+        return self.study.design.name, f"{self.requested} designs{found}{best}"
 
     def metrics(self, best: Best) -> dict[str, float | None]:
         """Return the metrics of one of the best designs (SI); None without a value."""
@@ -267,4 +283,6 @@ class Swept(Displayed):
                 Best(float(chunk.objective[k]), int(numbers[k]), tuple(chunk.rows.numbers[k]))
                 for k in order
             ]
-            self.best = heapq.nsmallest(keep, [*self.best, *candidates])
+            self.best = heapq.nsmallest(
+                keep, [*self.best, *candidates], key=lambda best: (best.objective, best.number)
+            )
