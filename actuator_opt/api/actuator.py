@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
+from ..base.arguments import guarded
 from ..base.cluster import Cluster, connected
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError
@@ -69,6 +70,7 @@ def plugins_of(sources: Plugins) -> tuple[Plugin, ...]:
     return tuple(plugins)
 
 
+@guarded
 def read(
     source: str | Path,
     *,

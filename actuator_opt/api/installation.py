@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, Unpack
 
 from ..base import files as store
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.errors import InputError
 from ..base.tables import Displayed
@@ -82,6 +83,7 @@ class Installation(Displayed):
         return blocks_text([findings(rows)], **style)
 
 
+@guarded
 def doctor(
     *, out: str | Path = "reports", runs: str | Path | None = None, terminal: str = ""
 ) -> Installation:

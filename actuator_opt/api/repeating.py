@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, Unpack
 
+from ..base.arguments import guarded
 from ..base.bounds import CHECKS, FRONT, SEED, STARTS, IntegerRange
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, shown
@@ -95,6 +96,7 @@ class Rerun(Displayed):
         return data | ({"extra_tables": self.tables} if self.tables else {})
 
 
+@guarded
 def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
     """Repeat the command of a report, with the input attached to its PDF.
 

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..base import runs as run_store
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, ExitCode, UsageError
 from ..design import Design
@@ -212,12 +213,13 @@ KINDS = kinds(
 
 
 def kind_of(result: object) -> ResultKind:
-    """The kind of a result, by its type; raises `TypeError` for other objects."""
+    """The kind of a result, by its type; raises `UsageError` for other objects."""
     for cls in type(result).__mro__:
         kind = KINDS.get(f"{cls.__module__.removeprefix(_PACKAGE)}:{cls.__qualname__}")
         if kind is not None:
             return kind
-    raise TypeError(f"{type(result).__name__} is not a result of a command")
+    message = f"{type(result).__name__} is not a result"
+    raise UsageError(Diagnostic(message, "give one of evaluate, optimise, sweep, simulate, ..."))
 
 
 def piece(name: str, result: object) -> Callable[..., Any]:
@@ -293,6 +295,7 @@ def keep(result: object, **context: Any) -> Run | None:
     return None if name is None else piece(name, result)(**context)
 
 
+@guarded
 def report(
     subject: object,
     *,

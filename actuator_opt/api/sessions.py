@@ -12,6 +12,7 @@ from dataclasses import asdict, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError, remedy
 from ..base.quantities import Quantity
@@ -536,6 +537,7 @@ def _require_continuous(actuator: Actuator, sizes: object) -> None:
         )
 
 
+@guarded
 def session(
     design: Actuator | Design | str | Path,
     *,

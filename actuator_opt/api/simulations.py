@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.numeric import Array
@@ -55,6 +56,7 @@ class Trial(OneLine):
         return [self.loaded.design_file, *records]
 
 
+@guarded
 def read_scenario(
     source: str | Path,
     *,
@@ -117,6 +119,7 @@ def _where(fault: Diagnostic, path: str, loaded: LoadedScenario) -> Diagnostic:
     return loaded.diagnostic(path, f"{fault.file}: {fault.message}", fault.remedy)
 
 
+@guarded
 def simulate(
     scenario: Trial | str | Path,
     *,
@@ -190,6 +193,7 @@ def as_trial(
     return scenario
 
 
+@guarded
 def write_signals(simulation: Simulation, path: str | Path) -> ReportFile:
     """Write every signal of a simulation as CSV."""
     from ..pages.simulation import series
@@ -236,6 +240,7 @@ class Compared(Displayed):
         return write_simulation(self.simulation, measured=self, **paper)
 
 
+@guarded
 def compare_measured(
     scenario: Trial | str | Path,
     record: str | Path,
@@ -288,6 +293,7 @@ def compare_measured(
     return Compared(result.after, result)
 
 
+@guarded
 def servo_sensitivities(
     scenario: Trial | str | Path, names: Sequence[str] | None = None
 ) -> Sensitivities:
@@ -305,6 +311,7 @@ def servo_sensitivities(
         return sensitivities(trial.scenario, trial.actuator.subject(), names, records=trial.records)
 
 
+@guarded
 def verify_dynamics(
     scenario: Trial | str | Path, design: Actuator | Design | str | Path | None = None
 ) -> Verification:
@@ -360,6 +367,7 @@ def with_design(trial: Trial, design: Actuator | Design | str | Path) -> Actuato
     return actuator
 
 
+@guarded
 def write_simulation(
     simulation: Simulation,
     scenario: Trial | None = None,
@@ -397,6 +405,7 @@ def write_simulation(
     return printed.write(report, origin, **place, scenario_hash=simulation.spec_hash)
 
 
+@guarded
 def write_comparison(
     runs: Sequence[tuple[str, Simulation]],
     scenario: Trial,

@@ -114,6 +114,10 @@ def _texts(values: Coded) -> Array:
     return texts
 
 
+def _array(values: Values) -> Array:
+    return _texts(values) if isinstance(values, Coded) else values
+
+
 class DataTable(OneLine):
     """A table of results, with an array for each column; numbers are in SI.
 
@@ -186,8 +190,7 @@ class DataTable(OneLine):
         ------
         UnknownName : there is no such column
         """
-        values = self._column(name).values
-        return _texts(values) if isinstance(values, Coded) else values
+        return _array(self._column(name).values)
 
     def __contains__(self, name: object) -> bool:
         """Whether there is a column of this name."""
@@ -284,6 +287,34 @@ class DataTable(OneLine):
         values = {name: column.shown(units) for name, column in self._columns.items()}
         stated = {name: column.unit(units) for name, column in self._columns.items()}
         return _FRAMES[library](values, {name: unit for name, unit in stated.items() if unit})
+
+    def to_xarray(self, sizes: Mapping[str, int], *, units: Units = "si") -> Any:
+        """The rows of a full factorial as an `xarray.Dataset`.
+
+        Parameters
+        ----------
+        sizes : columns that are dimensions, with their numbers of values; the last changes fastest
+        units : units of the numbers; each array states its unit in ``attrs``
+        """
+        _require(units, get_args(Units), "units")
+        xarray = package("xarray")
+        shape, step, coordinates = tuple(sizes.values()), len(self), {}
+        for name, size in sizes.items():
+            step //= size
+            first_values = self._column(name).some(slice(0, size * step, step)).shown(units)
+            coordinates[name] = _array(first_values)
+        variables = {}
+        for name in (name for name in self._columns if name not in sizes):
+            values = _array(self._column(name).shown(units)).reshape(shape)
+            variables[name] = (tuple(sizes), values, self._about(name, units))
+        dataset = xarray.Dataset(variables, coords=coordinates, attrs={"name": self.name})
+        for name in sizes:
+            dataset[name].attrs.update(self._about(name, units))
+        return dataset
+
+    def _about(self, name: str, units: Units) -> dict[str, str]:
+        unit = self._column(name).unit(units)
+        return {"units": unit} if unit else {}
 
     # ---- text ----
 

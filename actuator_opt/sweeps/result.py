@@ -13,10 +13,14 @@ from typing import Any
 import numpy as np
 
 from ..base.dataclass import dataclass
+from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.numeric import Array
 from ..base.tables import Displayed
+from ..design.paths import quantity_of
+from ..rendering.series import Coded
+from ..rendering.tables import DataColumn, DataTable, Library, Units
 from ..version import VERSION
-from .chunk import Chunk, Study
+from .chunk import FEASIBLE, MARGIN, MISSED, Chunk, Study
 
 MOST_POINTS = 4096
 """Maximum number of rows that are kept for figures, separately for feasible and other designs (our
@@ -169,6 +173,37 @@ class Best:
 
 
 @dataclass
+class AllRows:
+    """Every row of a sweep in memory: an array (columns, points), a row per column."""
+
+    numbers: Array
+    variants: Array
+    """Number of the combination of texts of each point."""
+    failures: Array
+    """Index of the reason in `reasons` for each failed point, else -1."""
+    reasons: dict[str, int] = field(default_factory=dict)
+
+    @classmethod
+    def empty(cls, study: Study) -> AllRows:
+        """Space for all rows of a sweep."""
+        count = study.plan.count
+        variants = np.zeros(count if study.plan.named else 0, dtype=np.int32)
+        numbers = np.empty((len(study.columns), count))
+        return cls(numbers, variants, np.full(count, -1, dtype=np.int32))
+
+    def add(self, study: Study, chunk: Chunk) -> None:
+        """Store the rows of a chunk."""
+        count = len(chunk.rows.numbers)
+        part = np.s_[chunk.first : chunk.first + count]
+        self.numbers[:, part] = chunk.rows.numbers.T
+        for k, reason in chunk.rows.failures.items():
+            place = self.reasons.setdefault(reason, len(self.reasons))
+            self.failures[chunk.first + k] = place
+        if study.plan.named:
+            self.variants[part] = study.plan.points(chunk.first, count).variant
+
+
+@dataclass
 class Swept(Displayed):
     """Results of a sweep."""
 
@@ -193,6 +228,8 @@ class Swept(Displayed):
     seconds: float = 0.0
     sample: Sample = field(default_factory=Sample)
     """Rows for figures."""
+    rows: AllRows | None = field(default=None, repr=False)
+    """All rows, if they were kept."""
 
     @property
     def in_short(self) -> tuple[str, str]:
@@ -224,6 +261,66 @@ class Swept(Displayed):
         paths = [axis.path for axis in study.plan.numeric]
         numbers = {paths[k]: float(x) for k, x in zip(study.order, best.row, strict=False)}
         return {path: numbers[path] for path in paths}
+
+    def table(self) -> DataTable:
+        """All designs as a table: varied inputs, metrics, least margin, and reasons of failures.
+
+        `met` states whether every requirement and check is met. `governing_limit` is the limit with
+        the least margin.
+
+        Raises
+        ------
+        InputError : the rows were not kept
+        """
+        rows, study = self.rows, self.study
+        if rows is None:
+            message = "the rows of this sweep were not kept in memory"
+            remedy = "sweep with rows=True and without reduce, or write csv or parquet"
+            raise InputError(Diagnostic(message, remedy))
+        place = {column.name: k for k, column in enumerate(study.columns)}
+        columns = []
+        size = study.plan.variants
+        for axis in study.plan.axes:
+            if axis.values is not None:
+                quantity = quantity_of(axis.path, study.design)
+                columns.append(DataColumn(axis.path, rows.numbers[place[axis.path]], quantity))
+            else:
+                size //= axis.size
+                columns.append(
+                    DataColumn(axis.path, Coded(rows.variants // size % axis.size, axis.texts))
+                )
+        columns += [
+            DataColumn(name, rows.numbers[place[name]], study.quantity(name))
+            for name in study.metrics
+        ]
+        missed = rows.numbers[place[MISSED]]
+        limits = np.where(np.isnan(missed), -1, np.nan_to_num(missed)).astype(np.int32)
+        columns += [
+            DataColumn("met", rows.numbers[place[FEASIBLE]] == 1.0),
+            DataColumn(MARGIN, rows.numbers[place[MARGIN]]),
+            DataColumn(MISSED, Coded(limits, study.limits)),
+            DataColumn("failure", Coded(rows.failures, tuple(rows.reasons))),
+        ]
+        return DataTable(study.design.name, columns)
+
+    def to_frame(self, library: Library = "pandas", *, units: Units = "si") -> Any:
+        """All designs as a data frame (see `table` and `DataTable.to_frame`)."""
+        return self.table().to_frame(library, units=units)
+
+    def to_xarray(self, *, units: Units = "si") -> Any:
+        """A full factorial as an `xarray.Dataset`, with a dimension for each varied PATH.
+
+        Raises
+        ------
+        ActuatorError : xarray is not installed
+        UsageError : the sweep is not a full factorial
+        InputError : the rows were not kept
+        """
+        plan = self.study.plan
+        if plan.method != "grid":
+            message = f"a sweep by {plan.method} has no grid"
+            raise UsageError(Diagnostic(message, "sweep a full factorial, or use to_frame"))
+        return self.table().to_xarray({axis.path: axis.size for axis in plan.axes}, units=units)
 
     def limit(self, keep: int) -> float:
         """Return the objective that a further design must undercut to be among the best `keep`."""
@@ -266,6 +363,8 @@ class Swept(Displayed):
         self.damaged += chunk.damaged
         self.reused += max(len(chunk.rows.numbers) - chunk.computed, 0)
         self.screened += 0 if chunk.places is None else chunk.computed - len(chunk.places)
+        if self.rows is not None:
+            self.rows.add(self.study, chunk)
         if chunk.places is None:
             self.sample.add(self.study, chunk)
         self.failed += len(chunk.rows.failures)

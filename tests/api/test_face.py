@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 import subprocess
 import sys
 from functools import cache
+from pathlib import Path
 
 import pytest
 from cases.one_line import one_line
@@ -15,6 +17,7 @@ from rendering.test_html import Balance
 
 import actuator_opt as ao
 from actuator_opt.api import results
+from actuator_opt.base.arguments import guarded
 
 BONDED = DESIGNS / "knee_bonded.yaml"
 SLOW = {
@@ -172,3 +175,95 @@ def test_hostile_names(name):
         evaluation()[name]
     assert len(str(fault.value).splitlines()) == 1
     assert len(str(fault.value)) < 600
+
+
+# Wrong arguments
+
+HOSTILE = (
+    None,
+    3,
+    -1.5,
+    float("nan"),
+    "",
+    b"x",
+    [],
+    {},
+    object(),
+    [None],
+    {"a": None},
+    "\0",
+    Path("/"),
+)
+FUNCTIONS = [
+    name for name in ao.__all__
+    if inspect.isfunction(getattr(ao, name)) and name not in ("constraint", "metric")
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_wrong_arguments_are_one_family_of_errors(name, tmp_path, monkeypatch):
+    """Every public function, whatever stands where it needs something: one line and a remedy."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("ACTUATOR_OPT_RUNS", str(tmp_path / "runs"))
+    function = getattr(ao, name)
+    parameters = inspect.signature(function).parameters.values()
+    kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+    needed = [x.name for x in parameters if x.default is x.empty and x.kind in kinds]
+    for value in HOSTILE if needed else ():
+        fault = fault_of(lambda value=value: function(**dict.fromkeys(needed, value)))
+        assert fault is None or (fault.diagnostics[0].remedy and len(str(fault)) < 1000), fault
+
+
+def fault_of(call):
+    """The library's error in a call; None without one. Any other exception passes."""
+    try:
+        call()
+    except ao.ActuatorError as error:
+        return error
+    return None
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (
+            lambda: ao.evaluate(3),
+            "evaluate: design is 3; give Actuator or Design or a text or a pa",
+        ),
+        (lambda: ao.optimise(BENCH, seed=-1), "optimise: seed is -1; give 0 to 4294967295"),
+        (lambda: ao.optimise(BENCH, seed=2**32), "optimise: seed is 4294967296; give 0 to 42"),
+        (lambda: ao.optimise(BENCH, starts=10**400), "optimise: starts is a whole number of 1329"),
+        (lambda: ao.optimise(BENCH, starts="many"), "optimise: starts is many; give a whole num"),
+        (lambda: ao.seal(BENCH, place="rodd"), "seal: place is rodd; give 'piston' or 'rod'"),
+        (lambda: ao.pareto(BENCH, [3]), "pareto: objectives[0] is 3; give a text"),
+        (lambda: ao.save(evaluation(), None), "save: path is None; give a text or a path"),
+        (lambda: ao.exit_code(1.0), "float is not a result"),
+    ],
+)
+def test_a_wrong_argument_is_named(call, told):
+    """Function, argument, item, and what it must be."""
+    with pytest.raises(ao.ActuatorError) as fault:
+        call()
+    assert str(fault.value).startswith(told)
+
+
+def test_a_fault_of_the_program_stays_one():
+    """With arguments that fit, an exception is not taken for a wrong argument."""
+
+    @guarded
+    def broken(number: float) -> float:
+        raise ZeroDivisionError(number)
+
+    with pytest.raises(ZeroDivisionError):
+        broken(1)
+    with pytest.raises(TypeError, match="missing 1 required positional argument"):
+        broken()
+
+
+def test_results_are_saved_as_designs(tmp_path):
+    """An optimum and an evaluation are design files whose values are the same."""
+    for number, result in enumerate((optimum(), evaluation())):
+        path = ao.save(result, tmp_path / f"{number}.yaml")
+        again = ao.evaluate(path)
+        assert float(again["mass"]) == pytest.approx(float(result["mass"]), rel=1e-12)
+    assert dir(ao) == sorted(ao.__all__)

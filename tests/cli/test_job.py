@@ -248,7 +248,7 @@ def test_what_a_report_needs_is_asked_for_in_one_line():
         ao.report(object.__new__(ao.BendingResult))
     with pytest.raises(UsageError, match='date "today" is not a date'):
         ao.report(actuator, date="today")
-    with pytest.raises(TypeError, match="float is not a result"):
+    with pytest.raises(UsageError, match="float is not a result"):
         ao.report(1.0)
 
 
