@@ -6,11 +6,11 @@
 
 Most functions are named like the command that does the same in the terminal: `check`, `evaluate`,
 `optimise`, `sensitivity`, `pareto`, `sweep`, `uncertainty`, `compare`, `explore`, `seal`,
-`identify`, `calibrate`, `simulate`, `report` and `export`. `read` reads a design, `save` writes it,
-and `session` re-solves it quickly after changes. In the terminal, some functions are options:
-`bending` is `identify --span`, `compare_measured` is `simulate --measured`, `servo_sensitivities`
-is `simulate --sensitivity`, and `verify_dynamics` is `optimise --verify-dynamics`. A module with
-slow imports loads when a function first needs it.
+`identify`, `calibrate`, `simulate`, `report`, `export` and `explain`. `catalogue` is the command
+`list`. `read` reads a design, `save` writes it, and `session` re-solves it quickly after changes.
+In the terminal, some functions are options: `bending` is `identify --span`, `compare_measured` is
+`simulate --measured`, `servo_sensitivities` is `simulate --sensitivity`, and `verify_dynamics` is
+`optimise --verify-dynamics`. A module with slow imports loads when a function first needs it.
 """
 
 from __future__ import annotations
@@ -24,8 +24,11 @@ if TYPE_CHECKING:
     from .api import (
         Actuator as Actuator,
         Calibrated as Calibrated,
+        Catalogue as Catalogue,
         Compared as Compared,
         Comparison as Comparison,
+        Entry as Entry,
+        Explanation as Explanation,
         Installation as Installation,
         OptimumCurve as OptimumCurve,
         Prediction as Prediction,
@@ -37,6 +40,7 @@ if TYPE_CHECKING:
         Trial as Trial,
         bending as bending,
         calibrate as calibrate,
+        catalogue as catalogue,
         check as check,
         compare as compare,
         compare_measured as compare_measured,
@@ -49,6 +53,7 @@ if TYPE_CHECKING:
         evaluate as evaluate,
         evaluate_many as evaluate_many,
         exit_code as exit_code,
+        explain as explain,
         explore as explore,
         export as export,
         identify as identify,
@@ -138,15 +143,15 @@ _PUBLIC = {
     "sweeps.result": "Swept",
     "uncertainties.result": "Uncertainty",
     "api": """
-        Actuator Calibrated Compared Comparison Installation OptimumCurve Prediction Price Rerun
-        Restored Run Session Trial bending calibrate check compare compare_measured
-        comparison_json delete_run doctor draw_comparison draw_run draw_sweep evaluate
-        evaluate_many exit_code explore export identify optimise pareto prune_runs read
-        read_record read_run read_scenario record record_front record_run record_sweep report
-        report_run rerun restore runs save seal sensitivity servo_sensitivities session simulate
-        sweep uncertainty verify_dynamics write_calibration write_comparison write_draws
-        write_front write_front_csv write_identification write_seal write_series write_signals
-        write_simulation write_uncertainty
+        Actuator Calibrated Catalogue Compared Comparison Entry Explanation Installation
+        OptimumCurve Prediction Price Rerun Restored Run Session Trial bending calibrate catalogue
+        check compare compare_measured comparison_json delete_run doctor draw_comparison draw_run
+        draw_sweep evaluate evaluate_many exit_code explain explore export identify optimise
+        pareto prune_runs read read_record read_run read_scenario record record_front record_run
+        record_sweep report report_run rerun restore runs save seal sensitivity
+        servo_sensitivities session simulate sweep uncertainty verify_dynamics write_calibration
+        write_comparison write_draws write_front write_front_csv write_identification write_seal
+        write_series write_signals write_simulation write_uncertainty
     """,
 }
 """The public names of each module; a module loads when one of its names is first used."""

@@ -193,6 +193,12 @@ KINDS = kinds(
         text="text", report=None, csv=None, record=None,
     ),
     ResultKind(
+        "api.explaining:Explanation", _always, text="text", report=None, csv=None, record=None,
+    ),
+    ResultKind(
+        "api.reference:Catalogue", _always, text="text", report=None, csv=None, record=None,
+    ),
+    ResultKind(
         "api.recorded_runs:Run", _always, text="text",
         report="api:report_run", csv=None, record=None,
     ),

@@ -12,6 +12,7 @@ import typer
 
 from ..base import files as store, runs as run_store
 from ..base.errors import Diagnostic, ExitCode, UsageError, shown
+from ..base.tables import encoded
 from . import streams
 from .job import Job
 from .options import (
@@ -296,9 +297,9 @@ def schema(
     scenario: Annotated[
         bool, typer.Option("--scenario", help="Schema of scenario files, not of designs.")
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="No effect: the schema is JSON.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print it on a terminal, too.")] = False,
 ) -> None:
-    """Print the JSON Schema of design or scenario files."""
+    """Print the JSON Schema of design or scenario files, for an editor; not on a terminal."""
     from ..base.quantities import RESULTS
     from ..design.materials import load_library
     from ..design.schema import json_schema
@@ -307,6 +308,11 @@ def schema(
     if scenario:
         from ..design.scenario import Scenario
 
-        streams.out_json(json_schema(Scenario, materials=load_library(), metrics=RESULTS))
+        data = json_schema(Scenario, materials=load_library(), metrics=RESULTS)
     else:
-        streams.out_json(json_schema(materials=load_library(), metrics=METRICS))
+        data = json_schema(materials=load_library(), metrics=METRICS)
+    if not streams.terminal() or as_json:
+        streams.out_json(data)
+        return
+    size = len(encoded(data, indent=1))
+    streams.err(f"{size / 1e6:.1f} MB of JSON: use list or explain; > FILE for an editor")

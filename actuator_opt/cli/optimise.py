@@ -9,6 +9,7 @@ import typer
 
 from ..base.bounds import CHECKS
 from ..base.errors import Diagnostic, ExitCode
+from . import completion
 from .job import Job
 from .options import (
     REPORTS,
@@ -25,6 +26,7 @@ from .options import (
     Quiet,
     Report,
     Scheduler,
+    Seconds,
     Seed,
     Set,
     Shop,
@@ -52,6 +54,7 @@ def optimise(
     certify: Certify = False,
     target: Yield = None,
     verify: VerifyDynamics = None,
+    seconds: Seconds = None,
     scheduler: Annotated[
         str | None,
         typer.Option(
@@ -88,6 +91,7 @@ def optimise(
         algorithm=algorithm,
         starts=starts,
         seed=seed,
+        max_seconds=seconds,
         whole_plies=whole_plies,
         keep_interrupted=True,
         standard_sizes=standard_sizes,
@@ -165,6 +169,7 @@ def pareto(
         typer.Option(
             "--objective",
             metavar="METRIC:min|max",
+            autocompletion=completion.objectives,
             help='Metric and direction, two to four times, e.g. "mass:min".',
         ),
     ] = None,

@@ -9,6 +9,7 @@ import typer
 
 from ..base.bounds import SEED, STARTS
 from ..base.errors import Diagnostic, UsageError
+from . import completion
 
 if TYPE_CHECKING:
     from ..base.quantities import Quantity
@@ -19,6 +20,7 @@ Set = Annotated[
     typer.Option(
         "--set",
         metavar="PATH=VALUE",
+        autocompletion=completion.stated,
         help='Replace a value, e.g. "cylinder.bore=30 mm"; a bare number is SI. Repeatable.',
     ),
 ]
@@ -126,6 +128,15 @@ VerifyDynamics = Annotated[
         "--verify-dynamics",
         metavar="SCENARIO",
         help="Verify the best design by simulation of this scenario.",
+    ),
+]
+Seconds = Annotated[
+    float | None,
+    typer.Option(
+        "--max-seconds",
+        min=0.0,
+        metavar="N",
+        help="Stop the search after this time and keep the best design so far.",
     ),
 ]
 NoRecord = Annotated[

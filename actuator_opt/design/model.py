@@ -406,7 +406,7 @@ class Fitting(Section):
 
     material: Annotated[str | None, MaterialName("isotropic")] = None
     """Material of the fittings; default: the rod's material."""
-    adhesive: Annotated[str, MaterialName("fastening")]
+    adhesive: Annotated[str, MaterialName("adhesive")]
     length: Annotated[float, Of("part_length", "length of the fitting inside the tube (overlap)")]
     wall: Annotated[
         float | None,
@@ -421,7 +421,7 @@ class Rod(Section):
     the layers, and `material` is the metal of its end fittings.
     """
 
-    material: Annotated[str, MaterialName("isotropic")]
+    material: Annotated[str, MaterialName("isotropic", ("metal",))]
     outer_diameter: Annotated[
         float, Of("rod_diameter", "diameter of the rod where it passes the rod seal")
     ]
@@ -483,7 +483,7 @@ class Piston(Section):
 
     material: Annotated[str, MaterialName("structural")]
     length: Annotated[float, Of("part_length", "axial length of the piston")]
-    bearing: Annotated[str | None, MaterialName("structural")] = None
+    bearing: Annotated[str | None, MaterialName("structural", ("polymer", "metal"))] = None
     clearance: Annotated[
         float, Of("radial_clearance", "radial clearance between piston and bore")
     ] = 3e-5
@@ -498,7 +498,7 @@ class Head(Section):
 
     material: Annotated[str, MaterialName("structural")]
     length: Annotated[float, Of("part_length", "axial length inside the barrel")]
-    bearing: Annotated[str | None, MaterialName("structural")] = None
+    bearing: Annotated[str | None, MaterialName("structural", ("polymer", "metal"))] = None
     clearance: Annotated[float, Of("radial_clearance", "radial clearance between rod and head")] = (
         3e-5
     )

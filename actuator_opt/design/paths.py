@@ -17,7 +17,7 @@ from ..base import errors, quantities, units
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.quantities import Quantity
-from ..metrics import METRICS
+from ..metrics import METRICS, of_metric
 from .kinds import Fraction, Section, ValueFault
 from .model import Design
 from .structure import KeyEntry, Loc, child, child_at, entries, leaves, number_of
@@ -127,8 +127,9 @@ def _resolve_section(
     name, rest = tokens[0].text, tokens[1:]
     entry = keys.get(name)
     if entry is None or tokens[0].bracket:
-        siblings = [spell((*loc, key), tree) for key in keys]
-        raise _no_such(path, [*siblings, *(spell(at, tree) for at, _, _ in leaves(*whole))])
+        known = {spell((*loc, key), tree): entry.meaning for key, entry in keys.items()}
+        known |= {spell(at, tree): entry.meaning for at, entry, _ in leaves(*whole)}
+        raise _no_such(path, known | _limits(tree))
     node, loc = child(node, name), (*loc, name)
     if entry.shape in ("value", "choice"):
         if rest:
@@ -169,7 +170,7 @@ def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quanti
         return Target(path, (head, rest), None)
     if head == "objective":
         if rest not in ("minimise", "maximise"):
-            raise _no_such(path, ["objective.minimise", "objective.maximise"])
+            raise _no_such(path, {"objective.minimise": "", "objective.maximise": ""})
         return Target(path, (head, rest), None)
     if head in _ENDS:
         if not name or last not in _ENDS[head]:
@@ -198,8 +199,19 @@ def _not_a_value(path: str, below: Sequence[str]) -> ValueFault:
     return ValueFault(f"{path}: names a block, not a value", f"add one of .{', .'.join(below[:8])}")
 
 
-def _no_such(path: str, candidates: Sequence[str]) -> ValueFault:
-    return ValueFault(f"{path}: unknown PATH", errors.remedy(path, dict.fromkeys(candidates), 6))
+def _limits(tree: Any) -> dict[str, str]:
+    """Stated limits by PATH, with the meaning of their metric."""
+    block = child(tree, "requirements")
+    return {
+        f"requirements.{metric}.{side}": f"limit of the {of_metric(str(metric)).label}"
+        for metric, limit in (block.items() if isinstance(block, Mapping) else ())
+        for side in _LIMITS
+        if child(limit, side) is not None
+    }
+
+
+def _no_such(path: str, candidates: Mapping[str, str]) -> ValueFault:
+    return ValueFault(f"{path}: unknown PATH", errors.remedy(path, candidates, 6))
 
 
 def canonical(path: str, design: Design) -> str:

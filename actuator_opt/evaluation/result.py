@@ -229,8 +229,8 @@ class Metric(Valued):
     """A metric at its governing load case and location (a ply, a seal, a part).
 
     `value` is in SI; if it is None, `why` is the reason. `by_case` has the worst value of each load
-    case. `sense` states whether the smallest ("min") or the largest ("max") value governs; None if
-    the values of all load cases and locations are equal.
+    case, `by_place` that of each location. `sense` states whether the smallest ("min") or the
+    largest ("max") value governs; None if the values of all load cases and locations are equal.
     """
 
     name: str
@@ -245,6 +245,7 @@ class Metric(Valued):
     definition: quantities.Quantity | None = None
     """Quantity of a user metric; None for built-in metrics."""
     sense: quantities.Sense | None = None
+    by_place: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def quantity(self) -> quantities.Quantity:
@@ -424,7 +425,7 @@ class Evaluation(Displayed):
         else:
             return PathValue(target.path, value, target.quantity)
         if str(name).isidentifier():
-            help = remedy(str(name), [*self.metrics, *numbers(self.design)])
+            help = remedy(str(name), allowed | dict.fromkeys(numbers(self.design), ""))
         raise UnknownName(Diagnostic(message, help))
 
     def __contains__(self, name: object) -> bool:
@@ -541,6 +542,7 @@ class Evaluation(Displayed):
                     "in_range": m.in_range,
                     "case": m.case,
                     "place": m.place,
+                    **({"by_place": dict(m.by_place)} if len(m.by_place) > 1 else {}),
                 }
                 | ({"why": m.why} if m.value is None else {})
                 for m in self.metrics.values()

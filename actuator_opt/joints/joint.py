@@ -535,20 +535,42 @@ RINGS = (("seals", "piston"), ("seals", "piston", "secondary"), ("seals", "stati
 """Places of the rings that enter the barrel through its ends."""
 
 
-def stated_rings(view: StatedValues) -> list[tuple[float, float]]:
-    """Section [m] and squeeze of the rings that enter through an end."""
-    return [
-        (section, squeeze)
+class EnteringRing(NamedTuple):
+    """Section of a free ring [m], its squeeze, and the tolerances of gland depth and section [m].
+
+    The names are the keys of the ring in the design file.
+    """
+
+    section: Array
+    squeeze: Array
+    tolerance: Array = 0.0
+    section_tolerance: Array = 0.0
+
+
+def stated_rings(view: StatedValues) -> list[EnteringRing]:
+    """The rings that enter through an end, as far as the file states their sizes."""
+    stated = (
+        [view.number(*place, key) for key in EnteringRing._fields]
         for place in RINGS
         if view.has(*place)
-        and (section := view.number(*place, "section")) is not None
-        and (squeeze := view.number(*place, "squeeze")) is not None
+    )
+    return [
+        EnteringRing(section, squeeze, *(size or 0.0 for size in tolerances))
+        for section, squeeze, *tolerances in stated
+        if section is not None and squeeze is not None
     ]
 
 
-def ring_height(rings: Iterable[tuple[Array, Array]]) -> Array:
-    """Largest height of a free ring above the bore [m], section times squeeze; 0 without rings."""
-    return reduce(maximum, (section * squeeze for section, squeeze in rings), 0.0)
+def ring_height(rings: Iterable[EnteringRing]) -> Array:
+    """Largest height of a free ring above the bore [m]; 0 without rings.
+
+    Section times squeeze at nominal size. A thick ring in a shallow gland is higher by both
+    tolerances.
+    """
+    heights = (
+        ring.section * ring.squeeze + ring.tolerance + ring.section_tolerance for ring in rings
+    )
+    return reduce(maximum, heights, 0.0)
 
 
 def nothing(*_: object) -> Iterator[Any]:

@@ -11,8 +11,8 @@ DESIGNS = Path(__file__).parents[2] / "designs"
 
 KNEE = (DESIGNS / "knee.yaml").read_text("utf-8")
 for stated, changed in (
-    ("      thickness: 1 mm", "      thickness: 1.8 mm"),
-    ("      thickness: 3.3 mm", "      thickness: 2.7 mm"),
+    ("      thickness: 1 mm", "      thickness: 1.85 mm"),
+    ("      thickness: 3.3 mm", "      thickness: 2.65 mm"),
     ("  outer_diameter: 12.3 mm", "  outer_diameter: 12 mm"),
     ("  length: 5 mm\n  wall: 2.2 mm", "  length: 7 mm\n  wall: 1.1 mm"),
 ):

@@ -255,6 +255,10 @@ class Stock(dict):
         """Kind of an entry."""
         return self[name][0] if name in self else None
 
+    def meanings(self, kinds=()):
+        """Names with nothing more about them."""
+        return {name: name for name in self if not kinds or self.kind(name) in kinds}
+
     def numbers(self, name):
         """Properties of an entry."""
         return self[name][1]

@@ -20,10 +20,10 @@ from actuator_opt.design import read_design, with_values
 from actuator_opt.design.schema import json_schema
 from actuator_opt.design.writer import init_text
 from actuator_opt.evaluation import compute
-from actuator_opt.evaluation.validity import describe, function_of
 from actuator_opt.joints.joint import Joint, check
 from actuator_opt.joints.kinds import JOINTS
 from actuator_opt.metrics import METRICS
+from actuator_opt.metrics.documentation import describe, function_of
 
 DESIGNS = Path(__file__).parents[2] / "designs"
 STEEL = (DESIGNS / "steel_baseline.yaml").read_text("utf-8").partition("\nvariables:")[0] + "\n"

@@ -123,7 +123,7 @@ def test_couples_along_the_thread_by_quadrature():
     ("changes", "path", "said"),
     [
         ({"barrel.layup[0].material": "t700_epoxy"}, "barrel.layup[0].material", "plies"),
-        ({"barrel.layup[0].thickness": "1.2 mm"}, "barrel.layup[0].thickness", "leaves 0.438"),
+        ({"barrel.layup[0].thickness": "1.2 mm"}, "barrel.layup[0].thickness", "leaves 0.3881"),
         ({"caps.material": "pa12_mjf"}, "caps.material", "needs a metal"),
         ({"retention.length": "1 mm"}, "retention.length", "less than one turn"),
         ({"retention.material": "steel_42crmo4"}, "retention.material", "has no effect"),
@@ -141,10 +141,10 @@ def test_masses_by_hand():
     parts = ao.evaluate(ao.read(PLAIN_KNEE.replace(static, ""))).mass_parts
     inner, plate, length, pitch = 10.9e-3, 4.7e-3, 7e-3, 0.75e-3
     height = sqrt(3) / 2 * pitch
-    minor = inner + 0.14 * 1.78e-3  # the piston's ring passes
+    minor = inner + 0.14 * 1.78e-3 + 0.05e-3  # the ring of the piston passes, in a shallow gland
     middle = minor + (5 / 8 - 3 / 8) * height
     root = minor + (5 / 8 - 17 / 24) * height
-    radii = np.array([inner, inner + 1.8e-3, inner + 4.5e-3])
+    radii = np.array([inner, inner + 1.85e-3, inner + 4.5e-3])
     wall = pi * np.sum(np.array([2810.0, 1570.0]) * np.diff(radii**2))
     barrel = wall * (110e-3 + 12.5e-3 + 8e-3 + 2 * (plate + length))
     cut = 2810.0 * 2 * pi * (middle**2 - inner**2) * length
@@ -169,7 +169,7 @@ def test_rim_and_skirt_of_the_plug_by_hand():
         strength = float(loaded.materials.allowable("al_7075_t6", "ultimate_strength"))
         force = 21.0 * pi / 4 * 21.8**2  # N, mm, MPa from here on
         height = sqrt(3) / 2 * 0.75
-        minor = 10.9 + 0.2 * 1.78
+        minor = 10.9 + 0.2 * 1.78 + 0.05
         root = minor + (5 / 8 - 17 / 24) * height
         bottom, lip = 10.9 - 0.8 * 1.78, (4.7 - 1.3655 * 1.78) / 2
         shear = strength * 1e-6 / sqrt(3) * 2 * pi * bottom * lip / force

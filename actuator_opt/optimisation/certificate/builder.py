@@ -19,7 +19,7 @@ from ...base.symbolic import Symbol
 from ...base.symbolic.expression import bounds_of
 from ...design.model import Design
 from ...evaluation import PreparedDesign, plies, rod_strength
-from ...evaluation.barrel import LAMINATES, Swelling, Wall, compute, kind, wall
+from ...evaluation.barrel import LAMINATES, OWN, Swelling, Wall, compute, kind, wall
 from ...evaluation.barrel.wall import LoadPath
 from ...evaluation.geometry import Geometry, clamped
 from ...evaluation.kernel import Implicit, ModelRun, Statics
@@ -40,6 +40,7 @@ from ...models.trial_motion import (
     trial_mode_load,
     trial_motion_stiffness,
 )
+from ..problem import Vector
 from .bounding import CAUTION, SAMPLES, Leads, function
 from .intervals import branch, extreme
 from .relaxation import (
@@ -159,8 +160,8 @@ class Builder:
         low, high = self.relaxation.reach(argument)
         if not 0 < high - low < WIDEST:
             raise Unknown("the model contains a function whose argument is constant or unbounded")
-        t = np.linspace(low, high, SAMPLES)
-        values = function([node], lead)(t)[0]
+        t, exact = np.linspace(low, high, SAMPLES), function([node], lead)
+        values = exact(t)[0]
         with np.errstate(all="ignore"):
             logs = np.log(np.abs(values))
         if not np.isfinite(logs).all():
@@ -169,7 +170,12 @@ class Builder:
         if (values[0] > 0) != (values[-1] > 0) or values.min() * values.max() <= 0:
             raise Unknown("the model contains a function that may be positive or negative")
         least, most = float(logs.min()) - table.room, float(logs.max()) + table.room
-        return math.copysign(1.0, values[0]), self._curve(table, argument, least, most)
+
+        def logarithm(x: Vector) -> Vector:
+            return np.asarray(np.log(np.abs(exact(x)[0])))
+
+        form = self._curve(table, argument, least, most, logarithm)
+        return math.copysign(1.0, values[0]), form
 
     def expanded(self, value: Any) -> Signomial | None:
         """A value as a sum of monomials; None if it has too many terms."""
@@ -379,16 +385,23 @@ class Builder:
         self.relaxation.curves.append(AtomFunction("exp", form, Form(0.0) - out))
         return out
 
-    def _curve(self, kind: Kind, argument: Form, low: float, high: float) -> Form:
+    def _curve(
+        self,
+        kind: Kind,
+        argument: Form,
+        low: float,
+        high: float,
+        exact: Callable[[Vector], Vector] | None = None,
+    ) -> Form:
         """A new atom whose logarithm is a function of a monomial's logarithm.
 
-        `low` and `high` bound the atom's logarithm.
+        `low` and `high` bound the atom's logarithm. `exact` is the function that a sampled `kind`
+        interpolates: a steep function, such as cycles over stress, deviates from its
+        interpolation by more than the tolerance of a limit.
         """
-        functions = CurveFunctions([kind])
+        value = exact or CurveFunctions([kind]).value
         out = self.relaxation.atom(
-            math.exp(low),
-            math.exp(high),
-            lambda y: float(functions.value(np.array([argument.at(y)]))[0]),
+            math.exp(low), math.exp(high), lambda y: float(value(np.array([argument.at(y)]))[0])
         )
         self.relaxation.curves.append(AtomFunction(kind, argument, out))
         return out
@@ -550,7 +563,7 @@ class Envelopes:
         return Wall(
             swelling=rigid,
             path=self._path(v, design, stock, g, state, rigid),
-            growth=supply_growth,
+            growths={OWN: supply_growth},
             case_growth=case_growth,
             bending_stiffness=bending,
             shear_stiffness=shear,
