@@ -8,6 +8,7 @@ from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.quantities import INFINITY, MATERIAL_PROPERTIES, Quantity, short
 from ..base.tables import Displayed
@@ -49,6 +50,11 @@ class Explanation(Displayed):
     value: str = ""
     influences: Mapping[str, float] = field(default_factory=dict)
 
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The name, and what it means."""
+        return self.entry.name, f"{self.entry.kind}, {self.entry.phrase}"
+
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON, SI."""
         moves = [{"name": name, "percent_per_percent": x} for name, x in self.influences.items()]
@@ -84,6 +90,7 @@ class Explanation(Displayed):
         return blocks_text([table], **style)
 
 
+@guarded
 def explain(
     word: str,
     design: Actuator | Design | str | Path | None = None,
