@@ -90,7 +90,11 @@ if TYPE_CHECKING:
         write_seal as write_seal,
         write_uncertainty as write_uncertainty,
     )
-    from .sweeping import draw_sweep as draw_sweep, sweep as sweep
+    from .sweeping import (
+        draw_sweep as draw_sweep,
+        evaluate_many as evaluate_many,
+        sweep as sweep,
+    )
 
 _PUBLIC = {
     ".evaluation.comparison": "Comparison",
@@ -123,7 +127,7 @@ _PUBLIC = {
         simulate verify_dynamics write_comparison write_signals write_simulation
     """,
     "studies": "seal uncertainty with_contact write_draws write_seal write_uncertainty",
-    "sweeping": "draw_sweep sweep",
+    "sweeping": "draw_sweep evaluate_many sweep",
 }
 """The public names of each module."""
 

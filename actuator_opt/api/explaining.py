@@ -8,6 +8,7 @@ from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.quantities import INFINITY, MATERIAL_PROPERTIES, Quantity, short
 from ..base.tables import Displayed
@@ -26,7 +27,7 @@ MOST_MOVERS = 5
 
 @dataclass(frozen=True, slots=True)
 class Explanation(Displayed):
-    """What a name means, how to ask for it, and where its number comes from.
+    """Meaning of a name, lines that ask for it, and source of its number.
 
     Parameters
     ----------
@@ -48,6 +49,11 @@ class Explanation(Displayed):
     related: tuple[str, ...] = ()
     value: str = ""
     influences: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The name, and what it means."""
+        return self.entry.name, f"{self.entry.kind}, {self.entry.phrase}"
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON, SI."""
@@ -84,6 +90,7 @@ class Explanation(Displayed):
         return blocks_text([table], **style)
 
 
+@guarded
 def explain(
     word: str,
     design: Actuator | Design | str | Path | None = None,
@@ -144,7 +151,7 @@ def _limit_lines(name: str, quantity: Quantity, limits: Mapping[str, float]) -> 
 
 
 def _asked(entry: Entry, value: float | None, actuator: Actuator | None) -> tuple[str, ...]:
-    """How to ask for a metric: as a requirement or as the objective."""
+    """Lines that make a metric a requirement or the objective."""
     from ..metrics.table import ROWS
 
     quantity, row = entry.quantity, ROWS.get(entry.name)

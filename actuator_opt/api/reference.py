@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, UsageError, remedy, shown
 from ..base.quantities import MATERIAL_PROPERTIES, Quantity, short
@@ -89,6 +90,11 @@ class Catalogue(Displayed):
     kind: str
     entries: tuple[Entry, ...]
     valued: bool = False
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The kind, and the number of entries."""
+        return self.kind, f"{len(self)} entries"
 
     def __len__(self) -> int:
         """Number of entries."""
@@ -207,7 +213,7 @@ LISTS: Mapping[str, Callable[[], Iterator[Entry]]] = {
     "properties": _properties,
     "terms": _terms,
 }
-"""What `list` can list, each with the function that yields its entries."""
+"""Kinds of names that `list` lists, each with the function that yields its entries."""
 
 SEARCHED = (
     _metrics, _joints, _seals, _laws, _checks, _properties, _terms, _materials, _paths, _blocks,
@@ -297,6 +303,7 @@ def unknown(word: str) -> UsageError:
 # --- lists ---------------------------------------------------------------------------------------
 
 
+@guarded
 def catalogue(
     kind: str,
     design: Actuator | Design | str | Path | None = None,

@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..base import runs as run_store
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, ExitCode, UsageError
-from ..base.tables import show_by
 from ..design import Design
 from ..evaluation import Evaluation
 from ..evaluation.result import UNKNOWN
@@ -195,9 +195,11 @@ KINDS = kinds(
         text="text", report=None, csv=None, record=None,
     ),
     ResultKind(
-        "api.explaining:Explanation", _always, text="text", report=None, csv=None, record=None
+        "api.explaining:Explanation", _always, text="text", report=None, csv=None, record=None,
     ),
-    ResultKind("api.reference:Catalogue", _always, text="text", report=None, csv=None, record=None),
+    ResultKind(
+        "api.reference:Catalogue", _always, text="text", report=None, csv=None, record=None,
+    ),
     ResultKind(
         "api.recorded_runs:Run", _always, text="text",
         report="api:report_run", csv=None, record=None,
@@ -219,12 +221,13 @@ KINDS = kinds(
 
 
 def kind_of(result: object) -> ResultKind:
-    """The kind of a result, by its type; raises `TypeError` for other objects."""
+    """The kind of a result, by its type; raises `UsageError` for other objects."""
     for cls in type(result).__mro__:
         kind = KINDS.get(f"{cls.__module__.removeprefix(_PACKAGE)}:{cls.__qualname__}")
         if kind is not None:
             return kind
-    raise TypeError(f"{type(result).__name__} is not a result of a command")
+    message = f"{type(result).__name__} is not a result"
+    raise UsageError(Diagnostic(message, "give one of evaluate, optimise, sweep, simulate, ..."))
 
 
 def piece(name: str, result: object) -> Callable[..., Any]:
@@ -268,19 +271,16 @@ def card(result: object, options: Mapping[str, Any], **style: Unpack[Style]) -> 
 
 
 def html(result: object) -> str:
-    """A result as HTML for notebooks; "" for a result without text."""
+    """The main parts of a result as HTML for notebooks; "" for a result without text."""
     from ..rendering import html as markup
 
     kind = kind_of(result)
     if kind.page is not None:
-        return markup.fragment(piece(kind.page, result)())
+        return markup.summary(piece(kind.page, result)())
     if kind.blocks is not None:
         return markup.pieces(piece(kind.blocks, result)())
     words = text(result, colour=False, unicode=True, width=100)
     return markup.listing(words) if words else ""
-
-
-show_by(html)
 
 
 def data(result: object) -> dict[str, Any]:
@@ -316,6 +316,7 @@ def keep(result: object, **context: Any) -> Run | None:
     return None if name is None else piece(name, result)(**context)
 
 
+@guarded
 def report(
     subject: object,
     *,

@@ -12,10 +12,11 @@ from dataclasses import asdict, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError, remedy
 from ..base.quantities import Quantity
-from ..base.tables import aligned
+from ..base.tables import OneLine, aligned
 from ..design import Design, canonical, get, quantity_of
 from ..evaluation import PreparedDesign
 from .actuator import Actuator, Plugins, as_actuator, fault_of, located, read, requirement_faults
@@ -96,7 +97,7 @@ class Price:
 
 
 @dataclass(frozen=True, slots=True)
-class OptimumCurve:
+class OptimumCurve(OneLine):
     """Optima for a series of values of one number, in SI.
 
     Parameters
@@ -118,6 +119,11 @@ class OptimumCurve:
     def __len__(self) -> int:
         """Number of values."""
         return len(self.values)
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The number of values that have a design."""
+        return self.path, f"{sum(self.found)} of {len(self)} values have a design"
 
     @property
     def found(self) -> tuple[bool, ...]:
@@ -160,7 +166,7 @@ class OptimumCurve:
         return aligned(rows, right=(0, 1))
 
 
-class Session:
+class Session(OneLine):
     """A design's optimum, prepared so that changed problems can be re-solved quickly.
 
     Every call states its changes relative to the design as read; no call affects a later call. A
@@ -208,11 +214,10 @@ class Session:
         self._differentiable: dict[str, bool] = {}
         self._warm = WarmStart(problem, solution, SearchEffort(STARTS, SAMPLES, seed))
 
-    def __repr__(self) -> str:
-        """Name and objective of the design, as text."""
-        optimum = self.optimum
-        name, metric = optimum.design.name, optimum.objective_metric
-        return f"<Session {name!r}: {metric} {self._objective_text()}>"
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """Name and objective of the design."""
+        return self.optimum.design.name, self.optimum.objective_text
 
     def solve(
         self, changes: Changes, *, prices: bool = False, stop: Callable[[], bool] | None = None
@@ -510,11 +515,6 @@ class Session:
         """The values of the free dimensions by PATH."""
         return dict(zip(self._warm.actuator.paths, map(float, x), strict=True))
 
-    def _objective_text(self) -> str:
-        metric = self.optimum.evaluation.metrics.get(self.optimum.objective_metric)
-        value = self.optimum.objective_value
-        return f"{value:.6g}" if metric is None else metric.quantity.text(value)
-
 
 def _require_continuous(actuator: Actuator, sizes: object) -> None:
     """Reject choices and listed sizes, because a session only re-solves continuous dimensions."""
@@ -537,6 +537,7 @@ def _require_continuous(actuator: Actuator, sizes: object) -> None:
         )
 
 
+@guarded
 def session(
     design: Actuator | Design | str | Path,
     *,

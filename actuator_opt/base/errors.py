@@ -200,9 +200,17 @@ class ActuatorError(Exception):
         self.diagnostics: list[Diagnostic] = list(diagnostics)
         super().__init__("\n".join(str(d) for d in self.diagnostics))
 
+    def __str__(self) -> str:
+        """The faults, one or more lines each."""
+        return "\n".join(str(d) for d in self.diagnostics)
+
 
 class InputError(ActuatorError):
     """A file, value or PATH that cannot be used (exit 3)."""
+
+
+class UnknownName(InputError, KeyError):
+    """A name that a result does not have, as in ``evaluation["mas"]``."""
 
 
 class UsageError(ActuatorError):
@@ -217,12 +225,24 @@ class Unsolvable(ActuatorError):
     exit_code = ExitCode.SOLVER_FAILED
 
 
-EXTRAS = {"ezdxf": ("DXF", "cad"), "openpyxl": ("XLSX", "excel"), "pyarrow": ("Parquet", "parquet")}
+EXTRAS = {
+    "ezdxf": ("DXF", "cad"),
+    "openpyxl": ("XLSX", "excel"),
+    "pyarrow": ("Parquet", "parquet"),
+    "pandas": ("", "pandas"),
+    "polars": ("", "polars"),
+    "xarray": ("", "xarray"),
+}
 """For every optional library, the file format that it writes and the extra that installs it."""
 
 
-def library(name: str) -> Any:
+def library(name: str, *, writes: bool = True) -> Any:
     """Import a module of an optional library; raise a one-line error if it is not installed.
+
+    Parameters
+    ----------
+    name : name of the module
+    writes : whether it writes a file; if not, the error does not name the format of the file
 
     Raises
     ------
@@ -233,5 +253,7 @@ def library(name: str) -> Any:
     except ImportError as missing:
         root = name.partition(".")[0]
         kind, extra = EXTRAS[root]
-        fault = Diagnostic(f"{kind} files need {root}", f"pip install 'actuator-opt[{extra}]'")
+        written = kind and writes
+        message = f"{kind} files need {root}" if written else f"needs {root}"
+        fault = Diagnostic(message, f"pip install 'actuator-opt[{extra if written else root}]'")
         raise ActuatorError(fault) from missing

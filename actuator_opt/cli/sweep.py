@@ -128,7 +128,7 @@ def sweep(
         swept = job.run(
             verbs.sweep, vary=vary or [], method=method, n=count, seed=seed,
             reduce=reduce is not None, workers=workers, scheduler=scheduler, engine=engine, yes=yes,
-            **output,
+            rows=False, **output,
         )  # fmt: skip
     if swept.study.engine != engine and not quiet:
         streams.err("JAX not installed (pip install 'actuator-opt[jax]'); used NumPy")

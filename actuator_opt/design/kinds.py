@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from ..base import kinds, quantities, units
-from ..base.dataclass import dataclass
+from ..base.dataclass import brief, dataclass
 from ..base.errors import article, shown
 from ..base.numeric import Array
 from ..base.quantities import Quantity
@@ -130,7 +130,7 @@ def _unit_fault(text: str, quantity: Quantity, error: units.UnitError) -> ValueF
 
 
 def _with_unit(bare: str, quantity: Quantity) -> str:
-    """How to write a bare number with its unit.
+    """Remedy for a bare number: the number with its unit.
 
     As in scripts and ``--set``, the number is taken as SI. If that is outside the quantity's range,
     the display unit is suggested instead, and if this is too, the example.
@@ -447,3 +447,9 @@ class Section(BaseModel):
     """A block of the design file; unknown keys are faults."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
+
+    def __repr__(self) -> str:
+        """Name of the block with its values, in one line."""
+        return brief(type(self).__name__, self)
+
+    __str__ = __repr__

@@ -17,6 +17,7 @@ from ..base import files as store, units
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, remedy, shown
 from ..base.quantities import INPUTS, MATERIAL_PROPERTIES, Quantity
+from ..base.tables import OneLine
 from ..base.words import nearest
 from . import material, yaml_source
 from .kinds import ValueFault, read_quantity, shape_in_words
@@ -408,7 +409,7 @@ __all__ = [
 ]
 
 
-class Library:
+class Library(OneLine):
     """Materials by name; later files override earlier files. Entries are read on demand."""
 
     def __init__(self, files: Iterable[MaterialFile]) -> None:
@@ -419,6 +420,11 @@ class Library:
         self._cache: dict[tuple[int, str], Material] = {}
         self._open: list[tuple[int, str]] = []
         self._check_clashes()
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The number of materials."""
+        return "", f"{len(self.names())} materials"
 
     def _check_clashes(self) -> None:
         """Refuse a duplicate name in files of the same folder; other folders may override."""

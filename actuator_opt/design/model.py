@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 from pydantic import Field, create_model
 
 from ..base.quantities import Sense
+from ..base.tables import headline
 from ..joints.kinds import JOINTS
 from ..models.piston_nut import TIGHTENING
 from . import choices
@@ -784,3 +785,18 @@ class Design(Section):
     materials: dict[str, dict[str, float]] = {}  # noqa: RUF012 (pydantic copies it)
     """Properties (SI) that replace those of the library in this design, by material name."""
     objective: Objective = Objective.model_construct(minimise="mass")
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The name; and the objective, with the numbers of variables and requirements."""
+        aim = "minimise" if self.objective.aim == "min" else "maximise"
+        limits = len(self.load_cases)  # each must be carried
+        limits += sum((x.min is not None) + (x.max is not None) for x in self.requirements.values())
+        words = f"{aim} {' and '.join(self.objective.metrics)}, {len(self.variables)} variables"
+        return self.name, f"{words}, {limits} requirements"
+
+    def __repr__(self) -> str:
+        """Name, objective, and the numbers of variables and requirements."""
+        return headline(type(self).__name__, *self.in_short)
+
+    __str__ = __repr__

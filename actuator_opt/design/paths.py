@@ -258,14 +258,22 @@ def quantity_of(path: str, design: Design) -> Quantity:
 
 def get(design: Design, path: str) -> float | str | None:
     """Value at a PATH: SI number, text, or None if an optional value is not set."""
-    node = child_at(design, _target(path, design).loc)
+    return value_at(path, design)[1]
+
+
+def value_at(
+    path: str, design: Design, metrics: Mapping[str, Quantity] | None = None
+) -> tuple[Target, float | str | bool | None]:
+    """The target of a PATH, and its value (see `get`); `metrics` may include the user's own."""
+    target = _target(path, design, metrics)
+    node = child_at(design, target.loc)
     number = number_of(node)
-    return node if number is None else number
+    return target, node if number is None else number
 
 
-def _target(path: str, design: Design) -> Target:
+def _target(path: str, design: Design, metrics: Mapping[str, Quantity] | None = None) -> Target:
     try:
-        return resolve(path, design)
+        return resolve(path, design, metrics)
     except ValueFault as fault:
         message = fault.message.removeprefix(f"{path}: ")
         raise InputError(Diagnostic(message, fault.remedy, path=path)) from None

@@ -27,8 +27,8 @@ USED, LEFT = 0.9, 0.5
 """Share of the yield strength that tightening may use, and share of its torsion that stays
 [VDI2230]."""
 THREAD_SETTLING, SEAT_SETTLING, JOINT_SETTLING = 3e-6, 2.5e-6, 1.5e-6
-"""Depth by which a thread, the seat of a nut or head, and each other joint face settle in use [m]:
-guide values of [VDI2230] for forces along the bolt and faces smoother than Rz 10 um."""
+"""Depth by which a thread, a seat of nut or head, and each other face settle in use [m]. They are
+guide values of [VDI2230], for forces along the bolt and faces smoother than Rz 10 um."""
 
 
 @geometry
