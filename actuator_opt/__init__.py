@@ -6,12 +6,12 @@
 
 Most functions are named like the command that does the same in the terminal: `check`, `evaluate`,
 `optimise`, `sensitivity`, `pareto`, `sweep`, `uncertainty`, `compare`, `explore`, `seal`,
-`identify`, `calibrate`, `simulate`, `report` and `export`. `read` reads a design, `save` writes it,
-`start` (in the terminal `init`) makes a first one for a duty, and `session` re-solves it quickly
-after changes. In the terminal, some functions are options:
-`bending` is `identify --span`, `compare_measured` is `simulate --measured`, `servo_sensitivities`
-is `simulate --sensitivity`, and `verify_dynamics` is `optimise --verify-dynamics`. A module with
-slow imports loads when a function first needs it.
+`identify`, `calibrate`, `simulate`, `report`, `export` and `explain`. `catalogue` is the command
+`list`, and `start` is `init` with a duty. `read` reads a design, `save` writes it, and `session`
+re-solves it quickly after changes. In the terminal, some functions are options: `bending` is
+`identify --span`, `compare_measured` is `simulate --measured`, `servo_sensitivities` is
+`simulate --sensitivity`, and `verify_dynamics` is `optimise --verify-dynamics`. A module with slow
+imports loads when a function first needs it.
 """
 
 from __future__ import annotations
@@ -25,8 +25,11 @@ if TYPE_CHECKING:
     from .api import (
         Actuator as Actuator,
         Calibrated as Calibrated,
+        Catalogue as Catalogue,
         Compared as Compared,
         Comparison as Comparison,
+        Entry as Entry,
+        Explanation as Explanation,
         Installation as Installation,
         OptimumCurve as OptimumCurve,
         Prediction as Prediction,
@@ -38,6 +41,7 @@ if TYPE_CHECKING:
         Trial as Trial,
         bending as bending,
         calibrate as calibrate,
+        catalogue as catalogue,
         check as check,
         compare as compare,
         compare_measured as compare_measured,
@@ -48,7 +52,9 @@ if TYPE_CHECKING:
         draw_run as draw_run,
         draw_sweep as draw_sweep,
         evaluate as evaluate,
+        evaluate_many as evaluate_many,
         exit_code as exit_code,
+        explain as explain,
         explore as explore,
         export as export,
         identify as identify,
@@ -94,35 +100,61 @@ if TYPE_CHECKING:
         ActuatorError as ActuatorError,
         Diagnostic as Diagnostic,
         InputError as InputError,
+        UnknownName as UnknownName,
+        Unsolvable as Unsolvable,
+        UsageError as UsageError,
     )
     from .design.materials import load_library as load_library
     from .evaluation.plugin import constraint as constraint, metric as metric
+    from .evaluation.result import (
+        Evaluation as Evaluation,
+        Metric as Metric,
+        PathValue as PathValue,
+    )
     from .identification import (
         BendingResult as BendingResult,
         Identification as Identification,
         Record as Record,
         Specimen as Specimen,
     )
+    from .optimisation.pareto import ParetoFront as ParetoFront
+    from .optimisation.result import Optimisation as Optimisation
+    from .rendering.tables import DataTable as DataTable
     from .simulation import Simulation as Simulation
+    from .simulation.sensitivity import Sensitivities as Sensitivities
+    from .simulation.verification.verify import Verification as Verification
+    from .studies.seal import SealStudy as SealStudy
+    from .sweeps.result import Swept as Swept
+    from .uncertainties.result import Uncertainty as Uncertainty
 
 __version__ = version.VERSION
 
 _PUBLIC = {
     "design.materials": "load_library",
-    "base.errors": "ActuatorError Diagnostic InputError",
+    "base.errors": "ActuatorError Diagnostic InputError UnknownName Unsolvable UsageError",
     "evaluation.plugin": "constraint metric",
     "identification": "BendingResult Identification Record Specimen",
+    "evaluation.result": "Evaluation Metric PathValue",
+    "optimisation.pareto": "ParetoFront",
+    "optimisation.result": "Optimisation",
+    "rendering.tables": "DataTable",
     "simulation": "Simulation",
+    "simulation.sensitivity": "Sensitivities",
+    "simulation.verification.verify": "Verification",
+    "studies.seal": "SealStudy",
+    "sweeps.result": "Swept",
+    "uncertainties.result": "Uncertainty",
     "api": """
-        Actuator Calibrated Compared Comparison Installation OptimumCurve Prediction Price Rerun
-        Restored Run Session Trial bending calibrate check compare compare_measured
-        comparison_json delete_run doctor draw_comparison draw_run draw_sweep evaluate
-        exit_code explore export identify optimise pareto prune_runs read read_record read_run
-        read_scenario record record_front record_run record_sweep report report_run rerun
-        restore runs save seal sensitivity servo_sensitivities session simulate start sweep
-        uncertainty verify_dynamics write_calibration write_comparison write_draws write_front
-        write_front_csv write_identification write_seal write_series write_signals
-        write_simulation write_uncertainty
+        Actuator Calibrated Catalogue Compared Comparison Entry Explanation Installation
+        OptimumCurve Prediction Price Rerun Restored Run Session Trial bending calibrate catalogue
+        check compare compare_measured comparison_json delete_run doctor draw_comparison draw_run
+        draw_sweep evaluate evaluate_many exit_code explain explore export identify optimise
+        pareto prune_runs read read_record read_run read_scenario record record_front record_run
+        record_sweep report report_run rerun restore runs save seal sensitivity
+        servo_sensitivities session simulate start sweep uncertainty verify_dynamics
+        write_calibration write_comparison write_draws write_front write_front_csv
+        write_identification write_seal write_series write_signals write_simulation
+        write_uncertainty
     """,
 }
 """The public names of each module; a module loads when one of its names is first used."""

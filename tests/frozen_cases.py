@@ -292,6 +292,27 @@ def _others() -> Iterator[Case]:
             step("materials show iso_vg_32 --out out", json=False, looks=1),
         ),
     )
+    words = ("stiffness_min", "3.1", "plug_thread", "nbr_90", "margin", "retention")
+    yield Case(
+        "explain/knee",
+        (
+            *(step(f"explain {word} designs/knee.yaml", looks=4) for word in words),
+            step("explain barrel.layup[1].thickness designs/knee.yaml", looks=4),
+            step("explain stifness", looks=1),
+        ),
+        seconds=4.0,
+    )
+    yield Case(
+        "list/knee",
+        (
+            step("list metrics designs/knee.yaml stiffness", looks=1),
+            step("list paths designs/knee.yaml rod", looks=1),
+            step("list checks designs/knee.yaml", looks=1),
+            *(step(f"list {kind}", looks=1) for kind in ("joints", "seals", "laws", "terms")),
+            step("list materials carbon", looks=1),
+        ),
+        seconds=2.0,
+    )
     yield Case("schema/design", (step("schema", looks=0),))
     yield Case("schema/scenario", (step("schema --scenario", looks=0),))
     yield Case("doctor/names", (step("doctor --out out", looks=0),))

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
         comparison_json as comparison_json,
         draw_comparison as draw_comparison,
     )
+    from .explaining import Explanation as Explanation, explain as explain
     from .exports import explore as explore, export as export
     from .installation import Installation as Installation, doctor as doctor
     from .optimum import (
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
         write_identification as write_identification,
         write_series as write_series,
     )
+    from .reference import Catalogue as Catalogue, Entry as Entry, catalogue as catalogue
     from .repeating import Rerun as Rerun, rerun as rerun
     from .reports import save as save
     from .restoring import (
@@ -89,13 +91,18 @@ if TYPE_CHECKING:
         write_seal as write_seal,
         write_uncertainty as write_uncertainty,
     )
-    from .sweeping import draw_sweep as draw_sweep, sweep as sweep
+    from .sweeping import (
+        draw_sweep as draw_sweep,
+        evaluate_many as evaluate_many,
+        sweep as sweep,
+    )
 
 _PUBLIC = {
     ".evaluation.comparison": "Comparison",
     "actuator": "Actuator read",
     "checking": "check examine",
     "comparing": "compare comparison_json draw_comparison",
+    "explaining": "Explanation explain",
     "exports": "explore export",
     "installation": "Installation doctor",
     "optimum": """
@@ -110,6 +117,7 @@ _PUBLIC = {
         Calibrated bending calibrate identify read_record write_calibration
         write_identification write_series
     """,
+    "reference": "Catalogue Entry catalogue",
     "repeating": "Rerun rerun",
     "reports": "save",
     "restoring": "Restored draw_run report_run restore",
@@ -121,7 +129,7 @@ _PUBLIC = {
     """,
     "starting": "start",
     "studies": "seal uncertainty with_contact write_draws write_seal write_uncertainty",
-    "sweeping": "draw_sweep sweep",
+    "sweeping": "draw_sweep evaluate_many sweep",
 }
 """The public names of each module."""
 

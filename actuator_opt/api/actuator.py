@@ -13,9 +13,11 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
+from ..base.arguments import guarded
 from ..base.cluster import Cluster, connected
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError
+from ..base.tables import OneLine
 from ..design import Design, FileSource, LoadedDesign, read_design, with_values
 from ..design.reader import TEXT
 from ..evaluation import PreparedDesign, compute, prepare
@@ -25,12 +27,17 @@ Plugins = Iterable["Plugin | Callable[[View], object] | str | Path"]
 
 
 @dataclass(frozen=True, slots=True)
-class Actuator:
+class Actuator(OneLine):
     """A design as read, with the line number of every value in its file, and the user's metrics."""
 
     design: Design
     source: FileSource | None = None
     plugins: tuple[Plugin, ...] = ()
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The objective, and the numbers of variables and requirements."""
+        return self.design.in_short
 
     def subject(self) -> PreparedDesign:
         """The design with the properties of its materials, in the form that the models take."""
@@ -63,6 +70,7 @@ def plugins_of(sources: Plugins) -> tuple[Plugin, ...]:
     return tuple(plugins)
 
 
+@guarded
 def read(
     source: str | Path,
     *,

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
+from ..base.arguments import guarded
 from ..base.errors import ActuatorError, Diagnostic, InputError
 from ..design import Design, is_scenario
 from ..design.reader import TEXT, opened
@@ -22,6 +23,7 @@ class Examined(NamedTuple):
     warnings: list[str]
 
 
+@guarded
 def check(
     source: Actuator | Design | str | Path,
     *,

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..base import runs as run_store
+from ..base.arguments import guarded
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..design import Design
 from ..evaluation import Evaluation, comparison
@@ -25,6 +26,7 @@ MOST = 12
 """Maximum number of designs to compare: our choice."""
 
 
+@guarded
 def compare(
     *designs: Actuator | Design | Evaluation | Optimisation | Run | str | Path,
     set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
@@ -120,6 +122,7 @@ def _file(source: str | Path, set: Any, plugins: Plugins) -> tuple[Actuator, str
     return actuator, "<stdin>" if name == "-" else name
 
 
+@guarded
 def comparison_json(comparison: Comparison) -> dict[str, Any]:
     """The `compare --json` object (SI)."""
     from ..pages import comparison as page
@@ -151,6 +154,7 @@ def report_comparison(comparison: Comparison, **paper: Unpack[ReportArguments]) 
     return files + html.write(page(comparison), None, folder=folder, stem="comparison")
 
 
+@guarded
 def draw_comparison(comparison: Comparison, folder: str | Path = "reports") -> list[Path]:
     """Write the figures of a comparison as PNG and SVG.
 

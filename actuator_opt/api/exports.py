@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base import files, runs as run_store
+from ..base.arguments import guarded
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..design import Design
 from ..evaluation import Evaluation
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from ..sweeps.explored import Explored
 
 
+@guarded
 def export(
     subject: Actuator | Design | Evaluation | Optimisation | str | Path,
     *,
@@ -118,6 +120,7 @@ ROWS = 5000
 """Largest number of designs on a page; of a larger set, an even sample is shown."""
 
 
+@guarded
 def explore(
     store: str | Path,
     *,

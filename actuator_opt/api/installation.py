@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, Unpack
 
 from ..base import files as store
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.errors import InputError
 from ..base.tables import Displayed
@@ -57,6 +58,13 @@ class Installation(Displayed):
         """Whether everything that commands need is present."""
         return all(finding.status != "fault" for finding in self.findings)
 
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The version, and the number of faults."""
+        faults = sum(finding.status == "fault" for finding in self.findings)
+        state = "complete" if self.ok else f"{faults} fault{'' if faults == 1 else 's'}"
+        return "", f"actuator-opt {VERSION}, {state}"
+
     def to_dict(self) -> dict[str, Any]:
         """The object of `doctor --json`."""
         return {
@@ -75,6 +83,7 @@ class Installation(Displayed):
         return blocks_text([findings(rows)], **style)
 
 
+@guarded
 def doctor(
     *, out: str | Path = "reports", runs: str | Path | None = None, terminal: str = ""
 ) -> Installation:

@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, UsageError
 from ..base.tables import Displayed
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from ..rendering.blocks import Page
 
 
+@guarded
 def evaluate(
     design: Actuator | Design | str | Path, *, plugins: Plugins = (), seed: int | None = None
 ) -> Evaluation:
@@ -66,6 +68,7 @@ def with_yield(
     return replace(evaluation, yield_estimate=quick_yield(subject, evaluation, seed=seed))
 
 
+@guarded
 def optimise(
     design: Actuator | Design | str | Path,
     *,
@@ -146,6 +149,7 @@ def estimated(optimisation: Optimisation, plugins: tuple[Plugin, ...]) -> Optimi
     return replace(optimisation, rounding=replace(optimisation.made, evaluation=best))
 
 
+@guarded
 def sensitivity(
     design: Actuator | Design | str | Path, *, seed: int = 0, plugins: Plugins = ()
 ) -> tuple[Sensitivity, ...]:
@@ -161,6 +165,13 @@ class Prices(Displayed):
     """The prices of requirements and parameters at an optimum, as shown by `sensitivity`."""
 
     optimisation: Optimisation
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The number of prices, and the objective of the optimum."""
+        optimisation = self.optimisation
+        count = len(optimisation.sensitivities)
+        return optimisation.design.name, f"{count} prices at {optimisation.objective_text}"
 
     def to_dict(self) -> dict[str, Any]:
         """The object of `sensitivity --json`; prices are those of the optimum before rounding."""
@@ -182,6 +193,7 @@ class Prices(Displayed):
         return report_design(self.optimisation, **paper)
 
 
+@guarded
 def pareto(
     design: Actuator | Design | str | Path,
     objectives: Sequence[str],
@@ -216,6 +228,7 @@ def pareto(
         )
 
 
+@guarded
 def write_front_csv(front: ParetoFront, path: str | Path) -> ReportFile:
     """Write the designs of a front as CSV, with units in the header."""
     from ..pages.pareto import series
@@ -224,6 +237,7 @@ def write_front_csv(front: ParetoFront, path: str | Path) -> ReportFile:
     return write_csv(series(front), Path(path))
 
 
+@guarded
 def write_front(front: ParetoFront, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
     """Write the page of a front (PDF and PNG) and its figure (PNG and SVG).
 

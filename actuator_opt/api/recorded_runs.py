@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Unpack
 
 from ..base import runs as run_store
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..base.tables import Displayed
@@ -222,6 +223,12 @@ class Run(Displayed):
     head: Mapping[str, Any]
     body: Mapping[str, Any]
 
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The command and its design."""
+        kind, name = (str(self.head.get(key, "")) for key in ("kind", "name"))
+        return self.id, f"{kind} of {name}"
+
     def to_dict(self) -> dict[str, Any]:
         """The object of `runs show --json`."""
         body = {key: value for key, value in self.body.items() if key not in ("state", "tables")}
@@ -257,6 +264,7 @@ def _damaged(reason: str, path: Path) -> Diagnostic:
     return Diagnostic(f"is damaged ({reason})", "run it again", str(path))
 
 
+@guarded
 def record_run(
     kind: Literal["optimise", "pareto", "sweep"],
     head: Mapping[str, Any],
@@ -357,6 +365,7 @@ def _versions() -> dict[str, str]:
     return versions
 
 
+@guarded
 def runs(
     *,
     design: str | None = None,
@@ -395,6 +404,7 @@ def _names(head: Mapping[str, Any]) -> tuple[str, ...]:
     return (str(head.get("name", "")), file, Path(file).stem)
 
 
+@guarded
 def read_run(name: str | Path, *, folder: str | Path | None = None) -> Run:
     """Read a recorded run, given its id, the start of its id, ``last``, or its file.
 
@@ -410,6 +420,7 @@ def read_run(name: str | Path, *, folder: str | Path | None = None) -> Run:
     return Run(path.stem, path, head, body)
 
 
+@guarded
 def delete_run(name: str, *, folder: str | Path | None = None) -> str:
     """Delete a recorded run and return its id. Parameters as for `read_run`."""
     path = run_store.find(_folder(folder), name)
@@ -421,6 +432,7 @@ def delete_run(name: str, *, folder: str | Path | None = None) -> str:
     return path.stem
 
 
+@guarded
 def prune_runs(*, keep: int, folder: str | Path | None = None) -> list[str]:
     """Delete all runs except the newest `keep` runs; return the ids of the deleted runs."""
     place = _folder(folder)
@@ -449,6 +461,7 @@ REASONS = 20
 """Maximum number of failure reasons that are recorded, the most frequent first."""
 
 
+@guarded
 def record(
     result: Optimisation,
     *,
@@ -516,6 +529,7 @@ def _plain_table(table: Table) -> dict[str, object]:
     }
 
 
+@guarded
 def record_front(
     front: ParetoFront,
     *,
@@ -547,6 +561,7 @@ def record_front(
     )  # fmt: skip
 
 
+@guarded
 def record_sweep(
     swept: Swept,
     *,

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..base.tables import Displayed
@@ -40,6 +41,7 @@ Units = str | Path | Mapping[str, str] | None
 """Units of columns without a unit in their header: ``"SI"``, a file, or a mapping by column."""
 
 
+@guarded
 def read_record(
     source: str | Path,
     *,
@@ -81,6 +83,7 @@ def read_record(
     return parse_record(text, name=name, columns=columns, units=known_units, needed=needed)
 
 
+@guarded
 def identify(
     record: Record | str | Path,
     *,
@@ -162,6 +165,7 @@ def _record(
     return record
 
 
+@guarded
 def bending(
     record: Record | str | Path,
     *,
@@ -215,6 +219,13 @@ class Calibrated(Displayed):
     calibration: Calibration
     redesign: Redesign
 
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The record, and the number of values found from it."""
+        record = self.calibration.identification.record.name
+        count = len(self.calibration.learned)
+        return self.actuator.design.name, f"{count} values from {record}"
+
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI."""
         calibration = self.calibration
@@ -236,6 +247,7 @@ class Calibrated(Displayed):
         return page(self.calibration, self.redesign, bench(self.actuator.subject()))
 
 
+@guarded
 def calibrate(
     record: Identification | Record | str | Path,
     *,
@@ -335,6 +347,7 @@ def _require_use(
         raise InputError(Diagnostic(message, "identify it with this design"))
 
 
+@guarded
 def write_identification(
     identification: Identification, **paper: Unpack[ReportArguments]
 ) -> list[ReportFile]:
@@ -350,6 +363,7 @@ def write_identification(
     return writer.write(page(identification), origin, **place, **run)
 
 
+@guarded
 def write_series(identification: Identification, path: str | Path) -> ReportFile:
     """Write friction, stiffness and bore growth over time as CSV."""
     from ..pages.identification import series
@@ -358,6 +372,7 @@ def write_series(identification: Identification, path: str | Path) -> ReportFile
     return write_csv(series(identification), Path(path))
 
 
+@guarded
 def write_calibration(calibrated: Calibrated, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
     """Write the page of a calibration (PDF and PNG) and attach the new design.
 

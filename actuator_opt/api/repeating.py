@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, Unpack
 
+from ..base.arguments import guarded
 from ..base.bounds import CHECKS, FRONT, SEED, STARTS, IntegerRange
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, shown
@@ -56,6 +57,11 @@ class Rerun(Displayed):
     differences: Mapping[str, tuple[Any, Any]]
     sentence: str
 
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """Whether the report was repeated."""
+        return self.file.name, self.sentence
+
     def to_dict(self) -> dict[str, Any]:
         """The object of `rerun --json`: that of the repeated command, plus the key `rerun`."""
         return self.subject.to_dict() | {
@@ -90,6 +96,7 @@ class Rerun(Displayed):
         return data | ({"extra_tables": self.tables} if self.tables else {})
 
 
+@guarded
 def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
     """Repeat the command of a report, with the input attached to its PDF.
 

@@ -10,6 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Required, TypedDict, Unpack
 
+from ..base.arguments import guarded
 from ..base.errors import Diagnostic, UsageError, remedy, shown
 from ..design import Design, FileSource
 from ..evaluation import Evaluation, PreparedDesign, prepare
@@ -236,6 +237,7 @@ def date_from_environment() -> str | None:
     return datetime.fromtimestamp(int(stamp), UTC).date().isoformat()
 
 
+@guarded
 def save(
     design: Actuator | Design | Evaluation | Optimisation | str | Path,
     path: str | Path,

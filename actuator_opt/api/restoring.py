@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..base.tables import Displayed
@@ -35,6 +36,13 @@ class Restored(Displayed):
     doubts: tuple[str, ...] = ()
 
     @property
+    def in_short(self) -> tuple[str, str]:
+        """The run, and the number of values that the present models compute differently."""
+        count = len(self.doubts)
+        changed = f", {count} value{'' if count == 1 else 's'} changed" if count else ""
+        return self.actuator.design.name, f"run {self.run.id} of {self.run.head['kind']}{changed}"
+
+    @property
     def optimisation(self) -> Optimisation:
         """The result, if the command was `optimise`; raises `InputError` for other commands."""
         from ..optimisation.result import Optimisation
@@ -45,6 +53,7 @@ class Restored(Displayed):
         return self.result
 
 
+@guarded
 def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
     """Restore the result of a recorded run without solving again.
 
@@ -141,6 +150,7 @@ def _doubts(run: Run, evaluation: Evaluation) -> list[str]:
     ]
 
 
+@guarded
 def report_run(
     of: Restored | Run | str | Path, *, plugins: Plugins = (), **paper: Unpack[ReportArguments]
 ) -> list[ReportFile]:
@@ -186,6 +196,7 @@ def _reported(restored: Restored, paper: ReportArguments) -> list[ReportFile]:
     return [*files, *(write_front_csv(result, x.path.with_suffix(".csv")) for x in files[:1])]
 
 
+@guarded
 def draw_run(of: Run, folder: str | Path) -> list[Path]:
     """Draw how a run's search converged, in the files ID-convergence.png and .svg.
 

@@ -9,16 +9,16 @@ import fails.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..base import runs as run_store
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, ExitCode, UsageError
-from ..base.tables import show_by
 from ..design import Design
 from ..evaluation import Evaluation
 from ..evaluation.result import UNKNOWN
@@ -44,6 +44,7 @@ class ResultKind:
     exit_code : gives the exit code of a command with this result
     page : builds the `Page` of a result, which gives its text, report and HTML
     blocks : for a result without a page, builds the blocks of its text
+    card : builds the blocks of a short text, which a command prints unless it is asked for all
     text : for a result without page and blocks, gives the terminal text of (result, colour=,
         unicode=, width=)
     report : writes the report of (result, **`ReportArguments`); some kinds need more keywords
@@ -61,6 +62,7 @@ class ResultKind:
     record: str | None
     page: str | None = None
     blocks: str | None = None
+    card: str | None = None
     text: str | None = None
     data: str | None = "to_dict"
     remarks: Callable[[Any], list[str]] | None = None
@@ -123,12 +125,12 @@ def kinds(*declared: ResultKind) -> dict[str, ResultKind]:
 # fmt: off
 KINDS = kinds(
     ResultKind(
-        "evaluation.result:Evaluation", _met, page="pages.report:page",
+        "evaluation.result:Evaluation", _met, page="pages.report:page", card="pages.card:blocks",
         report="api.reports:report_design", csv=None, record=None,
     ),
     ResultKind(
         "optimisation.result:Optimisation", _optimised, page="pages.report:page",
-        report="api.reports:report_design", csv=None, record="api:record",
+        card="pages.card:blocks", report="api.reports:report_design", csv=None, record="api:record",
         remarks=_unrounded, writes=lambda result: not result.status.startswith("interrupted"),
     ),
     ResultKind(
@@ -193,6 +195,12 @@ KINDS = kinds(
         text="text", report=None, csv=None, record=None,
     ),
     ResultKind(
+        "api.explaining:Explanation", _always, text="text", report=None, csv=None, record=None,
+    ),
+    ResultKind(
+        "api.reference:Catalogue", _always, text="text", report=None, csv=None, record=None,
+    ),
+    ResultKind(
         "api.recorded_runs:Run", _always, text="text",
         report="api:report_run", csv=None, record=None,
     ),
@@ -213,12 +221,13 @@ KINDS = kinds(
 
 
 def kind_of(result: object) -> ResultKind:
-    """The kind of a result, by its type; raises `TypeError` for other objects."""
+    """The kind of a result, by its type; raises `UsageError` for other objects."""
     for cls in type(result).__mro__:
         kind = KINDS.get(f"{cls.__module__.removeprefix(_PACKAGE)}:{cls.__qualname__}")
         if kind is not None:
             return kind
-    raise TypeError(f"{type(result).__name__} is not a result of a command")
+    message = f"{type(result).__name__} is not a result"
+    raise UsageError(Diagnostic(message, "give one of evaluate, optimise, sweep, simulate, ..."))
 
 
 def piece(name: str, result: object) -> Callable[..., Any]:
@@ -248,20 +257,30 @@ def text(result: object, **style: Unpack[Style]) -> str:
     return "" if kind.text is None else str(piece(kind.text, result)(**style))
 
 
+def card(result: object, options: Mapping[str, Any], **style: Unpack[Style]) -> str:
+    """The short text of a result, or its whole text if its kind has no short one.
+
+    `options` are those of the card, such as `again` and `written` of `pages.card.blocks`.
+    """
+    name = kind_of(result).card
+    if name is None:
+        return text(result, **style)
+    from ..rendering import terminal
+
+    return terminal.blocks_text(piece(name, result)(**options), **style)
+
+
 def html(result: object) -> str:
-    """A result as HTML for notebooks; "" for a result without text."""
+    """The main parts of a result as HTML for notebooks; "" for a result without text."""
     from ..rendering import html as markup
 
     kind = kind_of(result)
     if kind.page is not None:
-        return markup.fragment(piece(kind.page, result)())
+        return markup.summary(piece(kind.page, result)())
     if kind.blocks is not None:
         return markup.pieces(piece(kind.blocks, result)())
     words = text(result, colour=False, unicode=True, width=100)
     return markup.listing(words) if words else ""
-
-
-show_by(html)
 
 
 def data(result: object) -> dict[str, Any]:
@@ -297,6 +316,7 @@ def keep(result: object, **context: Any) -> Run | None:
     return None if name is None else piece(name, result)(**context)
 
 
+@guarded
 def report(
     subject: object,
     *,

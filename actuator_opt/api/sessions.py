@@ -12,10 +12,11 @@ from dataclasses import asdict, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
-from ..base.errors import Diagnostic, InputError, UsageError, remedy
+from ..base.errors import Diagnostic, InputError, Unsolvable, UsageError, remedy
 from ..base.quantities import Quantity
-from ..base.tables import aligned
+from ..base.tables import OneLine, aligned
 from ..design import Design, canonical, get, quantity_of
 from ..evaluation import PreparedDesign
 from .actuator import Actuator, Plugins, as_actuator, fault_of, located, read, requirement_faults
@@ -23,6 +24,8 @@ from .actuator import Actuator, Plugins, as_actuator, fault_of, located, read, r
 if TYPE_CHECKING:
     from ..optimisation.actuator import ActuatorProblem
     from ..optimisation.result import Optimisation
+    from ..optimisation.solution import Solution
+    from ..optimisation.warm_start import WarmStart
 
 Changes = Mapping[str, float | str]
 """New values of numbers by PATH, such as ``cylinder.stroke``: in SI, or as text with a unit."""
@@ -96,7 +99,7 @@ class Price:
 
 
 @dataclass(frozen=True, slots=True)
-class OptimumCurve:
+class OptimumCurve(OneLine):
     """Optima for a series of values of one number, in SI.
 
     Parameters
@@ -118,6 +121,11 @@ class OptimumCurve:
     def __len__(self) -> int:
         """Number of values."""
         return len(self.values)
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The number of values that have a design."""
+        return self.path, f"{sum(self.found)} of {len(self)} values have a design"
 
     @property
     def found(self) -> tuple[bool, ...]:
@@ -160,7 +168,7 @@ class OptimumCurve:
         return aligned(rows, right=(0, 1))
 
 
-class Session:
+class Session(OneLine):
     """A design's optimum, prepared so that changed problems can be re-solved quickly.
 
     Every call states its changes relative to the design as read; no call affects a later call. A
@@ -202,17 +210,21 @@ class Session:
                     path="requirements",
                 )
             )
-        self._actuator, self._seed = actuator, seed
         optimisation = result_of(subject, problem, solution, prices=False, seed=seed, began=began)
         self.optimum: Optimisation = estimated(optimisation, actuator.plugins)
-        self._differentiable: dict[str, bool] = {}
-        self._warm = WarmStart(problem, solution, SearchEffort(STARTS, SAMPLES, seed))
+        self._start(
+            actuator, seed, WarmStart(problem, solution, SearchEffort(STARTS, SAMPLES, seed))
+        )
 
-    def __repr__(self) -> str:
-        """Name and objective of the design, as text."""
-        optimum = self.optimum
-        name, metric = optimum.design.name, optimum.objective_metric
-        return f"<Session {name!r}: {metric} {self._objective_text()}>"
+    def _start(self, actuator: Actuator, seed: int, warm: WarmStart) -> None:
+        """Begin at an optimum."""
+        self._actuator, self._seed, self._warm = actuator, seed, warm
+        self._differentiable: dict[str, bool] = {}
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """Name and objective of the design."""
+        return self.optimum.design.name, self.optimum.objective_text
 
     def solve(
         self, changes: Changes, *, prices: bool = False, stop: Callable[[], bool] | None = None
@@ -243,11 +255,7 @@ class Session:
         from ..optimisation.run import result_of
 
         began = time.perf_counter()
-        actuator, _ = self._changed(changes)
-        subject, problem = self._built(actuator)
-        solution = self._warm.solve(problem.problem, stop)
-        if not problem.confirmed(solution.x):
-            solution = self._warm.solve(problem.problem, stop)
+        _, subject, problem, solution = self._solved(changes, stop)
         optimisation = result_of(
             subject,
             problem,
@@ -265,6 +273,31 @@ class Session:
                 for variable, x in zip(optimisation.variables, starts, strict=True)
             ),
         )
+
+    def at(self, changes: Changes) -> Session:
+        """A session at the optimum with some numbers changed: its prices are those there.
+
+        Parameters and errors as for `solve`.
+
+        Raises
+        ------
+        Unsolvable
+            no design meets all requirements with these numbers
+        """
+        from ..optimisation.run import result_of
+        from ..optimisation.warm_start import WarmStart
+
+        began = time.perf_counter()
+        actuator, subject, problem, solution = self._solved(changes)
+        if not solution.feasible:
+            message = "no design meets all requirements with these numbers"
+            raise Unsolvable(Diagnostic(message, "call optimise, which says what to relax"))
+        moved = object.__new__(Session)
+        moved.optimum = result_of(
+            subject, problem, solution, prices=False, seed=self._seed, began=began
+        )
+        moved._start(actuator, self._seed, WarmStart(problem, solution, self._warm.effort))
+        return moved
 
     def predict(self, changes: Changes) -> Prediction:
         """Predict the optimum after a change of some numbers, linearly, without running models.
@@ -432,6 +465,17 @@ class Session:
                 ) from None
         return name
 
+    def _solved(
+        self, changes: Changes, stop: Callable[[], bool] | None = None
+    ) -> tuple[Actuator, PreparedDesign, ActuatorProblem, Solution]:
+        """The changed design, its problem, and the optimum of that from the session's own."""
+        actuator, _ = self._changed(changes)
+        subject, problem = self._built(actuator)
+        solution = self._warm.solve(problem.problem, stop)
+        if not problem.confirmed(solution.x):
+            solution = self._warm.solve(problem.problem, stop)
+        return actuator, subject, problem, solution
+
     def _built(self, actuator: Actuator) -> tuple[PreparedDesign, ActuatorProblem]:
         from ..optimisation.actuator import build
 
@@ -510,11 +554,6 @@ class Session:
         """The values of the free dimensions by PATH."""
         return dict(zip(self._warm.actuator.paths, map(float, x), strict=True))
 
-    def _objective_text(self) -> str:
-        metric = self.optimum.evaluation.metrics.get(self.optimum.objective_metric)
-        value = self.optimum.objective_value
-        return f"{value:.6g}" if metric is None else metric.quantity.text(value)
-
 
 def _require_continuous(actuator: Actuator, sizes: object) -> None:
     """Reject choices and listed sizes, because a session only re-solves continuous dimensions."""
@@ -537,6 +576,7 @@ def _require_continuous(actuator: Actuator, sizes: object) -> None:
         )
 
 
+@guarded
 def session(
     design: Actuator | Design | str | Path,
     *,

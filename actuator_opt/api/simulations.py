@@ -8,10 +8,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.numeric import Array
-from ..base.tables import Displayed
+from ..base.tables import Displayed, OneLine
 from ..design import Design
 from ..studies.plant import plant
 from .actuator import Actuator, as_actuator
@@ -35,7 +36,7 @@ _TABLES = (".csv", ".txt", ".tsv")
 
 
 @dataclass(frozen=True, slots=True)
-class Trial:
+class Trial(OneLine):
     """A scenario as read, with its records, and its design with the values that it changes."""
 
     scenario: Scenario
@@ -44,12 +45,18 @@ class Trial:
     loaded: LoadedScenario
 
     @property
+    def in_short(self) -> tuple[str, str]:
+        """The scenario's duration and its design."""
+        return self.scenario.name, f"{self.scenario.duration:g} s with {self.actuator.design.name}"
+
+    @property
     def files(self) -> list[Path]:
         """The files of the design and of all records."""
         records = [self.loaded.folder / file for file, _ in self.records]
         return [self.loaded.design_file, *records]
 
 
+@guarded
 def read_scenario(
     source: str | Path,
     *,
@@ -112,6 +119,7 @@ def _where(fault: Diagnostic, path: str, loaded: LoadedScenario) -> Diagnostic:
     return loaded.diagnostic(path, f"{fault.file}: {fault.message}", fault.remedy)
 
 
+@guarded
 def simulate(
     scenario: Trial | str | Path,
     *,
@@ -185,6 +193,7 @@ def as_trial(
     return scenario
 
 
+@guarded
 def write_signals(simulation: Simulation, path: str | Path) -> ReportFile:
     """Write every signal of a simulation as CSV."""
     from ..pages.simulation import series
@@ -201,6 +210,15 @@ class Compared(Displayed):
     """Simulation and record together; if parameters were fitted, the simulation uses the fitted
     values."""
     fit: Fit | None = None
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The parameters that were fitted to the record."""
+        fit = self.fit
+        fitted = (
+            "no parameter fitted" if fit is None else f"{len(fit.parameters)} parameters fitted"
+        )
+        return self.simulation.scenario.name, f"with {self.overlay.measured.name}, {fitted}"
 
     @property
     def simulation(self) -> Simulation:
@@ -222,6 +240,7 @@ class Compared(Displayed):
         return write_simulation(self.simulation, measured=self, **paper)
 
 
+@guarded
 def compare_measured(
     scenario: Trial | str | Path,
     record: str | Path,
@@ -274,6 +293,7 @@ def compare_measured(
     return Compared(result.after, result)
 
 
+@guarded
 def servo_sensitivities(
     scenario: Trial | str | Path, names: Sequence[str] | None = None
 ) -> Sensitivities:
@@ -291,6 +311,7 @@ def servo_sensitivities(
         return sensitivities(trial.scenario, trial.actuator.subject(), names, records=trial.records)
 
 
+@guarded
 def verify_dynamics(
     scenario: Trial | str | Path, design: Actuator | Design | str | Path | None = None
 ) -> Verification:
@@ -346,6 +367,7 @@ def with_design(trial: Trial, design: Actuator | Design | str | Path) -> Actuato
     return actuator
 
 
+@guarded
 def write_simulation(
     simulation: Simulation,
     scenario: Trial | None = None,
@@ -383,6 +405,7 @@ def write_simulation(
     return printed.write(report, origin, **place, scenario_hash=simulation.spec_hash)
 
 
+@guarded
 def write_comparison(
     runs: Sequence[tuple[str, Simulation]],
     scenario: Trial,

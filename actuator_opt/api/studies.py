@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
+from ..base.arguments import guarded
 from ..base.errors import Diagnostic, UsageError
 from ..design import Design
+from ..evaluation.rings import Place
 from .actuator import Actuator, Plugins, as_actuator, checked_design, located, workers_for
 from .reports import ReportArguments, page_of
 
 if TYPE_CHECKING:
-    from ..evaluation.rings import Place
     from ..pages import ReportFile
     from ..studies.seal import SealStudy
     from ..uncertainties import Uncertainty
@@ -21,6 +22,7 @@ LEAST, MOST = 20, 10_000_000
 """Minimum and maximum number of random draws in an uncertainty study."""
 
 
+@guarded
 def uncertainty(
     design: Actuator | Design | str | Path,
     *,
@@ -79,6 +81,7 @@ def uncertainty(
         )
 
 
+@guarded
 def write_uncertainty(study: Uncertainty, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
     """Write the page of an uncertainty study as PDF and PNG; parameters as for `report`.
 
@@ -97,6 +100,7 @@ def write_uncertainty(study: Uncertainty, **paper: Unpack[ReportArguments]) -> l
     return printed.write(page(study), origin, **place)
 
 
+@guarded
 def write_draws(study: Uncertainty, path: str | Path) -> ReportFile:
     """Write the stored draws as CSV: inputs, margins of all limits, and whether all are met."""
     from ..pages.uncertainty import series
@@ -105,6 +109,7 @@ def write_draws(study: Uncertainty, path: str | Path) -> ReportFile:
     return write_csv(series(study), Path(path))
 
 
+@guarded
 def seal(
     design: Actuator | Design | str | Path,
     *,
@@ -166,6 +171,7 @@ def with_contact(actuator: Actuator, study: SealStudy) -> Actuator:
     return Actuator(design, actuator.source, actuator.plugins)
 
 
+@guarded
 def write_seal(
     study: SealStudy, *, sheet: bool = True, **paper: Unpack[ReportArguments]
 ) -> list[ReportFile]:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any, TypeAlias, Unpack
 
+from ..base.arguments import guarded
 from ..base.dataclass import dataclass
-from ..base.errors import Diagnostic, InputError, UsageError
+from ..base.errors import Diagnostic, InputError, UsageError, remedy, shown
 from ..base.files import require_apart, writing as cannot_write
+from ..base.numeric import Array
 from ..base.tables import Displayed
 from ..design import Design
 from ..evaluation import PreparedDesign, compute
@@ -19,6 +21,7 @@ from .reports import ReportArguments, file_name, report_files
 
 if TYPE_CHECKING:
     from ..pages import ReportFile
+    from ..rendering.tables import DataTable
     from ..sweeps import Swept
     from ..sweeps.chunk import Chunk, Study
     from ..sweeps.plan import Method, Plan
@@ -27,18 +30,27 @@ if TYPE_CHECKING:
 LARGE = 1_000_000
 """A full sweep of more points than this must be confirmed by the user."""
 
+MOST_KEPT = 2**28
+"""Largest number of values that a sweep keeps in memory unless asked to: 2 GB (our choice)."""
+
+Varied: TypeAlias = "str | Sequence[float | str] | Array"
+"""Values of a PATH: a text such as ``"18..40 mm:12"``, or numbers (SI) and texts."""
+
 MOST_WORKERS = 1024
 """Maximum number of processes on a machine: our choice; a larger number is probably a typing error
 and may overload the machine."""
 
 
+@guarded
 def sweep(
     design: Actuator | Design | str | Path,
-    vary: Sequence[str] | Mapping[str, str],
+    vary: Sequence[str] | Mapping[str, Varied],
     *,
     method: Method = "grid",
     n: int | None = None,
     seed: int = 0,
+    metrics: Sequence[str] | None = None,
+    rows: bool | None = None,
     store: str | Path | None = None,
     csv: str | Path | None = None,
     parquet: str | Path | None = None,
@@ -58,11 +70,14 @@ def sweep(
     Parameters
     ----------
     design : the base design
-    vary : ``"PATH=A..B:N"`` (N values from A to B) or ``"PATH=a,b,c"``, or a mapping of PATH to
-        ``"A..B:N"``
+    vary : ``"PATH=A..B:N"`` (N values from A to B) or ``"PATH=a,b,c"``, several in a list; or a
+        mapping of each PATH to such a text, or to a list or array of numbers (SI) or texts
     method : "grid" (full factorial), "sobol" or "lhs" (Latin hypercube)
     n : number of points for "sobol" and "lhs"
     seed : seed for "sobol" and "lhs"
+    metrics : metrics in the rows of a full sweep, besides mass and objective; default: all
+    rows : whether to keep all rows in memory, for `Swept.table` and `Swept.to_frame`; default: if
+        they take less than 2 GB
     store : database file; rows already in it are reused, and new rows are added
     csv : CSV file to write, with one row for each design
     parquet : the same table as an Apache Parquet file, with data types and metadata (extra
@@ -88,13 +103,20 @@ def sweep(
         figure does not fit the sweep
     InputError
         a PATH or value is invalid, the objective has no value, or the store cannot be used
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> vary = {"cylinder.bore": np.linspace(0.02, 0.03, 5), "rod.material": ["steel_42crmo4"]}
+    >>> swept = sweep("designs/steel_baseline.yaml", vary)
+    >>> swept.table()
+    <DataTable 'steel knee': 5 rows, 136 columns>
     """
     from ..sweeps import sweep as run
     from ..sweeps.screen import usable_engine
 
     engine = usable_engine(engine, reduced=reduce)
-    if workers is not None and not 1 <= workers <= MOST_WORKERS:
-        raise UsageError(Diagnostic(f"--workers {workers}", f"give 1 to {MOST_WORKERS}"))
+    _require_workers(workers)
     files = [Path(file) for file in (store, csv, parquet) if file is not None]
     _require_distinct(files)
     if reduce and files:
@@ -103,14 +125,16 @@ def sweep(
     actuator = as_actuator(design, plugins)
     for file in files:
         require_apart(file, *_read_from(actuator))
-    points = _points(actuator, _sweepable(actuator), vary, method, n, seed)
+    subject = _sweepable(actuator)
+    only = _only(metrics, subject.quantities, store)
+    points = _points(actuator, subject, vary, method, n, seed)
     if points.count > LARGE and not reduce and not yes:
         message = f"all {points.count:,} points would be evaluated in full".replace(",", " ")
         remedy = "confirm with --yes, or keep only the best with --reduce best:K"
         raise UsageError(Diagnostic(message, remedy))
     if engine == "gpu":
         _require_gpu(actuator, scheduler)
-    study = study_of(actuator, points, full=not reduce, show=show, engine=engine)
+    study = study_of(actuator, points, full=not reduce, show=show, engine=engine, only=only)
     watched = _watched(study, figures, show)
     with (
         workers_for(actuator, scheduler) as cluster,
@@ -124,10 +148,86 @@ def sweep(
             workers=1 if actuator.plugins or engine != "numpy" else workers,
             cluster=cluster,
             watch=watched,
+            rows=_keeps_rows(study) if rows is None else rows and not reduce,
         )
     if figures and out is not None:
         draw_sweep(swept, figures, show=show, out=out)
     return swept
+
+
+@guarded
+def evaluate_many(
+    design: Actuator | Design | str | Path,
+    columns: Mapping[str, Sequence[float | str] | Array],
+    *,
+    metrics: Sequence[str] | None = None,
+    plugins: Plugins = (),
+    workers: int | None = None,
+) -> DataTable:
+    """Evaluate many variants of a design that are all given, value k of each PATH for variant k.
+
+    The models evaluate all variants together, as in `sweep`; many variants run as a compiled
+    program.
+
+    Parameters
+    ----------
+    design : the base design
+    columns : for each PATH, a list or one-dimensional array of numbers (SI) or texts, all of one
+        length
+    metrics : metrics to return, besides mass and objective; default: all
+    plugins : the user's metrics and constraints
+    workers : number of processes; default: one per core
+
+    Returns
+    -------
+    the given values, the metrics, `met` (whether every requirement and check is met),
+    `least_margin` with its `governing_limit`, and `failure` (why a variant has no values)
+
+    Raises
+    ------
+    InputError
+        a PATH or value is invalid, an array is not one-dimensional or not finite, or the arrays
+        have different lengths; the message states PATH and index
+    UsageError
+        there are no values, or a metric is unknown
+    """
+    from ..sweeps import paired, sweep as run
+
+    _require_workers(workers)
+    if not isinstance(columns, Mapping):
+        message = f"columns: must be a mapping from PATH to values, not {type(columns).__name__}"
+        raise UsageError(Diagnostic(message, 'write e.g. {"cylinder.bore": [0.02, 0.03]}'))
+    actuator = as_actuator(design, plugins)
+    subject = _sweepable(actuator)
+    points = paired(columns, without_variables(actuator), subject.quantities)
+    study = study_of(actuator, points, full=True, show=(), only=_only(metrics, subject.quantities))
+    processes = 1 if actuator.plugins else workers
+    return run(study, keep=0, workers=processes, rows=True).table()
+
+
+def _only(
+    metrics: Sequence[str] | None, known: Mapping[str, object], store: object = None
+) -> tuple[str, ...] | None:
+    """The metrics in the rows; None: all."""
+    if metrics is None:
+        return None
+    if store is not None:
+        message = "metrics: a store keeps all metrics"
+        raise UsageError(Diagnostic(message, "omit metrics or store"))
+    names = (metrics,) if isinstance(metrics, str) else tuple(metrics)
+    for name in names:
+        if name not in known:
+            raise UsageError(Diagnostic(f'no metric "{shown(name)}"', remedy(str(name), known)))
+    return names
+
+
+def _keeps_rows(study: Study) -> bool:
+    return study.full and len(study.columns) * study.plan.count <= MOST_KEPT
+
+
+def _require_workers(workers: int | None) -> None:
+    if workers is not None and not 1 <= workers <= MOST_WORKERS:
+        raise UsageError(Diagnostic(f"--workers {workers}", f"give 1 to {MOST_WORKERS}"))
 
 
 def _require_gpu(actuator: Actuator, scheduler: str | None) -> None:
@@ -186,17 +286,20 @@ def _sweepable(actuator: Actuator) -> PreparedDesign:
 def _points(
     actuator: Actuator,
     subject: PreparedDesign,
-    vary: Sequence[str] | Mapping[str, str],
+    vary: Sequence[str] | Mapping[str, Varied],
     method: Method,
     count: int | None,
     seed: int,
 ) -> Plan:
     """The points of a sweep; arguments as for `sweep`."""
-    from ..sweeps import plan, read_axis
+    from ..sweeps import given_axis, plan, read_axis
 
     base = without_variables(actuator)
-    texts = [f"{k}={v}" for k, v in vary.items()] if isinstance(vary, Mapping) else list(vary)
-    axes = [read_axis(text, base, subject.quantities) for text in texts]
+    if isinstance(vary, Mapping):
+        axes = [given_axis(path, values, base, subject.quantities) for path, values in vary.items()]
+    else:
+        texts = [vary] if isinstance(vary, str) else list(vary)
+        axes = [read_axis(text, base, subject.quantities) for text in texts]
     return plan(axes, method=method, count=count, seed=seed)
 
 
@@ -227,7 +330,13 @@ def without_variables(actuator: Actuator) -> Design:
 
 
 def study_of(
-    actuator: Actuator, plan: Plan, *, full: bool, show: Sequence[str], engine: Engine = "numpy"
+    actuator: Actuator,
+    plan: Plan,
+    *,
+    full: bool,
+    show: Sequence[str],
+    engine: Engine = "numpy",
+    only: tuple[str, ...] | None = None,
 ) -> Study:
     """The study behind a sweep: the design, its points and the requested metrics."""
     from ..sweeps.chunk import Study
@@ -238,6 +347,7 @@ def study_of(
         actuator.plugins,
         full=full,
         more=tuple(show),
+        only=only,
         engine=engine,
     )
 
@@ -251,6 +361,7 @@ def _watched(study: Study, figures: Sequence[str], show: Sequence[str]) -> tuple
     return watched(study, figures, show)
 
 
+@guarded
 def draw_sweep(
     swept: Swept,
     figures: Sequence[str],
@@ -300,6 +411,11 @@ class KeptSweep(Displayed):
 
     run: Run
     study: Study
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The run, and its number of designs."""
+        return self.study.design.name, f"run {self.run.id}, {self.study.plan.count} designs"
 
 
 def kept_sweep(run: Run, actuator: Actuator) -> KeptSweep:

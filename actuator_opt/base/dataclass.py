@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import dataclasses
 import inspect
+from collections.abc import Iterable
 from dataclasses import MISSING, Field, FrozenInstanceError, field
-from reprlib import recursive_repr
+from reprlib import Repr, recursive_repr
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -237,12 +238,45 @@ def _hash(self: Any) -> int:
     return hash(tuple(getattr(self, name) for name in hashed))
 
 
+LONGEST_REPR = 120
+"""Largest number of characters of a repr."""
+
+
+class _ShortRepr(Repr):
+    """Values as text; long ones are cut, and an array only states its shape."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxstring = self.maxother = 40
+
+    def repr_ndarray(self, value: Any, level: int) -> str:
+        """Shape of a NumPy array, by which this method is named."""
+        return f"array{value.shape}"
+
+
+_VALUES = _ShortRepr()
+
+
+def brief(name: str, fields: Iterable[tuple[str, object]]) -> str:
+    """Name of a class with the values of its fields, in one line of at most `LONGEST_REPR`.
+
+    >>> brief("Rod", [("diameter", 0.02), ("walls", tuple(range(100)))])
+    'Rod(diameter=0.02, walls=(0, 1, 2, 3, 4, 5, ...))'
+    """
+    text = ""
+    for field_name, value in fields:
+        text += f"{', ' if text else ''}{field_name}={' '.join(_VALUES.repr(value).split())}"
+        if len(name) + len(text) + 2 > LONGEST_REPR:
+            return f"{name}({text[: LONGEST_REPR - len(name) - 3]}…)"
+    return f"{name}({text})"
+
+
 @recursive_repr()
 def _repr(self: Any) -> str:
-    """Text with the name of the class and the values of its fields."""
+    """Text with the name of the class and the values of its fields, shortened (see `brief`)."""
     fields = self.__dataclass_fields__.items()
-    shown = ", ".join(f"{name}={getattr(self, name)!r}" for name, each in fields if each.repr)
-    return f"{type(self).__qualname__}({shown})"
+    shown = ((name, getattr(self, name)) for name, each in fields if each.repr)
+    return brief(type(self).__qualname__, shown)
 
 
 def _refuse(self: Any, name: str, *value: Any) -> None:

@@ -18,34 +18,45 @@ from .dataclass import dataclass
 
 
 def closest(word: str, names: Iterable[str]) -> str | None:
-    """The most similar name: equal except for upper and lower case, or else with the fewest edits.
+    """The most similar name by letters, synonyms and meaning; None if none is similar.
 
-    >>> closest("Bore", ["stroke", "bore"])
-    'bore'
+    >>> closest("Bore", ["stroke", "bore"]), closest("weight", ["stroke", "mass"])
+    ('bore', 'mass')
     """
-    candidates = list(names)
-    if not word or len(word) > 80:
-        return None
-    folded = word.casefold().replace("-", "_").replace(" ", "_")
-    for name in candidates:
-        if name.casefold() == folded:
-            return name
-    import difflib  # slow to import, needed for faults only
+    from .words import nearest  # needed for faults only
 
-    matches = difflib.get_close_matches(word, candidates, n=1, cutoff=0.6)
-    return matches[0] if matches else None
+    return next(iter(nearest(word, names, 1)), None)
 
 
-def remedy(word: str, names: Iterable[str], limit: int = 12) -> str:
-    """``did you mean "x"?``, else a list of the valid names.
+_TIE = 0.012
+"""Difference of the scores of two names that are equally near."""
 
-    >>> remedy("strok", ["stroke", "bore"])
-    'did you mean "stroke"?'
+
+def remedy(word: str, names: Iterable[str], limit: int = 12, about: str = "") -> str:
+    """``did you mean "x"?``, with up to three names of similar meaning; else the valid names.
+
+    Parameters
+    ----------
+    word : the unknown word
+    names : valid names; in a mapping, each with its declaration, whose label or help is its meaning
+    limit : largest number of names listed if none is near
+    about : words by which to sort this list, such as the key that takes the name
+
+    >>> remedy("strok", ["stroke", "bore"]), remedy("x", ["stroke", "bore"])
+    ('did you mean "stroke"?', 'use one of stroke, bore')
+    >>> remedy("stiffness", ["stiffness_min", "stiffness_oil", "mass"])
+    'did you mean "stiffness_min" or "stiffness_oil"?'
     """
-    candidates = list(names)
-    match = closest(word, candidates)
-    if match is not None:
-        return f'did you mean "{match}"?'
+    from .words import by_nearness, ranked  # needed for faults only
+
+    near = ranked(word, names)
+    if near:
+        best, name, by_letters = near[0]
+        equal = [other for score, other, _ in near[:3] if score > best - _TIE]
+        quoted = [f'"{other}"' for other in ([name] if by_letters else equal)]
+        head = ", ".join(quoted[:-1])
+        return f"did you mean {f'{head} or ' if head else ''}{quoted[-1]}?"
+    candidates = by_nearness(about, names)
     if not candidates:
         return ""
     more = ", …" if len(candidates) > limit else ""
@@ -189,9 +200,17 @@ class ActuatorError(Exception):
         self.diagnostics: list[Diagnostic] = list(diagnostics)
         super().__init__("\n".join(str(d) for d in self.diagnostics))
 
+    def __str__(self) -> str:
+        """The faults, one or more lines each."""
+        return "\n".join(str(d) for d in self.diagnostics)
+
 
 class InputError(ActuatorError):
     """A file, value or PATH that cannot be used (exit 3)."""
+
+
+class UnknownName(InputError, KeyError):
+    """A name that a result does not have, as in ``evaluation["mas"]``."""
 
 
 class UsageError(ActuatorError):
@@ -206,12 +225,25 @@ class Unsolvable(ActuatorError):
     exit_code = ExitCode.SOLVER_FAILED
 
 
-EXTRAS = {"ezdxf": ("DXF", "cad"), "openpyxl": ("XLSX", "excel"), "pyarrow": ("Parquet", "parquet")}
+EXTRAS = {
+    "ezdxf": ("DXF", "cad"),
+    "openpyxl": ("XLSX", "excel"),
+    "pyarrow": ("Parquet", "parquet"),
+    "pandas": ("", "pandas"),
+    "polars": ("", "polars"),
+    "xarray": ("", "xarray"),
+    "openmdao": ("", "openmdao"),
+}
 """For every optional library, the file format that it writes and the extra that installs it."""
 
 
-def library(name: str) -> Any:
+def library(name: str, *, writes: bool = True) -> Any:
     """Import a module of an optional library; raise a one-line error if it is not installed.
+
+    Parameters
+    ----------
+    name : name of the module
+    writes : whether it writes a file; if not, the error does not name the format of the file
 
     Raises
     ------
@@ -222,5 +254,7 @@ def library(name: str) -> Any:
     except ImportError as missing:
         root = name.partition(".")[0]
         kind, extra = EXTRAS[root]
-        fault = Diagnostic(f"{kind} files need {root}", f"pip install 'actuator-opt[{extra}]'")
+        written = kind and writes
+        message = f"{kind} files need {root}" if written else f"needs {root}"
+        fault = Diagnostic(message, f"pip install 'actuator-opt[{extra if written else root}]'")
         raise ActuatorError(fault) from missing

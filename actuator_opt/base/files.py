@@ -105,7 +105,9 @@ def read_bytes(source: str | Path, *, most: int, kinds: tuple[str, ...], what: s
         raise InputError(Diagnostic("is a folder", f"name a {what} in it", name)) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(Diagnostic(f"cannot be read: {reason}", "", name)) from None
+        raise InputError(
+            Diagnostic(f"cannot be read: {reason}", "name another file", name)
+        ) from None
 
 
 def _standard_input(most: int) -> bytes:
@@ -117,7 +119,9 @@ def _standard_input(most: int) -> bytes:
         return stream.buffer.read(most)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(Diagnostic(f"standard input cannot be read: {reason}", "", "-")) from None
+        raise InputError(
+            Diagnostic(f"standard input cannot be read: {reason}", "name a file", "-")
+        ) from None
 
 
 def _suggestion(path: Path, kinds: tuple[str, ...]) -> str:

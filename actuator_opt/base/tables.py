@@ -1,16 +1,15 @@
-"""Plain text tables with aligned columns; JSON text; results shown in a notebook.
-
-A notebook shows a result as the HTML page of that result.
-"""
+"""Plain text tables with aligned columns; JSON text; results as one line and in a notebook."""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from importlib import import_module
 from typing import Any
 
-from .errors import Diagnostic, InputError
+from .dataclass import LONGEST_REPR
+from .errors import Diagnostic, InputError, shown
 
 
 def aligned(rows: Sequence[Sequence[str]], *, right: Sequence[int] = ()) -> str:
@@ -79,19 +78,52 @@ def _finite(value: Any, path: str, lost: dict[str, str]) -> Any:
     return value
 
 
-_RENDERERS: list[Callable[[object], str]] = []
+_RENDERERS = f"{__package__.rpartition('.')[0]}.api.results"
+"""Module with the text and the page of every result; imported by name, as it is above this one."""
 
 
-def show_by(renderer: Callable[[object], str]) -> None:
-    """Register the function that turns a result into HTML."""
-    _RENDERERS[:] = [renderer]
+def headline(kind: str, name: str, words: str) -> str:
+    """The repr of a result: one line of at most `LONGEST_REPR` characters.
+
+    >>> headline("Evaluation", "robot knee", "mass 265.1 g, 8 of 10 requirements met")
+    "<Evaluation 'robot knee': mass 265.1 g, 8 of 10 requirements met>"
+    """
+    title = f"{kind} {shown(name, 48)!r}" if name else kind
+    return f"<{shown(f'{title}: {words}' if words else title, LONGEST_REPR - 2)}>"
 
 
-class Displayed:
-    """Base class of results that a notebook shows as their page."""
+class OneLine:
+    """Base class of objects whose repr is one line: class, name and a few words."""
 
     __slots__ = ()
 
-    def _repr_html_(self) -> str | None:
-        """The page as HTML; None if no function for it is registered."""
-        return _RENDERERS[0](self) if _RENDERERS else None
+    def __init_subclass__(cls) -> None:
+        """Keep this repr in a data class, which otherwise writes its own."""
+        super().__init_subclass__()
+        if "__repr__" not in cls.__dict__:
+            cls.__repr__ = OneLine.__repr__  # type: ignore[method-assign]
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The name of the design or file ("" without one), and the state in a few words."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        """Class, name and state (`headline`)."""
+        return headline(type(self).__name__, *self.in_short)
+
+
+class Displayed(OneLine):
+    """Base class of results: one line as repr, a table when printed, a page in a notebook."""
+
+    __slots__ = ()
+
+    def __str__(self) -> str:
+        """The text that the terminal shows, without colours."""
+        text: str = import_module(_RENDERERS).text(self, colour=False, unicode=True, width=100)
+        return text.rstrip("\n") or repr(self)
+
+    def _repr_html_(self) -> str:
+        """The most important parts of the page as HTML, for notebooks."""
+        html: str = import_module(_RENDERERS).html(self)
+        return html

@@ -20,7 +20,7 @@ from typer.exceptions import TyperException
 
 from ..base.errors import EXIT_CODES, ActuatorError, Diagnostic, ExitCode
 from ..version import VERSION
-from . import streams
+from . import completion, streams
 
 COMMANDS = {
     "init": "design",
@@ -42,11 +42,14 @@ COMMANDS = {
     "rerun": "runs",
     "export": "design",
     "schema": "design",
+    "explain": "reference",
+    "list": "reference.list_names",
     "doctor": "runs",
     "materials": "materials",
     "runs": "runs",
 }
-"""All commands in the order of the help, each with the module of its function."""
+"""All commands in the order of the help, each with its module, and its function if this has another
+name."""
 
 HIDDEN = {"optimize"}
 """Alternative spellings of commands, which the help does not list."""
@@ -82,7 +85,8 @@ def _leave(code: ExitCode | None, **options: object) -> None:
 def command_line(arguments: Sequence[str] = ()) -> Any:
     """Build the command line, with the option ``--debug`` for every command.
 
-    If the first argument names a command, only this command is imported, to save time.
+    If the first argument names a command, only this command is imported, to save time. The same
+    holds for the line of which a shell asks for words.
     """
     app = typer.Typer(
         name="actuator-opt",
@@ -91,15 +95,16 @@ def command_line(arguments: Sequence[str] = ()) -> Any:
         no_args_is_help=True,
         pretty_exceptions_enable=False,
         rich_markup_mode=None,
-        add_completion=False,
         context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
         invoke_without_command=True,
         callback=_main,
         result_callback=_leave,
     )
-    names = [name for name in COMMANDS if name in arguments[:1]]
+    first = arguments[:1] or completion.typed()
+    names = [name for name in COMMANDS if name in first]
     for name in names or ([] if list(arguments) == ["--version"] else COMMANDS):
-        function = getattr(import_module(f".{COMMANDS[name]}", __package__), name)
+        module, _, other = COMMANDS[name].partition(".")
+        function = getattr(import_module(f".{module}", __package__), other or name)
         if isinstance(function, typer.Typer):
             app.add_typer(function, name=name)
         else:

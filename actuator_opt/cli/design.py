@@ -12,6 +12,7 @@ import typer
 
 from ..base import files as store, runs as run_store
 from ..base.errors import Diagnostic, ExitCode, UsageError, shown
+from ..base.tables import encoded
 from . import streams
 from .job import Job
 from .options import (
@@ -27,6 +28,7 @@ from .options import (
     Report,
     Seed,
     Set,
+    Verbose,
 )
 
 if TYPE_CHECKING:
@@ -270,6 +272,7 @@ def evaluate(
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> ExitCode:
     """Compute all metrics, requirements and checks of a design."""
     from .. import api as verbs
@@ -277,7 +280,7 @@ def evaluate(
     job = Job(
         design, sets=sets, plugins=plugin, report=report, out=out, date=date,
         all_pages=all_pages, format=format,
-        as_json=as_json, quiet=quiet,
+        as_json=as_json, quiet=quiet, verbose=verbose,
     )  # fmt: skip
     return job.deliver(job.run(verbs.evaluate, seed=seed if report else None))
 
@@ -415,9 +418,12 @@ def schema(
     scenario: Annotated[
         bool, typer.Option("--scenario", help="Schema of scenario files, not of designs.")
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="No effect: the schema is JSON.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print it on a terminal, too.")] = False,
 ) -> None:
-    """Print the JSON Schema of design or scenario files."""
+    """Print the JSON Schema of design or scenario files.
+
+    On a terminal, only its size is printed, as it is for editors: use list or explain instead.
+    """
     from ..base.quantities import RESULTS
     from ..design.materials import load_library
     from ..design.schema import json_schema
@@ -426,6 +432,11 @@ def schema(
     if scenario:
         from ..design.scenario import Scenario
 
-        streams.out_json(json_schema(Scenario, materials=load_library(), metrics=RESULTS))
+        data = json_schema(Scenario, materials=load_library(), metrics=RESULTS)
     else:
-        streams.out_json(json_schema(materials=load_library(), metrics=METRICS))
+        data = json_schema(materials=load_library(), metrics=METRICS)
+    if not streams.terminal() or as_json:
+        streams.out_json(data)
+        return
+    size = len(encoded(data, indent=1))
+    streams.err(f"{size / 1e6:.1f} MB of JSON: use list or explain; > FILE for an editor")

@@ -10,7 +10,7 @@ import typer
 
 from ..base import files as store
 from ..base.errors import Diagnostic, UsageError
-from . import streams
+from . import completion, streams
 from .options import Json
 
 if TYPE_CHECKING:
@@ -50,7 +50,12 @@ def list_materials(
 
 @materials.command("show")
 def show_material(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the entry.")],
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="NAME", help="Name of the entry.", autocompletion=completion.materials
+        ),
+    ],
     out: Annotated[
         Path | None,
         typer.Option(
@@ -89,7 +94,12 @@ def show_material(
 
 @materials.command("compare")
 def compare_materials(
-    names: Annotated[list[str], typer.Argument(metavar="NAME", help="Two or more entries.")],
+    names: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="NAME", help="Two or more entries.", autocompletion=completion.materials
+        ),
+    ],
     as_json: Json = False,
 ) -> None:
     """Compare properties side by side, with ratios to the first material."""

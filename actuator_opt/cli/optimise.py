@@ -9,6 +9,7 @@ import typer
 
 from ..base.bounds import CHECKS
 from ..base.errors import Diagnostic, ExitCode
+from . import completion
 from .job import Job
 from .options import (
     REPORTS,
@@ -25,11 +26,13 @@ from .options import (
     Quiet,
     Report,
     Scheduler,
+    Seconds,
     Seed,
     Set,
     Shop,
     StandardSizes,
     Starts,
+    Verbose,
     VerifyDynamics,
     WholePlies,
     Write,
@@ -52,6 +55,11 @@ def optimise(
     certify: Certify = False,
     target: Yield = None,
     verify: VerifyDynamics = None,
+    relax_safety: Annotated[
+        bool,
+        typer.Option("--relax-safety", help="If nothing fits, offer lower safety factors, too."),
+    ] = False,
+    seconds: Seconds = None,
     scheduler: Annotated[
         str | None,
         typer.Option(
@@ -73,6 +81,7 @@ def optimise(
     no_record: NoRecord = False,
     as_json: Json = False,
     quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> ExitCode:
     """Find the best design and what each limit costs."""
     from .. import api as verbs
@@ -80,7 +89,8 @@ def optimise(
     job = Job(
         design, sets=sets, plugins=plugin, write=write, report=report or not as_json, out=out,
         date=date, all_pages=all_pages, format=format,
-        as_json=as_json, quiet=quiet, record=not no_record,
+        as_json=as_json, quiet=quiet, verbose=verbose, record=not no_record,
+        card={"relax_safety": relax_safety},
     )  # fmt: skip
     trial = None if verify is None else _scenario(verify, job.actuator)
     result = job.run(
@@ -88,6 +98,7 @@ def optimise(
         algorithm=algorithm,
         starts=starts,
         seed=seed,
+        max_seconds=seconds,
         whole_plies=whole_plies,
         keep_interrupted=True,
         standard_sizes=standard_sizes,
@@ -165,6 +176,7 @@ def pareto(
         typer.Option(
             "--objective",
             metavar="METRIC:min|max",
+            autocompletion=completion.objectives,
             help='Metric and direction, two to four times, e.g. "mass:min".',
         ),
     ] = None,

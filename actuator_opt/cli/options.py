@@ -9,6 +9,7 @@ import typer
 
 from ..base.bounds import SEED, STARTS
 from ..base.errors import Diagnostic, UsageError
+from . import completion
 
 if TYPE_CHECKING:
     from ..base.quantities import Quantity
@@ -19,6 +20,7 @@ Set = Annotated[
     typer.Option(
         "--set",
         metavar="PATH=VALUE",
+        autocompletion=completion.stated,
         help='Replace a value, e.g. "cylinder.bore=30 mm"; a bare number is SI. Repeatable.',
     ),
 ]
@@ -35,6 +37,9 @@ Seed = Annotated[
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object (SI) to stdout.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
+Verbose = Annotated[
+    bool, typer.Option("--verbose", "-v", help="Print everything, not only the summary.")
+]
 PluginFile = Annotated[
     list[Path] | None,
     typer.Option(
@@ -126,6 +131,15 @@ VerifyDynamics = Annotated[
         "--verify-dynamics",
         metavar="SCENARIO",
         help="Verify the best design by simulation of this scenario.",
+    ),
+]
+Seconds = Annotated[
+    float | None,
+    typer.Option(
+        "--max-seconds",
+        min=0.0,
+        metavar="N",
+        help="Stop the search after this time and keep the best design so far.",
     ),
 ]
 NoRecord = Annotated[

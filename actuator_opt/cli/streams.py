@@ -92,6 +92,12 @@ def style() -> Style:
     }
 
 
+def terminal() -> bool:
+    """Whether standard output is a terminal."""
+    stream: TextIO | None = sys.stdout
+    return stream is not None and stream.isatty()
+
+
 def out(text: str, *, end: str = "\n") -> None:
     """Print data to standard output; control characters are escaped, except our own colours.
 

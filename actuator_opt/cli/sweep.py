@@ -12,7 +12,7 @@ import typer
 from ..base.bounds import SWEEP_FIGURES
 from ..base.errors import ActuatorError, Diagnostic, ExitCode, UsageError, shown
 from ..base.units import whole
-from . import streams
+from . import completion, streams
 from .job import Job
 from .options import REPORTS, DesignFile, Json, NoRecord, PluginFile, Quiet, Scheduler, Seed, Set
 
@@ -24,6 +24,7 @@ Vary = Annotated[
     typer.Option(
         "--vary",
         metavar="PATH=A..B:N",
+        autocompletion=completion.stated,
         help="Input to vary: a range with N values, or a list (PATH=a,b,c). Repeatable.",
     ),
 ]
@@ -127,7 +128,7 @@ def sweep(
         swept = job.run(
             verbs.sweep, vary=vary or [], method=method, n=count, seed=seed,
             reduce=reduce is not None, workers=workers, scheduler=scheduler, engine=engine, yes=yes,
-            **output,
+            rows=False, **output,
         )  # fmt: skip
     if swept.study.engine != engine and not quiet:
         streams.err("JAX not installed (pip install 'actuator-opt[jax]'); used NumPy")

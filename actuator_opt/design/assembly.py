@@ -78,7 +78,7 @@ def warnings(design: Design) -> Iterator[str]:
     done = set[BarrelOpening]()
     if bore is None or not rings:
         return
-    height, section = ring_height(rings), min(section for section, _ in rings)
+    height, section = ring_height(rings), min(ring.section for ring in rings)
     for name, (_, opening) in _openings(view).items():
         if opening.crossed is None or opening in done or opening.opens == "never":
             continue

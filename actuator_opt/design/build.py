@@ -26,12 +26,13 @@ from .structure import (
     how_to_add,
     is_removed_by_none,
     leaves,
+    meanings,
     section_at,
 )
 
 MOST_FAULTS = 100
 
-_TABLE_KEYS = {
+TABLE_KEYS = {
     "variables": "PATHs such as cylinder.bore, each with a lower and an upper bound",
     "requirements": "metrics, each with a smallest (min) or largest (max) value",
     "choices": "PATHs such as seals.rod.compound, each with a list of allowed values",
@@ -163,7 +164,7 @@ def _unless_known(faults: Iterable[Fault], reported: Sequence[Fault]) -> list[Fa
 
 def _translate(error: ValidationError, root: type[Section]) -> Iterator[Fault]:
     """Translate pydantic's validation errors into faults in the terms of the file."""
-    for item in error.errors(include_url=False):
+    for count, item in enumerate(error.errors(include_url=False)):
         loc: Loc = tuple(item["loc"])
         kind, value = item["type"], item["input"]
         if kind == "default_factory_not_called":  # only repeats another fault
@@ -174,7 +175,7 @@ def _translate(error: ValidationError, root: type[Section]) -> Iterator[Fault]:
         elif kind == "missing":
             yield Fault(loc, "missing", how_to_add(str(loc[-1]), entry))
         elif kind == "extra_forbidden":
-            yield _unknown_key(loc, root)
+            yield _unknown_key(loc, root, near=count < MOST_FAULTS)
         elif kind == "literal_error" and entry is not None:
             word = value if isinstance(value, str) else ""
             message = (
@@ -189,7 +190,7 @@ def _translate(error: ValidationError, root: type[Section]) -> Iterator[Fault]:
             remedy = 'add one, starting with "- "' if few else f"keep at most {limit}"
             yield Fault(loc, "the list is empty" if few else "too many entries", remedy)
         elif kind in ("model_type", "model_attributes_type", "dict_type"):
-            keys = ", ".join(list(entries(section))[:6]) if section else _TABLE_KEYS[str(loc[0])]
+            keys = ", ".join(list(entries(section))[:6]) if section else TABLE_KEYS[str(loc[0])]
             yield Fault(
                 loc, f"need a block, not {_word(value)}", f"write its keys below it: {keys}"
             )
@@ -206,14 +207,17 @@ def _word(value: object) -> str:
     return f'"{errors.shown(value)}"' if isinstance(value, str) else shape_in_words(value)
 
 
-def _unknown_key(loc: Loc, root: type[Section]) -> Fault:
+def _unknown_key(loc: Loc, root: type[Section], *, near: bool) -> Fault:
+    """Fault of an unknown key; with near names, as these take time, only among the first faults."""
+    if not near:
+        return Fault(loc, "unknown key", "remove it", at_key=True)
     section, _ = section_at(root, loc[:-1])
     table = entries(root).get(str(loc[0]))
     if table is not None and table.shape == "table" and table.section and len(loc) == 3:
-        names = list(entries(table.section))
+        names = dict(meanings(table.section))
     else:
-        names = list(entries(section)) if section else []
-        names += ["plies"] if section is Ply else []
+        names = {} if section is None else dict(meanings(section))
+        names |= {"plies": "lay-up in compact notation"} if section is Ply else {}
     return Fault(loc, "unknown key", errors.remedy(str(loc[-1]), names), at_key=True)
 
 

@@ -16,6 +16,7 @@ from typing import Any, TypeAlias
 from ..base import errors
 from ..base.errors import Fault
 from ..base.quantities import Quantity
+from ..base.words import by_nearness
 from ..joints.kinds import JOINTS
 from .kinds import Fraction, MaterialName, Text, ValueFault, shape_in_words
 from .material import ROLES
@@ -201,17 +202,22 @@ def material_faults(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
         if entry is None or not isinstance(entry.kind, MaterialName) or not _is_list(values):
             continue
         suitable = ROLES[entry.kind.role]
-        candidates = [name for name in materials.names() if materials.kind(name) in suitable]
         for index, name in enumerate(values):
-            if not isinstance(name, str) or name in candidates or (name == NONE and entry.required):
+            if not isinstance(name, str) or (name == NONE and entry.required):
                 continue
-            loc = ("choices", path, index)
+            if name in materials and materials.kind(name) in suitable:
+                continue
+            loc, candidates = (
+                ("choices", path, index),
+                materials.meanings(entry.kind.usual or suitable),
+            )
             if name not in materials:
                 message = f'"{errors.shown(name)}": unknown material'
-                yield Fault(loc, message, errors.remedy(name, candidates))
+                yield Fault(loc, message, errors.remedy(name, candidates, about=path))
             else:
                 message = f"{name}: a material of kind {materials.kind(name)} cannot be used here"
-                yield Fault(loc, message, f"use e.g. {', '.join(candidates[:6])}")
+                offered = by_nearness(path, candidates)[:6]
+                yield Fault(loc, message, f"use e.g. {', '.join(offered)}")
 
 
 def _is_list(values: object) -> bool:

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, TypeVar, get_args
 from ..base import errors, quantities
 from ..base.errors import Fault, article
 from ..base.quantities import length_text
+from ..base.words import by_nearness
 from ..joints.joint import LEAST_METAL, ROUNDING, Joint
 from ..models import linkage as crank, mass
 from ..models.piston_nut import HEIGHT
@@ -680,24 +681,24 @@ def _material_names(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     for loc, entry, name in leaves(tree):
         if not isinstance(entry.kind, MaterialName) or not isinstance(name, str):
             continue
-        suitable = ROLES[entry.kind.role]
+        suitable, usual = ROLES[entry.kind.role], entry.kind.usual
         if (joint := joints.get(loc)) is not None:
             suitable = joint.kinds or suitable
-        elif loc == ("rod", "fitting", "adhesive"):
-            suitable = ("adhesive",)
         if name in materials and materials.kind(name) in suitable:
             continue
-        candidates = [other for other in materials.names() if materials.kind(other) in suitable]
+        candidates = materials.meanings(usual or suitable)
+        place = ".".join(str(key) for key in loc)
         if name not in materials:
             message = f'"{errors.shown(name)}": unknown material'
-            yield Fault(loc, message, errors.remedy(name, candidates))
+            yield Fault(loc, message, errors.remedy(name, candidates, about=place))
         else:
             kind, kinds = str(materials.kind(name)), " or ".join(suitable)
             message = f"{name} is {article(kind)}, need {article(kinds)}"
-            yield Fault(loc, message, f"use e.g. {', '.join(candidates[:6])}" if candidates else "")
+            offered = by_nearness(place, candidates)[:6]
+            yield Fault(loc, message, f"use e.g. {', '.join(offered)}" if offered else "")
     changed = child(tree, "materials")
     for name in changed if isinstance(changed, Mapping) else ():
         if name not in materials:
             message = f'"{errors.shown(name)}": unknown material'
-            remedy = errors.remedy(name, materials.names())
+            remedy = errors.remedy(name, materials.meanings())
             yield Fault(("materials", name), message, remedy, at_key=True)

@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from ..base import kinds, quantities, units
-from ..base.dataclass import dataclass
+from ..base.dataclass import brief, dataclass
 from ..base.errors import article, shown
 from ..base.numeric import Array
 from ..base.quantities import Quantity
@@ -48,7 +48,7 @@ EXAMPLES = {
     "signal_offset": "0.1 V", "gain": "500 V/m", "oil_viscosity": "32 mm^2/s",
     "damping_ratio": "0.7", "orifice_area": "0.2 cm^2", "opening": "50 %",
     "conductance": "20 ml/min/bar", "gas_volume": "50 ml", "precharge": "30 bar",
-    "polytropic_index": "1.4",
+    "polytropic_index": "1.4", "tightening_factor": "1.6",
     "duration": "2 s", "sample_time": "1 ms", "time_constant": "20 ms", "signal_rate": "500 V/s",
     "displacement": "13.3 ml", "displacement_setting": "1", "slip_coefficient": "1.5e-7",
     "coulomb_coefficient": "0.16", "viscous_coefficient": "1e5", "drive_speed": "1500 rpm",
@@ -63,6 +63,7 @@ MATERIAL_EXAMPLES = {
     "fluid": "iso_vg_32",
     "seal": "nbr_70",
     "fastening": "epoxy_structural",
+    "adhesive": "epoxy_structural",
 }
 """An example material for each role."""
 
@@ -117,7 +118,7 @@ def _unit_fault(text: str, quantity: Quantity, error: units.UnitError) -> ValueF
     if _DECIMAL_COMMA.match(text):
         return ValueFault(f'"{name}": decimal comma', f'write "{name.replace(",", ".", 1)}"')
     if "unit missing" in message:
-        remedy = f'write e.g. "{name} {quantity.unit}"'
+        remedy = _with_unit(name, quantity)
     elif "not a number" in message or "not a finite" in message:
         remedy = f'write e.g. "{example(quantity)}"'
     elif remedy.startswith("use one of") and quantity.unit:
@@ -126,6 +127,23 @@ def _unit_fault(text: str, quantity: Quantity, error: units.UnitError) -> ValueF
     elif quantity.dimension == "count":
         remedy = f'write a bare number, e.g. "{example(quantity)}"'
     return ValueFault(message if name in message else f'"{name}": {message}', remedy)
+
+
+def _with_unit(bare: str, quantity: Quantity) -> str:
+    """Remedy for a bare number: the number with its unit.
+
+    As in scripts and ``--set``, the number is taken as SI. If that is outside the quantity's range,
+    the display unit is suggested instead, and if this is too, the example.
+    """
+    number = float(bare)
+    si = f"{bare} {quantity.si_unit}"
+    if quantity.lower <= number <= quantity.upper:
+        same = "" if quantity.unit == quantity.si_unit else f" (= {quantity.text(number, 6)})"
+        return f'write "{si}"{same}, or the unit meant'
+    shown_unit = f"{bare} {quantity.unit}"
+    fits = quantity.lower <= units.parse(shown_unit, quantity.dimension) <= quantity.upper
+    sample = shown_unit if fits else example(quantity)
+    return f'write e.g. "{sample}"; {si} is outside {quantity.range_text()}'
 
 
 def read_quantity(value: object, quantity: Quantity) -> float:
@@ -370,14 +388,23 @@ class CaseName(Text):
 
 
 class MaterialName(Text):
-    """Name of a library material; `role` states which kinds of material the field accepts."""
+    """Name of a library material.
+
+    Parameters
+    ----------
+    role : role that states which kinds of material the field accepts (`material.ROLES`)
+    usual : kinds that faults suggest; default: all that the role accepts
+    """
 
     def __init__(
-        self, role: Literal["structural", "isotropic", "fluid", "seal", "fastening"]
+        self,
+        role: Literal["structural", "isotropic", "fluid", "seal", "fastening", "adhesive"],
+        usual: tuple[str, ...] = (),
     ) -> None:
         article = "an" if role[0] in "aeiou" else "a"
         super().__init__(f"name of {article} {role} material from the library")
         self.role = role
+        self.usual = usual
         self.example = MATERIAL_EXAMPLES[role]
 
 
@@ -420,3 +447,9 @@ class Section(BaseModel):
     """A block of the design file; unknown keys are faults."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
+
+    def __repr__(self) -> str:
+        """Name of the block with its values, in one line."""
+        return brief(type(self).__name__, self)
+
+    __str__ = __repr__

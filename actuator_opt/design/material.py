@@ -42,6 +42,7 @@ ROLES: Final[Mapping[str, tuple[str, ...]]] = {
     "fluid": ("fluid",),
     "seal": ("seal",),
     "fastening": ("metal", "adhesive"),
+    "adhesive": ("adhesive",),
 }
 """Kinds of material that each role in a design accepts."""
 

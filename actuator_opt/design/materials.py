@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import field
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -17,6 +17,8 @@ from ..base import files as store, units
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, remedy, shown
 from ..base.quantities import INPUTS, MATERIAL_PROPERTIES, Quantity
+from ..base.tables import OneLine
+from ..base.words import nearest
 from . import material, yaml_source
 from .kinds import ValueFault, read_quantity, shape_in_words
 from .material import ROLES, Material, Property, Spread, allowable_factor, compatible, ply_constants
@@ -24,6 +26,7 @@ from .material import ROLES, Material, Property, Spread, allowable_factor, compa
 _TOP = re.compile(r"(?m)^(?P<quote>['\"]?)(?P<name>[^\W\d][\w.+-]*)(?P=quote)[ \t]*:")
 _STRAY = re.compile(r"(?m)^(?!#|---|['\"]?[^\W\d][\w.+-]*['\"]?[ \t]*:)\S.*$")
 _KIND = re.compile(r"(?m)^[ ]+kind:[ ]*(\w+)[ ]*$")
+_LABEL = re.compile(r"(?m)^[ ]+label:[ ]*(\S.*?)[ ]*$")
 _SCATTER = re.compile(
     r"(?:not stated|(?P<cv>\d*\.?\d+)(?: to (?P<cv2>\d*\.?\d+))? % CV"
     r"|\+-(?P<half>\d*\.?\d+ \S.*?)|factor (?P<factor>\d*\.?\d+))(?:; .*)?"
@@ -61,6 +64,12 @@ class MaterialFile:
         start, end, _ = self.places[name]
         match = _KIND.search(self.text, start, end)
         return match[1] if match else None
+
+    def label(self, name: str) -> str | None:
+        """Label of an entry, read without parsing it."""
+        start, end, _ = self.places[name]
+        match = _LABEL.search(self.text, start, end)
+        return match[1].strip("'\"") if match else None
 
     def document(self, name: str) -> yaml_source.Document:
         """Parse the text of an entry; its line numbers are those of the file."""
@@ -400,7 +409,7 @@ __all__ = [
 ]
 
 
-class Library:
+class Library(OneLine):
     """Materials by name; later files override earlier files. Entries are read on demand."""
 
     def __init__(self, files: Iterable[MaterialFile]) -> None:
@@ -411,6 +420,11 @@ class Library:
         self._cache: dict[tuple[int, str], Material] = {}
         self._open: list[tuple[int, str]] = []
         self._check_clashes()
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The number of materials."""
+        return "", f"{len(self.names())} materials"
 
     def _check_clashes(self) -> None:
         """Refuse a duplicate name in files of the same folder; other folders may override."""
@@ -437,6 +451,19 @@ class Library:
         if name not in self:
             return None
         return self._files[self._home[name]].kind(name) or self.get(name).kind
+
+    def meanings(self, kinds: Collection[str] = ()) -> Mapping[str, str]:
+        """Label and kind in words of every entry of these kinds, or of all, by name.
+
+        They are read without parsing the entries.
+        """
+        found = {}
+        for name in self.names():
+            kind = self.kind(name)
+            if kind is not None and (not kinds or kind in kinds):
+                label = self._files[self._home[name]].label(name) or name
+                found[name] = f"{label}, {kind}"
+        return found
 
     def __contains__(self, name: object) -> bool:
         return name in self._home and not str(name).startswith("_")
@@ -517,15 +544,10 @@ class Library:
         return self._read(name, (others or homes)[0]) if homes else None
 
     def _unknown(self, name: str, role: str | None) -> Diagnostic:
-        import difflib  # slow, needed for faults only
-
-        names = self.names(role=role)
-        folded = name.casefold().replace("-", "_").replace(" ", "_")
-        near = difflib.get_close_matches(folded, names, n=3, cutoff=0.5)
-        near = near or [n for n in names if folded[:3] and folded[:3] in n][:3]
-        listed = ", ".join(f'"{n}"' for n in near)
+        near = nearest(name, self.meanings(() if role is None else ROLES[role]))
+        listed = ", ".join(f'"{other}"' for other in near)
         remedy = f"best matches are {listed}" if near else "see: actuator-opt materials list"
-        return Diagnostic(f'unknown material "{name}"', remedy)
+        return Diagnostic(f'unknown material "{shown(name)}"', remedy)
 
 
 def load_library(extra: Iterable[str | Path] = ()) -> Library:

@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 from pydantic import Field, create_model
 
 from ..base.quantities import Sense
+from ..base.tables import headline
 from ..joints.kinds import JOINTS
+from ..models.piston_nut import TIGHTENING
 from . import choices
 from .choices import Paper
 from .kinds import (
@@ -405,7 +407,7 @@ class Fitting(Section):
 
     material: Annotated[str | None, MaterialName("isotropic")] = None
     """Material of the fittings; default: the rod's material."""
-    adhesive: Annotated[str, MaterialName("fastening")]
+    adhesive: Annotated[str, MaterialName("adhesive")]
     length: Annotated[float, Of("part_length", "length of the fitting inside the tube (overlap)")]
     wall: Annotated[
         float | None,
@@ -420,7 +422,7 @@ class Rod(Section):
     the layers, and `material` is the metal of its end fittings.
     """
 
-    material: Annotated[str, MaterialName("isotropic")]
+    material: Annotated[str, MaterialName("isotropic", ("metal",))]
     outer_diameter: Annotated[
         float, Of("rod_diameter", "diameter of the rod where it passes the rod seal")
     ]
@@ -438,7 +440,11 @@ class PistonNut(Section):
 
     diameter: Annotated[float, Of("thread_diameter", "nominal diameter of the thread")]
     pitch: Annotated[float, Of("thread_pitch", "pitch")]
-    preload: Annotated[float, Of("force", "tension of the stud after tightening")]
+    preload: Annotated[float, Of("force", "mean tension of the stud after tightening")]
+    tightening_factor: Annotated[
+        float, Of("tightening_factor", "greatest divided by least preload after tightening")
+    ] = TIGHTENING
+    """Default: a torque wrench (`models.piston_nut`)."""
 
 
 class Cushion(Section):
@@ -482,7 +488,7 @@ class Piston(Section):
 
     material: Annotated[str, MaterialName("structural")]
     length: Annotated[float, Of("part_length", "axial length of the piston")]
-    bearing: Annotated[str | None, MaterialName("structural")] = None
+    bearing: Annotated[str | None, MaterialName("structural", ("polymer", "metal"))] = None
     clearance: Annotated[
         float, Of("radial_clearance", "radial clearance between piston and bore")
     ] = 3e-5
@@ -497,7 +503,7 @@ class Head(Section):
 
     material: Annotated[str, MaterialName("structural")]
     length: Annotated[float, Of("part_length", "axial length inside the barrel")]
-    bearing: Annotated[str | None, MaterialName("structural")] = None
+    bearing: Annotated[str | None, MaterialName("structural", ("polymer", "metal"))] = None
     clearance: Annotated[float, Of("radial_clearance", "radial clearance between rod and head")] = (
         3e-5
     )
@@ -779,3 +785,18 @@ class Design(Section):
     materials: dict[str, dict[str, float]] = {}  # noqa: RUF012 (pydantic copies it)
     """Properties (SI) that replace those of the library in this design, by material name."""
     objective: Objective = Objective.model_construct(minimise="mass")
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The name; and the objective, with the numbers of variables and requirements."""
+        aim = "minimise" if self.objective.aim == "min" else "maximise"
+        limits = len(self.load_cases)  # each must be carried
+        limits += sum((x.min is not None) + (x.max is not None) for x in self.requirements.values())
+        words = f"{aim} {' and '.join(self.objective.metrics)}, {len(self.variables)} variables"
+        return self.name, f"{words}, {limits} requirements"
+
+    def __repr__(self) -> str:
+        """Name, objective, and the numbers of variables and requirements."""
+        return headline(type(self).__name__, *self.in_short)
+
+    __str__ = __repr__

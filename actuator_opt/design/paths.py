@@ -17,7 +17,7 @@ from ..base import errors, quantities, units
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.quantities import Quantity
-from ..metrics import METRICS
+from ..metrics import METRICS, of_metric, term_of
 from .kinds import Fraction, Section, ValueFault
 from .model import Design
 from .structure import KeyEntry, Loc, child, child_at, entries, leaves, number_of
@@ -127,8 +127,9 @@ def _resolve_section(
     name, rest = tokens[0].text, tokens[1:]
     entry = keys.get(name)
     if entry is None or tokens[0].bracket:
-        siblings = [spell((*loc, key), tree) for key in keys]
-        raise _no_such(path, [*siblings, *(spell(at, tree) for at, _, _ in leaves(*whole))])
+        known = {spell((*loc, key), tree): entry.meaning for key, entry in keys.items()}
+        known |= {spell(at, tree): entry.meaning for at, entry, _ in leaves(*whole)}
+        raise _no_such(path, known | _limits(tree))
     node, loc = child(node, name), (*loc, name)
     if entry.shape in ("value", "choice"):
         if rest:
@@ -169,7 +170,7 @@ def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quanti
         return Target(path, (head, rest), None)
     if head == "objective":
         if rest not in ("minimise", "maximise"):
-            raise _no_such(path, ["objective.minimise", "objective.maximise"])
+            raise _no_such(path, {"objective.minimise": "", "objective.maximise": ""})
         return Target(path, (head, rest), None)
     if head in _ENDS:
         if not name or last not in _ENDS[head]:
@@ -198,13 +199,51 @@ def _not_a_value(path: str, below: Sequence[str]) -> ValueFault:
     return ValueFault(f"{path}: names a block, not a value", f"add one of .{', .'.join(below[:8])}")
 
 
-def _no_such(path: str, candidates: Sequence[str]) -> ValueFault:
-    return ValueFault(f"{path}: unknown PATH", errors.remedy(path, dict.fromkeys(candidates), 6))
+def _limits(tree: Any) -> dict[str, str]:
+    """Stated limits by PATH, with the meaning of their metric."""
+    block = child(tree, "requirements")
+    return {
+        f"requirements.{metric}.{side}": f"limit of the {of_metric(str(metric)).label}"
+        for metric, limit in (block.items() if isinstance(block, Mapping) else ())
+        for side in _LIMITS
+        if child(limit, side) is not None
+    }
+
+
+def _no_such(path: str, candidates: Mapping[str, str]) -> ValueFault:
+    return ValueFault(f"{path}: unknown PATH", errors.remedy(path, candidates, 6))
 
 
 def canonical(path: str, design: Design) -> str:
     """Canonical spelling of a PATH, as used in results and records; raises `InputError`."""
     return _target(path, design).path
+
+
+def words_of(path: str) -> str:
+    """The value that a PATH names, in plain words.
+
+    >>> words_of("cylinder.stroke"), words_of("seals.rod.squeeze"), words_of("rod.wall[1].angle")
+    ('stroke', 'rod seal squeeze', 'rod wall[1] angle')
+    >>> words_of("load_cases[swing].force"), words_of("requirements.seal_gap.max")
+    ('force swing', 'seal gap')
+    >>> words_of("materials.t700_epoxy.youngs_modulus_1")
+    'modulus along the fibre of t700_epoxy'
+    """
+    head, _, rest = path.partition(".")
+    if head == "materials":
+        material, _, name = rest.rpartition(".")
+        label = quantities.MATERIAL_PROPERTIES[name].label if material else name
+        return f"{label.partition(' (')[0]} of {material}"
+    if head == "requirements":
+        return term_of(rest.rpartition(".")[0])
+    if head.startswith("load_cases["):
+        return f"{rest} {head[len('load_cases[') : -1]}".replace("_", " ")
+    if head == "seals":
+        place, _, name = rest.partition(".")
+        return f"{place} seal {name}".replace("_", " ").replace(".", " ")
+    layer = path.endswith("].thickness")
+    path = path.removeprefix("cylinder.")
+    return (path.removesuffix(".thickness") if layer else path).replace(".", " ").replace("_", " ")
 
 
 def quantity_of(path: str, design: Design) -> Quantity:
@@ -219,14 +258,22 @@ def quantity_of(path: str, design: Design) -> Quantity:
 
 def get(design: Design, path: str) -> float | str | None:
     """Value at a PATH: SI number, text, or None if an optional value is not set."""
-    node = child_at(design, _target(path, design).loc)
+    return value_at(path, design)[1]
+
+
+def value_at(
+    path: str, design: Design, metrics: Mapping[str, Quantity] | None = None
+) -> tuple[Target, float | str | bool | None]:
+    """The target of a PATH, and its value (see `get`); `metrics` may include the user's own."""
+    target = _target(path, design, metrics)
+    node = child_at(design, target.loc)
     number = number_of(node)
-    return node if number is None else number
+    return target, node if number is None else number
 
 
-def _target(path: str, design: Design) -> Target:
+def _target(path: str, design: Design, metrics: Mapping[str, Quantity] | None = None) -> Target:
     try:
-        return resolve(path, design)
+        return resolve(path, design, metrics)
     except ValueFault as fault:
         message = fault.message.removeprefix(f"{path}: ")
         raise InputError(Diagnostic(message, fault.remedy, path=path)) from None

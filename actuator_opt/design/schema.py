@@ -33,7 +33,15 @@ from .material import ROLES
 from .model import Design, Ply, Uncertain
 from .sizes import MOST_SIZES
 from .standard_sizes import SERIES
-from .structure import NONE, KeyEntry, MaterialLookup, entries, is_removed_by_none
+from .structure import (
+    NONE,
+    KeyEntry,
+    MaterialLookup,
+    entries,
+    is_removed_by_none,
+    purpose,
+    templates,
+)
 from .uncertain import NUMBERS, quantity_of_entry
 
 Schema = dict[str, Any]
@@ -178,7 +186,7 @@ def section_schema(section: type[Section], materials: MaterialLookup | None) -> 
     """Schema of a block of keys; the editor offers its required keys as a snippet."""
     keys = entries(section)
     schema: Schema = {
-        "description": (section.__doc__ or "").split("\n\n")[0].replace("\n    ", " "),
+        "description": purpose(section),
         "type": "object",
         "additionalProperties": False,
         "properties": {name: entry_schema(entry, materials) for name, entry in keys.items()},
@@ -275,18 +283,6 @@ def json_schema(
     }
 
 
-def _of_parts(section: type[Section] = Design, prefix: str = "") -> dict[str, KeyEntry]:
-    """All values in a block by PATH; ``[*]`` replaces the index in a list."""
-    parts: dict[str, KeyEntry] = {}
-    for name, entry in entries(section).items():
-        path = f"{prefix}.{name}" if prefix else name
-        if entry.section is not None and entry.shape in ("section", "list"):
-            parts |= _of_parts(entry.section, path if entry.shape == "section" else f"{path}[*]")
-        elif entry.shape in ("value", "choice") and prefix and not prefix.startswith("objective"):
-            parts[path] = entry
-    return parts
-
-
 def _by_path(schemas: Mapping[str, Schema]) -> Schema:
     """Schema of a table with PATHs as keys.
 
@@ -326,7 +322,7 @@ def _bounds(kind: Of, path: str, definitions: Schema) -> Schema:
 
 def _variables(definitions: Schema) -> Schema:
     movable: Schema = {}
-    for path, entry in _of_parts().items():
+    for path, entry in templates().items():
         if isinstance(entry.kind, Of) and entry.kind.quantity.dimension != "count":
             movable[path] = bounds = _bounds(entry.kind, path, definitions)
             bounds["not"] = {"required": ["sizes", "step"]}
@@ -355,7 +351,7 @@ def _start_and_sizes(quantity: Quantity, path: str) -> Schema:
 
 def _measured(definitions: Schema) -> Schema:
     schemas: Schema = {}
-    for path, entry in _of_parts().items():
+    for path, entry in templates().items():
         if isinstance(entry.kind, Of):
             schemas[path] = bounds = _bounds(entry.kind, path, definitions)
             bounds["required"] = [*bounds["required"], "record"]
@@ -372,7 +368,7 @@ def _measured(definitions: Schema) -> Schema:
 
 def _uncertainty(definitions: Schema) -> Schema:
     schemas: Schema = {}
-    for path, entry in _of_parts().items():
+    for path, entry in templates().items():
         if isinstance(entry.kind, Of) and entry.kind.quantity.dimension != "count":
             schemas[path] = _distribution(path, entry.kind.quantity, definitions)
     for name, quantity in quantities.MATERIAL_PROPERTIES.items():
@@ -420,7 +416,7 @@ def _shared(quantity: Quantity, definitions: Schema) -> Schema:
 
 def _set(materials: MaterialLookup | None, definitions: Schema) -> Schema:
     schemas: Schema = {}
-    for path, entry in _of_parts().items():
+    for path, entry in templates().items():
         schemas[path] = entry_schema(entry, materials)
         if isinstance(entry.kind, Of):
             name = entry.kind.quantity.name
@@ -436,7 +432,7 @@ def _set(materials: MaterialLookup | None, definitions: Schema) -> Schema:
 def _choices() -> Schema:
     lists: dict[str, Schema] = {}
     none: Schema = {"description": "the design without this block", "const": NONE}
-    for path, entry in _of_parts().items():
+    for path, entry in templates().items():
         kind = entry.kind
         if isinstance(kind, Text) and not isinstance(kind, MaterialName):
             continue

@@ -69,7 +69,7 @@ class SealElement(Section):
     hardness_model: choices.HardnessModel = "gent"
     contact: Annotated[tuple[ContactProfile, ...], Field(max_length=50)] = ()
     back_up: choices.BackUp = "none"
-    back_up_material: Annotated[str | None, MaterialName("isotropic")] = None
+    back_up_material: Annotated[str | None, MaterialName("isotropic", ("polymer",))] = None
     back_up_thickness: Annotated[
         float | None,
         Of("part_length", "axial thickness of a back-up ring, including its axial clearance"),
@@ -141,7 +141,7 @@ class Wiper(Section):
 class Guide(Section):
     """Guide rings that carry the side load."""
 
-    material: Annotated[str, MaterialName("structural")]
+    material: Annotated[str, MaterialName("structural", ("polymer", "metal"))]
     thickness: Annotated[float, Of("part_length", "radial thickness of a ring")]
     width: Annotated[float, Of("part_length", "axial width of a ring")]
     count: Annotated[float, Of("seal_count", "rings")] = 1.0

@@ -6,7 +6,7 @@ so none of them has its own list of keys.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from types import UnionType
 from typing import Any, Literal, Protocol, TypeAlias, Union, get_args, get_origin, runtime_checkable
@@ -43,11 +43,23 @@ class KeyEntry:
     most: int | None = None
     """`least` and `most` are the smallest and largest number of entries of a list."""
 
+    @property
+    def meaning(self) -> str:
+        """Meaning of the key: help of its value, or first sentence about its block."""
+        if self.kind is not None:
+            return self.kind.help
+        return "" if self.section is None else purpose(self.section)
+
     def quantity(self, value: object = None) -> Quantity | None:
         """Quantity of the key's number; for a position, it depends on the type of `value`."""
         if isinstance(self.kind, PositionKind):
             return self.kind.quantity_of(value)
         return self.kind.quantity if isinstance(self.kind, Of) else None
+
+
+def purpose(section: type[Section]) -> str:
+    """First paragraph about a block, in one line."""
+    return " ".join((section.__doc__ or "").split("\n\n")[0].split())
 
 
 @cache
@@ -92,6 +104,37 @@ def _options(annotation: Any) -> tuple[Any, ...]:
     if get_origin(annotation) in (Union, UnionType):
         return get_args(annotation)
     return (annotation,)
+
+
+@cache
+def templates(section: type[Section] = Design, prefix: str = "") -> dict[str, KeyEntry]:
+    """All values in a block by PATH; ``[*]`` replaces the index in a list."""
+    parts: dict[str, KeyEntry] = {}
+    for name, entry in entries(section).items():
+        path = f"{prefix}.{name}" if prefix else name
+        if entry.section is not None and entry.shape in ("section", "list"):
+            parts |= templates(entry.section, path if entry.shape == "section" else f"{path}[*]")
+        elif entry.shape in ("value", "choice") and prefix and not prefix.startswith("objective"):
+            parts[path] = entry
+    return parts
+
+
+@cache
+def blocks(section: type[Section] = Design, prefix: str = "") -> dict[str, KeyEntry]:
+    """All blocks, lists and tables in a block by PATH, without an index at their end."""
+    parts: dict[str, KeyEntry] = {}
+    for name, entry in entries(section).items():
+        path = f"{prefix}.{name}" if prefix else name
+        if entry.shape in ("section", "list", "table"):
+            parts[path] = entry
+        if entry.section is not None and entry.shape in ("section", "list"):
+            parts |= blocks(entry.section, path if entry.shape == "section" else f"{path}[*]")
+    return parts
+
+
+def meanings(section: type[Section]) -> Mapping[str, str]:
+    """Meaning of every key of a block, by its name."""
+    return {name: entry.meaning for name, entry in entries(section).items()}
 
 
 def child(node: Any, key: str | int) -> Any:
@@ -238,6 +281,10 @@ class MaterialLookup(Protocol):
 
     def kind(self, name: str) -> str | None:
         """Kind of an entry: metal, ply, polymer, fluid, seal, adhesive."""
+        ...
+
+    def meanings(self, kinds: Collection[str] = ()) -> Mapping[str, str]:
+        """Label and kind in words of every entry of these kinds, or of all, by name."""
         ...
 
 

@@ -539,7 +539,7 @@ variables:                     # dimensions that the optimiser varies; all other
 #   seals.rod.compound: [nbr_70, hnbr_75]      # combination is optimised, the best is kept
 #   seals.rod.section: [2.62 mm, 3.53 mm]
 
-requirements:                  # METRIC with min and/or max; every metric: actuator-opt schema
+requirements:                  # METRIC with min and/or max; every metric: actuator-opt list metrics
   stiffness_min:
     min: 4 kN/mm
   buckling_factor:

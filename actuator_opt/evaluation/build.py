@@ -323,16 +323,18 @@ def _metric(
         criterion=subject.design.barrel.criterion,
         place=place,
     )
-    per_case: dict[str, float] = {}
-    for number, case_name, _ in rows:
+    per_case, per_place = dict[str, float](), dict[str, float]()
+    for number, case_name, place_name in rows:
         if math.isfinite(number):
             per_case[case_name] = pick(number, per_case.get(case_name, number))
+            per_place[place_name] = pick(number, per_place.get(place_name, number))
     return Metric(
         name=name,
         value=value,
         case=None if case == ALL_CASES else case,
         place=place or None,
         by_case=per_case,
+        by_place=per_place,
         sense=None if extremes[0] == extremes[1] else sense,
         model="" if model is None else model.name,
         reference="" if model is None else model.reference,

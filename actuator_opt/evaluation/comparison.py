@@ -111,6 +111,12 @@ class Comparison(Displayed):
     """Whether each design is an optimum; empty if unknown."""
 
     @property
+    def in_short(self) -> tuple[str, str]:
+        """The names of the designs, and the number of inputs that differ."""
+        names = " and ".join(repr(evaluation.name) for evaluation in self.evaluations)
+        return "", f"{names}, {len(self.changes)} inputs differ"
+
+    @property
     def not_optimised(self) -> tuple[int, ...]:
         """Indices of the designs that are not known to be optima."""
         return tuple(k for k, state in enumerate(self.states) if not state.optimum)

@@ -26,6 +26,7 @@ from ..joints.joint import (
     BarrelLayer,
     End,
     EndDimensions,
+    EnteringRing,
     Form,
     Joint,
     JointSizes,
@@ -183,8 +184,10 @@ def entering_rings(design: Design) -> list[tuple[str, SealElement | StaticSeal]]
 
 def _rings(v: Values, design: Design) -> Array:
     """Largest height above the bore of a ring that enters the barrel [m]."""
-    paths = [path for path, _ in entering_rings(design)]
-    return ring_height((v[f"{path}.section"], v[f"{path}.squeeze"]) for path in paths)
+    return ring_height(
+        EnteringRing(*(v[f"{path}.{key}"] for key in EnteringRing._fields))
+        for path, _ in entering_rings(design)
+    )
 
 
 class GroovePart(NamedTuple):

@@ -43,7 +43,7 @@ from . import (
     strength,
     weight,
 )
-from .barrel import Wall
+from .barrel import SEAL_STEP, Wall
 from .circuit import wall_compliance
 from .film_tables import FilmTable, Key, Running
 from .geometry import Geometry
@@ -85,6 +85,7 @@ def compute_leakage(
     design: Design,
     geometry: Geometry,
     state: LoadState,
+    wall: Wall,
     film: Running | None,
     out: MetricArrays,
 ) -> Array:
@@ -102,7 +103,7 @@ def compute_leakage(
         g = geometry
         conductance = conductance + damping.gap_conductance(
             diameter=g.bore,
-            gap=g.piston_clearance + out.metrics["growth_at_seal"][""],
+            gap=g.piston_clearance + SEAL_STEP * wall.growth,
             dynamic_viscosity=0.5 * (state.dynamic_viscosity_a + state.dynamic_viscosity_b),
             length=g.piston_length,
         )
@@ -339,7 +340,7 @@ def statics(
     stock, g, case_state = basis.stock, basis.geometry, basis.state
     barrel, rings = basis.wall, basis.rings
     state.compute(design.fluid, stock, case_state, out)
-    out.put("bore_growth", barrel.growth)
+    out.put("bore_growth", barrel.growths)
     tables = _films(subject)
     drive_films, return_films = (
         sealing.films_of(tables, rings, stroke, len(v.cases)) for stroke in STROKES
@@ -357,7 +358,8 @@ def statics(
         v, design, stock, g, case_state, barrel, rod, friction.breakaway, branches
     )
     damping = compute_damping(g, case_state, friction, out)
-    leakage = compute_leakage(v, design, g, case_state, drive_films.get("piston seal"), out)
+    film = drive_films.get("piston seal")
+    leakage = compute_leakage(v, design, g, case_state, barrel, film, out)
     compute_flow(v, design, g, case_state, out)
     beam = beam_module.derive(
         v, design, g, case_state, barrel, rod, parts, critical_load=implicit.critical_load

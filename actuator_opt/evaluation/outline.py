@@ -26,6 +26,7 @@ from ..joints.joint import (
     LEAST_METAL,
     EndDimensions,
     EndSpan,
+    EnteringRing,
     Polygon,
     SleeveFit,
     rectangle,
@@ -563,7 +564,10 @@ def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
             plate=lengths["plate"],
             rod_radius=lengths["rod"] / 2,
             head_length=lengths["head_length"],
-            rings=ring_height((seal.section, seal.squeeze) for _, seal in entering_rings(design)),
+            rings=ring_height(
+                EnteringRing(*(getattr(seal, key) for key in EnteringRing._fields))
+                for _, seal in entering_rings(design)
+            ),
         )
         sentences += [end_joint.placed(sentence) for sentence in end_joint.joint.notes(end)]
     return [*sentences, *numbered(design)]

@@ -21,7 +21,7 @@ from typing import Literal
 import numpy as np
 
 from ..base.dataclass import dataclass
-from ..base.errors import Diagnostic, InputError, shown
+from ..base.errors import Diagnostic, InputError, remedy, shown
 from ..base.numeric import Array, maximum, minimum
 from ..base.quantities import Quantity
 from ..base.units import BASE, UnitError, unit
@@ -51,13 +51,14 @@ class View:
     def __getitem__(self, path: str) -> Array:
         """The number at a PATH (``cylinder.bore``), a float or an array of designs."""
         if path not in self._values:
-            raise KeyError(f"no number at {path}")
+            raise KeyError(f"no number at {path}; {remedy(path, self._values.paths)}")
         return self._for_design(self._values[path])
 
     def metric(self, name: str) -> Array:
         """A built-in metric; if it has several locations, its worst value."""
         if name not in self._metrics:
-            raise KeyError(f"no metric {name}")
+            known = {other: METRICS.get(other) for other in self._metrics}
+            raise KeyError(f"no metric {name}; {remedy(name, known)}")
         places = list(self._metrics[name].values())
         quantity = METRICS.get(name)
         pick = minimum if quantity is not None and quantity.worst == "min" else maximum

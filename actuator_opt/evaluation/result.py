@@ -8,16 +8,21 @@ actuators built to it miss a limit.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, field
-from typing import Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+import numpy as np
 
 from ..base import quantities
-from ..base.dataclass import dataclass
+from ..base.dataclass import LONGEST_REPR, dataclass
+from ..base.errors import Diagnostic, InputError, UnknownName, UsageError, remedy, shown
 from ..base.numeric import Array
 from ..base.tables import Displayed, aligned
 from ..design.model import Design
+from ..design.paths import numbers, value_at
 from ..metrics import METRICS
+from ..rendering.tables import DataColumn, DataTable, coded
 from .dynamics_study import DynamicsStudy
 from .wall_study import WallStudy
 
@@ -89,17 +94,15 @@ class YieldEstimate:
         """The estimate in a sentence, or the reason why it is missing."""
         if self.value is None or self.lower is None or self.upper is None:
             return f"Yield not estimated ({self.why}); `actuator-opt uncertainty` estimates it."
-        shown = f"{_percent(self.lower)} to {_percent(self.upper)} %, {self.draws} samples"
+        shown = f"{percent(self.lower)} to {percent(self.upper)} %, {self.draws} samples"
         text = (
-            f"About {_percent(self.value)} % of the actuators built to this design would meet "
+            f"About {percent(self.value)} % of the actuators built to this design would meet "
             f"every requirement ({shown})"
         )
         if self.with_checks is not None and self.with_checks < self.value:
-            text += f", and {_percent(self.with_checks)} % would also pass every check"
+            text += f", and {percent(self.with_checks)} % would also pass every check"
         if self.worst is not None and self.worst_fails:
-            text += (
-                f"; {self.worst} is missed most often, by {_percent(self.worst_fails)} % of them"
-            )
+            text += f"; {self.worst} is missed most often, by {percent(self.worst_fails)} % of them"
         return f"{text}."
 
 
@@ -130,28 +133,102 @@ def sentences(names: Sequence[str], estimate: YieldEstimate, *, movable: bool) -
     return tuple(lines)
 
 
-def _percent(share: float) -> str:
+def percent(share: float) -> str:
     """Format a share in per cent, with a decimal below 10 and above 90.
 
-    >>> _percent(0.026), _percent(0.436), _percent(0.9967), _percent(1.0), _percent(0.0)
+    >>> percent(0.026), percent(0.436), percent(0.9967), percent(1.0), percent(0.0)
     ('2.6', '44', '99.7', '100', '0')
     """
-    percent = 100 * share
-    near = 0 < percent < 10 or 90 < percent < 100
-    return f"{percent:.1f}" if near else f"{percent:.0f}"
+    value = 100 * share
+    near = 0 < value < 10 or 90 < value < 100
+    return f"{value:.1f}" if near else f"{value:.0f}"
 
 
 State: TypeAlias = Literal["met", "no_reserve", "missed", "not_checked"]
 """State of a limit; `no_reserve`: met, but with a margin below `NO_RESERVE`."""
 
 
-@dataclass(frozen=True, slots=True)
-class Metric:
+class Valued:
+    """Base class of a named value: its text, its number, and its repr such as ``<mass 265.1 g>``.
+
+    `value` is in SI; None without a value, for the reason `why`.
+    """
+
+    __slots__ = ()
+    if TYPE_CHECKING:  # attributes of the subclasses
+
+        @property
+        def name(self) -> str:
+            """Name of the metric, or PATH."""
+
+        @property
+        def value(self) -> float | str | None:
+            """Number in SI, or a word."""
+
+        @property
+        def why(self) -> str | None:
+            """Reason of a missing value."""
+
+        @property
+        def quantity(self) -> quantities.Quantity | None:
+            """Symbol, unit and label; None for a word."""
+
+    @property
+    def text(self) -> str:
+        """The value with its display unit, or the reason why it is missing."""
+        value, quantity = self.value, self.quantity
+        if value is None:
+            return f"no value: {self.why}"
+        if isinstance(value, str | bool):
+            return str(value)
+        return f"{value:g}" if quantity is None else quantity.text(value)
+
+    def __float__(self) -> float:
+        """The value in SI; raises `InputError` if it is missing or a word."""
+        value = self.value
+        if value is None or isinstance(value, str | bool):
+            message = f"is not a number: {self.text}" if value is not None else self.text
+            raise InputError(Diagnostic(message, "read .text or .value", path=self.name))
+        return value
+
+    def __repr__(self) -> str:
+        """Name and text, in one line."""
+        return f"<{shown(f'{self.name} {self.text}', LONGEST_REPR - 2)}>"
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class PathValue(Valued):
+    """A value of the design at a PATH; `definition` is its quantity, None for a word.
+
+    It has the attributes of a `Metric`; no case, place, model or reference belongs to it.
+    """
+
+    name: str
+    value: float | str | None
+    definition: quantities.Quantity | None = None
+
+    case = place = None
+    model = reference = ""
+    in_range = True
+
+    @property
+    def why(self) -> str | None:
+        """The reason of a missing value."""
+        return "the design does not state it" if self.value is None else None
+
+    @property
+    def quantity(self) -> quantities.Quantity | None:
+        """Symbol, unit and label; None for a word."""
+        return self.definition
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Metric(Valued):
     """A metric at its governing load case and location (a ply, a seal, a part).
 
     `value` is in SI; if it is None, `why` is the reason. `by_case` has the worst value of each load
-    case. `sense` states whether the smallest ("min") or the largest ("max") value governs; None if
-    the values of all load cases and locations are equal.
+    case, `by_place` that of each location. `sense` states whether the smallest ("min") or the
+    largest ("max") value governs; None if the values of all load cases and locations are equal.
     """
 
     name: str
@@ -166,6 +243,7 @@ class Metric:
     definition: quantities.Quantity | None = None
     """Quantity of a user metric; None for built-in metrics."""
     sense: quantities.Sense | None = None
+    by_place: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def quantity(self) -> quantities.Quantity:
@@ -325,6 +403,45 @@ class Evaluation(Displayed):
     yield_estimate: YieldEstimate = UNKNOWN
     """Share of the actuators built to the design that meet every requirement, if estimated."""
 
+    def __getitem__(self, name: str) -> Metric | PathValue:
+        """A metric by its name, or a value of the design by its PATH.
+
+        Raises
+        ------
+        UnknownName
+            a `KeyError` that suggests a similar name
+        """
+        metric = self.metrics.get(name) if isinstance(name, str) else None
+        if metric is not None:
+            return metric
+        allowed = {metric.name: metric.quantity for metric in self.metrics.values()}
+        message, help = f'no metric or PATH "{shown(name)}"', ""
+        try:
+            target, value = value_at(str(name), self.design, allowed)
+        except InputError as error:
+            help = error.diagnostics[0].remedy
+        else:
+            return PathValue(target.path, value, target.quantity)
+        if str(name).isidentifier():
+            help = remedy(str(name), allowed | dict.fromkeys(numbers(self.design), ""))
+        raise UnknownName(Diagnostic(message, help))
+
+    def __contains__(self, name: object) -> bool:
+        """Whether there is a metric or PATH of this name."""
+        try:
+            self[name]  # type: ignore[index]
+        except InputError:
+            return False
+        return True
+
+    def __iter__(self) -> Iterator[str]:
+        """The names of all metrics."""
+        return iter(self.metrics)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        """Names that a notebook offers after ``evaluation["``."""
+        return [*self.metrics, *numbers(self.design)]
+
     @property
     def met(self) -> bool:
         """Whether every requirement is met."""
@@ -366,6 +483,13 @@ class Evaluation(Displayed):
             return ()
         movable = bool(self.design.variables)
         return sentences(self.tight, self.yield_estimate, movable=movable)
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """Mass, and the number of requirements that are met."""
+        mass = self.metrics.get("mass")
+        first = "" if mass is None else f"mass {mass.text}, "
+        return self.name, f"{first}{self.tally}"
 
     @property
     def tally(self) -> str:
@@ -416,6 +540,7 @@ class Evaluation(Displayed):
                     "in_range": m.in_range,
                     "case": m.case,
                     "place": m.place,
+                    **({"by_place": dict(m.by_place)} if len(m.by_place) > 1 else {}),
                 }
                 | ({"why": m.why} if m.value is None else {})
                 for m in self.metrics.values()
@@ -438,6 +563,21 @@ class Evaluation(Displayed):
             "dynamics": None if self.dynamics is None else self.dynamics.to_dict(),
         }
 
+    def table(self, name: str = "metrics") -> DataTable:
+        """A part of the evaluation as a table, for arrays, CSV and data frames.
+
+        Parameters
+        ----------
+        name : "metrics", "requirements", "checks", "masses" or "models"
+
+        Raises
+        ------
+        UsageError : there is no table of this name
+        """
+        if name not in _TABLES:
+            raise UsageError(Diagnostic(f'no table "{shown(name)}"', remedy(str(name), _TABLES)))
+        return _TABLES[name](self)
+
     def columns(self) -> dict[str, list[Any]]:
         """Metrics as columns (name, value, unit, case), in display units."""
         rows = list(self.metrics.values())
@@ -447,3 +587,57 @@ class Evaluation(Displayed):
             "unit": [m.quantity.unit for m in rows],
             "case": [m.case for m in rows],
         }
+
+
+# ---- tables ----
+
+
+def _rows(name: str, rows: Sequence[Any], fields: Sequence[str], **more: Any) -> DataTable:
+    """A table of some attributes of objects."""
+    columns = {field: [getattr(row, field) for row in rows] for field in fields}
+    return DataTable.of(name, columns, **more)
+
+
+def _metrics_table(evaluation: Evaluation) -> DataTable:
+    metrics = [*evaluation.metrics.values()]
+    fields = ["name", "value", "case", "place", "in_range", "why", "model", "reference"]
+    quantities = [metric.quantity for metric in metrics]
+    return _rows("metrics", metrics, fields, quantities=quantities, scaled=["value"])
+
+
+def _limits_table(evaluation: Evaluation, name: str, fields: Sequence[str]) -> DataTable:
+    rows = getattr(evaluation, name)
+    quantities = [None if x.metric is None else evaluation.metrics[x.metric].quantity for x in rows]
+    return _rows(name, rows, fields, quantities=quantities, scaled=["value", "limit"])
+
+
+def _requirements_table(evaluation: Evaluation) -> DataTable:
+    fields = ["name", "metric", "sense", "value", "limit", "margin", "met", "state", "case"]
+    return _limits_table(evaluation, "requirements", [*fields, "place", "path"])
+
+
+def _checks_table(evaluation: Evaluation) -> DataTable:
+    fields = ["name", "state", "metric", "sense", "value", "limit", "margin", "reason", "case"]
+    return _limits_table(evaluation, "checks", [*fields, "place", "source"])
+
+
+def _masses_table(evaluation: Evaluation) -> DataTable:
+    parts = evaluation.mass_parts
+    masses = DataColumn("mass", np.array([*parts.values()], dtype=float), METRICS["mass"])
+    return DataTable("masses", [DataColumn("part", coded([*parts])), masses])
+
+
+def _models_table(evaluation: Evaluation) -> DataTable:
+    fields = ["name", "equation", "reference", "valid_range", "used_at", "in_range"]
+    return _rows("models", evaluation.models, fields)
+
+
+_TABLES: dict[str, Callable[[Evaluation], DataTable]] = {
+    "metrics": _metrics_table,
+    "requirements": _requirements_table,
+    "checks": _checks_table,
+    "masses": _masses_table,
+    "models": _models_table,
+}
+"""The tables of an evaluation by name."""
+TABLES = tuple(_TABLES)

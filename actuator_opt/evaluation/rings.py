@@ -22,7 +22,7 @@ from ..design.seals import SealElement
 from ..models import elastomer, gland
 from ..seals.contact import SealContact, stated_contact
 from ..seals.seal_type import SealSizes
-from .barrel import SEAL_STEP
+from .barrel import OWN, SEAL_STEP
 from .geometry import Geometry, Groove
 from .limits import MaterialValues
 from .state import LoadState, pressure_law
@@ -242,9 +242,9 @@ def gland_metrics(
     geometry: Geometry,
     state: LoadState,
     ring: Ring,
-    growth: Array,
-) -> dict[str, Array]:
-    """Gland metrics of a ring; `growth` is the largest growth of its bore at the ring.
+    growths: Mapping[str, Array],
+) -> dict[str, dict[str, Array]]:
+    """Gland metrics of a ring by location; `growths` has the growth of its bore by load path.
 
     Squeeze and fill are for the worst tolerances, at the highest and lowest temperature, with rod
     and bore concentric as in gland tables. The extrusion gap includes the effect of a side load: it
@@ -259,15 +259,22 @@ def gland_metrics(
         for end in ("min", "max")
     )
     least, most = minimum(cold, hot), maximum(cold, hot)
-    metrics = {"extrusion_factor": _extrusion(v, stock, ring, clearance + aside + growth)}
+    allowed, gap = _allowed_gap(v, stock, ring), clearance + aside
+    metrics = {"extrusion_factor": {path: allowed / (gap + x) for path, x in growths.items()}}
     if ring.element.seal_type.round_ring:  # limits of squeeze apply to round rings
-        metrics["seal_squeeze"] = squeezes(ring, growth=growth, aside=0.0, ratio=least)[0]
-        metrics["seal_squeeze_max"] = squeezes(ring, growth=0.0, aside=0.0, ratio=most)[1]
+        metrics["seal_squeeze"] = {
+            path: squeezes(ring, growth=growth, aside=0.0, ratio=least)[0]
+            for path, growth in growths.items()
+        }
+        metrics["seal_squeeze_max"] = {OWN: squeezes(ring, growth=0.0, aside=0.0, ratio=most)[1]}
     if ring.element.seal_type.o_ring_gland:
-        metrics["seal_fill"] = _fill(ring) * most
-        metrics["seal_stretch"] = ring["stretch"]
-        metrics["seal_section"] = ring["section"]
-    return metrics
+        metrics["seal_fill"] = {OWN: _fill(ring) * most}
+        metrics["seal_stretch"] = {OWN: ring["stretch"]}
+        metrics["seal_section"] = {OWN: ring["section"]}
+    return {
+        metric: {", ".join(x for x in (ring.label, path) if x): x for path, x in values.items()}
+        for metric, values in metrics.items()
+    }
 
 
 def _fill(ring: Ring) -> Array:
@@ -332,11 +339,11 @@ def volume_ratio(
     )
 
 
-def _extrusion(v: Values, stock: MaterialValues, ring: Ring, gap: Array) -> Array:
-    """Allowable divided by actual extrusion gap, at supply pressure.
+def _allowed_gap(v: Values, stock: MaterialValues, ring: Ring) -> Array:
+    """Allowable extrusion gap at supply pressure.
 
-    The allowable gap is that of the seal or, if there is a back-up ring, the larger of both gaps
-    whose data cover the pressure.
+    It is that of the seal or, if there is a back-up ring, the larger of both gaps whose data cover
+    the pressure.
     """
     pressure, element = v["supply.pressure"], ring.element
     if stock.material(element.compound).properties.get("extrusion_gap_max") is None:
@@ -355,7 +362,7 @@ def _extrusion(v: Values, stock: MaterialValues, ring: Ring, gap: Array) -> Arra
             ring_limit=_stated(stock, element.back_up_material, pressure),
             ring_end=_stated_end(stock.material(element.back_up_material)),
         )
-    return allowed / gap
+    return allowed
 
 
 def _stated_end(material: Material) -> float:

@@ -17,7 +17,7 @@ from ..models import damping, friction, gland, lip_seal, retention, wear
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..seals.contact import SealContact
 from ..seals.kinds import TYPES
-from .barrel import SEAL_STEP, Wall
+from .barrel import OWN, SEAL_STEP, Wall
 from .film import Stroke, of_place
 from .film_tables import FilmTable, Key, Running, running as films_running
 from .geometry import Geometry, Groove
@@ -51,14 +51,15 @@ def compute(
     out: MetricArrays,
 ) -> Friction:
     """Compute gland, contact and friction metrics of all seals; return the total friction."""
-    full_growth = SEAL_STEP * wall.growth
+    seal_growths = {path: SEAL_STEP * growth for path, growth in wall.growths.items()}
     by_metric: dict[str, dict[str, Array]] = {}
     total = Friction()
     moving = np.atleast_2d(real(state.speed))[:, 0] > 0
     for ring in rings:
-        grown = full_growth if ring.name == "piston" else 0.0
+        grown = seal_growths if ring.name == "piston" else {OWN: 0.0}
         contact = seal_contact(_at_interseal_pressure(ring, films))
-        rows = gland_metrics(v, design, stock, geometry, state, ring, grown) | {
+        gland_rows = gland_metrics(v, design, stock, geometry, state, ring, grown)
+        rows = {
             "contact_width": contact.width,
             "contact_pressure": contact.peak,
             "seal_wear": wear.sliding_severity(
@@ -78,10 +79,12 @@ def compute(
         out.friction_parts[ring.label] = ring_friction.running
         for metric, value in rows.items():
             by_metric.setdefault(metric, {})[ring.label] = value
+        for metric, by_place in gland_rows.items():
+            by_metric.setdefault(metric, {}).update(by_place)
     for ring in static_rings(v, design, geometry):
-        rows = gland_metrics(v, design, stock, geometry, state, ring, wall.growth)
-        for metric, value in rows.items():
-            by_metric.setdefault(metric, {})[ring.label] = value
+        gland_rows = gland_metrics(v, design, stock, geometry, state, ring, wall.growths)
+        for metric, by_place in gland_rows.items():
+            by_metric.setdefault(metric, {}).update(by_place)
     other_friction = _wipers_and_guides(v, design, geometry, state)
     total = total + other_friction
     out.friction_parts["wipers and guides"] = other_friction.running
@@ -89,9 +92,12 @@ def compute(
         out.put(metric, by_place, cases=moving if metric == "film_thickness" else None)
     for name in ("seal_squeeze", "seal_squeeze_max", "seal_fill", "seal_stretch", "seal_section"):
         out.skip(name, "no sliding O-ring")
-    gap = gland.extrusion_gap(clearance=geometry.piston_clearance, growth=full_growth)
-    out.put("seal_gap", gap)
-    out.put("growth_at_seal", full_growth)
+    gaps = {
+        path: gland.extrusion_gap(clearance=geometry.piston_clearance, growth=growth)
+        for path, growth in seal_growths.items()
+    }
+    out.put("seal_gap", gaps)
+    out.put("growth_at_seal", seal_growths)
     out.put("friction_running", total.running)
     out.put("friction_breakaway", total.breakaway)
     secant = damping.secant(friction=total.running, speed=state.speed)

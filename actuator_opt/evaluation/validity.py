@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable
 from fnmatch import fnmatchcase
-from functools import cache
-from importlib import import_module
 from math import pi
 from typing import cast
 
 import numpy as np
 
-from .. import models as formulas
-from ..base.dataclass import dataclass
 from ..design import assembly, standard_sizes
 from ..design.material import compatible
 from ..design.model import PLAIN_CAP, Design
@@ -21,6 +16,7 @@ from ..design.paths import quantity_of
 from ..joints.cone import LAYER_EDGE
 from ..joints.winding import WINDING_EDGE
 from ..metrics import METRICS
+from ..metrics.documentation import ModelDocumentation, describe, function_of
 from ..metrics.table import CRITERION, OWN, ROWS, WALL_FED
 from ..models import contact_profile, gland, laminate, rough_surface, seals
 from ..models.strength import CRITERIA
@@ -32,50 +28,9 @@ from .geometry import Geometry
 from .kernel import ModelRun, PreparedDesign
 from .ports import places
 from .result import Metric, ModelUse, Unverified
-from .rings import Ring, extrusion_end, seal_contact
+from .rings import Ring, extrusion_end, seal_contact, static_rings
 from .rod_strength import NEAR
 from .values import Values
-
-
-@dataclass(frozen=True, slots=True)
-class ModelDocumentation:
-    """A model function, with the source and valid range that its docstring states."""
-
-    name: str
-    summary: str
-    reference: str
-    valid: str
-
-
-_VALID = re.compile(r"^\s*Valid: (.*?)(?:\n\s*\n|\Z)", re.DOTALL | re.MULTILINE)
-_REFERENCES = re.compile(r"References\n\s*-+\n(.*?)(?:\n\s*\n|\Z)", re.DOTALL)
-
-
-@cache
-def describe(function: Callable[..., object]) -> ModelDocumentation:
-    """Read the name, first sentence, source and valid range of a model function."""
-    doc = function.__doc__ or ""
-    valid = _VALID.search(doc)
-    reference = _REFERENCES.search(doc)
-
-    def flat(match: re.Match[str] | None) -> str:
-        return " ".join(match[1].split()) if match else ""
-
-    module = function.__module__.rpartition(".")[2]
-    return ModelDocumentation(
-        name=f"{module}.{function.__name__}",
-        summary=doc.strip().partition("\n")[0].rstrip("."),
-        reference=flat(reference),
-        valid=flat(valid),
-    )
-
-
-@cache
-def function_of(name: str) -> Callable[..., object]:
-    """Model function by the name in the table of metrics, such as ``"forces.push_force"``."""
-    module, _, function = name.partition(".")
-    model: Callable[..., object] = getattr(import_module(f"{formulas.__name__}.{module}"), function)
-    return model
 
 
 def model_of(
@@ -111,6 +66,8 @@ def seal_warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable
     """Yield (metric, sentence) for every warning about the seals."""
     for ring in run.rings:
         yield from _contact(subject, ring)
+        yield from _limits(subject, run, ring, float(v["supply.pressure"]))
+    for ring in static_rings(v, subject.design, run.geometry):
         yield from _limits(subject, run, ring, float(v["supply.pressure"]))
     if "rod_leakage" in run.computed.metrics:
         yield from _leak_at_rest(subject)
@@ -195,7 +152,7 @@ def _limits(
             f"{ring.label}: the pressure is {supply / 1e5:.0f} bar, but {compound.name} allows "
             f"only {limits['pressure_max'] / 1e5:.0f} bar without a back-up ring",
         )
-    if fastest > limits.get("speed_max", np.inf):
+    if ring.name != "static" and fastest > limits.get("speed_max", np.inf):
         yield (
             "",
             f"{ring.label}: the speed is {fastest:.2g} m/s, but {compound.name} allows only "

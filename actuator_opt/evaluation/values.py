@@ -32,6 +32,11 @@ class Values:
         self.read: set[str] = set()
         self._case_cache: dict[str, Array] = {}
 
+    @property
+    def paths(self) -> list[str]:
+        """PATHs of all numbers."""
+        return list(dict.fromkeys((*self._numbers, *self.varied)))
+
     def __contains__(self, path: str) -> bool:
         return path in self.varied or path in self._numbers
 

@@ -47,4 +47,5 @@ LAW = FrictionLaw(
     level=_level,
     slope=_slope,
     film=None,
+    model=friction.stribeck_level,
 )

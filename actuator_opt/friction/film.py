@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..base.numeric import real, where
-from ..models import friction
+from ..models import friction, rough_surface
 from ..seals.contact import SealContact
 from ..seals.seal_type import SealSizes
 from . import coefficient
@@ -37,4 +37,5 @@ LAW = replace(
     help="oil film between rough surfaces, which also gives the leakage",
     compound=("seal_roughness", "asperity_radius", "asperity_density", "asperity_friction"),
     film=_friction,
+    model=rough_surface.pressure_flow_factor,
 )

@@ -73,6 +73,7 @@ class FrictionLaw:
     film : function for the friction on an oil film; its argument `film` is None if the film was not
         solved. None for a law without film. A law with film must also state dry friction, which
         test records and simulations use
+    model : main model behind the law, whose docstring states source and valid range
     """
 
     name: str
@@ -83,6 +84,7 @@ class FrictionLaw:
     level: Callable[[SealSizes, Array, Array], Array]
     slope: Callable[[SealSizes, Array, Array], Array]
     film: Callable[[SealSizes, SealContact, MovingFilm | None], Friction] | None
+    model: Callable[..., object]
 
     def friction(
         self, seal: SealSizes, contact: SealContact, load: Array, speed: Array

@@ -228,6 +228,11 @@ class BendingResult(Displayed):
     samples: int
     doubts: tuple[str, ...]
 
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The modulus."""
+        return self.record.name, f"modulus {self.modulus.value / 1e9:.4g} GPa"
+
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON, SI; a missing value is null."""
         height = self.specimen.height

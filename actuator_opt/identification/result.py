@@ -102,6 +102,14 @@ class Identification(Displayed):
     fits: Mapping[str, LawFit | str]
     notes: tuple[str, ...]
 
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The mean and the largest friction force."""
+        return (
+            self.record.name,
+            f"friction mean {self.mean.value:.4g} N, largest {self.largest:.4g} N",
+        )
+
     def stiffness_along(self, sliding: Sliding) -> Array:
         """Stiffness with closed ports, at the pressures along a section; NaN outside the stroke."""
         piece, bench = sliding.piece, self.bench

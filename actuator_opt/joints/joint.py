@@ -290,27 +290,35 @@ class DrawnPart(NamedTuple):
 class Clamp:
     """Parts that clamp the barrel between both ends, such as tie rods.
 
-    `preload` is the total preload at assembly [N], and `largest` the largest total force at supply
-    pressure and the temperature of assembly [N]. `closed` is the preload divided by the clamping
-    force that proof pressure takes away, by temperature; the joint stays closed if it is above 1.
-    `changes` are the changes of the preload at the lowest and the highest temperature [N], with the
-    keys "cold" and "hot"; empty if unknown.
+    `preload` is the total preload at assembly [N], the mean of what tightening gives, and
+    `greatest` the most of it. `added` is the force that supply pressure adds [N]. `closed` is the
+    least preload, after settling, divided by the clamping force that proof pressure takes away, by
+    temperature; the joint stays closed if it is above 1. `changes` are the changes of the preload
+    at the lowest and the highest temperature [N], with the keys "cold" and "hot"; empty if unknown.
     """
 
     preload: Array
-    largest: Array
+    greatest: Array
+    added: Array
     closed: Mapping[str, Array]
     changes: Mapping[str, Array] = field(default_factory=dict)
+
+    @property
+    def largest(self) -> Array:
+        """Largest total force at supply pressure and the temperature of assembly [N]."""
+        return self.greatest + self.added
 
 
 class Clamping(NamedTuple):
     """Axial stiffness of the parts that clamp the barrel [N/m], and their free growth [m/K].
 
-    The growth is None if their thermal expansion is unknown.
+    The growth is None if their thermal expansion is unknown. `tightening_factor` is the greatest
+    divided by the least preload that tightening gives.
     """
 
     stiffness: Array
     growth: Array | None
+    tightening_factor: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -410,7 +418,7 @@ class EdgeBeside(NamedTuple):
     wall: end_bending.Shell
     edge: end_bending.Edge
     growth: Array
-    metal_peak: float | None = None
+    metal_peak: Array | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -535,20 +543,42 @@ RINGS = (("seals", "piston"), ("seals", "piston", "secondary"), ("seals", "stati
 """Places of the rings that enter the barrel through its ends."""
 
 
-def stated_rings(view: StatedValues) -> list[tuple[float, float]]:
-    """Section [m] and squeeze of the rings that enter through an end."""
-    return [
-        (section, squeeze)
+class EnteringRing(NamedTuple):
+    """Section of a free ring [m], its squeeze, and the tolerances of gland depth and section [m].
+
+    The names are the keys of the ring in the design file.
+    """
+
+    section: Array
+    squeeze: Array
+    tolerance: Array = 0.0
+    section_tolerance: Array = 0.0
+
+
+def stated_rings(view: StatedValues) -> list[EnteringRing]:
+    """The rings that enter through an end, as far as the file states their sizes."""
+    stated = (
+        [view.number(*place, key) for key in EnteringRing._fields]
         for place in RINGS
         if view.has(*place)
-        and (section := view.number(*place, "section")) is not None
-        and (squeeze := view.number(*place, "squeeze")) is not None
+    )
+    return [
+        EnteringRing(section, squeeze, *(size or 0.0 for size in tolerances))
+        for section, squeeze, *tolerances in stated
+        if section is not None and squeeze is not None
     ]
 
 
-def ring_height(rings: Iterable[tuple[Array, Array]]) -> Array:
-    """Largest height of a free ring above the bore [m], section times squeeze; 0 without rings."""
-    return reduce(maximum, (section * squeeze for section, squeeze in rings), 0.0)
+def ring_height(rings: Iterable[EnteringRing]) -> Array:
+    """Largest height of a free ring above the bore [m]; 0 without rings.
+
+    Section times squeeze at nominal size. A thick ring in a shallow gland is higher by both
+    tolerances.
+    """
+    heights = (
+        ring.section * ring.squeeze + ring.tolerance + ring.section_tolerance for ring in rings
+    )
+    return reduce(maximum, heights, 0.0)
 
 
 def nothing(*_: object) -> Iterator[Any]:

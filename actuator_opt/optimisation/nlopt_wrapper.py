@@ -8,7 +8,6 @@ iterate, and the caller verifies the result.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -18,6 +17,7 @@ import numpy as np
 
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, UsageError
+from ..base.words import nearest
 from .evaluator import Evaluator, LimitReached, Point
 from .problem import BoxProblem, Vector
 
@@ -150,7 +150,7 @@ def _one(name: str) -> Algorithm:
     short = [a for a in ALGORITHMS.values() if a.name.split("_", 1)[-1] == name]
     if len(short) == 1:
         return short[0]
-    suggestions = difflib.get_close_matches(name, [*ALGORITHMS, *OLDER], n=3, cutoff=0.5)
+    suggestions = nearest(name, [*ALGORITHMS, *OLDER])
     choice = ", ".join(suggestions or ["LD_SLSQP", "AUGLAG+LD_LBFGS", "GN_ISRES"])
     raise _refusal(f'there is no algorithm "{name}"', f"did you mean {choice}?")
 

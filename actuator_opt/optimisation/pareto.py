@@ -120,6 +120,14 @@ class ParetoFront(Displayed):
         return "unsolved" if self.unsolved else "infeasible"
 
     @property
+    def in_short(self) -> tuple[str, str]:
+        """The objectives, and the number of designs."""
+        goals = " and ".join(f"{wish.metric} {wish.sense}" for wish in self.objectives)
+        count = len(self.points)
+        words = f"{count} design{'' if count == 1 else 's'}" if count else self.status
+        return self.subject.name, f"{goals}, {words}"
+
+    @property
     def jumps(self) -> tuple[FrontGap, ...]:
         """Gaps where the front jumps, so that no design lies between."""
         return tuple(gap for gap in self.wide if gap.jump)

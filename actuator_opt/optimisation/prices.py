@@ -22,12 +22,11 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..base import quantities
 from ..base.dataclass import dataclass
 from ..base.numeric import STEP
 from ..base.quantities import Quantity, short
 from ..base.units import unit
-from ..design import quantity_of
+from ..evaluation.influences import NO_PERCENT, input_quantity
 from . import kkt
 from .actuator import ActuatorProblem, Responses, perturbed, responses, with_bounds
 from .evaluator import Evaluator, Point
@@ -674,7 +673,6 @@ LEAST_EFFECT = 1e-3
 per cent."""
 FREE = 1e-9
 """A limit whose value is 0 is left out if its price, relative to the objective, is at most this."""
-_NO_PERCENT = ("temperature", "temperature_difference", "angle", "count")
 
 
 def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensitivity, ...]:
@@ -736,9 +734,7 @@ def _active_limits(actuator: ActuatorProblem, solution: Solution) -> set[str]:
 def _quantity(actuator: ActuatorProblem, path: str) -> Quantity:
     if path.startswith("requirements."):
         return actuator.subject.quantities[path.split(".")[1]]
-    if path.startswith("materials."):
-        return quantities.MATERIAL_PROPERTIES[path.rpartition(".")[2]]
-    return quantity_of(path, actuator.subject.design)
+    return input_quantity(path, actuator.subject.design)
 
 
 def _strongest(
@@ -752,7 +748,7 @@ def _strongest(
         for path in actuator.fixed_numbers(solution.x)
         if path not in excluded
         and not path.startswith("requirements.")
-        and _quantity(actuator, path).dimension not in _NO_PERCENT
+        and _quantity(actuator, path).dimension not in NO_PERCENT
     ]
     if not candidates:
         return ()

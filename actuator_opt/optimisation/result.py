@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, field, replace
 from math import isfinite
 from typing import Any, Literal, TypeAlias
 
 from ..base.dataclass import dataclass
+from ..base.errors import Diagnostic, UsageError, remedy, shown
 from ..base.quantities import INPUTS
 from ..base.tables import Displayed, aligned
 from ..design import choice_list
 from ..design.model import Design
-from ..evaluation.result import Evaluation
+from ..evaluation.result import TABLES, Evaluation, Metric, PathValue
 from ..metrics import of_metric
+from ..rendering.tables import DataTable
 from . import prices
 from .prices import Offers, Sensitivity, offers
 from .problem import Robust
@@ -75,12 +77,13 @@ class Infeasibility:
     bound by 1 % decreases `total` by 0.01 times the gain.
 
     An entry of `cures` is a single change that is enough, the most advisable first. It contains
-    kind (dimension, choice, bound, requirement, safety factor), parameter (PATH), now and needed
-    (SI, or a word), change, texts, and advised (False for safety factors). A cure of kind
+    kind (dimension, choice, bound, number, requirement, safety factor), parameter (PATH), now and
+    needed (SI, or a word), change, texts, and advised (False for safety factors). A cure of kind
     "dimension" is an input that is not a variable of the design. `together` lists dimensions that
     are enough only if they change together. If the change is a choice, `beside` lists, by PATH, the
-    other inputs that must change at the same time. Each cure was confirmed by a feasible design.
-    `untried` lists candidates that were not tried.
+    other inputs that must change at the same time. Each cure was confirmed by a feasible design;
+    `objective` is the best objective found with it (SI), or None if it was not optimised.
+    `untried` lists candidates that were not tried, `failed` changes that are not enough alone.
 
     `laws` lists geometrical conditions that conflict. `total` is the sum of the relaxations in
     `joint`. `sentence` is the advice in one line, and `evidence` states what is proven.
@@ -95,6 +98,7 @@ class Infeasibility:
     evidence: str = ""
     cures: tuple[Mapping[str, Any], ...] = ()
     untried: tuple[str, ...] = ()
+    failed: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -347,6 +351,21 @@ class Optimisation(Displayed):
     models_run_by: str = "NumPy"
     """Engine that evaluated the models in the search: "compiled program" or "NumPy"."""
 
+    def __getitem__(self, name: str) -> Metric | PathValue:
+        """A metric or PATH of the design to build (see `Evaluation`)."""
+        return self.best_evaluation[name]
+
+    def __contains__(self, name: object) -> bool:
+        """Whether the design to build has a metric or PATH of this name."""
+        return name in self.best_evaluation
+
+    def __iter__(self) -> Iterator[str]:
+        """The names of all metrics."""
+        return iter(self.best_evaluation)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return self.best_evaluation._ipython_key_completions_()
+
     @property
     def made(self) -> Rounding | None:
         """The rounding if it found a design with listed sizes (the design to build), else None."""
@@ -364,6 +383,14 @@ class Optimisation(Displayed):
         return self.evaluation if rounded is None else rounded
 
     @property
+    def in_short(self) -> tuple[str, str]:
+        """The objective of the design to build, the status, and the requirements that are met."""
+        total = len(self.best_evaluation.requirements)
+        met = sum(row.met for row in self.best_evaluation.requirements)
+        status = self.status.replace("_", " ")
+        return self.best_evaluation.name, f"{self.objective_text}, {status}, {met} of {total} met"
+
+    @property
     def tight(self) -> tuple[str, ...]:
         """Limits that the design to build (see `best`) meets with almost no margin.
 
@@ -377,6 +404,16 @@ class Optimisation(Displayed):
         """The objective of the design to build (SI)."""
         rounded = None if self.made is None else self.made.objective_after
         return self.objective_value if rounded is None else rounded
+
+    @property
+    def objective_text(self) -> str:
+        """The objective of the design to build, with its unit; "no objective" without a value."""
+        if not isfinite(self.best_objective):
+            return "no objective"
+        metric = self.best_evaluation.metrics.get(self.objective_metric)
+        if metric is None:  # a weighted sum
+            return f"objective {self.best_objective:.6g}"
+        return f"{self.objective_metric} {metric.quantity.text(self.best_objective)}"
 
     @property
     def best_variables(self) -> tuple[VariableResult, ...]:
@@ -443,6 +480,41 @@ class Optimisation(Displayed):
         sentences = [part for part in (self.sentence, reason, self.shown) if part]
         parts = [*sentences, "", aligned(rows, right=(1, 2, 3)), "", str(self.best_evaluation)]
         return "\n".join(parts if self.rounding is None else [*parts, "", str(self.rounding)])
+
+    def table(self, name: str = "variables") -> DataTable:
+        """A part of the optimum as a table, for arrays, CSV and data frames.
+
+        Parameters
+        ----------
+        name : "variables", "prices" (objective per unit of the parameter, both in SI), or a table
+            of the design to build (see `Evaluation.table`)
+
+        Raises
+        ------
+        UsageError : there is no table of this name
+        """
+        if name == "variables":
+            variables = self.best_variables
+            fields = ("path", "value", "lower", "upper", "start", "at_bound")
+            columns = {field: [getattr(x, field) for x in variables] for field in fields}
+            return DataTable.of(
+                name,
+                columns,
+                quantities=[INPUTS[x.quantity] for x in variables],
+                scaled=["value", "lower", "upper", "start"],
+            )
+        if name == "prices":
+            rows = self.sensitivities
+            keys = [key for key in self.columns() if key not in ("unit", "holds_until")]
+            keys[2:2] = ["holds_until"]
+            columns = {key: [getattr(row, key) for row in rows] for key in keys}
+            quantities = [self[row.parameter].quantity for row in rows]
+            scaled = ["limit", "holds_until"]
+            return DataTable.of(name, columns, quantities=quantities, scaled=scaled)
+        if name not in TABLES:
+            names = ("variables", "prices", *TABLES)
+            raise UsageError(Diagnostic(f'no table "{shown(name)}"', remedy(str(name), names)))
+        return self.best_evaluation.table(name)
 
     def columns(self) -> dict[str, list[Any]]:
         """The sensitivity table as columns (SI); `limit` is in its display `unit`."""

@@ -11,8 +11,9 @@ from ..base.quantities import Quantity
 from ..design import assembly
 from ..design.paths import get, quantity_of
 from ..evaluation import result
+from ..evaluation.limits import margin
 from ..evaluation.parts_list import parts_list
-from ..evaluation.result import Check, Evaluation, Requirement
+from ..evaluation.result import NO_ROOM, Check, Evaluation, Requirement
 from ..metrics import METRICS
 from ..metrics.table import ROWS
 from ..optimisation.result import Optimisation
@@ -56,6 +57,8 @@ KEY_FIGURES = (
 objective, then the first of these that have a value."""
 
 NO_RESERVE = f"No reserve: met, with a margin below {100 * result.NO_RESERVE:g} %"
+FAR = 1.0
+"""Margin from which a place is not listed. Our choice: twice the limit."""
 FLAG = " (!)"
 """Mark of a quantity whose model is used outside its valid range."""
 FLAGGED = "(!) EXTRAPOLATED: a model was used outside its valid range"
@@ -117,7 +120,8 @@ def page(
         blocks += optimum.robust_tables(optimisation)
         blocks += [masses(evaluation)] if optimisation.variables else []
     blocks += [block for study in seals for block in seal.blocks(study)]
-    blocks += [*wall.wall_blocks(evaluation), *reasons(evaluation), *checks(evaluation)]
+    blocks += [*wall.wall_blocks(evaluation), *places(evaluation)]
+    blocks += [*reasons(evaluation), *checks(evaluation)]
     blocks += order_of_assembly(evaluation)
     blocks += _remarks(evaluation, optimisation)
     blocks += extra_tables
@@ -626,6 +630,48 @@ def _open_checks(evaluation: Evaluation, title: str) -> Block:
         cells: list[Cell] = [Status(check.state, " "), *_check_values(evaluation, check), why]
         rows.append(Row(cells, check.state))
     return Table(title, columns, rows, on="terminal")
+
+
+def places(evaluation: Evaluation) -> Iterator[Block]:
+    """Every place of a limit that several places have to meet, the worst first."""
+    stated: Sequence[Requirement | Check] = (*evaluation.requirements, *evaluation.checks)
+    limits = {
+        row.metric: (row.name if isinstance(row, Check) else "", row.sense, row.limit)
+        for row in stated
+        if row.metric is not None and row.limit and row.sense is not None
+    }
+    rows, left_out = list[Row](), 0
+    for name, (check, sense, bound) in limits.items():
+        metric = evaluation.metrics.get(name)
+        if metric is None or len(metric.by_place) < 2:
+            continue
+        quantity = text.metric(name)
+        label = check or quantity.label
+        margins = {
+            place: float(margin(value, bound, sense)) for place, value in metric.by_place.items()
+        }
+        near = sorted((m, place) for place, m in margins.items() if m < FAR)
+        left_out += len(margins) - len(near)
+        for count, (distance, place) in enumerate(near):
+            cells: list[Cell] = [
+                clean(label) if count == 0 else "",
+                clean(place) or DASH,
+                text.limit_text(quantity, sense, bound) if count == 0 else "",
+                text.value_text(quantity, metric.by_place[place]),
+                text.margin_of(quantity, bound, distance, met=distance >= -NO_ROOM),
+            ]
+            rows.append(Row(cells))
+    if not rows:
+        return
+    columns = [
+        Column("limit of", "left", 1.3),
+        Column("place", "left", 2.0),
+        Column("limit", "right"),
+        Column("result", "right"),
+        Column("margin", "right"),
+    ]
+    note = f"{left_out} places with a margin of {100 * FAR:.0f} % or more are not listed."
+    yield Table("Limits, place by place", columns, rows, note=note if left_out else "", on="paper")
 
 
 def reasons(evaluation: Evaluation) -> Iterator[Block]:

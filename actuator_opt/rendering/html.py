@@ -148,6 +148,38 @@ def fragment(page: Page, origin: Origin | None = None) -> str:
     return "\n".join(parts)
 
 
+SUMMARY = 60_000
+"""Largest size of a summary in bytes (our choice: a notebook with many results stays small)."""
+SUMMARY_TABLES = 2
+"""Number of tables in a summary; the first two of a design are its limits and its masses."""
+
+
+def summary(page: Page) -> str:
+    """Headline, key figures, large figure and first tables of a page, as HTML for notebooks."""
+    parts = [f"<style>{_STYLE}</style>", '<article class="ao">', *_top(page)]
+    if page.tiles:
+        parts += ['<div class="tiles">', *map(_tile, page.tiles), "</div>"]
+    end = ['<p class="note">print(…) shows everything, ao.report(…) writes it.</p>', "</article>"]
+    picture = svg(page.hero(max(HERO, page.least)), page.kind)
+    tables = [table for table in _tables(page.blocks) if table.on != "terminal"][:SUMMARY_TABLES]
+    for piece in (
+        ["".join(_table(table)) for table in tables[:1]],
+        [picture],
+        *(["".join(_table(table))] for table in tables[1:]),
+    ):
+        if sum(len(part.encode()) + 1 for part in [*parts, *piece, *end]) < SUMMARY:
+            parts += piece
+    return "\n".join([*parts, *end])
+
+
+def _tables(blocks: Iterable[Block]) -> Iterator[Table]:
+    for block in blocks:
+        if isinstance(block, Table):
+            yield block
+        elif isinstance(block, Pair):
+            yield from (table for side in block.sides for table in _tables(side))
+
+
 def _say(words: str) -> str:
     return escape(clean(words))
 
@@ -315,9 +347,10 @@ def _reach(change: float, met: bool) -> str:
 
 
 def svg(ink: Ink, title: str = "") -> str:
-    """A drawing as SVG text; its coordinates are millimetres on paper."""
+    """A drawing as SVG text; its coordinates are millimetres on paper, rounded to 0.01."""
     size = f'viewBox="0 0 {ink.width:g} {ink.height:g}" width="{6 * ink.width:g}"'
-    parts = [f'<svg class="drawing" {size} role="img" xmlns="http://www.w3.org/2000/svg">']
+    parts = [f'<svg class="drawing" {size} role="img" xmlns="http://www.w3.org/2000/svg"']
+    parts.append(' fill-rule="evenodd" stroke-linejoin="round">')
     parts.append(f"<title>{_say(title)}</title>" if title else "")
     parts += [_text(mark) if "text" in mark else _path(mark) for mark in ink.marks]
     return "".join([*parts, "</svg>"])
@@ -326,14 +359,18 @@ def svg(ink: Ink, title: str = "") -> str:
 def _path(mark: PathMark) -> str:
     lines = mark["path"]
     end = "Z" if mark["closed"] else ""
-    data = "".join("M" + "L".join(f"{x:g} {y:g}" for x, y in line) + end for line in lines)
+    data = "".join("M" + "L".join(_point(*at) for at in line) + end for line in lines)
     dash = mark["dash"]
     dashed = f' stroke-dasharray="{" ".join(f"{d:g}" for d in dash)}"' if dash else ""
     return (
-        f'<path d="{data}" fill="{mark["fill"] or "none"}" fill-rule="evenodd"'
+        f'<path d="{data}" fill="{mark["fill"] or "none"}"'
         f' stroke="{mark["stroke"] or "none"}" stroke-width="{mark["pen"]:g}"'
-        f' stroke-linejoin="round"{dashed}/>'
+        f"{dashed}/>"
     )
+
+
+def _point(x: float, y: float) -> str:
+    return f"{round(x, 2):g} {round(y, 2):g}"
 
 
 def _text(mark: TextMark) -> str:
@@ -345,6 +382,6 @@ def _text(mark: TextMark) -> str:
     halo = ' stroke="#fff" stroke-width="0.8" paint-order="stroke"' if mark["halo"] else ""
     return (
         f'<text x="{x:g}" y="{y + 0.36 * size * POINT:.3f}" font-size="{size * POINT:.3f}"'
-        f' text-anchor="{anchor}" fill="{mark["color"]}" font-family="inherit"{bold}{halo}{turn}>'
+        f' text-anchor="{anchor}" fill="{mark["color"]}"{bold}{halo}{turn}>'
         f"{_say(mark['text'])}</text>"
     )

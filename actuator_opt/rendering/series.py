@@ -73,7 +73,7 @@ def _cell(value: Any, form: str) -> str:
     if value is None:
         return ""
     if isinstance(value, str):
-        return value
+        return inert(value)
     if isinstance(value, bool) or (float(value).is_integer() and isinstance(value, int)):
         return str(int(value))
     return "" if isnan(value) else f"{value:.{form}}"
@@ -147,8 +147,18 @@ def _cells(field: FileColumn, values: Values) -> list[str]:
     return (pattern * len(values) % tuple(values.tolist())).replace("nan", "").splitlines()
 
 
+def inert(text: str) -> str:
+    """A text that no spreadsheet takes for a formula: with an apostrophe in front if needed.
+
+    >>> inert("=1+2"), inert("steel")
+    ("'=1+2", 'steel')
+    """
+    return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
+
+
 def _quoted(text: str) -> str:
     """A text as a CSV cell."""
+    text = inert(text)
     return '"' + text.replace('"', '""') + '"' if any(c in text for c in ',"\n\r') else text
 
 

@@ -157,6 +157,13 @@ class Simulation(Displayed):
         """Whether all requirements are met."""
         return all(row.met for row in self.requirements)
 
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The duration, and the number of requirements that are met."""
+        total, met = len(self.requirements), sum(row.met for row in self.requirements)
+        limits = f", {met} of {total} requirements met" if total else ""
+        return self.scenario.name, f"{self.scenario.duration:g} s{limits}"
+
     def __str__(self) -> str:
         """The results as a table."""
         lines = [f"{self.scenario.name}: {self.plant.design.name}, {self.scenario.duration:g} s"]
@@ -167,8 +174,6 @@ class Simulation(Displayed):
             limit = RESULTS[row.metric].text(row.limit)
             lines.append(f"  {row.metric} {row.sense} {limit}: {'met' if row.met else 'missed'}")
         return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])
-
-    __repr__ = __str__
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON, SI; the samples are left out."""

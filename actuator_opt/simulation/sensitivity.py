@@ -101,6 +101,12 @@ class Sensitivities(Displayed):
     runs: int
     seconds: float
 
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The parameter with the largest effect."""
+        first = f", the largest is {self.parameters[0].path}" if self.parameters else ""
+        return self.name, f"effects of {len(self.parameters)} parameters{first}"
+
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI."""
         return {

@@ -202,6 +202,11 @@ class SealStudy(Displayed):
     elements: tuple[MountedContact, ...] = ()
 
     @property
+    def in_short(self) -> tuple[str, str]:
+        """The seal, and whether its oil film was solved on both strokes."""
+        return self.design.name, f"{self.place} seal, {'' if self.converged else 'not '}converged"
+
+    @property
     def drive(self) -> SealPoint:
         """Return the seal on the stroke on which the oil drives the actuator."""
         return self.out if drives(self.place) == "out" else self.back

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from .plan import Plan, SweepAxis, plan, read_axis
+from .plan import Plan, SweepAxis, given_axis, paired, plan, read_axis
 from .result import Best, Swept
 from .run import sweep, swept_again
 
-__all__ = ["Best", "Plan", "SweepAxis", "Swept", "plan", "read_axis", "sweep", "swept_again"]
+__all__ = [
+    "Best", "Plan", "SweepAxis", "Swept", "given_axis", "paired", "plan", "read_axis", "sweep",
+    "swept_again",
+]  # fmt: skip

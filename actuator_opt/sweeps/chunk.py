@@ -94,6 +94,8 @@ class Study:
     """Whether to compute every metric, or only those that rank designs."""
     more: tuple[str, ...] = ()
     """Metrics to compute in addition to those that rank designs."""
+    only: tuple[str, ...] | None = None
+    """In a full sweep, the metrics in the rows; None: all."""
     engine: Engine = "numpy"
     """Array library for the screen, the function that excludes designs that cannot be among the
     best; or "gpu", which runs the recorded models of a full sweep on a GPU."""
@@ -111,7 +113,10 @@ class Study:
         self.binding = limits_of(subject)
         self.limits = tuple(limit.name for limit in self.binding)
         needed = {limit.metric for limit in self.binding} | {*self.goal.weights, "mass", *self.more}
-        self.wanted = None if self.full or self.plugins else frozenset(needed)
+        if self.only is not None:
+            needed = {*self.only, *self.goal.weights, "mass"}
+        every = (self.full and self.only is None) or self.plugins
+        self.wanted = None if every else frozenset(needed)
         self.metrics = tuple(
             name for name in self._quantities if self.wanted is None or name in self.wanted
         )

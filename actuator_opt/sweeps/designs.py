@@ -18,7 +18,7 @@ from ..evaluation import PreparedDesign, prepare
 from ..evaluation.build import Many, evaluate_many
 from ..evaluation.limits import extremes
 from ..evaluation.plugin import Plugin, with_own
-from .plan import Plan, SweepAxis, SweepPoints
+from .plan import MOST_TESTED, Plan, SweepAxis, SweepPoints
 
 CACHED = 64
 """Number of prepared designs that a process keeps in memory."""
@@ -33,9 +33,6 @@ AT_ONCE = 4096
 SHARES = (0.0, 1.0, 0.5, 0.25, 0.75)
 """Test points in a range, as shares of its width; they are tried until two of them give a valid
 design."""
-
-MOST_TESTED = 32
-"""Maximum number of values of a list that are tested; from longer lists, every n-th value."""
 
 AGREE = 1e-9
 """Relative tolerance in comparing the results of an array with those of single designs."""

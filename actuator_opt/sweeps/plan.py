@@ -6,10 +6,12 @@ has the same points in any number of processes.
 
 from __future__ import annotations
 
+import contextlib
 import math
 import re
 import warnings
 from collections.abc import Mapping, Sequence
+from dataclasses import field, replace
 from functools import lru_cache
 from typing import Literal, TypeAlias, get_args
 
@@ -29,6 +31,8 @@ _RANGE = re.compile(r"(?P<first>.+?)\.\.(?P<last>.+?)(?::(?P<count>[^:]*))?")
 FORM = 'write PATH=A..B:N or PATH=a,b,c, e.g. --vary cylinder.bore="18..40 mm:12"'
 MOST_LISTED = 10_000
 """Maximum number of values in a list."""
+MOST_TESTED = 32
+"""Maximum number of values of a list that are tested; from longer lists, every n-th value."""
 DESCRIPTIVE = frozenset({"name", "notes", "reproduces", "waivers", "objective"})
 """Blocks of a design that affect neither metrics nor limits."""
 
@@ -100,10 +104,7 @@ def read_axis(text: str, design: Design, metrics: Metrics = None) -> SweepAxis:
     path, sign, values = text.partition("=")
     if not sign or not path.strip() or not values.strip():
         raise UsageError(Diagnostic(f"--vary {shown(text)}: no values", FORM))
-    path = canonical(path.strip(), design)
-    if path.partition(".")[0] in DESCRIPTIVE:
-        message = "is descriptive text that no model uses"
-        raise InputError(Diagnostic(message, "vary a dimension, a material or a limit", path=path))
+    path = _canonical(path, design)
     match = _RANGE.fullmatch(values.strip())
     if match is None:
         parts = [part.strip() for part in values.split(",")]
@@ -116,6 +117,100 @@ def read_axis(text: str, design: Design, metrics: Metrics = None) -> SweepAxis:
             Diagnostic(f"--vary {shown(text)}: both ends of the range are equal", FORM)
         )
     return SweepAxis(path, np.array(ends), range=True, count=steps)
+
+
+def _canonical(path: str, design: Design) -> str:
+    if not isinstance(path, str):
+        message = f"a PATH must be a text, not {shown(repr(path))}"
+        raise InputError(Diagnostic(message, "write e.g. cylinder.bore"))
+    path = canonical(path.strip(), design)
+    if path.partition(".")[0] in DESCRIPTIVE:
+        message = "is descriptive text that no model uses"
+        raise InputError(Diagnostic(message, "vary a dimension, a material or a limit", path=path))
+    return path
+
+
+def given_axis(path: str, values: object, design: Design, metrics: Metrics = None) -> SweepAxis:
+    """Return the axis for values from a script; parameters and errors as for `read_axis`.
+
+    Parameters
+    ----------
+    values : a text as in `read_axis`; or a list or one-dimensional array of numbers (SI) and texts
+
+    Raises
+    ------
+    InputError
+        also if an array is empty, not one-dimensional or not finite
+    """
+    if isinstance(values, str):
+        return read_axis(f"{path}={values}", design, metrics)
+    path = _canonical(path, design)
+    given = _one_dimensional(path, values)
+    if not isinstance(given, np.ndarray):
+        return _listed(path, given, design, metrics)
+    numbers = _checked(path, given, design, metrics)
+    unique, first = np.unique(numbers, return_index=True)
+    if len(unique) < len(numbers):
+        place = int(np.setdiff1d(np.arange(len(numbers)), first)[0])
+        message = f"the value at index {place} is given twice"
+        raise InputError(Diagnostic(message, "remove it", path=path))
+    return SweepAxis(path, numbers)
+
+
+def _one_dimensional(path: str, values: object) -> Array | list[str]:
+    """Values as an array of numbers, or all as texts if there is a text among them."""
+    advice = "give a list or a one-dimensional array of numbers (SI) or texts"
+    array = np.asarray(values) if hasattr(values, "__array__") else None
+    if array is not None and array.ndim != 1:
+        message = f"an array of {array.ndim} dimensions cannot be varied"
+        raise InputError(Diagnostic(message, advice, path=path))
+    if array is None and (not isinstance(values, Sequence) or isinstance(values, str | bytes)):
+        raise InputError(Diagnostic(f"{shown(repr(values))} is not a list", advice, path=path))
+    if array is None or array.dtype.kind not in "fiu":
+        items = list(values) if array is None else array.tolist()  # type: ignore[call-overload]
+        numbers = [x if isinstance(x, str) else _scalar(path, k, x) for k, x in enumerate(items)]
+        if any(isinstance(x, str) for x in numbers):
+            return [x if isinstance(x, str) else repr(x) for x in numbers]
+        array = np.array(numbers)
+    if not len(array):
+        raise InputError(Diagnostic("has no values", advice, path=path))
+    finite = np.isfinite(array)
+    if not finite.all():
+        place = int(finite.argmin())
+        message = f"the value at index {place} is {array[place]}"
+        raise InputError(Diagnostic(message, "give finite numbers", path=path))
+    return array.astype(float)
+
+
+def _scalar(path: str, index: int, item: object) -> float:
+    """A number of a list; raises `InputError` for anything else."""
+    if isinstance(item, int | float | np.integer | np.floating) and not isinstance(item, bool):
+        with contextlib.suppress(OverflowError):
+            return float(item)
+    message = f"the value at index {index} is not a number: {shown(repr(item))}"
+    raise InputError(Diagnostic(message, "give numbers (SI) or texts", path=path))
+
+
+def _checked(path: str, numbers: Array, design: Design, metrics: Metrics) -> Array:
+    """Numbers whose least and greatest suit their PATH, and so do those between.
+
+    Raises
+    ------
+    InputError
+        it states the index of the value
+    """
+    whole = np.flatnonzero(numbers != np.round(numbers))[:1]  # the first that no count can take
+    for place in dict.fromkeys([int(numbers.argmin()), int(numbers.argmax()), *map(int, whole)]):
+        try:
+            _number(path, repr(float(numbers[place])), design, metrics)
+        except InputError as error:
+            raise InputError(
+                [
+                    replace(x, message=f"value at index {place}: {x.message}", path=path)
+                    for x in error.diagnostics
+                ]
+            ) from None
+    return numbers
 
 
 def _steps(text: str, count: str | None) -> int | None:
@@ -238,7 +333,7 @@ class SweepPoints:
     variant: Array
     numbers: Array
 
-    def some(self, places: Array) -> SweepPoints:
+    def some(self, places: Array | slice) -> SweepPoints:
         """Return the points at some indices."""
         return SweepPoints(self.variant[places], self.numbers[:, places])
 
@@ -314,6 +409,64 @@ class Plan:
                 low, high = axis.values
                 columns.append(low + (high - low) * share)
         return columns
+
+
+@dataclass(frozen=True)
+class PairedPlan(Plan):
+    """Points whose values are all given: value k of each PATH belongs to point k."""
+
+    given: SweepPoints = field(default_factory=lambda: SweepPoints(np.empty(0), np.empty((0, 0))))
+
+    def points(self, first: int, count: int) -> SweepPoints:
+        """Return points `first` to `first + count`, up to the last point."""
+        return self.given.some(np.s_[first : first + count])
+
+
+def paired(columns: Mapping[str, object], design: Design, metrics: Metrics = None) -> PairedPlan:
+    """Return a plan for given points, value k of each PATH for point k.
+
+    Parameters
+    ----------
+    columns : for each PATH, a list or array of numbers (SI) or texts
+
+    Raises
+    ------
+    InputError
+        a PATH is unknown or given twice, a value does not suit it, an array is not one-dimensional
+        or not finite, or the arrays have different lengths
+    """
+    axes: list[SweepAxis] = []
+    numbers: list[Array] = []
+    count, first, variant = 0, "", np.zeros(1, dtype=np.int64)
+    for name, values in columns.items():
+        path = _canonical(name, design)
+        given = _one_dimensional(path, [values] if isinstance(values, str) else values)
+        if path in (axis.path for axis in axes):
+            raise InputError(Diagnostic("is given twice", "join its values", path=path))
+        if first and len(given) != count:
+            message = f"has {len(given)} values, but {first} has {count}"
+            raise InputError(Diagnostic(message, "give as many for each PATH", path=path))
+        count, first = len(given), first or path
+        if isinstance(given, np.ndarray):
+            numbers.append(_checked(path, given, design, metrics))
+            unique = np.unique(given)
+            few = len(unique) <= MOST_TESTED or 0.0 in given
+            axes.append(
+                SweepAxis(path, unique) if few else SweepAxis(path, unique[[0, -1]], range=True)
+            )
+        else:
+            axes.append(_listed(path, list(dict.fromkeys(given)), design, metrics))
+            place = {text: k for k, text in enumerate(axes[-1].texts)}
+            codes = np.array([place[text] for text in given], dtype=np.int64)
+            if axes[-1].values is None:
+                variant = variant * axes[-1].size + codes
+            else:  # numbers with units
+                numbers.append(axes[-1].values[codes])
+    if not axes:
+        raise UsageError(Diagnostic("no values to evaluate", 'give {"cylinder.bore": [...]}'))
+    variant = np.broadcast_to(variant, (count,))
+    points = SweepPoints(variant, np.array(numbers).reshape(len(numbers), count))
+    return PairedPlan(tuple(axes), "grid", count, given=points)
 
 
 def plan(axes: Sequence[SweepAxis], *, method: Method, count: int | None, seed: int = 0) -> Plan:

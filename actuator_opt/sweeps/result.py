@@ -6,16 +6,21 @@ The Pareto lines of the figures are exact, as they take all rows into account.
 from __future__ import annotations
 
 import heapq
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import combinations
 from typing import Any
 
 import numpy as np
 
+from ..base.dataclass import dataclass
+from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.numeric import Array
 from ..base.tables import Displayed
+from ..design.paths import quantity_of
+from ..rendering.series import Coded
+from ..rendering.tables import DataColumn, DataTable, Library, Units
 from ..version import VERSION
-from .chunk import Chunk, Study
+from .chunk import FEASIBLE, MARGIN, MISSED, Chunk, Study
 
 MOST_POINTS = 4096
 """Maximum number of rows that are kept for figures, separately for feasible and other designs (our
@@ -153,7 +158,7 @@ def _extended(study: Study, pair: tuple[str, str], previous: Array | None, rows:
     return line
 
 
-@dataclass(frozen=True, order=True)
+@dataclass(frozen=True)
 class Best:
     """One of the best designs, with its objective (to be minimised), point and row."""
 
@@ -165,6 +170,37 @@ class Best:
     def margin(self) -> float:
         """Return the least margin of all limits."""
         return self.row[-3]
+
+
+@dataclass
+class AllRows:
+    """Every row of a sweep in memory: an array (columns, points), a row per column."""
+
+    numbers: Array
+    variants: Array
+    """Number of the combination of texts of each point."""
+    failures: Array
+    """Index of the reason in `reasons` for each failed point, else -1."""
+    reasons: dict[str, int] = field(default_factory=dict)
+
+    @classmethod
+    def empty(cls, study: Study) -> AllRows:
+        """Space for all rows of a sweep."""
+        count = study.plan.count
+        variants = np.zeros(count if study.plan.named else 0, dtype=np.int32)
+        numbers = np.empty((len(study.columns), count))
+        return cls(numbers, variants, np.full(count, -1, dtype=np.int32))
+
+    def add(self, study: Study, chunk: Chunk) -> None:
+        """Store the rows of a chunk."""
+        count = len(chunk.rows.numbers)
+        part = np.s_[chunk.first : chunk.first + count]
+        self.numbers[:, part] = chunk.rows.numbers.T
+        for k, reason in chunk.rows.failures.items():
+            place = self.reasons.setdefault(reason, len(self.reasons))
+            self.failures[chunk.first + k] = place
+        if study.plan.named:
+            self.variants[part] = study.plan.points(chunk.first, count).variant
 
 
 @dataclass
@@ -192,6 +228,23 @@ class Swept(Displayed):
     seconds: float = 0.0
     sample: Sample = field(default_factory=Sample)
     """Rows for figures."""
+    rows: AllRows | None = field(default=None, repr=False)
+    """All rows, if they were kept."""
+
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The number of designs, and how many of them are feasible."""
+        found = "" if self.feasible is None else f", {self.feasible} feasible"
+        best = ""
+        single = self.study.goal.single
+        if self.best and single is not None:
+            value = self.metrics(self.best[0])[single]
+            best = (
+                ""
+                if value is None
+                else f", best {single} {self.study.quantity(single).text(value)}"
+            )
+        return self.study.design.name, f"{self.requested} designs{found}{best}"
 
     def metrics(self, best: Best) -> dict[str, float | None]:
         """Return the metrics of one of the best designs (SI); None without a value."""
@@ -208,6 +261,66 @@ class Swept(Displayed):
         paths = [axis.path for axis in study.plan.numeric]
         numbers = {paths[k]: float(x) for k, x in zip(study.order, best.row, strict=False)}
         return {path: numbers[path] for path in paths}
+
+    def table(self) -> DataTable:
+        """All designs as a table: varied inputs, metrics, least margin, and reasons of failures.
+
+        `met` states whether every requirement and check is met. `governing_limit` is the limit with
+        the least margin.
+
+        Raises
+        ------
+        InputError : the rows were not kept
+        """
+        rows, study = self.rows, self.study
+        if rows is None:
+            message = "the rows of this sweep were not kept in memory"
+            remedy = "sweep with rows=True and without reduce, or write csv or parquet"
+            raise InputError(Diagnostic(message, remedy))
+        place = {column.name: k for k, column in enumerate(study.columns)}
+        columns = []
+        size = study.plan.variants
+        for axis in study.plan.axes:
+            if axis.values is not None:
+                quantity = quantity_of(axis.path, study.design)
+                columns.append(DataColumn(axis.path, rows.numbers[place[axis.path]], quantity))
+            else:
+                size //= axis.size
+                columns.append(
+                    DataColumn(axis.path, Coded(rows.variants // size % axis.size, axis.texts))
+                )
+        columns += [
+            DataColumn(name, rows.numbers[place[name]], study.quantity(name))
+            for name in study.metrics
+        ]
+        missed = rows.numbers[place[MISSED]]
+        limits = np.where(np.isnan(missed), -1, np.nan_to_num(missed)).astype(np.int32)
+        columns += [
+            DataColumn("met", rows.numbers[place[FEASIBLE]] == 1.0),
+            DataColumn(MARGIN, rows.numbers[place[MARGIN]]),
+            DataColumn(MISSED, Coded(limits, study.limits)),
+            DataColumn("failure", Coded(rows.failures, tuple(rows.reasons))),
+        ]
+        return DataTable(study.design.name, columns)
+
+    def to_frame(self, library: Library = "pandas", *, units: Units = "si") -> Any:
+        """All designs as a data frame (see `table` and `DataTable.to_frame`)."""
+        return self.table().to_frame(library, units=units)
+
+    def to_xarray(self, *, units: Units = "si") -> Any:
+        """A full factorial as an `xarray.Dataset`, with a dimension for each varied PATH.
+
+        Raises
+        ------
+        ActuatorError : xarray is not installed
+        UsageError : the sweep is not a full factorial
+        InputError : the rows were not kept
+        """
+        plan = self.study.plan
+        if plan.method != "grid":
+            message = f"a sweep by {plan.method} has no grid"
+            raise UsageError(Diagnostic(message, "sweep a full factorial, or use to_frame"))
+        return self.table().to_xarray({axis.path: axis.size for axis in plan.axes}, units=units)
 
     def limit(self, keep: int) -> float:
         """Return the objective that a further design must undercut to be among the best `keep`."""
@@ -250,6 +363,8 @@ class Swept(Displayed):
         self.damaged += chunk.damaged
         self.reused += max(len(chunk.rows.numbers) - chunk.computed, 0)
         self.screened += 0 if chunk.places is None else chunk.computed - len(chunk.places)
+        if self.rows is not None:
+            self.rows.add(self.study, chunk)
         if chunk.places is None:
             self.sample.add(self.study, chunk)
         self.failed += len(chunk.rows.failures)
@@ -267,4 +382,6 @@ class Swept(Displayed):
                 Best(float(chunk.objective[k]), int(numbers[k]), tuple(chunk.rows.numbers[k]))
                 for k in order
             ]
-            self.best = heapq.nsmallest(keep, [*self.best, *candidates])
+            self.best = heapq.nsmallest(
+                keep, [*self.best, *candidates], key=lambda best: (best.objective, best.number)
+            )

@@ -27,7 +27,7 @@ from ..base.numeric import Array
 from ..version import VERSION
 from .chunk import Chunk, Study
 from .designs import CACHED
-from .result import Sample, Swept
+from .result import AllRows, Sample, Swept
 
 
 class MissingRows(NamedTuple):
@@ -113,6 +113,7 @@ def sweep(
     cluster: Cluster = HERE,
     each: Callable[[Chunk], None] | None = None,
     watch: Sequence[str] = (),
+    rows: bool = False,
 ) -> Swept:
     """Evaluate every point of a sweep.
 
@@ -125,6 +126,7 @@ def sweep(
     cluster : its workers are used instead of local processes
     each : function that is called with every chunk, in order
     watch : metrics; for every pair, the Pareto line of all designs is kept
+    rows : whether to keep every row in memory, for `Swept.table`
 
     Raises
     ------
@@ -137,6 +139,7 @@ def sweep(
         study.plan.count,
         feasible=0 if study.full else None,
         sample=Sample(tuple(watch)),
+        rows=AllRows.empty(study) if rows else None,
     )
     size = _chunk_size(study)
     starts = range(0, study.plan.count, size)

@@ -154,6 +154,13 @@ class Uncertainty(Displayed):
     seconds: float
 
     @property
+    def in_short(self) -> tuple[str, str]:
+        """The yield, and the number of draws."""
+        rate = self.rate
+        bounds = f"{100 * rate.lower:.2f} to {100 * rate.upper:.2f} %"
+        return self.name, f"yield {100 * rate.value:.2f} % ({bounds}), {self.count} draws"
+
+    @property
     def required(self) -> tuple[LimitYield, ...]:
         """Return the requirements, the most likely to fail first."""
         return tuple(sorted((x for x in self.limits if x.required), key=_worst))

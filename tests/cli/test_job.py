@@ -9,12 +9,14 @@ from pathlib import Path
 
 import pytest
 from cases.digests import digests
+from cases.one_line import one_line
 from cli_runner import BENCH, DESIGNS, run
 
 import actuator_opt as ao
 from actuator_opt import api as verbs, cli
 from actuator_opt.api import results
 from actuator_opt.base.errors import ExitCode, UsageError
+from actuator_opt.base.tables import OneLine
 from actuator_opt.cli.app import COMMANDS, HIDDEN
 
 DATE = "2026-03-04"
@@ -212,9 +214,18 @@ def _ended(result):
 @pytest.mark.parametrize(
     "name", [kind.type.rpartition(":")[2] for kind in results.KINDS.values() if kind.report]
 )
-def test_the_terminal_and_the_library_write_the_same_bytes(name):
+def test_the_terminal_and_the_library_write_the_same_bytes(name, monkeypatch):
     """Every kind with a report has a case; only the command is the library's to state."""
     call, words = CASES[name]
+    whole = results.report
+
+    def shown(subject, **more):
+        for one in (subject, *more.values()):
+            if isinstance(one, OneLine):
+                one_line(one)
+        return whole(subject, **more)
+
+    monkeypatch.setattr(results, "report", shown)
     if name in BEFORE:
         _ended(run(*BEFORE[name], "-q"))
     dated = [] if name in UNDATED else ["--date", DATE]
@@ -237,7 +248,7 @@ def test_what_a_report_needs_is_asked_for_in_one_line():
         ao.report(object.__new__(ao.BendingResult))
     with pytest.raises(UsageError, match='date "today" is not a date'):
         ao.report(actuator, date="today")
-    with pytest.raises(TypeError, match="float is not a result"):
+    with pytest.raises(UsageError, match="float is not a result"):
         ao.report(1.0)
 
 

@@ -20,6 +20,10 @@ class Names(dict):
     names = dict.keys
     kind = dict.get
 
+    def meanings(self, kinds=()):
+        """The names alone."""
+        return {name: name for name, kind in self.items() if not kinds or kind in kinds}
+
 
 MATERIALS = Names(
     iso_vg_32="fluid", iso_vg_46="fluid", al_6061_t6="metal", al_7075_t6="metal", ti_6al4v="metal",
@@ -141,7 +145,7 @@ EXPECTED = [
     ((3, 13), "fluid.material", "unknown material", 'did you mean "iso_vg_32"?'),
     ((4, 3), "fluid.temprature", "unknown key", 'did you mean "temperature"?'),
     ((6, 13), "supply.pressure", "mm is a length, need a pressure", "bar"),
-    ((7, 20), "supply.return_pressure", "unit missing", '"12 bar"'),
+    ((7, 20), "supply.return_pressure", "unit missing", '"12 Pa"'),
     ((9, 9), "cylinder.bore", "-25 mm: must be > 0", "2 mm to 1000 mm"),
     ((10, 3), None, 'duplicate key "bore", first at line 9, column 3', "keep one"),
     ((11, 11), "cylinder.stroke", "1e300 mm: outside the valid range", "1 mm to 10000 mm"),
@@ -163,7 +167,7 @@ EXPECTED = [
     ((44, 3), "variables.cylinder.bor", "unknown PATH", 'did you mean "cylinder.bore"?'),
     ((49, 12), "variables.rod.outer_diameter.upper", "bounds reversed", "swap"),
     ((51, 3), "requirements.stifness_min", "not a metric", 'did you mean "stiffness_min"?'),
-    ((54, 10), "requirements.mass.max", "unit missing", '"3 g"'),
+    ((54, 10), "requirements.mass.max", "unit missing", '"3 kg"'),
     ((56, 13), "objective.minimise", "not a metric", 'did you mean "mass"?'),
 ]
 

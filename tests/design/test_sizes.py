@@ -61,7 +61,7 @@ FAULTS = [
     (["sizes: iso_3320", "step: 1 mm"], "sizes and step", "keep one"),
     (["step: 0 mm"], "more than 1000 sizes", "at least"),
     (["step: 1 nm"], "more than 1000 sizes", "at least"),
-    (["step: 1"], "unit missing", "1 mm"),
+    (["step: 1"], "unit missing", "1 m"),
     (["step: 35 mm"], "no multiple of 35 mm lies between 20 mm and 30 mm", "35 mm"),
     (["size: iso_3320"], "unknown key", 'did you mean "sizes"'),
 ]  # fmt: skip

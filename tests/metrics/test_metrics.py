@@ -7,8 +7,9 @@ import pytest
 import actuator_opt as ao
 from actuator_opt.evaluation.kernel import compute
 from actuator_opt.evaluation.limits import MetricArrays, all_limits, default_limits
-from actuator_opt.evaluation.validity import function_of, model_of
+from actuator_opt.evaluation.validity import model_of
 from actuator_opt.metrics import METRICS, table
+from actuator_opt.metrics.documentation import function_of
 from actuator_opt.metrics.table import CRITERION, ROWS, CheckLine, Least, MetricRow
 
 DESIGNS = sorted((Path(__file__).parents[2] / "designs").glob("*.yaml"))

@@ -125,11 +125,11 @@ def test_parts_keep_their_designs_above_their_bound(some):
 
 
 def test_objective_of_the_relaxation_is_that_of_the_design(some):
-    """The relaxation's objective at a design is the evaluated one, to what samples leave."""
+    """The relaxation's objective at a design is the evaluated one."""
     found, designs = some
     masses = found.actuator.problem.rows(designs.T)[0]
     there = [math.exp(found.relaxed.objective.at(found.atoms(x))) for x in designs]
-    assert there == pytest.approx(masses, rel=1e-7)
+    assert there == pytest.approx(masses, rel=1e-12)
 
 
 def test_no_design_lies_below_the_bound(some):
@@ -145,7 +145,7 @@ def test_no_design_lies_below_the_bound(some):
 
 
 GAPS = {
-    "steel": (("steel_baseline", ("piston.material", "al_7075_t6")), 0.004),
+    "steel": (("steel_baseline", ("piston.material", "al_7075_t6")), 0.008),
     "knee_bonded": (("knee_bonded",), 0.16),
     "knee of 90 mm, sized by stiffness": (
         ("knee_bonded", ("cylinder.stroke", "90 mm"), ("requirements.stiffness_min.min", "12e6")),

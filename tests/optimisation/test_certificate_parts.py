@@ -11,6 +11,7 @@ import pytest
 from hypothesis import assume, given, strategies as st
 
 from actuator_opt.base.symbolic import Graph
+from actuator_opt.base.symbolic.expression import Namespace
 from actuator_opt.optimisation.certificate.bounding import Bounding, add_plain_sums
 from actuator_opt.optimisation.certificate.builder import Builder
 from actuator_opt.optimisation.certificate.certify import BoxSearch
@@ -261,6 +262,27 @@ def test_atoms_follow_their_expression(a, b, c, power):
     for curve in builder.relaxation.curves:
         found = float(SHAPES[curve.kind].value(np.array(curve.argument.at(logs))))
         assert found == pytest.approx(curve.out.at(logs), abs=1e-9)
+
+
+def test_atoms_of_a_steep_sampled_function_are_exact():
+    """Cycles of a fatigue line, (s/(1 - s/R))^-11, at a stress between two samples.
+
+    The interpolation there is off by more than the tolerance of a limit, 1e-6, so that a design
+    on its limit would seem to miss it.
+    """
+    graph = Graph()
+    stress = graph.variable("s", (0.05, 0.8))
+    ratio = stress / (1.0 - stress)
+    life = Namespace.exp(-11.0 * Namespace.log(ratio))
+    tighten(graph.nodes)
+    builder = Builder()
+    _, form = builder.form(life)
+    at = math.log(0.34567)
+    logs = [at, builder.relaxation.makers[1]([at])]
+    assert form.at(logs) == pytest.approx(-11 * math.log(0.34567 / (1 - 0.34567)), abs=1e-12)
+    (curve,) = builder.relaxation.curves
+    between = float(Tables([curve.kind]).value(np.array([at]))[0])
+    assert 1e-6 < abs(between - form.at(logs)) <= curve.kind.room
 
 
 def test_an_open_sign_is_said():

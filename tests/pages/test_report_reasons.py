@@ -32,3 +32,31 @@ def test_the_order_of_assembly_is_in_the_report() -> None:
     """The sentences of the joints, in their order."""
     lines = blocks("steel_baseline")["Order of assembly"].items
     assert [line.split()[0] for line in lines] == ["Set", "Screw", "Insert", "Screw", "Screw"]
+
+
+def test_places_of_the_limits_worst_first() -> None:
+    """The first place of each limit is the governing one; far places are only counted."""
+    evaluation = ao.evaluate(ao.read(DESIGNS / "knee.yaml"))
+    table = next(iter(report.places(evaluation)))
+    names = [str(row.cells[0]) for row in table.rows]
+    starts = [k for k, name in enumerate(names) if name]
+    assert names.count("cap retention at burst pressure") == 1
+    for start, stop in zip(starts, [*starts[1:], len(names)], strict=True):
+        margins = [
+            float(row.cells[4].replace("−", "-").rstrip(" %")) for row in table.rows[start:stop]
+        ]
+        assert margins == sorted(margins)
+        assert margins[-1] < 100
+    metric = evaluation.metrics["retention_burst_factor"]
+    row = table.rows[names.index("cap retention at burst pressure")]
+    assert row.cells[1] == metric.place
+    assert metric.by_place[metric.place] == metric.value == min(metric.by_place.values())
+    counted = int(table.note.split()[0])
+    assert counted + len(table.rows) == sum(
+        len(evaluation.metrics[name].by_place)
+        for name in {
+            limit.metric
+            for limit in (*evaluation.requirements, *evaluation.checks)
+            if limit.metric and limit.limit and len(evaluation.metrics[limit.metric].by_place) > 1
+        }
+    )

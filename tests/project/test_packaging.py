@@ -57,6 +57,7 @@ def test_one_version():
 def test_data_ships_inside_the_package():
     """References lie beside the code; materials are copied into the wheel."""
     assert (files("actuator_opt") / "references.yaml").is_file()
+    assert (files("actuator_opt") / "py.typed").read_bytes() == b""  # PEP 561
     wheel = PROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]
     assert wheel["packages"] == ["actuator_opt"]
     assert (ROOT / "materials").is_dir()
@@ -81,6 +82,7 @@ def test_built_distributions(tmp_path):
     with wheel, tarfile.open(archive) as sources:
         assert not [name for name in wheel.namelist() if "replicas" in name]
         assert "actuator_opt/_data/materials/fluids.yaml" in wheel.namelist()
+        assert "actuator_opt/py.typed" in wheel.namelist()
         packed = {name.partition("/")[2] for name in sources.getnames()}
     replicas = (ROOT / "actuator_opt" / "replicas").rglob("*.*")
     names = {str(path.relative_to(ROOT)) for path in replicas if path.suffix in (".py", ".yaml")}

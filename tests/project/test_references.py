@@ -14,7 +14,7 @@ import pytest
 import yaml
 from model_samples import public_functions
 
-from actuator_opt.evaluation.validity import describe, function_of
+from actuator_opt.metrics.documentation import describe, function_of
 from actuator_opt.metrics.table import CRITERION, ROWS
 from actuator_opt.models import elastomer, seals
 

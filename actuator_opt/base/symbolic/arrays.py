@@ -93,8 +93,9 @@ def wrapped(value: Any) -> Any:
     if value.dtype != object:
         return value
     flat = value.ravel().tolist()
-    if any(isinstance(element, Symbol) for element in flat):
-        return value.view(SymbolArray)
+    for element in flat:
+        if type(element) is Symbol:
+            return value.view(SymbolArray)
     kind = (
         bool if flat and all(isinstance(element, (bool, np.bool_)) for element in flat) else float
     )
@@ -589,29 +590,31 @@ class Recorder:
     def __init__(self) -> None:
         self.graph = Graph(truth=self.decide)
         self.guards: dict[Symbol, bool] = {}
-        self._known: dict[Symbol, Any] = {}
+        self._known: dict[int, Any] = {}
+        """Values at the point, by index of the node."""
 
     def variables(self, names: Sequence[str], values: Any) -> SymbolArray:
         """Add variables with their values at the point; return them as an array (variables, 1)."""
         symbols = np.empty((len(names), 1), dtype=object)
         for k, (name, value) in enumerate(zip(names, values, strict=True)):
             symbols[k, 0] = self.graph.variable(name)
-            self._known[symbols[k, 0]] = float(value)
+            self._known[symbols[k, 0].index] = float(value)
         return symbols.view(SymbolArray)
 
     def value(self, symbol: Any) -> Any:
         """Value of a symbol at the point."""
         if not isinstance(symbol, Symbol):
             return symbol
-        for node in needed([symbol], self._known):
+        known = self._known
+        for node in needed([symbol], known):
             if node.op not in NUMPY_OF:
                 raise TypeError("cannot record a branch that depends on the roots of a polynomial")
-            operands = [self._known[a] if isinstance(a, Symbol) else a for a in node.args]
+            operands = [known[a.index] if type(a) is Symbol else a for a in node.args]
             quick = _QUICK.get(node.op)
-            self._known[node] = (
+            known[node.index] = (
                 _of_numbers(NUMPY_OF[node.op], *operands) if quick is None else quick(*operands)
             )
-        return self._known[symbol]
+        return known[symbol.index]
 
     def decide(self, symbol: Symbol, *, one_sided: bool = False) -> bool:
         """Record a condition on which the model branches; return its truth at the point.

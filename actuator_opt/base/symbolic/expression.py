@@ -9,10 +9,9 @@ they cannot act.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import field
 from functools import partial
-from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any, Final, TypeAlias
 
@@ -256,7 +255,7 @@ class Symbol:
     """A node of a graph that behaves like a number of the array-API standard."""
 
     __array_ufunc__ = None  # NumPy numbers defer operations to this class
-    __slots__ = ("args", "bounds", "graph", "index", "op", "operands")
+    __slots__ = ("args", "bounds", "graph", "index", "op")
     dtype: Final = "float64"
     shape: Final = ()
     ndim: Final = 0
@@ -266,7 +265,11 @@ class Symbol:
     ) -> None:
         self.graph, self.op, self.args, self.index = graph, op, args, index
         self.bounds = limits
-        self.operands = tuple([a for a in args if type(a) is Symbol])
+
+    @property
+    def operands(self) -> list[Symbol]:
+        """The operands that are symbols."""
+        return [a for a in self.args if type(a) is Symbol]
 
     def __array_namespace__(self, **_: Any) -> Any:
         return Namespace
@@ -562,18 +565,31 @@ def is_boolean(symbol: Symbol) -> bool:
     return symbol.op in _BOOLEAN
 
 
-def needed(outputs: Sequence[Any], known: Iterable[Symbol] = ()) -> list[Symbol]:
-    """Nodes on which the outputs depend, operands first; operands of `known` nodes are omitted."""
-    seen: set[int] = {symbol.index for symbol in known}
-    symbols: list[Symbol] = []
-    stack = [out for out in outputs if isinstance(out, Symbol)]
-    while stack:
-        node = stack.pop()
-        if node.index not in seen:
-            seen.add(node.index)
-            symbols.append(node)
-            stack.extend(node.operands)
-    return sorted(symbols, key=attrgetter("index"))
+def needed(outputs: Sequence[Any], known: Container[int] = ()) -> list[Symbol]:
+    """Nodes on which the outputs depend, operands first.
+
+    Nodes with an index in `known` are omitted, and so are nodes on which only they depend.
+    """
+    symbols = [out for out in outputs if isinstance(out, Symbol) and out.index not in known]
+    if not symbols:
+        return []
+    nodes, index = symbols[0].graph.nodes, max(symbol.index for symbol in symbols)
+    wanted = bytearray(index + 1)
+    for symbol in symbols:
+        wanted[symbol.index] = 1
+    left, result = sum(wanted), []
+    while left:  # operands precede results
+        if wanted[index]:
+            node = nodes[index]
+            result.append(node)
+            left -= 1
+            for a in node.args:
+                if type(a) is Symbol and not wanted[a.index] and a.index not in known:
+                    wanted[a.index] = 1
+                    left += 1
+        index -= 1
+    result.reverse()
+    return result
 
 
 xp = Namespace
@@ -710,7 +726,7 @@ def _compiled(
     *,
     many: bool,
 ) -> Callable[..., Any]:
-    nodes = needed(outputs, known)
+    nodes = needed(outputs, {symbol.index for symbol in known})
     scope["_nan"], scope["_inf"] = math.nan, math.inf
     if nodes:
         scope |= {f"_table{i}": table for i, table in enumerate(nodes[0].graph.tables)}

@@ -240,36 +240,49 @@ class _Writer:
     def program(self) -> Program:
         """Write all instructions."""
         codes = {name: k for k, name in enumerate(OPERATIONS)}
-        last = {_owner(a).index: k for k, node in enumerate(self.nodes) for a in node.operands}
+        slot, steep = self.slot, bool(self.nodes) and self.nodes[0].graph.truth is None
+        last = {
+            (a if a.op not in SHARED else _owner(a)).index: k
+            for k, node in enumerate(self.nodes)
+            for a in node.args
+            if type(a) is Symbol
+        }
         kept = {_owner(out).index for out in self.outputs if isinstance(out, Symbol)}
         kept |= {node.index for node in self.inputs}
         free: list[int] = []
         for k, node in enumerate(self.nodes):
-            places = [self._place(a) for a in node.args]
+            flags = _MISSING[len(node.args)] if len(node.args) < 3 else 0
+            places: list[int] = []
+            for operand in node.args:
+                if type(operand) is not Symbol:
+                    places.append(self._place(operand))
+                    continue
+                index = operand.index
+                if operand.op in SHARED:
+                    index = _owner(operand).index
+                    if operand.op == "real" and len(places) < 3:
+                        flags |= _FROZEN << len(places)
+                    places.append(self._place(operand))
+                else:
+                    places.append(slot[index])
+                if last[index] == k and index not in kept:
+                    last[index] = -1
+                    free.append(slot[index])
             wide, words = 1, places
             if node.op == "roots":
                 kept.add(node.index)  # its slots are neighbours and are not used again
                 wide, words = 2 * (len(places) - 1), [len(self.extra), len(places) - 1, 0]
                 self.extra += places
-            flags = _MISSING[len(node.args)] if len(node.args) < 3 else 0
-            for place, operand in enumerate(node.args[:3]):
-                if type(operand) is Symbol:
-                    if operand.op == "real":
-                        flags |= _FROZEN << place
-                    index = (operand if operand.op not in SHARED else _owner(operand)).index
-                    if last[index] == k and index not in kept:
-                        last[index] = -1
-                        free.append(self.slot[index])
             if wide == 1 and free:
-                slot = free.pop()
+                at = free.pop()
             else:
-                slot, self.count = self.count, self.count + wide
-            self.slot[node.index] = slot
+                at, self.count = self.count, self.count + wide
+            slot[node.index] = at
             # a place without an operand repeats the first
             words = words + [words[0]] * (3 - len(words))
-            self.code.append((codes[node.op] | flags << 8, slot, *words))
-            if is_steep_at_zero(node):
-                self.code.append((codes["where"], slot, slot, slot, self._place(0.0)))
+            self.code.append((codes[node.op] | flags << 8, at, *words))
+            if steep and is_steep_at_zero(node):
+                self.code.append((codes["where"], at, at, at, self._place(0.0)))
         return self._finished()
 
     def _place(self, value: Any) -> int:

@@ -16,9 +16,9 @@ from ..limits import MaterialValues
 from ..state import LoadState
 from ..values import Values
 from . import laminate, wall
-from .wall import SEAL_STEP, Cycle, Swelling, Wall
+from .wall import OWN, SEAL_STEP, Cycle, Swelling, Wall
 
-__all__ = ["LAMINATES", "SEAL_STEP", "Cycle", "Swelling", "Wall", "compute", "kind"]
+__all__ = ["LAMINATES", "OWN", "SEAL_STEP", "Cycle", "Swelling", "Wall", "compute", "kind"]
 
 LAMINATES = ("layered", "thin_laminate")
 """Wall models that treat the barrel as a laminate of plies."""

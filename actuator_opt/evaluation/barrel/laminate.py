@@ -33,6 +33,7 @@ from ..values import Values
 from .wall import (
     FORCE,
     NONE,
+    OWN,
     PRESSURE,
     RUPTURE,
     WARMTH,
@@ -141,10 +142,8 @@ def compute(
     expansion = None if unknown else solution.axial[WARMTH]
     path = load_path(v, design, stock, g, state, swelling, expansion)
     free = v["supply.pressure"] * swelling.growth
-    driven_growth, force_growth = (
-        state.driven_pressure * swelling.growth,
-        swelling.growth_by_force * path.cases,
-    )
+    driven_growth = state.driven_pressure * swelling.growth
+    force_growth = swelling.growth_by_force * path.cases
     bending, shear = rod.layered_section(
         walls=solution.walls,
         thicknesses=[layer.thickness for layer in layers],
@@ -155,7 +154,7 @@ def compute(
     wall = Wall(
         swelling=swelling,
         path=path,
-        growth=maximum(free + force_growth, free),
+        growths={OWN: free + force_growth, NONE: free},
         case_growth=maximum(driven_growth + force_growth, driven_growth),
         bending_stiffness=bending,
         shear_stiffness=shear * column.cowper_tube(poissons_ratio=contraction, radius_ratio=ratio),

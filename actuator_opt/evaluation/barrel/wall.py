@@ -6,13 +6,15 @@ of the layers.
 
 The axial force follows from mount, load direction, stop and tie rods. The barrel is never assumed
 to be just open-ended or closed-ended. Tie rods clamp the barrel with their preload and carry
-their share of the separating force. The default preload keeps the joint closed at proof pressure.
+their share of the separating force. The default preload keeps the joint closed at proof pressure,
+however the tightening scatters. The wall has the mean preload.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import field
+from functools import reduce
 from math import pi
 
 import numpy as np
@@ -21,7 +23,7 @@ from ...base.dataclass import dataclass
 from ...base.numeric import Array, array_of, maximum
 from ...design.model import Design
 from ...joints.joint import Clamp, Clamping
-from ...models import barrel, barrel_ends, column, laminate, ply, rod
+from ...models import barrel, barrel_ends, column, laminate, piston_nut, ply, rod
 from ...models.autofrettage import Autofrettage
 from ...models.layered_tube import layered_tube, ply_stresses_at_faces, tube_state
 from ...models.strength import yield_utilisation
@@ -33,6 +35,8 @@ from ..state import LoadState
 from ..values import Values
 
 NONE = "no axial load"
+OWN = ""
+"""Location of values with the axial force of each load case itself."""
 STOP = "piston at the end stop"
 LARGEST = "largest axial load"
 RUPTURE = "axial rupture"
@@ -160,20 +164,26 @@ def _clamped(
     ((name, area),) = worst.items()
     unit, _ = forces_of(area, 1.0)
     relaxed, _ = forces_of(0.0 * area, 1.0)
+    settled = piston_nut.settling_loss(
+        threads=2, seats=2, joints=2, compliance=sum(1 / spring for spring in springs.values())
+    )
+    scatter = piston_nut.preload_range(preload=1.0, tightening_factor=rods.tightening_factor)
     preload = v.get("retention.preload", None)
     if preload is None:
-        preload = proof * unit
+        least = proof * unit
         for change in changes.values():
-            preload = maximum(preload, proof * unit - change)
-    at = {"at assembly": 0.0, **changes} if changes else {"": 0.0}
-    closed = {place: (preload + change) / (proof * unit) for place, change in at.items()}
+            least = maximum(least, proof * unit - change)
+        preload = (least + settled) / scatter[0]
+    least, greatest = (preload * share for share in scatter)
+    at = {"at assembly": 0.0, **changes}
+    closed = {place: (least - settled + change) / (proof * unit) for place, change in at.items()}
     pressure = maximum(state.moving_a, state.moving_b)
     barrel, _ = forces_of(cases, pressure)
     return LoadPath(
         {NONE: relaxed, name: unit},
         -preload,
         barrel - preload,
-        Clamp(preload, supply * (area - unit) + preload, closed, changes),
+        Clamp(preload, greatest, supply * (area - unit), closed, changes),
         springs["barrel_stiffness"] / (springs["barrel_stiffness"] + springs["tie_rod_stiffness"]),
         tuple(-change for change in changes.values()),
     )
@@ -278,8 +288,10 @@ class Wall:
     pressure, by location. `ply_fatigue` is the fatigue strength of fibres divided by their stress
     amplitude.
 
-    `growth` is the bore growth at supply pressure: the larger of the values with and without the
-    axial force of the load cases. `case_growth` is the growth at the pressures of the load cases.
+    `growths` are the bore growths at supply pressure by load path: with the axial force of the load
+    cases, (cases, designs), and without axial force, (designs,). The larger governs. Each is a
+    smooth limit of the optimiser, as an optimum may lie where both are equal. `case_growth` is the
+    larger growth at the pressures of the load cases.
     `missing` names unknown strengths. `axial_line_stiffness` is axial modulus times thickness of
     the wall, N/m. After cool-down from cure, `mismatch` is yield strength divided by stress of the
     liner, and `bond` is bond strength divided by the tension between liner and plies. `plies` is
@@ -289,7 +301,7 @@ class Wall:
 
     swelling: Swelling
     path: LoadPath
-    growth: Array
+    growths: dict[str, Array]
     case_growth: Array
     bending_stiffness: Array
     shear_stiffness: Array
@@ -312,6 +324,11 @@ class Wall:
     tube: MetalTube | None = None
     why_no_mismatch: str = "the wall has a single material"
     missing: list[str] = field(default_factory=list)
+
+    @property
+    def growth(self) -> Array:
+        """Bore growth at supply pressure, the largest of the load paths, (cases, designs) [m]."""
+        return reduce(maximum, self.growths.values())
 
 
 def metal_swelling(
@@ -340,22 +357,22 @@ def metal_swelling(
     alpha = stock.get(name, "thermal_expansion", "thermal_expansion_2")
     path = load_path(v, design, stock, g, state, swelling, alpha)
     supply = v["supply.pressure"]
-    free = supply * swelling.growth
+    force_growth = swelling.growth_by_force * path.cases
+    driven = state.driven_pressure
     if as_published:
         growth = barrel.bore_growth_as_published(pressure=supply, **size, **elastic)
+        growths, case_growth = {OWN: growth}, growth * (driven / supply)
     else:
-        growth = maximum(free + swelling.growth_by_force * path.cases, free)
-    driven = state.driven_pressure
-    driven_growth = swelling.growth * driven
+        free, driven_growth = supply * swelling.growth, driven * swelling.growth
+        growths = {OWN: free + force_growth, NONE: free}
+        case_growth = maximum(driven_growth + force_growth, driven_growth)
     outer, inner = 2 * g.outer_radius, 2 * g.inner_radius
     shear = modulus / (2 * (1 + ratio)) * area
     wall = Wall(
         swelling=swelling,
         path=path,
-        growth=growth,
-        case_growth=growth * (driven / supply)
-        if as_published
-        else maximum(driven_growth + swelling.growth_by_force * path.cases, driven_growth),
+        growths=growths,
+        case_growth=case_growth,
         bending_stiffness=modulus * rod.second_moment(outer_diameter=outer, inner_diameter=inner),
         shear_stiffness=shear
         * column.cowper_tube(poissons_ratio=ratio, radius_ratio=inner / outer),

@@ -19,7 +19,7 @@ from ...base.symbolic import Symbol
 from ...base.symbolic.expression import bounds_of
 from ...design.model import Design
 from ...evaluation import PreparedDesign, plies, rod_strength
-from ...evaluation.barrel import LAMINATES, Swelling, Wall, compute, kind, wall
+from ...evaluation.barrel import LAMINATES, OWN, Swelling, Wall, compute, kind, wall
 from ...evaluation.barrel.wall import LoadPath
 from ...evaluation.geometry import Geometry, clamped
 from ...evaluation.kernel import Implicit, ModelRun, Statics
@@ -31,6 +31,7 @@ from ...evaluation.values import Values
 from ...joints.joint import Clamp
 from ...models import column, rod as rod_models, stepped, tube_bounds
 from ...models.layered_tube import layered_tube, tube_state
+from ...models.piston_nut import preload_range
 from ...models.solid_ply import solid_rotated
 from ...models.trial_motion import (
     Chamber,
@@ -40,6 +41,7 @@ from ...models.trial_motion import (
     trial_mode_load,
     trial_motion_stiffness,
 )
+from ..problem import Vector
 from .bounding import CAUTION, SAMPLES, Leads, function
 from .intervals import branch, extreme
 from .relaxation import (
@@ -159,8 +161,8 @@ class Builder:
         low, high = self.relaxation.reach(argument)
         if not 0 < high - low < WIDEST:
             raise Unknown("the model contains a function whose argument is constant or unbounded")
-        t = np.linspace(low, high, SAMPLES)
-        values = function([node], lead)(t)[0]
+        t, exact = np.linspace(low, high, SAMPLES), function([node], lead)
+        values = exact(t)[0]
         with np.errstate(all="ignore"):
             logs = np.log(np.abs(values))
         if not np.isfinite(logs).all():
@@ -169,7 +171,12 @@ class Builder:
         if (values[0] > 0) != (values[-1] > 0) or values.min() * values.max() <= 0:
             raise Unknown("the model contains a function that may be positive or negative")
         least, most = float(logs.min()) - table.room, float(logs.max()) + table.room
-        return math.copysign(1.0, values[0]), self._curve(table, argument, least, most)
+
+        def logarithm(x: Vector) -> Vector:
+            return np.asarray(np.log(np.abs(exact(x)[0])))
+
+        form = self._curve(table, argument, least, most, logarithm)
+        return math.copysign(1.0, values[0]), form
 
     def expanded(self, value: Any) -> Signomial | None:
         """A value as a sum of monomials; None if it has too many terms."""
@@ -379,16 +386,23 @@ class Builder:
         self.relaxation.curves.append(AtomFunction("exp", form, Form(0.0) - out))
         return out
 
-    def _curve(self, kind: Kind, argument: Form, low: float, high: float) -> Form:
+    def _curve(
+        self,
+        kind: Kind,
+        argument: Form,
+        low: float,
+        high: float,
+        exact: Callable[[Vector], Vector] | None = None,
+    ) -> Form:
         """A new atom whose logarithm is a function of a monomial's logarithm.
 
-        `low` and `high` bound the atom's logarithm.
+        `low` and `high` bound the atom's logarithm. `exact` is the function that a sampled `kind`
+        interpolates: a steep function, such as cycles over stress, deviates from its
+        interpolation by more than the tolerance of a limit.
         """
-        functions = CurveFunctions([kind])
+        value = exact or CurveFunctions([kind]).value
         out = self.relaxation.atom(
-            math.exp(low),
-            math.exp(high),
-            lambda y: float(functions.value(np.array([argument.at(y)]))[0]),
+            math.exp(low), math.exp(high), lambda y: float(value(np.array([argument.at(y)]))[0])
         )
         self.relaxation.curves.append(AtomFunction(kind, argument, out))
         return out
@@ -550,7 +564,7 @@ class Envelopes:
         return Wall(
             swelling=rigid,
             path=self._path(v, design, stock, g, state, rigid),
-            growth=supply_growth,
+            growths={OWN: supply_growth},
             case_growth=case_growth,
             bending_stiffness=bending,
             shear_stiffness=shear,
@@ -649,7 +663,10 @@ class Envelopes:
         state: LoadState,
         swelling: Swelling,
     ) -> LoadPath:
-        """Axial force in a laminated wall; with tie rods, the wall's share is an unknown."""
+        """Axial force in a laminated wall; with tie rods, the wall's share is an unknown.
+
+        Settling and temperature, which only lower the least preload, are left out.
+        """
         if not clamped(design):
             return wall.load_path(v, design, stock, g, state, swelling)
         name = wall.STOP if design.cylinder.end_stop == "internal" else wall.LARGEST
@@ -658,11 +675,15 @@ class Envelopes:
         )
         supply = v["supply.pressure"]
         proof = v["supply.proof_ratio"] * supply
-        preload = v.get("retention.preload", proof * share)
-        largest = supply * (wall.largest_area(design, g) - share) + preload
-        rods = Clamp(preload, largest, {"": preload / (proof * share)})
+        springs = wall.clamping(v, design, stock, g)
+        low, high = preload_range(preload=1.0, tightening_factor=springs.tightening_factor)
+        preload = v.get("retention.preload", proof * share / low)
+        added = supply * (wall.largest_area(design, g) - share)
+        rods = Clamp(
+            preload, preload * high, added, {"at assembly": preload * low / (proof * share)}
+        )
         barrel = 1 / (swelling.stretch * g.barrel_length)
-        total = barrel + wall.clamping(v, design, stock, g).stiffness
+        total = barrel + springs.stiffness
         return wall.LoadPath({name: share}, 0.0, 0.0, rods, barrel / total)
 
 

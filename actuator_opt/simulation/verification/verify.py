@@ -375,6 +375,14 @@ class Verification(Displayed):
         """Whether the simulation meets all requirements."""
         return all(row.met for row in self.rows)
 
+    @property
+    def in_short(self) -> tuple[str, str]:
+        """The number of simulated requirements that are met."""
+        return (
+            self.name,
+            f"{sum(row.met for row in self.rows)} of {len(self.rows)} met by simulation",
+        )
+
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON, SI; a value that is not finite is None."""
         rows = [

@@ -1,0 +1,102 @@
+"""Commands that look names up: `explain` and `list`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from os.path import isfile
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..base.errors import Diagnostic, ExitCode, UsageError
+from . import streams
+from .job import Job
+from .options import REPORTS, Json, PluginFile, Quiet, Set
+
+Words = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="X [DESIGN]",
+        help="PATH, metric, check, material, joint, seal type, friction law or term; then the "
+        "design file whose value and influences are shown, or - for stdin.",
+    ),
+]
+Listed = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="KIND [DESIGN] [WORD]",
+        help="paths, metrics, checks, materials, joints, seals, laws, properties or terms; then "
+        "the design file whose values are shown, or - for stdin; then a word that keeps only "
+        "entries near to it.",
+    ),
+]
+
+
+def _is_design(word: str) -> bool:
+    """Whether an argument names a design file."""
+    return word == "-" or word.lower().endswith((".yaml", ".yml")) or isfile(word)
+
+
+def _parted(words: Sequence[str], first: int) -> tuple[str | None, list[str]]:
+    """The design among the words after the first ones, and all other words."""
+    files = [word for word in words[first:] if _is_design(word)]
+    if len(files) > 1:
+        raise UsageError(Diagnostic(f"{files[1]}: a second design", "name one design"))
+    others = [word for k, word in enumerate(words) if k < first or word not in files]
+    return (files[0] if files else None), others
+
+
+def explain(
+    words: Words,
+    sets: Set = None,
+    plugin: PluginFile = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+    out: Annotated[Path, typer.Option("--out", hidden=True)] = REPORTS,
+    seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
+) -> ExitCode:
+    """Explain a name: meaning, value, influences, source."""
+    from .. import api as verbs
+
+    design, others = _parted(words, 1)
+    job = Job(sets=sets, as_json=as_json, quiet=quiet)
+    _only_with_design(design, job)
+    options = {"set": job.set, "plugins": plugin or []}
+    explanation = job.run(verbs.explain, " ".join(others), design, **options)
+    job.answer(explanation.to_dict, lambda: explanation.text(**streams.style()))
+    return ExitCode.MET
+
+
+def list_names(
+    words: Listed,
+    sets: Set = None,
+    plugin: PluginFile = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+    out: Annotated[Path, typer.Option("--out", hidden=True)] = REPORTS,
+    seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
+) -> ExitCode:
+    """List names with value, unit and meaning.
+
+    In a pipe, tabs part the columns.
+    """
+    from .. import api as verbs
+
+    design, others = _parted(words, 1)
+    job = Job(sets=sets, as_json=as_json, quiet=quiet)
+    _only_with_design(design, job)
+    options = {"set": job.set, "plugins": plugin or []}
+    listed = job.run(verbs.catalogue, others[0], design, " ".join(others[1:]), **options)
+
+    def text() -> str:
+        return listed.text(**streams.style()) if streams.terminal() else listed.tsv()
+
+    job.answer(listed.to_dict, text)
+    return ExitCode.MET
+
+
+def _only_with_design(design: str | None, job: Job) -> None:
+    """Refuse ``--set`` without a design."""
+    if design is None and job.sets:
+        raise UsageError(Diagnostic("--set: there is no design", "name a design file"))
