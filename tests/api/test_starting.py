@@ -17,6 +17,7 @@ DUTIES = [
     Duty(500.0, 150.0, 0.02, 350e5),
     Duty(500.0, 500.0, 0.5, 350e5),
     Duty(50e3, 50e3, 0.5, 50e5),
+    Duty(43e3, 42e3, 0.023, 250e5),  # skirts that nearly meet, on a spigot
     Duty(3e3, 1e3, 0.3, 100e5, wall="aluminium"),
     Duty(1.2e3, 1e3, 0.04, 60e5, wall="lined_carbon"),
     Duty(2e3, 1e3, 0.06, 120e5, wall="linerless"),
