@@ -40,7 +40,7 @@ DUTY: Mapping[str, tuple[Quantity, str]] = {
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What is best: its words, and the objective of the design file."""
+    """A goal: its words, and the objective of the design file."""
 
     words: str
     objective: str
@@ -155,7 +155,7 @@ _HOLLOW = 0.8
 
 @dataclass(frozen=True, slots=True)
 class Duty:
-    """What an actuator must do (SI), what is best, and the wall."""
+    """Forces, stroke and supply pressure of an actuator (SI), its goal and its wall."""
 
     push: float
     pull: float
