@@ -27,7 +27,7 @@ MOST_MOVERS = 5
 
 @dataclass(frozen=True, slots=True)
 class Explanation(Displayed):
-    """What a name means, how to ask for it, and where its number comes from.
+    """Meaning of a name, lines that ask for it, and source of its number.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def _limit_lines(name: str, quantity: Quantity, limits: Mapping[str, float]) -> 
 
 
 def _asked(entry: Entry, value: float | None, actuator: Actuator | None) -> tuple[str, ...]:
-    """How to ask for a metric: as a requirement or as the objective."""
+    """Lines that make a metric a requirement or the objective."""
     from ..metrics.table import ROWS
 
     quantity, row = entry.quantity, ROWS.get(entry.name)

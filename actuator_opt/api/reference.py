@@ -213,7 +213,7 @@ LISTS: Mapping[str, Callable[[], Iterator[Entry]]] = {
     "properties": _properties,
     "terms": _terms,
 }
-"""What `list` can list, each with the function that yields its entries."""
+"""Kinds of names that `list` lists, each with the function that yields its entries."""
 
 SEARCHED = (
     _metrics, _joints, _seals, _laws, _checks, _properties, _terms, _materials, _paths, _blocks,

@@ -104,6 +104,7 @@ INPUTS = _table("""
  pin_rows             | m      | count       | -    | 1     | 2     | number of rows of pins
  interference         | delta  | length      | um   | 0.1   | 1000  | interference of radii
  relaxation           | c      | ratio       | -    | 0.05  | 1     | share that remains in service
+ tightening_factor    | alpha_A| ratio      | -    | 1     | 4     | greatest divided by least preload after tightening
  piece_count          | n      | count       | -    | 1     | 100   | number of equal components
  thread_diameter      | d_t    | length      | mm   | 1     | 500   | nominal thread diameter
  thread_pitch         | P      | length      | mm   | 0.2   | 12    | thread pitch

@@ -122,7 +122,7 @@ def _lines() -> Mapping[str, Mapping[int, int]]:
 
 
 def _synonym(word: str, other: str) -> float:
-    """How well two words match as synonyms; 0 if they are none."""
+    """Match of two words as synonyms, from 0 to 1; 0 if they are none."""
     known = _lines()
     first = known.get(word) or known.get(_singular(word)) or {}
     second = known.get(other) or known.get(_singular(other)) or {}
@@ -149,7 +149,7 @@ def _similarity(first: str, second: str, least: float) -> float:
 
 @lru_cache(maxsize=1 << 14)
 def _match(word: str, other: str, *, spelled: bool) -> float:
-    """How well two single words match, from 0 to 1; with `spelled`, slips of the pen count too."""
+    """Match of two single words, from 0 to 1; with `spelled`, slips of the pen count too."""
     if word == other:
         return _SAME
     if _singular(word) == _singular(other):
@@ -203,7 +203,7 @@ def _by_words(words: tuple[str, ...], name: str, meaning: str) -> float:
 
 
 def meaning_of(declared: object) -> str:
-    """What a declared thing means, in words: its label, or its help; a text is the meaning itself.
+    """Meaning of a declared thing in words: its label, or its help; a text is the meaning itself.
 
     >>> meaning_of("bore diameter"), meaning_of(None)
     ('bore diameter', '')

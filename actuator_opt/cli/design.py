@@ -299,7 +299,10 @@ def schema(
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print it on a terminal, too.")] = False,
 ) -> None:
-    """Print the JSON Schema of design or scenario files, for an editor; not on a terminal."""
+    """Print the JSON Schema of design or scenario files.
+
+    On a terminal, only its size is printed, as it is for editors: use list or explain instead.
+    """
     from ..base.quantities import RESULTS
     from ..design.materials import load_library
     from ..design.schema import json_schema

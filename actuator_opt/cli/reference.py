@@ -56,7 +56,7 @@ def explain(
     out: Annotated[Path, typer.Option("--out", hidden=True)] = REPORTS,
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> ExitCode:
-    """Explain a name: what it is, its value, how to ask for it, what moves it, its source."""
+    """Explain a name: meaning, value, influences, source."""
     from .. import api as verbs
 
     design, others = _parted(words, 1)
@@ -77,7 +77,10 @@ def list_names(
     out: Annotated[Path, typer.Option("--out", hidden=True)] = REPORTS,
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> ExitCode:
-    """List names with value, unit and meaning; in a pipe with tabs between the columns."""
+    """List names with value, unit and meaning.
+
+    In a pipe, tabs part the columns.
+    """
     from .. import api as verbs
 
     design, others = _parted(words, 1)

@@ -48,7 +48,7 @@ EXAMPLES = {
     "signal_offset": "0.1 V", "gain": "500 V/m", "oil_viscosity": "32 mm^2/s",
     "damping_ratio": "0.7", "orifice_area": "0.2 cm^2", "opening": "50 %",
     "conductance": "20 ml/min/bar", "gas_volume": "50 ml", "precharge": "30 bar",
-    "polytropic_index": "1.4",
+    "polytropic_index": "1.4", "tightening_factor": "1.6",
     "duration": "2 s", "sample_time": "1 ms", "time_constant": "20 ms", "signal_rate": "500 V/s",
     "displacement": "13.3 ml", "displacement_setting": "1", "slip_coefficient": "1.5e-7",
     "coulomb_coefficient": "0.16", "viscous_coefficient": "1e5", "drive_speed": "1500 rpm",
@@ -130,7 +130,7 @@ def _unit_fault(text: str, quantity: Quantity, error: units.UnitError) -> ValueF
 
 
 def _with_unit(bare: str, quantity: Quantity) -> str:
-    """How to write a bare number with its unit.
+    """Remedy for a bare number: the number with its unit.
 
     As in scripts and ``--set``, the number is taken as SI. If that is outside the quantity's range,
     the display unit is suggested instead, and if this is too, the example.

@@ -14,6 +14,7 @@ from pydantic import Field, create_model
 from ..base.quantities import Sense
 from ..base.tables import headline
 from ..joints.kinds import JOINTS
+from ..models.piston_nut import TIGHTENING
 from . import choices
 from .choices import Paper
 from .kinds import (
@@ -439,7 +440,11 @@ class PistonNut(Section):
 
     diameter: Annotated[float, Of("thread_diameter", "nominal diameter of the thread")]
     pitch: Annotated[float, Of("thread_pitch", "pitch")]
-    preload: Annotated[float, Of("force", "tension of the stud after tightening")]
+    preload: Annotated[float, Of("force", "mean tension of the stud after tightening")]
+    tightening_factor: Annotated[
+        float, Of("tightening_factor", "greatest divided by least preload after tightening")
+    ] = TIGHTENING
+    """Default: a torque wrench (`models.piston_nut`)."""
 
 
 class Cushion(Section):

@@ -45,7 +45,7 @@ class KeyEntry:
 
     @property
     def meaning(self) -> str:
-        """What the key means: help of its value, or first sentence about its block."""
+        """Meaning of the key: help of its value, or first sentence about its block."""
         if self.kind is not None:
             return self.kind.help
         return "" if self.section is None else purpose(self.section)
@@ -133,7 +133,7 @@ def blocks(section: type[Section] = Design, prefix: str = "") -> dict[str, KeyEn
 
 
 def meanings(section: type[Section]) -> Mapping[str, str]:
-    """What every key of a block means, by its name."""
+    """Meaning of every key of a block, by its name."""
     return {name: entry.meaning for name, entry in entries(section).items()}
 
 

@@ -30,12 +30,14 @@ PLACE = "piston nut"
 class _Nut:
     """Sizes and preload of the nut, and the largest and least share of a force its stud feels.
 
-    `changes` are the changes of the preload, cold and hot [N]; empty without a temperature range or
+    `least` is the preload of a loose tightening after settling, `greatest` that of a tight one
+    before it. `changes` are their changes, cold and hot [N]; empty without a temperature range or
     with unknown expansions.
     """
 
     size: dict[str, Array]
-    preload: Array
+    least: Array
+    greatest: Array
     share: Array
     least_share: Array
     changes: Mapping[str, Array]
@@ -44,9 +46,9 @@ class _Nut:
     @property
     def largest(self) -> Array:
         """Largest preload at any stated temperature [N]."""
-        largest = self.preload
+        largest = self.greatest
         for change in self.changes.values():
-            largest = maximum(largest, self.preload + change)
+            largest = maximum(largest, self.greatest + change)
         return largest
 
 
@@ -60,10 +62,11 @@ def _nut(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> _Nut 
         return None
     seat = {"diameter": g.nut, "shoulder_diameter": g.rod_diameter}
     elastic = {"stud_modulus": moduli[0], "piston_modulus": moduli[1]}
+    length = g.piston_length - recess(g)[0]
     clamped = {
         "diameter": g.nut,
         "piston_diameter": g.bore - 2 * g.piston_clearance,
-        "length": g.piston_length - recess(g)[0],
+        "length": length,
         **elastic,
     }
     stud, piston = (stock.get(name, "thermal_expansion") for name in names)
@@ -73,9 +76,15 @@ def _nut(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> _Nut 
             word: piston_nut.preload_change(**clamped, strain_difference=(piston - stud) * warming)
             for word, warming in warmings(v, design).items()
         }
+    least, greatest = piston_nut.preload_range(
+        preload=v["piston.nut.preload"], tightening_factor=v["piston.nut.tightening_factor"]
+    )
+    compliance = piston_nut.clamp_compliance(**seat, length=length, **elastic)
+    settled = piston_nut.settling_loss(threads=1, seats=2, joints=0, compliance=compliance)
     return _Nut(
         size={"diameter": g.nut, "pitch": v["piston.nut.pitch"]},
-        preload=v["piston.nut.preload"],
+        least=least - settled,
+        greatest=greatest,
         share=piston_nut.stud_share(**seat, **elastic),
         least_share=piston_nut.least_stud_share(**clamped),
         changes=changes,
@@ -86,36 +95,47 @@ def _nut(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> _Nut 
 def thread_factor(
     v: Values, design: Design, stock: MaterialValues, g: Geometry, pull: Array
 ) -> dict[str, Array]:
-    """Yield strength divided by the stress of the stud under the largest preload and pull."""
+    """Pull at which the stud yields, over the pull: with the largest preload, and without any."""
     nut = _nut(v, design, stock, g)
     strength = stock.allowable(design.rod.material, "yield_strength")
     if nut is None or strength is None:
         return {}
-    largest = maximum(nut.largest + nut.share * pull, pull)
-    return {PLACE: strength / thread_stress(force=largest, **nut.size)}
+    borne = strength / thread_stress(force=1.0, **nut.size)
+    twist = piston_nut.torsion_factor(**nut.size, share=piston_nut.LEFT)
+    return {PLACE: minimum((borne / twist - nut.largest) / nut.share, borne) / pull}
 
 
 def closed(
     v: Values, design: Design, stock: MaterialValues, g: Geometry, pull: Array
 ) -> dict[str, Array] | None:
-    """Preload divided by the clamping force that the pull takes away at proof pressure.
+    """Least preload divided by the clamping force that the pull takes away at proof pressure.
 
-    It is given at assembly and, with a temperature range, cold and hot.
+    It is given at assembly and, with a temperature range, cold and hot. "while tightened" is the
+    preload that tightening may cause, by the stud's yield strength, divided by the greatest.
     """
     nut = _nut(v, design, stock, g)
     if nut is None:
         return None
     taken = (1 - nut.least_share) * v["supply.proof_ratio"] * pull
-    at = {"at assembly": 0.0, **nut.changes} if nut.changes else {"": 0.0}
-    return {place: (nut.preload + change) / taken for place, change in at.items()}
+    at = {"at assembly": 0.0, **nut.changes}
+    factors = {place: (nut.least + change) / taken for place, change in at.items()}
+    strength = stock.allowable(design.rod.material, "yield_strength")
+    if strength is not None:
+        stress = piston_nut.torsion_factor(**nut.size) * thread_stress(
+            force=nut.greatest, **nut.size
+        )
+        factors["while tightened"] = piston_nut.USED * strength / stress
+    return factors
 
 
 def yields(
     v: Values, design: Design, stock: MaterialValues, g: Geometry, push: Array, pull: Array
 ) -> dict[str, Array]:
-    """Yield strength divided by stress, of the piston under the shoulder and of its web.
+    """Yield of the piston under the shoulder, and of its web.
 
-    The push of the ring around the shoulder bends the web at the shoulder, and the pull at the nut.
+    The greatest preload presses on the shoulder too. It is known, so the factor is that of the
+    push: push at yield divided by the push. At the web, it is yield strength divided by stress. The
+    push of the ring around the shoulder bends the web at the shoulder, and the pull at the nut.
     """
     nut = _nut(v, design, stock, g)
     strengths = [
@@ -125,9 +145,8 @@ def yields(
     known = [strength for strength in strengths if strength is not None]
     if nut is None or not known:
         return {}
-    pressure = (nut.largest + push) / nut.shoulder
     weakest = minimum(known[0], known[-1])
-    rows = {"piston under the rod's shoulder": weakest / pressure}
+    rows = {"piston under the rod's shoulder": (weakest * nut.shoulder - nut.largest) / push}
     piston = strengths[1]
     if piston is not None:
         height, corner = recess(g)

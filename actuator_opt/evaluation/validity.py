@@ -28,7 +28,7 @@ from .geometry import Geometry
 from .kernel import ModelRun, PreparedDesign
 from .ports import places
 from .result import Metric, ModelUse, Unverified
-from .rings import Ring, extrusion_end, seal_contact
+from .rings import Ring, extrusion_end, seal_contact, static_rings
 from .rod_strength import NEAR
 from .values import Values
 
@@ -66,6 +66,8 @@ def seal_warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable
     """Yield (metric, sentence) for every warning about the seals."""
     for ring in run.rings:
         yield from _contact(subject, ring)
+        yield from _limits(subject, run, ring, float(v["supply.pressure"]))
+    for ring in static_rings(v, subject.design, run.geometry):
         yield from _limits(subject, run, ring, float(v["supply.pressure"]))
     if "rod_leakage" in run.computed.metrics:
         yield from _leak_at_rest(subject)
@@ -150,7 +152,7 @@ def _limits(
             f"{ring.label}: the pressure is {supply / 1e5:.0f} bar, but {compound.name} allows "
             f"only {limits['pressure_max'] / 1e5:.0f} bar without a back-up ring",
         )
-    if fastest > limits.get("speed_max", np.inf):
+    if ring.name != "static" and fastest > limits.get("speed_max", np.inf):
         yield (
             "",
             f"{ring.label}: the speed is {fastest:.2g} m/s, but {compound.name} allows only "

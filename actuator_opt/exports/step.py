@@ -198,15 +198,15 @@ def _bars(outline: Outline) -> SolidBody:
     The first bar is in the section plane.
     """
     profile = tidy(millimetres(outline.polygons[0]))
-    first, low = profile[0]
-    last, high = max(profile)
-    radius, ring = (high - low) / 2, (low + high) / 2
+    places, radii = zip(*profile, strict=True)
+    first, last, ring = min(places), max(places), (min(radii) + max(radii)) / 2
+    above = [(x - first, r - ring) for x, r in profile if r > ring]
     turns = [2 * pi * k / outline.bars for k in range(outline.bars)]
     return SolidBody(
         name=outline.part.removesuffix("s"),
         part=outline.part,
         material=outline.material,
-        profile=((0.0, 0.0), (last - first, 0.0), (last - first, radius), (0.0, radius)),
+        profile=((0.0, 0.0), (last - first, 0.0), *above),
         places=tuple((first, ring * cos(turn), ring * sin(turn)) for turn in turns),
     )
 

@@ -44,6 +44,7 @@ from .joint import (
     notch_factor,
     too_thin,
 )
+from .plug import behind_seal
 from .retaining_ring import NOTCH, NOTCH_HARD
 from .winding import WindingEdge
 
@@ -527,6 +528,7 @@ def _strength(loaded: Loaded) -> Strength | str:
         f"{UNDER}, bore": retaining_ring.collapse_factor(
             axial=axial, bending=-bending, strength=plug_ultimate
         ),
+        **behind_seal(loaded, trap.bore),
     }
     if edge is None:
         return Strength(working, burst, "the band is the innermost layer")

@@ -290,27 +290,35 @@ class DrawnPart(NamedTuple):
 class Clamp:
     """Parts that clamp the barrel between both ends, such as tie rods.
 
-    `preload` is the total preload at assembly [N], and `largest` the largest total force at supply
-    pressure and the temperature of assembly [N]. `closed` is the preload divided by the clamping
-    force that proof pressure takes away, by temperature; the joint stays closed if it is above 1.
-    `changes` are the changes of the preload at the lowest and the highest temperature [N], with the
-    keys "cold" and "hot"; empty if unknown.
+    `preload` is the total preload at assembly [N], the mean of what tightening gives, and
+    `greatest` the most of it. `added` is the force that supply pressure adds [N]. `closed` is the
+    least preload, after settling, divided by the clamping force that proof pressure takes away, by
+    temperature; the joint stays closed if it is above 1. `changes` are the changes of the preload
+    at the lowest and the highest temperature [N], with the keys "cold" and "hot"; empty if unknown.
     """
 
     preload: Array
-    largest: Array
+    greatest: Array
+    added: Array
     closed: Mapping[str, Array]
     changes: Mapping[str, Array] = field(default_factory=dict)
+
+    @property
+    def largest(self) -> Array:
+        """Largest total force at supply pressure and the temperature of assembly [N]."""
+        return self.greatest + self.added
 
 
 class Clamping(NamedTuple):
     """Axial stiffness of the parts that clamp the barrel [N/m], and their free growth [m/K].
 
-    The growth is None if their thermal expansion is unknown.
+    The growth is None if their thermal expansion is unknown. `tightening_factor` is the greatest
+    divided by the least preload that tightening gives.
     """
 
     stiffness: Array
     growth: Array | None
+    tightening_factor: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -410,7 +418,7 @@ class EdgeBeside(NamedTuple):
     wall: end_bending.Shell
     edge: end_bending.Edge
     growth: Array
-    metal_peak: float | None = None
+    metal_peak: Array | None = None
 
 
 @dataclass(frozen=True, slots=True)

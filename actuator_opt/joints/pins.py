@@ -44,6 +44,7 @@ from .joint import (
     metal_strengths,
     too_thin,
 )
+from .plug import behind_seal
 from .winding import winding_edge
 
 PATTERN, SKIRT = "geometry_pins", "geometry_pin_skirt"
@@ -478,6 +479,7 @@ def _strength(loaded: Loaded) -> Strength | str:
         "pins in shear": pin_ultimate / sqrt(3) / stress["pin shear"],
         "pins in bending": pin_ultimate / stress["plastic bending"],
         "plug that holds the pins": plug_ultimate / stress["held"],
+        **behind_seal(loaded, _skirt(loaded.end)[0]),
     }
     return _with_liner(loaded, working, burst)
 

@@ -1,7 +1,8 @@
 """Plugs in the bore of the barrel: what the joints that hold them there share.
 
-The end plate is the plug; its rim has the static seal. Groove or thread are outside the seal, so
-that oil pressure does not act there. They are cut into the innermost layer.
+The end plate is the plug; its rim has the static seal. What holds the plug is outside the seal, so
+that oil pressure does not act there, and the force crosses the rim behind the seal. A groove or
+thread is cut into the innermost layer.
 """
 
 from __future__ import annotations

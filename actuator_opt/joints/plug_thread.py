@@ -11,11 +11,9 @@ from collections.abc import Iterator, Mapping
 from math import sqrt
 
 from ..base.errors import Fault
-from ..base.numeric import Array, minimum
+from ..base.numeric import Array, maximum, minimum
 from ..base.quantities import Quantity, length_text
 from ..models import mass, retaining_ring, thread
-from ..models.barrel import von_mises
-from ..models.rod import section_area
 from .joint import (
     ON_METAL,
     ROUNDING,
@@ -222,17 +220,19 @@ def _land(end: End) -> Array:
     return end.inner_radius + end.layers[0].thickness - _diameter(end) / 2
 
 
-def _plug_section(end: End) -> Array:
-    """Cross-section area of the plug's skirt under the thread root."""
-    root = 2 * _root_radius(end)
-    return section_area(outer_diameter=root, inner_diameter=root - 2 * end.sizes["wall"])
-
-
-def _pulled_and_squeezed(end: End, force: Array) -> Array:
-    """Equivalent stress of the plug's skirt: axial tension, and hoop compression by the flanks."""
-    return von_mises(
-        axial=force / _plug_section(end), hoop=-_spread(end, force, end.sizes["wall"]), radial=0.0
+def _skirt(loaded: Loaded) -> tuple[Array, Array, Array]:
+    """Axial and hoop compression of the plug's skirt, and its bending stress at the plate."""
+    end = loaded.end
+    stresses: tuple[Array, Array, Array] = thread.skirt_stresses(
+        force=loaded.force,
+        root_diameter=2 * _root_radius(end),
+        thickness=end.sizes["wall"],
+        engagement=thread.engaged_length(
+            length=end.sizes["length"], pitch=end.sizes["thread.pitch"]
+        ),
+        poissons_ratio=loaded.materials.get(end.cap, "poissons_ratio", default=0.3),
     )
+    return stresses
 
 
 def _spread(end: End, force: Array, thickness: Array) -> Array:
@@ -258,7 +258,7 @@ def _strength(loaded: Loaded) -> Strength | str:
     burst = {
         "thread in the bore": of_female * wall_ultimate / sqrt(3) * female / force,
         "thread of the plug": of_male * plug_ultimate / sqrt(3) * male / force,
-        "plug under its thread": plug_ultimate / _pulled_and_squeezed(end, force),
+        "plug under its thread": plug_ultimate / maximum(*_skirt(loaded)[:2]),
         **behind_seal(loaded, _root_radius(end) - end.sizes["wall"]),
         "barrel spread by the plug": wall / _spread(end, force, _land(end)),
         "barrel under the plug's thread": retaining_ring.collapse_factor(
@@ -273,21 +273,25 @@ def _yields(loaded: Loaded) -> Mapping[str, Array]:
     if isinstance(strengths, str):
         return {}
     (wall, _), (plug, _) = strengths
+    axial, _, bending = _skirt(loaded)
     return {
         "barrel under the plug's thread": wall / sum(_under_thread(loaded)),
-        "plug under its thread": plug / _pulled_and_squeezed(loaded.end, loaded.force),
+        "plug under its thread": plug / (axial + bending),
     }
 
 
 def _fatigue(loaded: Loaded) -> Fatigue:
-    """Stress at both thread roots under pulsating force; notch factors as for `thread`."""
+    """Stress at both thread roots under pulsating force; notch factors as for `thread`.
+
+    That of the plug is its axial compression, as if it were tension (`thread.skirt_stresses`).
+    """
     strengths, end = _strengths(loaded), loaded.end
     if isinstance(strengths, str):
         return Fatigue()
     pulsed = []
     for place, name, stress in (
         ("thread root in the bore", end.layers[0].material, sum(_under_thread(loaded))),
-        ("thread root of the plug", end.cap, loaded.force / _plug_section(end)),
+        ("thread root of the plug", end.cap, _skirt(loaded)[0]),
     ):
         notch = notch_factor(loaded.materials, name, CUT, CUT_HARD)
         pulsed.append(Pulsed(place, name, notch * stress, stress / 2))
@@ -352,7 +356,7 @@ JOINT = Joint(
         ("retention_factor", "flanks of the plug's thread"): "thread.flank_area",
         ("retention_burst_factor", "thread in the bore"): "thread.stripping_reductions",
         ("retention_burst_factor", "thread of the plug"): "thread.stripping_reductions",
-        ("retention_burst_factor", "plug under its thread"): "thread.spread_stress",
+        ("retention_burst_factor", "plug under its thread"): "thread.skirt_stresses",
         ("retention_burst_factor", BEHIND_SEAL): "end_plate.rim_tear_factor",
         ("retention_burst_factor", "barrel spread by the plug"): "thread.spread_stress",
         (
@@ -360,7 +364,7 @@ JOINT = Joint(
             "barrel under the plug's thread",
         ): "retaining_ring.collapse_factor",
         ("yield_factor", "barrel under the plug's thread"): "thread.internal_wall_stresses",
-        ("yield_factor", "plug under its thread"): "thread.spread_stress",
+        ("yield_factor", "plug under its thread"): "thread.skirt_stresses",
     },
     usual=(),
     warnings=_warnings,

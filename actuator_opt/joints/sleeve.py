@@ -64,13 +64,6 @@ RAMP = 5.0
 """Length of the conical tip of a sleeve, divided by the lift of the winding. Our choice: a slope of
 11 degrees, which hoop plies do not slide down."""
 
-METAL_PEAK = 1.35
-"""Largest equivalent stress of a liner beside its thickened end, divided by that far from it.
-
-Finite elements of 20 ends on bores of 22 to 80 mm give 0.98 to 1.31. The winding does not yet carry
-its share there, and the middle of the metal steps, both of which a shell leaves out. A thread that
-is short for its bore (7 mm at 80 mm) adds its own moment, up to 1.46."""
-
 HOOP = 1.309
 """Winding angle from which plies carry no axial force to a sleeve, 75 degrees [rad]. Our choice:
 beyond it, the axial modulus of carbon plies is below 1.1 times that across the fibres."""
@@ -428,7 +421,7 @@ def edge_beside(loaded: Loaded) -> EdgeBeside | None:
     """The edge of the barrel beside a sleeve; None if an elastic constant is unknown.
 
     The conical tip counts with the full wall of the sleeve, as a sharp step. The metal of a
-    thickened liner has the stress of the wall far from it, times `METAL_PEAK`.
+    thickened liner has the stress of the wall far from it, times `thickened_end_peak`.
     """
     if "edge beside" not in loaded.end.cache:
         loaded.end.cache["edge beside"] = _edge_beside(loaded)
@@ -442,7 +435,13 @@ def _edge_beside(loaded: Loaded) -> EdgeBeside | None:
         return None
     barrel = end_bending.shell(layers=loaded.shells, inner_radius=loaded.end.inner_radius)
     edge, growth = _step(loaded, wound, barrel, loaded.pressure)
-    peak = METAL_PEAK if _merged(loaded.end) else None
+    end, peak = loaded.end, None
+    if _merged(end):
+        peak = end_bending.thickened_end_peak(
+            length=end.sizes["length"] + end.sizes[f"{KEY}.inner_length"],
+            radius=end.inner_radius,
+            thickness=end.sizes[f"{KEY}.wall"] + sum(layer.thickness for layer in end.layers[1:]),
+        )
     return EdgeBeside(BESIDE, barrel, edge, growth, peak)
 
 
@@ -494,8 +493,16 @@ def _fatigue(joint: Joint, loaded: Loaded) -> Fatigue:
 def _warnings(
     joint: Joint, loaded: Loaded, quantities: Mapping[str, Quantity]
 ) -> Iterator[tuple[str, str]]:
-    """Warn of a short overlap, in which the shear of both edges meets."""
+    """Warn of a winding too thick for its liner, and of a short overlap, where both shears meet."""
     yield from joint.warnings(_inside(loaded), quantities)
+    liner, *winding = (layer.thickness for layer in loaded.end.layers)
+    most = float(np.max(np.real(sum(winding) / liner)))
+    if _merged(loaded.end) and most > end_bending.MOST_WINDING:
+        yield (
+            "yield_factor",
+            f"the winding is {most:.3g} times as thick as the liner: the stress of the liner "
+            f"{BESIDE} is known up to {end_bending.MOST_WINDING:g} times",
+        )
     edge = _edge(loaded)
     if _merged(loaded.end) or not isinstance(edge, WindingEdge):
         return

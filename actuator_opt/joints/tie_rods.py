@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import asin, pi, sin
+from math import asin, pi, sin, sqrt
 
 import numpy as np
 
 from ..base.errors import Fault
-from ..base.numeric import Array
+from ..base.numeric import Array, minimum
 from ..base.quantities import Quantity, length_text
 from ..models import endurance, mass, piston_nut, retention
 from .joint import (
@@ -31,7 +31,6 @@ from .joint import (
     Strength,
     WallPressures,
     nothing,
-    rectangle,
 )
 
 
@@ -97,32 +96,50 @@ def _clamping(end: End, materials: MaterialProperties) -> Clamping:
     diameter = end.sizes["thread.diameter"]
     stiffness = end.sizes["count"] * modulus * pi * diameter * diameter / 4 / _length(end)
     expansion = materials.get(end.material, "thermal_expansion")
-    return Clamping(stiffness, None if expansion is None else expansion * _length(end))
+    growth = None if expansion is None else expansion * _length(end)
+    factor = end.sizes.get("tightening_factor", piston_nut.TIGHTENING)
+    return Clamping(stiffness, growth, factor)
 
 
 def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
-    """Half the mass of all tie rods; as both ends count it, the sum is the full mass."""
+    """Mass of this end's nuts, and half the mass of all tie rods, which end with their nuts."""
     assert end.material is not None
+    diameter, count = end.sizes["thread.diameter"], end.sizes["count"]
+    density = materials.get(end.material, "density")
     rods = mass.tie_rod_mass(
-        density=materials.get(end.material, "density"),
-        diameter=end.sizes["thread.diameter"],
-        length=_length(end),
-        count=end.sizes["count"],
+        density=density,
+        diameter=diameter,
+        length=_length(end) + 2 * piston_nut.HEIGHT * diameter,
+        count=count,
     )
-    return {"fastening": rods / 2}
+    nuts = count * density * piston_nut.nut_volume(diameter=diameter)
+    return {"fastening": rods / 2 + nuts}
 
 
 def _outline(end: End, fit: EndDimensions, span: EndSpan) -> Iterator[DrawnPart]:
-    """Outline of one tie rod in the section plane, between the outer faces of both plates."""
+    """Outline of one tie rod in the section plane, with a nut on the outer face of each plate.
+
+    The nuts are drawn round, with the section of the hexagon.
+    """
     if span.inwards < 0 or end.material is None:
         return
-    low, size = float(fit.radius), (float(fit.plate_radius) - float(fit.radius)) / 2
-    shape = rectangle(span.outside, span.opposite, low + size / 2, low + 3 * size / 2)
-    yield DrawnPart("tie rods", end.material, shape, bars=round(float(end.sizes["count"])))
+    diameter = (float(fit.plate_radius) - float(fit.radius)) / 2
+    axis, height = float(fit.radius) + diameter, piston_nut.HEIGHT * diameter
+    shank = diameter / 2
+    nut = sqrt(shank * shank + piston_nut.nut_volume(diameter=diameter) / (pi * height))
+    start, stop = sorted((span.outside, span.opposite))
+    above = [(start - height, nut), (start, nut), (start, shank)]
+    above += [(start + stop - x, radius) for x, radius in reversed(above)]
+    shape = [(x, axis + radius) for x, radius in above]
+    shape += [(x, axis - radius) for x, radius in reversed(above)]
+    yield DrawnPart("tie rods", end.material, tuple(shape), round(float(end.sizes["count"])))
 
 
 def _notes(end: End) -> Iterator[str]:
-    yield "Tie rods pass through the plates; their holes are not drawn."
+    yield (
+        "Tie rods pass through the plates; their holes are not drawn, and their hexagon nuts are "
+        "drawn round."
+    )
 
 
 def _stress(end: End, force: Array) -> Array:
@@ -147,12 +164,23 @@ def _strength(loaded: Loaded) -> Strength | str:
     ultimate = materials.allowable(end.material, "ultimate_strength")
     if strength is None or ultimate is None:
         return "tie rods need a thread and a material with yield and ultimate strength"
-    clamp = _clamp(loaded)
-    forces = {"": clamp.largest}
-    forces |= {at: clamp.largest + change for at, change in clamp.changes.items()}
-    stresses = {at: _stress(end, force) for at, force in forces.items()}
-    working = {f"tie rods, {at}" if at else "tie rods": strength / x for at, x in stresses.items()}
-    burst = {f"with temperature, {at}" if at else "": ultimate / x for at, x in stresses.items()}
+    clamp, per_stress = _clamp(loaded), _stress(end, 1.0)
+    preloads = {"": clamp.greatest}
+    preloads |= {at: clamp.greatest + change for at, change in clamp.changes.items()}
+
+    def factor(stress: Array, preload: Array) -> Array:
+        """Force on the ends at this stress of the rods, over the force; also of an open joint."""
+        borne = stress / per_stress
+        return minimum((borne - preload) / clamp.added, borne / loaded.force)
+
+    working = {
+        f"tie rods, {at}" if at else "tie rods": factor(strength, preload)
+        for at, preload in preloads.items()
+    }
+    burst = {
+        f"with temperature, {at}" if at else "": factor(ultimate, preload)
+        for at, preload in preloads.items()
+    }
     return Strength(working, burst, NOT_BONDED)
 
 
@@ -160,7 +188,7 @@ def _fatigue(loaded: Loaded) -> Fatigue:
     """Fatigue of the tie-rod threads under pulsating pressure."""
     end, clamp = loaded.end, _clamp(loaded)
     diameter = end.sizes["thread.diameter"]
-    amplitude = _stress(end, (clamp.largest - clamp.preload) / 2)
+    amplitude = _stress(end, clamp.added / 2)
     life = Life(
         endurance.bolt_cycles(amplitude=amplitude, diameter=diameter),
         endurance.bolt_endurance_amplitude(diameter=diameter) / amplitude,
@@ -169,7 +197,18 @@ def _fatigue(loaded: Loaded) -> Fatigue:
 
 
 def _own(loaded: Loaded) -> dict[str, Mapping[str, Array]]:
-    return {"joint_factor": _clamp(loaded).closed}
+    """The joint stays closed; and the preload that tightening may cause, over the greatest."""
+    end, clamp = loaded.end, _clamp(loaded)
+    assert end.material is not None
+    factors = dict(clamp.closed)
+    strength = loaded.materials.allowable(end.material, "yield_strength")
+    if strength is not None:
+        twist = piston_nut.torsion_factor(
+            diameter=end.sizes["thread.diameter"], pitch=end.sizes["thread.pitch"]
+        )
+        stress = twist * _stress(end, clamp.greatest)
+        factors["while tightened"] = piston_nut.USED * strength / stress
+    return {"joint_factor": factors}
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
@@ -213,6 +252,11 @@ JOINT = Joint(
         JointField("thread.diameter", "missing: required by tie rods", 'add e.g. "diameter: 6 mm"'),
         JointField("thread.pitch"),
         JointField("preload"),
+        JointField(
+            "tightening_factor",
+            quantity="tightening_factor",
+            help="greatest divided by least preload after tightening; default 1.6",
+        ),
     ),
     kinds=("metal",),
     without={},

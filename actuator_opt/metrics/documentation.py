@@ -1,4 +1,4 @@
-"""What the docstring of a model states: its first sentence, source and valid range."""
+"""First sentence, source and valid range of a model, read from its docstring."""
 
 from __future__ import annotations
 

@@ -302,7 +302,7 @@ def stud_mass(*, density: Array, diameter: Array, pitch: Array, length: Array) -
 
 @geometry
 def tie_rod_mass(*, density: Array, diameter: Array, length: Array, count: Array) -> Array:
-    """Mass of tie rods, n plain round bars of the nominal diameter (choice: nuts not counted).
+    """Mass of tie rods, n plain round bars of the nominal diameter, without nuts.
 
     Parameters
     ----------

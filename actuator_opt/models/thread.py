@@ -338,6 +338,58 @@ def spread_stress(*, force: Array, thickness: Array, engagement: Array) -> Array
 
 
 @geometry
+def skirt_stresses(
+    *,
+    force: Array,
+    root_diameter: Array,
+    thickness: Array,
+    engagement: Array,
+    poissons_ratio: Array,
+) -> tuple[Array, Array, Array]:
+    """Stresses of a plug's skirt with a male thread, outside the plate that presses on it.
+
+    Plate and thread press the skirt along its axis, F/A, and the flanks squeeze it, sigma_h as in
+    `spread_stress`. At the plate, which holds its radius, it bends: sqrt(3/(1 - nu^2)) sigma_h.
+
+    Parameters
+    ----------
+    force : axial force F [N]
+    root_diameter : of the thread [m]
+    thickness : wall thickness t under the thread [m]
+    engagement : engaged length L_e [m]
+    poissons_ratio : nu [-]
+
+    Returns
+    -------
+    axial and hoop compression, and bending stress [Pa]
+
+    Notes
+    -----
+    Valid: upper bound of elastic stress, as couples of the thread bend the skirt the other way.
+
+    Finite elements of skirts of 1.1 mm to 3 mm on plates of 4.7 mm to 15 mm, one with the groove of
+    a seal, give 0.3 to 0.9 of the sum of axial and bending stress, and less tension than F/A.
+    Bending cannot tear the skirt: axial and hoop compression carry the force without it, and the
+    couples of the thread relieve the squeeze.
+
+    References
+    ----------
+    [derived] long tube with a clamped end, under the radial pressure of the flanks
+
+    Examples
+    --------
+    >>> axial, hoop, bending = skirt_stresses(force=7982.0, root_diameter=22e-3, thickness=1.1e-3,
+    ...                                       engagement=6.4e-3, poissons_ratio=0.33)
+    >>> print(f"{axial / 1e6:.1f} {hoop / 1e6:.1f} {bending / 1e6:.1f}")
+    110.5 104.2 191.1
+    """
+    area = pi * thickness * (root_diameter - thickness)
+    hoop = spread_stress(force=force, thickness=thickness, engagement=engagement)
+    bending = sqrt(3 / (1 - poissons_ratio * poissons_ratio)) * hoop
+    return force / area, hoop, bending
+
+
+@geometry
 def internal_wall_stresses(
     *,
     force: Array,

@@ -389,6 +389,21 @@ SAMPLES = {
         "stud_modulus": 206e9,
         "piston_modulus": 71.7e9,
     },
+    "end_bending.thickened_end_peak": {"length": 9e-3, "radius": 11e-3, "thickness": 6e-3},
+    "thread.skirt_stresses": {
+        "force": 7982.0, "root_diameter": 22e-3, "thickness": 1.1e-3, "engagement": 6.4e-3,
+        "poissons_ratio": 0.33,
+    },
+    "piston_nut.clamp_compliance": {
+        "diameter": 8e-3,
+        "shoulder_diameter": 11.5e-3,
+        "length": 6e-3,
+        "stud_modulus": 206e9,
+        "piston_modulus": 71.7e9,
+    },
+    "piston_nut.preload_range": {"preload": 13e3, "tightening_factor": 1.6},
+    "piston_nut.settling_loss": {"threads": 1, "seats": 2, "joints": 0, "compliance": 2e-9},
+    "piston_nut.torsion_factor": {"diameter": 8e-3, "pitch": 1e-3, "share": 0.5},
     "piston_nut.preload_change": {
         "diameter": 8e-3,
         "piston_diameter": 21e-3,

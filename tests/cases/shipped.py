@@ -12,8 +12,16 @@ DESIGNS = Path(__file__).parents[2] / "designs"
 KNEE = (DESIGNS / "knee.yaml").read_text("utf-8")
 for stated, changed in (
     ("      thickness: 1 mm", "      thickness: 1.85 mm"),
-    ("      thickness: 3.3 mm", "      thickness: 2.65 mm"),
-    ("  outer_diameter: 12.3 mm", "  outer_diameter: 12 mm"),
+    ("      thickness: 3.65 mm", "      thickness: 2.65 mm"),
+    ("  bore: 22.3 mm", "  bore: 21.8 mm"),
+    (
+        "  outer_diameter: 12.85 mm\n  inner_diameter: 10 mm",
+        "  outer_diameter: 12 mm\n  inner_diameter: 8 mm",
+    ),
+    ("  length: 15.5 mm", "  length: 12.5 mm"),
+    ("  length: 6.5 mm", "  length: 8 mm"),
+    ("  thickness: 4.95 mm", "  thickness: 4.7 mm"),
+    ("preload: 14.2 kN           # mean of a torque wrench: 10.9 kN to 17.5 kN", "preload: 8 kN"),
     ("  length: 5 mm\n  wall: 2.2 mm", "  length: 7 mm\n  wall: 1.1 mm"),
 ):
     assert stated in KNEE

@@ -131,7 +131,7 @@ def test_order_of_the_shipped_knee():
         "Screw",
     ]
     assert "nut" in lines[0]
-    assert lines[2] == "Insert piston, rod and head through the opening of 22.61 mm at the head."
+    assert lines[2] == "Insert piston, rod and head through the opening of 23.11 mm at the head."
     evaluation = ao.evaluate(ao.read(DESIGNS / "knee.yaml"))
     drawn = notes(evaluation.design, evaluation.lengths)
     assert [line for line in drawn if line.startswith("Assembly 3. Insert")]

@@ -159,7 +159,7 @@ FAULTS = [
     (laminated(LAYUP + FITTING + "    material: t700_epoxy\n"), "rod.fitting.material",
      "t700_epoxy\n  extension", "need a metal or polymer", "al_"),
     (laminated(LAYUP + FITTING).replace("  material: steel_42crmo4\n", "  material: t700_epoxy\n"),
-     "rod.material", "t700_epoxy\n  outer", "need a metal or polymer", "al_"),
+     "rod.material", "t700_epoxy\n  outer", "need a metal or polymer", "steel_42crmo4"),
     (changed((BALANCE, BALANCE.replace("20 deg", "-20 deg"))), "barrel.layup[2].angle", "-20 deg",
      "a balanced +-pair has no sign", 'write 20 deg, or add "balanced: false"'),
     (changed((BALANCE, BALANCE.replace("20 deg", "-95 deg"))), "barrel.layup[2].angle", "-95 deg",

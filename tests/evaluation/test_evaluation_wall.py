@@ -174,10 +174,12 @@ def test_tie_rods_share_the_force_with_the_barrel(tmp_path):
     assert wall.path.clamp is not None
     per_pressure = wall.path.per_pressure["piston at the end stop"]
     assert np.squeeze(per_pressure * supply) - 15e3 == pytest.approx(float(np.squeeze(force)))
-    assert np.squeeze(wall.path.clamp.largest) == pytest.approx(float(np.squeeze(rod_force)))
+    most = float(np.squeeze(rod_force)) + 15e3 * (1.6 / 1.3 - 1)  # tightened with scatter
+    assert np.squeeze(wall.path.clamp.largest) == pytest.approx(most)
     factor = float(np.squeeze(done.computed.metrics["joint_factor"]["at assembly"]))
     lost = float(np.squeeze(force)) + 15e3
-    assert factor == pytest.approx(15e3 / (values["supply.proof_ratio"] * lost))
+    settled = 14e-6 * float(np.squeeze(barrel)) * rods / (float(np.squeeze(barrel)) + rods)
+    assert factor == pytest.approx((15e3 / 1.3 - settled) / (values["supply.proof_ratio"] * lost))
     assert 0 < float(np.squeeze(wall.path.share)) < 1
 
 
@@ -195,9 +197,10 @@ def test_temperature_changes_the_preload_of_tie_rods(tmp_path):
         place: float(np.squeeze(value))
         for place, value in done.computed.metrics["joint_factor"].items()
     }
+    settled = 14e-6 / (1 / float(np.squeeze(barrel)) + 1 / rods)
     for word, change in (("cold", -20.0), ("hot", 60.0)):
         ratio = factors[word] / factors["at assembly"]
-        assert ratio == pytest.approx(1 + gain * change / 15e3, rel=1e-9)
+        assert ratio == pytest.approx(1 + gain * change / (15e3 / 1.3 - settled), rel=1e-9)
     cold, hot = wall.path.held_in(2)
     assert np.squeeze(hot) == pytest.approx(-15e3 - 60 * gain, rel=1e-9)
     assert np.squeeze(cold) == pytest.approx(-15e3 + 20 * gain, rel=1e-9)

@@ -45,7 +45,7 @@ def test_notes_compare_the_fit_with_the_clearance_of_the_design():
         " ".join(fits.notes(ao.evaluate(ao.read(DESIGNS / "knee.yaml", set=changes))))
         for changes in ({}, wide)
     )
-    assert "Bore 21.8 H8 (0 / +0.033), piston and head f7 (-0.041 / -0.020)" in text
+    assert "Bore 22.3 H8 (0 / +0.033), piston and head f7 (-0.041 / -0.020)" in text
     assert "radial clearance 0.010 to 0.037 mm; the design has 0.03 mm." in text
     assert "the design has 0.06 mm, which needs another fit." in other
     assert "M10 x 1.25 - 6g" in text

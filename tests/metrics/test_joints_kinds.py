@@ -239,12 +239,11 @@ def test_its_outline(joint):
     for outline in drawn:
         size = 0.0
         for polygon in outline.polygons:
-            xs, rs = zip(*polygon, strict=True)
-            length, height = max(xs) - min(xs), max(rs) - min(rs)
-            if outline.radial:
-                length, height = height, length
-            bars = np.pi / 4 * height**2 * length * outline.bars
-            size += bars if outline.bars else volume(polygon)
+            shape = [point[:: -1 if outline.radial else 1] for point in polygon]
+            radii = [radius for _, radius in shape]
+            axis = (min(radii) + max(radii)) / 2 if outline.bars else 0.0
+            half = [(x, max(radius - axis, 0.0)) for x, radius in shape]
+            size += max(outline.bars, 1) * volume(half)
         density = numbers[f"materials.{outline.material}.density"]
         weights[names[outline.part]] += size * density
     for part, weight in weights.items():
@@ -305,3 +304,25 @@ def test_an_unknown_word():
     """The nearest word is offered."""
     with pytest.raises(KeyError, match="tie_rods"):
         JOINTS["tie_rod"]
+
+
+@pytest.mark.parametrize(("name", "inner"), [("pins", 11.5 + 1.5 - 8), ("cone", 11.5 - 3)])
+def test_the_force_crosses_the_rim_behind_the_seal(name, inner):
+    """Skirt and neck start outside the seal, inside its groove: lip in shear, metal in tension."""
+    static = "  static: {compound: nbr_90, section: 1.78 mm, squeeze: 20 %}\n"
+    text = text_of(BLOCKS[name]).replace(
+        "\nload:\n", f"\n{static}\nload:\n".replace("\n\n", "\n"), 1
+    )
+    subject = ao.read(text, set={"caps.thickness": "6 mm"}).subject()
+    run = compute(subject, subject.values())
+    rows, loaded = run.computed.metrics["retention_burst_factor"], run.joints[0].loaded
+    strength = 1e-6 * float(loaded.materials.allowable(loaded.end.cap, "ultimate_strength"))
+    bottom, lip = 11.5 - 0.8 * 1.78, (6 - 1.3655 * 1.78) / 2
+    held = 2 * np.pi * bottom * lip / 3**0.5 + np.pi * (bottom**2 - inner**2)
+    force = float(np.squeeze(loaded.force))
+    assert np.squeeze(rows["plug behind its static seal"]) == pytest.approx(
+        strength * held / force, rel=1e-9
+    )
+    bare = ao.read(text_of(BLOCKS[name])).subject()
+    found = compute(bare, bare.values()).computed.metrics["retention_burst_factor"]
+    assert rows.keys() - found.keys() == {"plug behind its static seal"}

@@ -6,7 +6,8 @@ of the layers.
 
 The axial force follows from mount, load direction, stop and tie rods. The barrel is never assumed
 to be just open-ended or closed-ended. Tie rods clamp the barrel with their preload and carry
-their share of the separating force. The default preload keeps the joint closed at proof pressure.
+their share of the separating force. The default preload keeps the joint closed at proof pressure,
+however the tightening scatters. The wall has the mean preload.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from ...base.dataclass import dataclass
 from ...base.numeric import Array, array_of, maximum
 from ...design.model import Design
 from ...joints.joint import Clamp, Clamping
-from ...models import barrel, barrel_ends, column, laminate, ply, rod
+from ...models import barrel, barrel_ends, column, laminate, piston_nut, ply, rod
 from ...models.autofrettage import Autofrettage
 from ...models.layered_tube import layered_tube, ply_stresses_at_faces, tube_state
 from ...models.strength import yield_utilisation
@@ -163,20 +164,26 @@ def _clamped(
     ((name, area),) = worst.items()
     unit, _ = forces_of(area, 1.0)
     relaxed, _ = forces_of(0.0 * area, 1.0)
+    settled = piston_nut.settling_loss(
+        threads=2, seats=2, joints=2, compliance=sum(1 / spring for spring in springs.values())
+    )
+    scatter = piston_nut.preload_range(preload=1.0, tightening_factor=rods.tightening_factor)
     preload = v.get("retention.preload", None)
     if preload is None:
-        preload = proof * unit
+        least = proof * unit
         for change in changes.values():
-            preload = maximum(preload, proof * unit - change)
-    at = {"at assembly": 0.0, **changes} if changes else {"": 0.0}
-    closed = {place: (preload + change) / (proof * unit) for place, change in at.items()}
+            least = maximum(least, proof * unit - change)
+        preload = (least + settled) / scatter[0]
+    least, greatest = (preload * share for share in scatter)
+    at = {"at assembly": 0.0, **changes}
+    closed = {place: (least - settled + change) / (proof * unit) for place, change in at.items()}
     pressure = maximum(state.moving_a, state.moving_b)
     barrel, _ = forces_of(cases, pressure)
     return LoadPath(
         {NONE: relaxed, name: unit},
         -preload,
         barrel - preload,
-        Clamp(preload, supply * (area - unit) + preload, closed, changes),
+        Clamp(preload, greatest, supply * (area - unit), closed, changes),
         springs["barrel_stiffness"] / (springs["barrel_stiffness"] + springs["tie_rod_stiffness"]),
         tuple(-change for change in changes.values()),
     )

@@ -31,6 +31,7 @@ from ...evaluation.values import Values
 from ...joints.joint import Clamp
 from ...models import column, rod as rod_models, stepped, tube_bounds
 from ...models.layered_tube import layered_tube, tube_state
+from ...models.piston_nut import preload_range
 from ...models.solid_ply import solid_rotated
 from ...models.trial_motion import (
     Chamber,
@@ -662,7 +663,10 @@ class Envelopes:
         state: LoadState,
         swelling: Swelling,
     ) -> LoadPath:
-        """Axial force in a laminated wall; with tie rods, the wall's share is an unknown."""
+        """Axial force in a laminated wall; with tie rods, the wall's share is an unknown.
+
+        Settling and temperature, which only lower the least preload, are left out.
+        """
         if not clamped(design):
             return wall.load_path(v, design, stock, g, state, swelling)
         name = wall.STOP if design.cylinder.end_stop == "internal" else wall.LARGEST
@@ -671,11 +675,15 @@ class Envelopes:
         )
         supply = v["supply.pressure"]
         proof = v["supply.proof_ratio"] * supply
-        preload = v.get("retention.preload", proof * share)
-        largest = supply * (wall.largest_area(design, g) - share) + preload
-        rods = Clamp(preload, largest, {"": preload / (proof * share)})
+        springs = wall.clamping(v, design, stock, g)
+        low, high = preload_range(preload=1.0, tightening_factor=springs.tightening_factor)
+        preload = v.get("retention.preload", proof * share / low)
+        added = supply * (wall.largest_area(design, g) - share)
+        rods = Clamp(
+            preload, preload * high, added, {"at assembly": preload * low / (proof * share)}
+        )
         barrel = 1 / (swelling.stretch * g.barrel_length)
-        total = barrel + wall.clamping(v, design, stock, g).stiffness
+        total = barrel + springs.stiffness
         return wall.LoadPath({name: share}, 0.0, 0.0, rods, barrel / total)
 
 
