@@ -23,8 +23,9 @@ BONDED = DESIGNS / "knee_bonded.yaml"
 SLOW = {
     "Prices", "ParetoFront", "Uncertainty", "SealStudy", "Simulation", "Compared", "Identification",
     "Calibrated", "KeptSweep", "Restored", "Run", "Rerun", "Sensitivities", "Verification",
+    "Installation",
 }  # fmt: skip
-"""Kinds that `tests/cli/test_job.py` makes anyway, and holds to the same."""
+"""Kinds that `tests/cli/test_job.py` or `tests/rendering/test_html.py` makes and checks."""
 BENDING = "".join(f"{k / 10:g},{3 * k:g},{k / 50:g}\n" for k in range(60))
 
 
@@ -49,7 +50,7 @@ def test_the_repr_of_every_result_is_one_short_line(tmp_path):
     bent = ao.bending(tmp_path / "bend.csv", specimen=specimen)
     objects = [
         evaluation(), optimum(), session, ao.compare(BENCH, BONDED), bent, bent.record, specimen,
-        ao.sweep(BENCH, ["retention.wall=3mm,4mm"], workers=1), ao.doctor(), ao.load_library(),
+        ao.sweep(BENCH, ["retention.wall=3mm,4mm"], workers=1), ao.load_library(),
         ao.read(BENCH), evaluation().design, ao.Diagnostic("x" * 500, "y" * 500),
         ao.read_scenario(DESIGNS / "scenarios" / "knee_step.yaml"), ao.explain("mass"),
         ao.explain("mass").entry, ao.catalogue("metrics"), evaluation().table("metrics"),
