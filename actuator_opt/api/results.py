@@ -9,7 +9,7 @@ import fails.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from importlib import import_module
 from pathlib import Path
@@ -44,6 +44,7 @@ class ResultKind:
     exit_code : gives the exit code of a command with this result
     page : builds the `Page` of a result, which gives its text, report and HTML
     blocks : for a result without a page, builds the blocks of its text
+    card : builds the blocks of a short text, which a command prints unless it is asked for all
     text : for a result without page and blocks, gives the terminal text of (result, colour=,
         unicode=, width=)
     report : writes the report of (result, **`ReportArguments`); some kinds need more keywords
@@ -61,6 +62,7 @@ class ResultKind:
     record: str | None
     page: str | None = None
     blocks: str | None = None
+    card: str | None = None
     text: str | None = None
     data: str | None = "to_dict"
     remarks: Callable[[Any], list[str]] | None = None
@@ -123,12 +125,12 @@ def kinds(*declared: ResultKind) -> dict[str, ResultKind]:
 # fmt: off
 KINDS = kinds(
     ResultKind(
-        "evaluation.result:Evaluation", _met, page="pages.report:page",
+        "evaluation.result:Evaluation", _met, page="pages.report:page", card="pages.card:blocks",
         report="api.reports:report_design", csv=None, record=None,
     ),
     ResultKind(
         "optimisation.result:Optimisation", _optimised, page="pages.report:page",
-        report="api.reports:report_design", csv=None, record="api:record",
+        card="pages.card:blocks", report="api.reports:report_design", csv=None, record="api:record",
         remarks=_unrounded, writes=lambda result: not result.status.startswith("interrupted"),
     ),
     ResultKind(
@@ -253,6 +255,19 @@ def text(result: object, **style: Unpack[Style]) -> str:
 
         return terminal.blocks_text(piece(kind.blocks, result)(), **style)
     return "" if kind.text is None else str(piece(kind.text, result)(**style))
+
+
+def card(result: object, options: Mapping[str, Any], **style: Unpack[Style]) -> str:
+    """The short text of a result, or its whole text if its kind has no short one.
+
+    `options` are those of the card, such as `again` and `written` of `pages.card.blocks`.
+    """
+    name = kind_of(result).card
+    if name is None:
+        return text(result, **style)
+    from ..rendering import terminal
+
+    return terminal.blocks_text(piece(name, result)(**options), **style)
 
 
 def html(result: object) -> str:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..base.arguments import guarded
 from ..base.dataclass import dataclass
-from ..base.errors import Diagnostic, InputError, UsageError, remedy
+from ..base.errors import Diagnostic, InputError, Unsolvable, UsageError, remedy
 from ..base.quantities import Quantity
 from ..base.tables import OneLine, aligned
 from ..design import Design, canonical, get, quantity_of
@@ -24,6 +24,8 @@ from .actuator import Actuator, Plugins, as_actuator, fault_of, located, read, r
 if TYPE_CHECKING:
     from ..optimisation.actuator import ActuatorProblem
     from ..optimisation.result import Optimisation
+    from ..optimisation.solution import Solution
+    from ..optimisation.warm_start import WarmStart
 
 Changes = Mapping[str, float | str]
 """New values of numbers by PATH, such as ``cylinder.stroke``: in SI, or as text with a unit."""
@@ -208,11 +210,16 @@ class Session(OneLine):
                     path="requirements",
                 )
             )
-        self._actuator, self._seed = actuator, seed
         optimisation = result_of(subject, problem, solution, prices=False, seed=seed, began=began)
         self.optimum: Optimisation = estimated(optimisation, actuator.plugins)
+        self._start(
+            actuator, seed, WarmStart(problem, solution, SearchEffort(STARTS, SAMPLES, seed))
+        )
+
+    def _start(self, actuator: Actuator, seed: int, warm: WarmStart) -> None:
+        """Begin at an optimum."""
+        self._actuator, self._seed, self._warm = actuator, seed, warm
         self._differentiable: dict[str, bool] = {}
-        self._warm = WarmStart(problem, solution, SearchEffort(STARTS, SAMPLES, seed))
 
     @property
     def in_short(self) -> tuple[str, str]:
@@ -248,11 +255,7 @@ class Session(OneLine):
         from ..optimisation.run import result_of
 
         began = time.perf_counter()
-        actuator, _ = self._changed(changes)
-        subject, problem = self._built(actuator)
-        solution = self._warm.solve(problem.problem, stop)
-        if not problem.confirmed(solution.x):
-            solution = self._warm.solve(problem.problem, stop)
+        _, subject, problem, solution = self._solved(changes, stop)
         optimisation = result_of(
             subject,
             problem,
@@ -270,6 +273,31 @@ class Session(OneLine):
                 for variable, x in zip(optimisation.variables, starts, strict=True)
             ),
         )
+
+    def at(self, changes: Changes) -> Session:
+        """A session at the optimum with some numbers changed: its prices are those there.
+
+        Parameters and errors as for `solve`.
+
+        Raises
+        ------
+        Unsolvable
+            no design meets all requirements with these numbers
+        """
+        from ..optimisation.run import result_of
+        from ..optimisation.warm_start import WarmStart
+
+        began = time.perf_counter()
+        actuator, subject, problem, solution = self._solved(changes)
+        if not solution.feasible:
+            message = "no design meets all requirements with these numbers"
+            raise Unsolvable(Diagnostic(message, "call optimise, which says what to relax"))
+        moved = object.__new__(Session)
+        moved.optimum = result_of(
+            subject, problem, solution, prices=False, seed=self._seed, began=began
+        )
+        moved._start(actuator, self._seed, WarmStart(problem, solution, self._warm.effort))
+        return moved
 
     def predict(self, changes: Changes) -> Prediction:
         """Predict the optimum after a change of some numbers, linearly, without running models.
@@ -436,6 +464,17 @@ class Session(OneLine):
                     )
                 ) from None
         return name
+
+    def _solved(
+        self, changes: Changes, stop: Callable[[], bool] | None = None
+    ) -> tuple[Actuator, PreparedDesign, ActuatorProblem, Solution]:
+        """The changed design, its problem, and the optimum of that from the session's own."""
+        actuator, _ = self._changed(changes)
+        subject, problem = self._built(actuator)
+        solution = self._warm.solve(problem.problem, stop)
+        if not problem.confirmed(solution.x):
+            solution = self._warm.solve(problem.problem, stop)
+        return actuator, subject, problem, solution
 
     def _built(self, actuator: Actuator) -> tuple[PreparedDesign, ActuatorProblem]:
         from ..optimisation.actuator import build

@@ -232,6 +232,7 @@ EXTRAS = {
     "pandas": ("", "pandas"),
     "polars": ("", "polars"),
     "xarray": ("", "xarray"),
+    "openmdao": ("", "openmdao"),
 }
 """For every optional library, the file format that it writes and the extra that installs it."""
 

@@ -28,6 +28,7 @@ from .options import (
     Report,
     Seed,
     Set,
+    Verbose,
 )
 
 if TYPE_CHECKING:
@@ -152,6 +153,7 @@ def evaluate(
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> ExitCode:
     """Compute all metrics, requirements and checks of a design."""
     from .. import api as verbs
@@ -159,7 +161,7 @@ def evaluate(
     job = Job(
         design, sets=sets, plugins=plugin, report=report, out=out, date=date,
         all_pages=all_pages, format=format,
-        as_json=as_json, quiet=quiet,
+        as_json=as_json, quiet=quiet, verbose=verbose,
     )  # fmt: skip
     return job.deliver(job.run(verbs.evaluate, seed=seed if report else None))
 

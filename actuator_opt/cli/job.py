@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import shlex
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import nullcontext
@@ -38,9 +40,9 @@ class Job:
     csv, write : files to write; neither may be an input file, except that `write` may be the design
     report : whether to write the report to the folder `out`, with `date` and in `format`;
         `all_pages` adds images of all pages
-    as_json, quiet : form of the answer
+    as_json, quiet, verbose : form of the answer; `verbose`: the whole text, not only the card
     record : whether to record the run
-    paper : keyword arguments that only the report of this command has
+    paper, card : keyword arguments that only the report and the card of this command have
     """
 
     design: str = ""
@@ -56,8 +58,10 @@ class Job:
     format: str = "pdf"
     as_json: bool = False
     quiet: bool = False
+    verbose: bool = True
     record: bool = False
     paper: dict[str, Any] = field(default_factory=dict)
+    card: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for path in filter(None, (self.csv, self.write)):
@@ -129,7 +133,10 @@ class Job:
 
         def text() -> str:
             style = streams.style()
-            return "\n".join(results.text(x, **style) for x in shown)
+            if self.verbose:
+                return "\n".join(results.text(x, **style) for x in shown)
+            card = {"again": self._again(), "written": self.write is not None, **self.card}
+            return "\n".join(results.card(x, card, **style) for x in shown)
 
         listed = [*({"path": path} for path in saved if path is not None), *written]
         self.answer(data, text, remarks=results.remarks(result), files=listed, faults=faults)
@@ -165,6 +172,13 @@ class Job:
             fault = replace(error.diagnostics[0], remedy=remedy)
             streams.err(f"the run was not recorded: {fault}")
 
+    def _again(self) -> str:
+        """The words of the command line that name the design, its changes and plug-ins."""
+        words = ["DESIGN.yaml" if self.design == "-" else self.design]
+        words += [word for change in self.sets or () for word in ("--set", change)]
+        words += [word for file in self.plugins or () for word in ("--plugin", str(file))]
+        return shlex.join(words)
+
     def _origin(self) -> dict[str, Any]:
         """Origin of the result: command line, design and date."""
         actuator = self.__dict__.get("actuator")  # None if the command read no design
@@ -188,23 +202,34 @@ class Job:
                 streams.out(text(), end="")
             for remark in remarks:
                 streams.err(remark)
-            for file in files:
-                streams.err(f"wrote {file['path']}")
+            for line in _wrote([str(file["path"]) for file in files], each=self.verbose):
+                streams.err(line)
         for fault in faults:
             streams.err(str(fault))
+
+
+def _wrote(paths: Sequence[str], *, each: bool) -> list[str]:
+    """Lines that name the files written; unless `each`, images of one folder are counted."""
+    images = [path for path in paths if path.endswith(".png")]
+    if each or len(images) < 2:
+        return [f"wrote {path}" for path in paths]
+    others = [path for path in paths if path not in images]
+    folders = ", ".join(dict.fromkeys(os.path.dirname(path) or "." for path in images))
+    return [*(f"wrote {path}" for path in others), f"wrote {len(images)} PNG to {folders}"]
 
 
 _TARGETS = ("--out", "--write", "--csv", "--parquet", "--format", "--scheduler")
 """Options with a value that do not affect the result: where it is written or computed."""
 
-_SILENT = ("--json", "--report", "--all-pages", "--quiet", "-q", "--no-record", "--debug")
+_SILENT = (
+    "--json", "--report", "--all-pages", "--quiet", "-q", "--verbose", "-v", "--relax-safety",
+    "--no-record", "--debug",
+)  # fmt: skip
 """Flags that do not affect the result."""
 
 
 def command_line() -> str:
     """The command line, without options that do not affect the result."""
-    import shlex
-
     words, skip = ["actuator-opt"], False
     for word in sys.argv[1:]:
         if skip:

@@ -32,6 +32,7 @@ from .options import (
     Shop,
     StandardSizes,
     Starts,
+    Verbose,
     VerifyDynamics,
     WholePlies,
     Write,
@@ -54,6 +55,10 @@ def optimise(
     certify: Certify = False,
     target: Yield = None,
     verify: VerifyDynamics = None,
+    relax_safety: Annotated[
+        bool,
+        typer.Option("--relax-safety", help="If nothing fits, offer lower safety factors, too."),
+    ] = False,
     seconds: Seconds = None,
     scheduler: Annotated[
         str | None,
@@ -76,6 +81,7 @@ def optimise(
     no_record: NoRecord = False,
     as_json: Json = False,
     quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> ExitCode:
     """Find the best design and what each limit costs."""
     from .. import api as verbs
@@ -83,7 +89,8 @@ def optimise(
     job = Job(
         design, sets=sets, plugins=plugin, write=write, report=report or not as_json, out=out,
         date=date, all_pages=all_pages, format=format,
-        as_json=as_json, quiet=quiet, record=not no_record,
+        as_json=as_json, quiet=quiet, verbose=verbose, record=not no_record,
+        card={"relax_safety": relax_safety},
     )  # fmt: skip
     trial = None if verify is None else _scenario(verify, job.actuator)
     result = job.run(

@@ -37,6 +37,9 @@ Seed = Annotated[
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object (SI) to stdout.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
+Verbose = Annotated[
+    bool, typer.Option("--verbose", "-v", help="Print everything, not only the summary.")
+]
 PluginFile = Annotated[
     list[Path] | None,
     typer.Option(

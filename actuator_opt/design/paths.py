@@ -17,7 +17,7 @@ from ..base import errors, quantities, units
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.quantities import Quantity
-from ..metrics import METRICS, of_metric
+from ..metrics import METRICS, of_metric, term_of
 from .kinds import Fraction, Section, ValueFault
 from .model import Design
 from .structure import KeyEntry, Loc, child, child_at, entries, leaves, number_of
@@ -217,6 +217,33 @@ def _no_such(path: str, candidates: Mapping[str, str]) -> ValueFault:
 def canonical(path: str, design: Design) -> str:
     """Canonical spelling of a PATH, as used in results and records; raises `InputError`."""
     return _target(path, design).path
+
+
+def words_of(path: str) -> str:
+    """The value that a PATH names, in plain words.
+
+    >>> words_of("cylinder.stroke"), words_of("seals.rod.squeeze"), words_of("rod.wall[1].angle")
+    ('stroke', 'rod seal squeeze', 'rod wall[1] angle')
+    >>> words_of("load_cases[swing].force"), words_of("requirements.seal_gap.max")
+    ('force swing', 'seal gap')
+    >>> words_of("materials.t700_epoxy.youngs_modulus_1")
+    'modulus along the fibre of t700_epoxy'
+    """
+    head, _, rest = path.partition(".")
+    if head == "materials":
+        material, _, name = rest.rpartition(".")
+        label = quantities.MATERIAL_PROPERTIES[name].label if material else name
+        return f"{label.partition(' (')[0]} of {material}"
+    if head == "requirements":
+        return term_of(rest.rpartition(".")[0])
+    if head.startswith("load_cases["):
+        return f"{rest} {head[len('load_cases[') : -1]}".replace("_", " ")
+    if head == "seals":
+        place, _, name = rest.partition(".")
+        return f"{place} seal {name}".replace("_", " ").replace(".", " ")
+    layer = path.endswith("].thickness")
+    path = path.removeprefix("cylinder.")
+    return (path.removesuffix(".thickness") if layer else path).replace(".", " ").replace("_", " ")
 
 
 def quantity_of(path: str, design: Design) -> Quantity:

@@ -94,17 +94,15 @@ class YieldEstimate:
         """The estimate in a sentence, or the reason why it is missing."""
         if self.value is None or self.lower is None or self.upper is None:
             return f"Yield not estimated ({self.why}); `actuator-opt uncertainty` estimates it."
-        shown = f"{_percent(self.lower)} to {_percent(self.upper)} %, {self.draws} samples"
+        shown = f"{percent(self.lower)} to {percent(self.upper)} %, {self.draws} samples"
         text = (
-            f"About {_percent(self.value)} % of the actuators built to this design would meet "
+            f"About {percent(self.value)} % of the actuators built to this design would meet "
             f"every requirement ({shown})"
         )
         if self.with_checks is not None and self.with_checks < self.value:
-            text += f", and {_percent(self.with_checks)} % would also pass every check"
+            text += f", and {percent(self.with_checks)} % would also pass every check"
         if self.worst is not None and self.worst_fails:
-            text += (
-                f"; {self.worst} is missed most often, by {_percent(self.worst_fails)} % of them"
-            )
+            text += f"; {self.worst} is missed most often, by {percent(self.worst_fails)} % of them"
         return f"{text}."
 
 
@@ -135,15 +133,15 @@ def sentences(names: Sequence[str], estimate: YieldEstimate, *, movable: bool) -
     return tuple(lines)
 
 
-def _percent(share: float) -> str:
+def percent(share: float) -> str:
     """Format a share in per cent, with a decimal below 10 and above 90.
 
-    >>> _percent(0.026), _percent(0.436), _percent(0.9967), _percent(1.0), _percent(0.0)
+    >>> percent(0.026), percent(0.436), percent(0.9967), percent(1.0), percent(0.0)
     ('2.6', '44', '99.7', '100', '0')
     """
-    percent = 100 * share
-    near = 0 < percent < 10 or 90 < percent < 100
-    return f"{percent:.1f}" if near else f"{percent:.0f}"
+    value = 100 * share
+    near = 0 < value < 10 or 90 < value < 100
+    return f"{value:.1f}" if near else f"{value:.0f}"
 
 
 State: TypeAlias = Literal["met", "no_reserve", "missed", "not_checked"]

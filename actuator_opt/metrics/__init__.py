@@ -1,5 +1,5 @@
 """Metrics: all results that an evaluation computes, declared in one table."""
 
-from .table import METRICS, MetricRow, of_metric
+from .table import METRICS, MetricRow, is_safety, of_metric, term_of
 
-__all__ = ["METRICS", "MetricRow", "of_metric"]
+__all__ = ["METRICS", "MetricRow", "is_safety", "of_metric", "term_of"]

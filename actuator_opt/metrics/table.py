@@ -6,6 +6,7 @@ use this table. To add a metric, write a row here and a line that computes it (`
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field
 from math import pi
@@ -91,6 +92,8 @@ class MetricRow:
     at_stops : whether it is also computed at both ends of the stroke if the loads there differ
     least : smallest value for which a part can be made; only for metrics `geometry_…`
     short : shorter label for a tile of a report
+    term : name of at most 24 letters for a line of the terminal (see `term_of`); states only what
+        the default of `term_of` lacks
     """
 
     name: str
@@ -109,6 +112,7 @@ class MetricRow:
     at_stops: bool = field(default=False, kw_only=True)
     least: Least | None = field(default=None, kw_only=True)
     short: str = field(default="", kw_only=True)
+    term: str = field(default="", kw_only=True)
 
     def __post_init__(self) -> None:
         if not self.label:
@@ -180,7 +184,7 @@ ROWS = table((
               short="mass, dry"),
     MetricRow("mass_oil", "m_oil", "mass", "g",
               "mass of the oil inside, with the piston at the cap end",
-              worst="max", model="mass.oil_mass", feeds=(), check=None),
+              term="oil inside", worst="max", model="mass.oil_mass", feeds=(), check=None),
     MetricRow("push_force", "F_+", "force", "kN", "push force, net of friction and back-pressure",
               worst="min", model="forces.push_force", feeds=(),
               check=CheckLine("1.1", "push force net of friction and back-pressure"),
@@ -195,17 +199,20 @@ ROWS = table((
               check=CheckLine("6.4", "stiffness at the weakest position"),
               short="stiffness, weakest position"),
     MetricRow("stiffness_oil", "k_oil", "stiffness", "kN/mm",
-              "stiffness of the oil alone at the weakest position", worst="min",
+              "stiffness of the oil alone at the weakest position",
+              term="oil stiffness", worst="min",
               model="stiffness.chamber_stiffness", feeds=("oil",), at_stops=True, check=None),
     MetricRow("stiffness_rod", "k_rod", "stiffness", "kN/mm", "axial stiffness of the rod",
-              worst="min", model="rod.axial_stiffness", feeds=(), check=None,
+              term="rod stiffness", worst="min", model="rod.axial_stiffness", feeds=(), check=None,
               at={"layered tube": "layered_tube.tube_state"}),
     MetricRow("stiffness_barrel", "k_bar", "stiffness", "kN/mm",
               "stiffness with barrel swelling as the only compliance, at the weakest position",
+              term="barrel stiffness",
               worst="min", model="barrel.chamber_compliance", feeds=("wall",), at_stops=True,
               check=None),
     MetricRow("stiffness_seals", "k_s", "stiffness", "kN/mm",
-              "stiffness of the sticking seals, in parallel with the oil", worst="min",
+              "stiffness of the sticking seals, in parallel with the oil",
+              term="seal stiffness", worst="min",
               model="lugre.lugre_bristle_stiffness", feeds=(), check=None),
     MetricRow("bore_growth", "u_i", "length", "um", "radial bore growth at supply pressure",
               worst="max", model="barrel.bore_growth", feeds=("wall", "own"),
@@ -216,7 +223,7 @@ ROWS = table((
               worst="max", model="gland.extrusion_gap", feeds=("wall",),
               check=CheckLine("2.6", "extrusion gap at the piston seal")),
     MetricRow("seal_squeeze", "C_min", "ratio", "%",
-              "smallest seal squeeze after bore growth and tolerance", worst="min",
+              "smallest seal squeeze after bore growth and tolerance", term="seal squeeze", worst="min",
               model="gland.squeeze_extremes", feeds=("wall",),
               check=CheckLine("5.1", "smallest seal squeeze", 0.08,
                           "our choice: 8 % after bore growth and tolerances (gland tables: 8 % "
@@ -240,6 +247,7 @@ ROWS = table((
     MetricRow("contact_pressure", "p_0", "pressure", "MPa", "peak seal contact pressure",
               worst="max", model="elastomer.modulus_gent", feeds=(), check=None),
     MetricRow("film_thickness", "h", "length", "um", "mean oil film under the running seal",
+              term="oil film",
               worst="min", model="rough_surface.pressure_flow_factor", feeds=(), check=None),
     MetricRow("seal_wear", "pL", "line_load", "N/mm",
               "contact pressure times sliding distance, per double stroke", worst="max",
@@ -248,6 +256,7 @@ ROWS = table((
               worst="max", model="rough_surface.pressure_flow_factor", feeds=(), check=None),
     MetricRow("inter_seal_pressure", "p_i", "pressure", "bar",
               "pressure between the seals of a pair",
+              term="inter-seal pressure",
               worst="max", model="rough_surface.pressure_flow_factor", feeds=(), check=None),
     MetricRow("friction_running", "F_C", "force", "N",
               "running friction of seals, wipers and guides",
@@ -259,9 +268,10 @@ ROWS = table((
               check=CheckLine("6.1", "breakaway friction")),
     MetricRow("damping_pipe", "c", "damping", "N*s/m",
               "viscous damping by oil flow along the barrel",
-              worst="max", model="damping.pipe_flow", feeds=(), check=None),
+              term="pipe damping", worst="max", model="damping.pipe_flow", feeds=(), check=None),
     MetricRow("damping_annular", "c_a", "damping", "N*s/m",
               "viscous damping by shear of the oil in the annular gaps",
+              term="gap damping",
               worst="max", model="damping.annular_couette", feeds=(), check=None),
     MetricRow("damping_seal", "B", "damping", "kN*s/m",
               "secant damping of the seals at the stated speed",
@@ -302,13 +312,14 @@ ROWS = table((
               check=CheckLine("6.3", "force efficiency", 0.85, "our choice: 85 %")),
     MetricRow("proof_factor", "S_p", "ratio", "",
               "yield or first-ply pressure divided by proof pressure",
-              worst="min", model="barrel.von_mises", feeds=("wall",),
+              term="proof pressure", worst="min", model="barrel.von_mises", feeds=("wall",),
               check=CheckLine("2.2", "proof pressure (yield or first ply)", 1.0,
                           "ISO 10100 practice: proof 1.5 x working pressure"),
               by_wall={"layered": CRITERION, "thin_laminate": CRITERION},
               at=AT_ENDS),
     MetricRow("burst_factor", "S_b", "ratio", "",
               "barrel burst pressure divided by working pressure",
+              term="burst pressure",
               worst="min", model="barrel.burst_pressure_thick", feeds=("wall", "own"),
               check=CheckLine("2.3", "barrel burst pressure", 4.0,
                           "4:1 industrial practice (2.5:1 aerospace option)"),
@@ -325,7 +336,7 @@ ROWS = table((
               at=AT_ENDS),
     MetricRow("yield_factor", "S_y", "ratio", "",
               "yield strength divided by working stress, metal parts",
-              worst="min", model="barrel.von_mises", feeds=("wall",),
+              term="working stress", worst="min", model="barrel.von_mises", feeds=("wall",),
               check=CheckLine("2.1", "wall stress at working pressure", 1.5,
                           "our choice: factor 1.5 against yield of every metal part"),
               by_wall={"layered": "strength.yield_utilisation",
@@ -336,12 +347,14 @@ ROWS = table((
               worst="min", model="endurance.fatigue_factor", feeds=(),
               check=CheckLine("10.2", "fatigue strength")),
     MetricRow("ply_fatigue_factor", "S_pf", "ratio", "",
-              "fatigue strength divided by stress amplitude, fibres of the wall", worst="min",
+              "fatigue strength divided by stress amplitude, fibres of the wall",
+              term="fibre fatigue", worst="min",
               model="layered_tube.ply_stresses_at_faces", feeds=(),
               check=CheckLine("10.3", "fibre fatigue of the wall", 1.0,
                           "fatigue strength at the number of cycles that the material states, "
                           "after knock-downs (rule of thumb)")),
     MetricRow("cycle_life", "N", "ratio", "", "pressure cycles to failure",
+              term="pressure cycles",
               worst="min", model="endurance.cycles_to_failure", feeds=("own",),
               check=CheckLine("10.1", "pressure-cycle life of metal parts", 20000.0,
                           "MIL-PRF-5503: 20 000 cycles at rated pressure")),
@@ -358,7 +371,7 @@ ROWS = table((
     MetricRow("piston_nut_factor", "S_n", "ratio", "",
               "least preload of the piston's nut divided by the preload that proof pressure takes "
               "away, and the permitted preload divided by the greatest",
-              worst="min", model="piston_nut.least_stud_share", feeds=(),
+              term="piston nut preload", worst="min", model="piston_nut.least_stud_share", feeds=(),
               at={"while tightened": "piston_nut.torsion_factor"},
               check=CheckLine("3.7", "piston stays clamped on the rod", 1.0,
                               "some preload remains at proof pressure, however it scatters")),
@@ -370,7 +383,7 @@ ROWS = table((
               at=models_at(_ALL_JOINTS, "retention_factor")),
     MetricRow("retention_burst_factor", "S_rb", "ratio", "",
               "ultimate strength of cap retention divided by its load",
-              worst="min", model=None, feeds=(),
+              term="cap retention, burst", worst="min", model=None, feeds=(),
               check=CheckLine("4.2", "cap retention at burst pressure", 4.0,
                           f"as for barrel burst: 4:1 on {judged_on(JOINTS.values(), 1)}"),
               at=models_at(_ALL_JOINTS, "retention_burst_factor")),
@@ -388,7 +401,7 @@ ROWS = table((
                               "our choice: factor 2 against shear yield")),
     MetricRow("eye_bearing_factor", "S_b", "ratio", "",
               "static load rating of the spherical bearings divided by the largest push",
-              worst="min", model=None, feeds=(),
+              term="spherical bearings", worst="min", model=None, feeds=(),
               check=CheckLine("4.6", "spherical bearings of the eyes", 1.5,
                               "our choice: factor 1.5 against the static load rating")),
     MetricRow("bearing_overlap", "L/d", "ratio", "",
@@ -400,7 +413,7 @@ ROWS = table((
               worst="max", model="retention.guide_forces", feeds=(), check=None),
     MetricRow("bearing_factor", "S_g", "ratio", "",
               "allowable guide pressure divided by the largest that occurs",
-              worst="min", model="retention.guide_forces", feeds=(),
+              term="guide pressure", worst="min", model="retention.guide_forces", feeds=(),
               check=CheckLine("9.3", "guide pressure under side load", 1.0,
                           "allowable bearing pressure of the guide material")),
     MetricRow("port_velocity", "v_p", "speed", "m/s", "oil speed in the port",
@@ -423,18 +436,19 @@ ROWS = table((
               check=CheckLine("8.1", "piston speed", 0.5,
                           "standard seals and cylinders: 0.5 m/s")),
     MetricRow("power", "P", "power", "W", "mechanical output power",
-              worst="min", model="forces.power", feeds=(), check=None),
+              term="output power", worst="min", model="forces.power", feeds=(), check=None),
     MetricRow("end_stop_energy", "E_end", "energy", "J", "energy absorbed at the end of stroke",
               worst="max", model="endurance.end_stop_energy", feeds=(),
               check=CheckLine("8.3", "end-stop energy")),
     MetricRow("end_stop_pressure", "p_end", "pressure", "bar", "peak pressure at the end stop",
+              term="end-stop pressure",
               worst="max", model="endurance.end_stop_peak_pressure", feeds=(), check=None),
     MetricRow("trapped_pressure", "p_tr", "pressure", "bar",
               "pressure rise of trapped oil over the temperature range", worst="max",
               model="oil_laws.thermal_pressure_slope", feeds=(), check=None),
     MetricRow("liner_mismatch_factor", "S_th", "ratio", "",
               "liner yield strength divided by its thermal mismatch stress",
-              worst="min", model="laminate.thermal_line_forces", feeds=(),
+              term="liner mismatch", worst="min", model="laminate.thermal_line_forces", feeds=(),
               check=CheckLine("11.3", "liner/laminate mismatch", 1.0,
                           "the liner must not yield as it cools down"),
               by_wall={"layered": "layered_tube.tube_state"}),
@@ -446,6 +460,7 @@ ROWS = table((
               by_wall={"layered": "layered_tube.tube_state"}),
     MetricRow("liner_range_factor", "S_dl", "ratio", "",
               "twice the liner's yield strength divided by its stress range",
+              term="liner plastic range",
               worst="min", model=None, feeds=(),
               check=CheckLine("11.5", "liner strain range", 1.0,
                           "shakedown: from zero to supply pressure, the stress changes by less "
@@ -463,7 +478,7 @@ ROWS = table((
     MetricRow("joint_factor", "S_j", "ratio", "",
               "least tie-rod preload divided by the preload that proof pressure takes away, and "
               "the permitted preload divided by the greatest",
-              worst="min", model="barrel_ends.tie_rod_forces", feeds=(),
+              term="tie-rod preload", worst="min", model="barrel_ends.tie_rod_forces", feeds=(),
               at={"while tightened": "piston_nut.torsion_factor"},
               check=CheckLine("11.7", "tie-rod joint stays closed", 1.0,
                           "some preload remains at proof pressure, however it scatters")),
@@ -476,7 +491,8 @@ ROWS = table((
               "contact pressure of a shrunk ring on the barrel", worst="min",
               model="shrink_fit.contact_pressure", feeds=(), check=None),
     MetricRow("local_buckling_factor", "S_w", "ratio", "",
-              "local buckling load of the rod's wall divided by the largest push load", worst="min",
+              "local buckling load of the rod's wall divided by the largest push load",
+              term="local buckling", worst="min",
               model="shell_buckling.local_shell_force", feeds=(),
               check=CheckLine("3.3", "local buckling of the rod's wall", 2.0,
                           "our choice: 2, in addition to the knock-down for imperfections")),
@@ -493,7 +509,7 @@ ROWS = table((
                           "our choice: 1.5 on the elastic peak shear, as for cap retention")),
     MetricRow("bond_thermal_factor", "S_bt", "ratio", "",
               "bond strength divided by the thermal shear stress at the bond's edge, without load",
-              worst="min",
+              term="thermal bond stress", worst="min",
               model="lap_joint.bond_thermal_shear", feeds=(),
               check=CheckLine("3.6", "bonds over the temperature range", 1.0,
                           "our choice: without load, the elastic shear at the bond's edge stays "
@@ -512,25 +528,26 @@ ROWS = table((
               check=CheckLine("12.2", "layer thicknesses", 0.0,
                           "smallest thickness that can be made with the ply")),
     MetricRow("growth_at_seal", "u_s", "length", "um", "radial bore growth at the piston seal",
+              term="bore growth at seal",
               worst="max", model="barrel_ends.pressure_step_factor", feeds=(), check=None,
               by_wall={"layered": "barrel_ends.pressure_step_factor"}),
     MetricRow("clearance_min", "c_min", "length", "um",
               "smallest radial clearance of piston and head over the temperature range",
-              worst="min",
+              term="smallest clearance", worst="min",
               model=None, feeds=(),
               check=CheckLine("9.1", "clearance over the temperature range", 5e-6,
                           "our choice: 5 um remain for an oil film after unequal thermal "
                           "expansion")),
     MetricRow("blocked_port_factor", "S_bl", "ratio", "",
               "proof pressure divided by the rod-side pressure with the rod-side port blocked",
-              worst="min", model=None,
+              term="blocked port", worst="min", model=None,
               feeds=(),
               check=CheckLine("8.4", "rod-side pressure with blocked port", 1.0,
                           "advice: the rod-side pressure rises to the cap-side pressure times the "
                           "ratio of the piston areas; fit a relief valve", advice=True)),
     MetricRow("temperature_margin", "dT", "temperature_difference", "K",
               "margin to the nearest service temperature limit of any material",
-              worst="min", model=None, feeds=(),
+              term="temperature range", worst="min", model=None, feeds=(),
               check=CheckLine("11.1", "temperature range", 0.0,
                           "service temperature limits of all materials used")),
     MetricRow("oil_viscosity", "nu", "kinematic_viscosity", "mm^2/s",
@@ -544,43 +561,49 @@ ROWS = table((
                           "even above it")),
     MetricRow("extrusion_factor", "g_max/g", "ratio", "",
               "allowable extrusion gap divided by the actual gap",
+              term="seal extrusion",
               worst="min", model="gland.extrusion_gap_limit", feeds=("wall",),
               check=CheckLine("2.7",
                           "extrusion of the seals (gap against pressure and hardness)", 1.0,
                           "largest gap that the compound's data allow at this pressure")),
     MetricRow("end_stop_factor", "S_end", "ratio", "",
               "proof pressure divided by peak end-stop pressure",
+              term="end-stop strength",
               worst="min", model="endurance.end_stop_peak_pressure", feeds=(),
               check=CheckLine("8.2",
                           "end-stop peak pressure, including the load of the load case", 1.0,
                           "our choice: the peak stays within proof pressure")),
     MetricRow("trapped_factor", "S_tr", "ratio", "",
               "proof pressure divided by trapped-oil pressure",
+              term="trapped-oil strength",
               worst="min", model="oil_laws.thermal_pressure_slope", feeds=(),
               check=CheckLine("11.2", "trapped-fluid pressure", 1.0,
                           "our choice: trapped oil stays within proof pressure")),
     MetricRow("line_drop_ratio", "dp/p", "ratio", "%",
               "line pressure drop as a share of supply pressure",
+              term="line drop, share",
               worst="max", model="lines.line_pressure_drop", feeds=(),
               check=CheckLine("7.3", "line pressure drop", 0.05,
                           "our choice: 5 % of the supply pressure")),
     MetricRow("liner_yield_factor", "S_l", "ratio", "",
               "liner yield pressure divided by working pressure",
+              term="liner yield pressure",
               worst="min", model="barrel.von_mises", feeds=("wall",), check=None,
               by_wall={"layered": "strength.yield_utilisation",
                        "thin_laminate": "strength.yield_utilisation"}),
     MetricRow("leakage", "q_l", "flow", "ml/min", "leakage across the piston",
-              worst="max", model="damping.gap_conductance", feeds=(),
+              term="piston leakage", worst="max", model="damping.gap_conductance", feeds=(),
               check=CheckLine("13.2", "leakage across the piston")),
     MetricRow("barrel_length", "L_b", "length", "mm", "barrel length",
               worst="max", model=None, feeds=(), check=None),
     MetricRow("closed_length", "L_0", "length", "mm", "length pin to pin, retracted",
               worst="max", model=None, feeds=(), check=None, short="closed length, pin to pin"),
     MetricRow("joint_torque_min", "M_min", "torque", "N*m",
-              "smallest torque of the actuator on the joint over the stroke", worst="min",
+              "smallest torque of the actuator on the joint over the stroke",
+              term="joint torque", worst="min",
               model="linkage.joint_torque", feeds=(), check=None),
     MetricRow("joint_range", "d_theta", "angle", "deg", "joint angle range over the stroke",
-              worst="min", model="linkage.linkage_angle", feeds=(), check=None),
+              term="joint range", worst="min", model="linkage.linkage_angle", feeds=(), check=None),
     MetricRow("geometry_rod_in_bore", "-", "length", "mm", "radial clearance between rod and bore",
               worst="min", model=None, feeds=(), check=None, least=_LEAST_WALL),
     MetricRow("geometry_rod_wall", "-", "length", "mm", "rod wall thickness",
@@ -725,6 +748,34 @@ OIL_FED = tuple(fed_by("oil", ROWS))
 
 OWN = frozenset(fed_by("own", ROWS))
 """Metrics whose validity warnings concern the model named in their own row."""
+
+
+TERM = 24
+"""Largest number of letters of a metric's term."""
+_SHORT_ENDS = re.compile(r", | / ")
+
+
+def term_of(name: str) -> str:
+    """Name of a metric in a few plain words, for a line of the terminal.
+
+    It is the stated `term`; by default the beginning of `short`, the name of the check, the label,
+    or else the words of the key, the first that has at most `TERM` letters.
+
+    >>> term_of("buckling_factor"), term_of("seal_gap"), term_of("yield_factor")
+    ('buckling', 'seal gap', 'working stress')
+    """
+    row = ROWS.get(name)
+    if row is None:
+        return of_metric(name).label
+    check = "" if row.check is None else row.check.name
+    key = name.removeprefix("geometry_").removesuffix("_factor").replace("_", " ")
+    names = (row.term, _SHORT_ENDS.split(row.short)[0], check, row.label)
+    return next((words for words in names if 0 < len(words) <= TERM), key)
+
+
+def is_safety(name: str) -> bool:
+    """Whether a metric is a safety factor, which no remedy should lower unless asked to."""
+    return name.endswith("_factor")
 
 
 def of_metric(name: str) -> Quantity:

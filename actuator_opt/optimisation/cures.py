@@ -9,10 +9,12 @@ remedies. Candidates that were not tried are listed.
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, replace
+from typing import TypeAlias
 
 import numpy as np
 
@@ -36,9 +38,9 @@ from .repairs import Conflict
 
 DIMENSIONS = (
     "bore", "wall_thickness", "winding_angle", "rod_diameter", "rod_inner_diameter", "part_length",
-    "radial_clearance", "thread_diameter", "squeeze", "diameter",
+    "radial_clearance", "thread_diameter", "squeeze", "diameter", "friction_coefficient",
 )  # fmt: skip
-"""Kinds of dimension that a remedy may change: no stroke and no operating data. Our choice."""
+"""Kinds of number that a remedy may change: no stroke and no operating data. Our choice."""
 
 PARTS = re.compile(r"(cylinder|barrel|rod|piston|head|caps|retention|clevis|seals|lines)\b")
 """Parts whose dimensions a remedy may change."""
@@ -48,6 +50,12 @@ MOST_DIMENSIONS = 8
 
 MOST_CHOICES = 4
 """Maximum number of choices solved, the least infeasible first: our choice, to limit the time."""
+
+MOST_PAIRED = 4
+"""Number of choices, the least infeasible, that are paired with each other: our choice."""
+
+MOST_PAIRS = 4
+"""Maximum number of pairs of choices solved if no single change suffices: our choice."""
 
 ENOUGH = 3
 """The search for a kind of remedy stops after this number of remedies: our choice."""
@@ -76,26 +84,31 @@ BACK_UP = "back_up_ptfe"
 class Cure:
     """A single change that makes the design feasible: a dimension's value (SI), or a choice.
 
-    `beside` gives, by PATH, other entries that must change together with a choice.
+    `beside` gives, by PATH, other entries that must change together with a choice. `objective` is
+    the best objective found with the change, as the solver minimises it.
     """
 
     path: str
     now: float | str
     needed: float | str
     beside: Mapping[str, str] = field(default_factory=dict)
+    objective: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Cures:
     """Single changes that each make the design feasible, and the PATHs that were not tried.
 
-    `together` has dimensions that make the design feasible only if all of them change.
+    `together` has dimensions that make the design feasible only if all of them change. `failed` has
+    the changes that were tried but are not enough alone: PATHs of dimensions, and choices with
+    their word.
     """
 
     dimensions: tuple[Cure, ...] = ()
     together: tuple[Cure, ...] = ()
     choices: tuple[Cure, ...] = ()
     untried: tuple[str, ...] = ()
+    failed: tuple[str, ...] = ()
 
 
 def cures(actuator: ActuatorProblem, conflict: Conflict) -> Cures:
@@ -112,9 +125,25 @@ def cures(actuator: ActuatorProblem, conflict: Conflict) -> Cures:
     gains = {
         path: gain for path, gain in _gains(actuator, conflict).items() if abs(gain) >= threshold
     }
-    dimensions, together, untried_dimensions = _dimensions(actuator, conflict.x, gains)
-    choices, untried_choices = _choices(actuator, conflict, gains)
-    return Cures(dimensions, together, choices, (*untried_dimensions, *untried_choices))
+    dimensions, together, untried, failed = _dimensions(actuator, conflict.x, gains)
+    choices, untried_choices, failed_choices = _choices(
+        actuator,
+        conflict.x,
+        gains,
+        paired=not together and all(is_property(actuator, cure) for cure in dimensions),
+    )
+    return Cures(
+        dimensions,
+        together,
+        choices,
+        (*untried, *untried_choices),
+        (*failed, *failed_choices),
+    )
+
+
+def is_property(actuator: ActuatorProblem, cure: Cure) -> bool:
+    """Whether a cure changes a property of a material or surface, not a dimension."""
+    return quantity_of(cure.path, actuator.subject.design).name == "friction_coefficient"
 
 
 def _gains(actuator: ActuatorProblem, conflict: Conflict) -> dict[str, float]:
@@ -133,11 +162,11 @@ def _gains(actuator: ActuatorProblem, conflict: Conflict) -> dict[str, float]:
 
 def _dimensions(
     actuator: ActuatorProblem, x: Vector, gains: Mapping[str, float]
-) -> tuple[tuple[Cure, ...], tuple[Cure, ...], list[str]]:
+) -> tuple[tuple[Cure, ...], tuple[Cure, ...], list[str], list[str]]:
     """Find dimensions whose change suffices.
 
     Returns dimensions that each suffice alone, least change first; if there are none, dimensions
-    that only suffice together; and the PATHs that were not tried.
+    that only suffice together; the PATHs that were not tried; and those that do not suffice.
     """
     design = actuator.subject.design
     candidates = sorted(
@@ -150,7 +179,7 @@ def _dimensions(
     )
     tried = candidates[:MOST_DIMENSIONS]
     if not tried:
-        return (), (), []
+        return (), (), [], []
     problem = with_variables(actuator, tried)
     start = np.concatenate([x, problem.lower[len(x) :]])
     limits = {
@@ -158,20 +187,23 @@ def _dimensions(
         for k, path in enumerate(tried)
     }
     sufficient: list[Cure] = []
+    failed: list[str] = []
     for number, (path, place) in enumerate(zip(tried, limits, strict=True)):
         if len(sufficient) == ENOUGH:
-            return _least_first(sufficient), (), candidates[number:]
+            return _least_first(sufficient), (), candidates[number:], failed
         tell(
             "infeasible: searching for a fixed dimension whose change makes the design feasible",
             number / len(tried),
         )
-        sufficient += least_changes(problem, start, {place: limits[place]}, {place: path}, design)
+        enough = least_changes(problem, start, {place: limits[place]}, {place: path}, design)
+        sufficient += enough
+        failed += [] if enough else [path]
     together: list[Cure] = []
     if not sufficient and len(tried) > 1:
         together = least_changes(
             problem, start, limits, dict(zip(limits, tried, strict=True)), design
         )
-    return _least_first(sufficient), tuple(together), candidates[len(tried) :]
+    return _least_first(sufficient), tuple(together), candidates[len(tried) :], failed
 
 
 def _limit(quantity: Quantity, now: float, gain: float) -> float:
@@ -228,8 +260,20 @@ def least_changes(
             value = min(max(value, lower[place]), upper[place])
             result.append(Cure(paths[place], old, value))
         lower[place] = upper[place] = value
-    fixed = replace(problem, lower=lower, upper=upper)
-    return result if repairs.near(fixed, start) is not None else []
+    best = _best_near(replace(problem, lower=lower, upper=upper), start)
+    return [] if best is None else [replace(cure, objective=best) for cure in result]
+
+
+def _best_near(problem: BoxProblem, x: Vector) -> float | None:
+    """The objective at the optimum near a point; None if no feasible point is near."""
+    feasible = repairs.near(problem, x)
+    if feasible is None:
+        return None
+    evaluator = Evaluator(problem)
+    start = evaluator.point(evaluator.space.to_z(feasible))
+    end = repairs.go(evaluator, start)
+    better = end.valid and end.violation <= repairs.NOTHING and end.objective < start.objective
+    return float(end.objective if better else start.objective)
 
 
 def rounded_outward(quantity: Quantity, value: float, *, upwards: bool) -> float:
@@ -300,36 +344,83 @@ def outward(value: float, digits: int, upwards: bool) -> float:
 
 
 def _choices(
-    actuator: ActuatorProblem, conflict: Conflict, gains: Mapping[str, float]
-) -> tuple[tuple[Cure, ...], list[str]]:
-    """Single choices that make the design feasible, and the choices not tried."""
+    actuator: ActuatorProblem, x: Vector, gains: Mapping[str, float], *, paired: bool
+) -> tuple[tuple[Cure, ...], list[str], list[str]]:
+    """Choices that make the design feasible, those not tried, and those that do not suffice.
+
+    With `paired`, pairs of choices are tried if no single choice suffices.
+    """
     subject, library = actuator.subject, load_library()
-    present = _missed(actuator.problem, conflict.x)
-    offered: list[tuple[float, Cure, BoxProblem]] = []
-    margins = np.ravel(actuator.evaluate(conflict.x[:, None]).constraints)
+    present, values = _missed(actuator.problem, x), dict(zip(actuator.paths, x, strict=True))
+    offered: list[_Offer] = []
+    margins = np.ravel(actuator.evaluate(x[:, None]).constraints)
     rows = zip(actuator.rows, margins.tolist(), strict=True)
     places = {row.place for row, margin in rows if not margin >= -repairs.NOTHING}
     for path, word, beside in _candidate_choices(subject, library, gains, places):
         now = _word_at(subject.design, path)
         problem = None if word == now else _with_choice(actuator, {path: word, **beside}, library)
-        missed = math.inf if problem is None else _missed(problem, conflict.x)
+        missed = math.inf if problem is None else _missed(problem, _point(problem, values))
         if problem is not None and missed < present - repairs.NOTHING:
             offered.append((missed, Cure(path, now, word, beside), problem))
     offered.sort(key=lambda offer: (offer[0], offer[1].path))
+    sufficient, failed, left = _sufficient(offered, values, MOST_CHOICES)
+    if paired and not sufficient:
+        pairs = _pairs(actuator, values, offered[:MOST_PAIRED], present, library)
+        sufficient = _sufficient(pairs, values, MOST_PAIRS)[0]
+    solved = {cure.path for cure in sufficient} | {cure.path for cure in failed}
+    untried = dict.fromkeys(cure.path for cure in left if cure.path not in solved)
+    return tuple(sufficient), [*untried], [f"{cure.path} {cure.needed}" for cure in failed]
+
+
+_Offer: TypeAlias = tuple[float, Cure, BoxProblem]
+"""A choice with the sum of missed margins at the point of least relaxation, and its problem."""
+
+
+def _sufficient(
+    offered: Sequence[_Offer], values: Mapping[str, float], most: int
+) -> tuple[list[Cure], list[Cure], list[Cure]]:
+    """The offers that make the design feasible, those that do not, and those not tried."""
     sufficient: list[Cure] = []
+    failed: list[Cure] = []
     for number, (_, cure, problem) in enumerate(offered):
-        if len(sufficient) == ENOUGH or number == MOST_CHOICES:
-            untried = dict.fromkeys(offer.path for _, offer, _ in offered[number:])
-            return tuple(sufficient), [
-                path for path in untried if path not in {c.path for c in sufficient}
-            ]
+        if len(sufficient) == ENOUGH or number == most:
+            return sufficient, failed, [offer for _, offer, _ in offered[number:]]
         tell(
             "infeasible: searching for a choice whose change makes the design feasible",
             number / len(offered),
         )
-        if repairs.near(problem, conflict.x) is not None:
-            sufficient.append(cure)
-    return tuple(sufficient), []
+        best = _best_near(problem, _point(problem, values))
+        if best is None:
+            failed.append(cure)
+        else:
+            sufficient.append(replace(cure, objective=best))
+    return sufficient, failed, []
+
+
+def _pairs(
+    actuator: ActuatorProblem,
+    values: Mapping[str, float],
+    single: Sequence[_Offer],
+    present: float,
+    library: Library,
+) -> list[_Offer]:
+    """Pairs of single choices at different PATHs that miss less than at present, least first."""
+    pairs: list[_Offer] = []
+    for (_, first, _), (_, second, _) in itertools.combinations(single, 2):
+        if first.path == second.path:
+            continue
+        beside = {second.path: str(second.needed), **first.beside, **second.beside}
+        words = {first.path: str(first.needed), **beside}
+        problem = _with_choice(actuator, words, library)
+        missed = math.inf if problem is None else _missed(problem, _point(problem, values))
+        if problem is not None and missed < present - repairs.NOTHING:
+            pairs.append((missed, replace(first, beside=beside), problem))
+    return sorted(pairs, key=lambda offer: (offer[0], offer[1].path))
+
+
+def _point(problem: BoxProblem, values: Mapping[str, float]) -> Vector:
+    """Values of the problem's variables; another joint has fewer variables than the design."""
+    return np.array([values[name] for name in problem.names])
 
 
 def _missed(problem: BoxProblem, x: Vector) -> float:

@@ -21,10 +21,10 @@ from ..base.progress import tell
 from ..base.quantities import Quantity
 from ..design import quantity_of
 from ..evaluation.limits import LimitRow
-from ..metrics import METRICS
+from ..metrics import METRICS, is_safety
 from . import kkt, repairs
 from .actuator import ActuatorProblem
-from .cures import DIGITS, Cure, Cures, cures, outward
+from .cures import DIGITS, Cure, Cures, cures, is_property, outward
 from .evaluator import Evaluator, Point
 from .problem import BoxProblem, Vector
 from .repairs import NOTHING, WIDEST, Conflict, Opening, RelaxedConstraint
@@ -193,8 +193,9 @@ MORE_DIGITS = 6
 """Number of digits for changes below one per cent."""
 
 
-KINDS = ("dimension", "choice", "bound", "requirement", "safety factor")
-"""Kinds of change, the most advisable first."""
+KINDS = ("dimension", "choice", "bound", "number", "requirement", "safety factor")
+"""Kinds of change, the most advisable first. A "number" is a property, such as the friction
+coefficient of a seal, that another finish or coating would have to reach."""
 
 
 _ORIGINS = {"requirement": "requirement", "case": "load case", "check": "check list"}
@@ -232,7 +233,10 @@ def _card(
     )
     bounds = tuple(_bound_entry(actuator, bound) for bound in explanation.bounds)
     sufficient = [
-        *(_cure_entry(actuator, "dimension", cure) for cure in remedies.dimensions),
+        *(
+            _cure_entry(actuator, "number" if is_property(actuator, cure) else "dimension", cure)
+            for cure in remedies.dimensions
+        ),
         *([_joint_entry(actuator, remedies.together)] if remedies.together else []),
         *(_cure_entry(actuator, "choice", cure) for cure in remedies.choices),
         *(_limit_entry(bound, "bound") for bound in bounds if bound["needed"] is not None),
@@ -249,6 +253,7 @@ def _card(
         evidence=_evidence(explanation, solution),
         cures=tuple(sufficient),
         untried=remedies.untried,
+        failed=remedies.failed,
     )
 
 
@@ -264,6 +269,7 @@ def _limit_entry(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
         "parameter": entry["parameter"] or entry["requirement"],
         "advised": kind != "safety factor",
         "now": entry["value"] if kind == "bound" else entry["limit"],
+        "objective": None,
     } | {name: entry[name] for name in ("needed", "change", "limit_text", "needed_text")}
 
 
@@ -277,6 +283,7 @@ def _joint_entry(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[
         "now": None,
         "needed": None,
         "change": None,
+        "objective": parts[0]["objective"],
     }
     return entry | {name: " + ".join(part[name] for part in parts) for name in texts} | {
         "together": parts
@@ -286,6 +293,8 @@ def _joint_entry(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[
 def _cure_entry(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, Any]:
     """Record of a cure: a dimension or choice whose change alone is enough."""
     entry: dict[str, Any] = {"kind": kind, "parameter": cure.path, "advised": True, "now": cure.now}
+    best = cure.objective
+    entry["objective"] = None if best is None else actuator.goal.shown(best)
     if isinstance(cure.now, str) or isinstance(cure.needed, str):
         further = ", ".join(
             f"{path.rpartition('.')[2]} {text}" for path, text in cure.beside.items()
@@ -333,7 +342,7 @@ def entry_of(actuator: ActuatorProblem, relaxed: RelaxedConstraint) -> dict[str,
 
 def _protects_safety(row: LimitRow) -> bool:
     """Whether a limit protects safety: it belongs to the check list or to a safety factor."""
-    return row.limit_of.origin == "check" or row.limit_of.metric.endswith("_factor")
+    return row.limit_of.origin == "check" or is_safety(row.limit_of.metric)
 
 
 def _relaxed(row: LimitRow, limit: float, amount: float) -> float:

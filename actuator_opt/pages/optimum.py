@@ -30,7 +30,11 @@ MOST_COLUMNS = 4
 WORTH = 10.0
 """Margins added for scatter are not shown if they exceed this multiple of their limit, as the
 design is then far from the limit."""
-_KINDS = {"dimension": "fixed dimension", "safety factor": "safety: not advised"}
+_KINDS = {
+    "dimension": "fixed dimension",
+    "number": "fixed number",
+    "safety factor": "safety: not advised",
+}
 """Clearer words for some kinds of remedy."""
 
 
@@ -188,13 +192,17 @@ def _choices_table(optimisation: Optimisation, choices: Choices) -> Block:
         Column("cost", "right"),
         Column("result", "left", 2.0, least=30),
     ]
-    chosen = ", ".join(
+    rows = [cells(tried) for tried in choices.combinations[:MOST_ROWS]]
+    note = " ".join(choice_notes(optimisation))
+    return Table(f"Choices: {chosen(optimisation, choices)}", columns, rows, note=note)
+
+
+def chosen(optimisation: Optimisation, choices: Choices) -> str:
+    """The values of the best combination of choices, each with its name."""
+    return ", ".join(
         f"{name} {text.pretty(choice_list.shown(path, value, optimisation.design))}"
         for name, (path, value) in zip(heads(list(choices.best)), choices.best.items(), strict=True)
     )
-    rows = [cells(tried) for tried in choices.combinations[:MOST_ROWS]]
-    note = " ".join(choice_notes(optimisation))
-    return Table(f"Choices: {chosen}", columns, rows, note=note)
 
 
 def _varied(choices: Choices) -> list[str]:
@@ -239,10 +247,11 @@ def _rounding_table(optimisation: Optimisation, rounding: Rounding) -> Block:
         Column("sizes"),
     ]
     note = " ".join(rounding_notes(optimisation))
-    return Table(_rounding_title(optimisation, rounding), columns, rows, note=note)
+    return Table(rounding_title(optimisation, rounding), columns, rows, note=note)
 
 
-def _rounding_title(optimisation: Optimisation, rounding: Rounding) -> str:
+def rounding_title(optimisation: Optimisation, rounding: Rounding) -> str:
+    """Objective before and after rounding, and the cost of rounding."""
     objective = text.metric(optimisation.objective_metric)
     name = rounding.name.capitalize()
     if rounding.objective_after is None:

@@ -322,9 +322,14 @@ class Listing:
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Blocks side by side on paper, below each other on the terminal."""
+    """Blocks side by side on paper, below each other on the terminal.
+
+    If `tight`, the terminal shows them without blank lines between, and side by side where it is
+    wide enough.
+    """
 
     sides: Sequence[Sequence[Block]]
+    tight: bool = False
 
 
 Block: TypeAlias = Table | Drawing | Chart | TerminalFigure | Notes | Listing | Pair

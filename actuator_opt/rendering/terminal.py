@@ -7,7 +7,10 @@ Unicode the text is plain ASCII.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import zip_longest
 from typing import Unpack
 
 from .blocks import (
@@ -30,7 +33,7 @@ from .blocks import (
     TerminalFigure,
     Verdict,
 )
-from .console import GAP, Console, Style, visible
+from .console import GAP, PAINT, Console, Style, visible
 from .heights import cells_of, joined
 from .text import number, trimmed
 
@@ -161,6 +164,10 @@ MARKS: dict[str, tuple[str, str]] = {
     "infeasible": ("✘", "INFEASIBLE"),
 }
 """Mark of every verdict state, in Unicode and in ASCII."""
+SPLIT = 4
+"""Spaces between blocks side by side."""
+LEAST_SIDE = 36
+"""Least width in columns at which blocks stand side by side."""
 WIDE = 110
 """Smallest terminal width (columns) at which the bars of margins have their full length."""
 
@@ -203,8 +210,7 @@ def heading(name: str, verdict: Verdict, sentence: str, console: Console) -> lis
 def block_text(block: Block, console: Console) -> str:
     """A block as text; empty for a block that appears only on paper."""
     if isinstance(block, Pair):
-        parts = [block_text(part, console) for side in block.sides for part in side]
-        return "\n\n".join(part for part in parts if part)
+        return _pair(block, console)
     if isinstance(block, (Drawing, Chart)):
         return "" if block.instead is None else block_text(block.instead, console)
     if isinstance(block, TerminalFigure):
@@ -214,6 +220,31 @@ def block_text(block: Block, console: Console) -> str:
     if isinstance(block, Notes):
         return "" if block.on == "paper" else _notes(block, console)
     return ""
+
+
+def _pair(pair: Pair, console: Console) -> str:
+    count = len(pair.sides)
+    width = (console.width - SPLIT * (count - 1)) // count
+    beside = pair.tight and count > 1 and width >= LEAST_SIDE
+    side_console = replace(console, width=width) if beside else console
+    sides = [[block_text(part, side_console) for part in side] for side in pair.sides]
+    texts = [("\n" if pair.tight else "\n\n").join(filter(None, side)) for side in sides]
+    if not beside:
+        return ("\n" if pair.tight else "\n\n").join(filter(None, texts))
+    lines = [text.split("\n") for text in texts]
+    widths = [max(map(_width, side)) + SPLIT for side in lines]
+    rows = zip_longest(*lines, fillvalue="")
+    return "\n".join(
+        "".join(
+            line + " " * (width - _width(line)) for line, width in zip(row, widths, strict=True)
+        ).rstrip()
+        for row in rows
+    )
+
+
+def _width(line: str) -> int:
+    """Width of a line in columns, without its colour codes."""
+    return visible(re.sub(PAINT, "", line))
 
 
 def _notes(block: Notes, console: Console) -> str:

@@ -429,12 +429,15 @@ def test_long_and_strange_paths_stay_one_line():
 
 
 def test_answers_to_a_person():
-    """Without --json: a table on stdout, nothing on stderr; --quiet leaves only the exit status."""
+    """Without --json: text on stdout, nothing on stderr; --quiet leaves only the exit status."""
     result = run("evaluate", "-", stdin=BENCH.encode())
     assert result.code == 0
     assert result.err == ""
-    for word in ("test bench", "stiffness_min", "kN/mm", "requirements met", "checks:"):
+    for word in ("test bench", "stiffness ", "kN/mm", "requirements met", "checks not checked"):
         assert word in result.out
+    whole = run("evaluate", "-", "-v", stdin=BENCH.encode())
+    for word in ("test bench", "stiffness_min", "kN/mm", "requirements met", "checks:"):
+        assert word in whole.out
     quiet = run("evaluate", "-", "--quiet", stdin=BENCH.encode())
     assert (quiet.code, quiet.out, quiet.err) == (0, "", "")
     missed = run("evaluate", "-", "-q", "--set", "requirements.mass.max=1 g", stdin=BENCH.encode())

@@ -178,7 +178,7 @@ def test_a_full_disk_and_a_closed_stream(design):
 def test_ascii_terminals(design):
     """Without Unicode every sign has its plain form; nothing fails."""
     text = bench(("name: test bench", "name: Knie α β 膝"))
-    for words in (("evaluate", "-"), ("sensitivity", "-")):
+    for words in (("evaluate", "-", "-v"), ("sensitivity", "-")):
         result = run(*words, stdin=text.encode(), encoding="ascii")
         assert result.code == 0
         assert result.out.isascii()

@@ -302,7 +302,7 @@ def test_sensitivity(plain):
 def test_the_knee_end_to_end(tmp_path):
     """The main job: tables on stdout, messages on stderr, PDF and pages written, exit 0."""
     file = tmp_path / "best.yaml"
-    result = run("optimise", KNEE, "--out", tmp_path / "reports", "--write", file)
+    result = run("optimise", KNEE, "--verbose", "--out", tmp_path / "reports", "--write", file)
     assert result.code == 0, result.err
     written = [line.removeprefix("wrote ") for line in result.err.splitlines()]
     assert str(file) in written

@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from cli_runner import DESIGNS, KNEE, bench, run
 
 from actuator_opt.api import read
 from actuator_opt.design.materials import load_library
-from actuator_opt.optimisation.cures import SUBSTITUTES
+from actuator_opt.optimisation import cures
+from actuator_opt.optimisation.cures import SUBSTITUTES, Cure
 from actuator_opt.optimisation.infeasibility import KINDS
+from actuator_opt.optimisation.problem import BoxProblem, PointValues
 from actuator_opt.optimisation.run import optimise
 from actuator_opt.pages.report import verdict
 
@@ -230,3 +233,30 @@ def test_what_is_tried_in_place_of_materials_is_in_the_library():
     library = load_library()
     for kind, names in SUBSTITUTES.items():
         assert {library.kind(name) for name in names} == {kind}
+
+
+def test_two_choices_that_are_only_enough_together(monkeypatch):
+    """Each gives 1 of the 2.5 missing, the free variable at most 1: only both meet the limit.
+
+    The objective 2 + x with both is least at the limit: x = 0.5.
+    """
+
+    def problem(bonus):
+        def evaluate(points):
+            return PointValues(2 + points[0], (points[0] + bonus - 2.5)[None])
+
+        return BoxProblem(("x",), np.array([0.1]), np.array([1.0]), evaluate, ("limit",))
+
+    monkeypatch.setattr(cures, "_with_choice", lambda actuator, values, library: problem(
+        sum(word == "better" for word in values.values())
+    ))  # fmt: skip
+    x = {"x": 0.2}
+    single = [(1.3, Cure(path, "old", "better"), problem(1)) for path in ("rod.a", "caps.b")]
+    assert cures._sufficient(single, x, 4)[0] == []
+    pairs = cures._pairs(None, x, [*single, single[0]], 2.3, None)
+    assert [(c.path, c.beside) for _, c, _ in pairs] == [
+        ("caps.b", {"rod.a": "better"}), ("rod.a", {"caps.b": "better"}),
+    ]  # fmt: skip
+    (cure, *_), failed, left = cures._sufficient(pairs[:1], x, 4)
+    assert (cure.path, failed, left) == ("caps.b", [], [])
+    assert cure.objective == pytest.approx(2.5, abs=1e-6)

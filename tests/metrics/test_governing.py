@@ -193,7 +193,8 @@ def test_the_terminal_prints_the_value_its_margin_is_of(monkeypatch):
     """`power >= 1 kW` printed 1600 W at -40 %: 600 W of the slower load case are."""
     monkeypatch.setenv("COLUMNS", "100")
     found = run("evaluate", "designs/knee_bonded.yaml", "--set", "requirements.power.min=1 kW")
-    (line,) = [line for line in found.out.splitlines() if line.lstrip("✘ ").startswith("power ")]
+    lines = found.out.splitlines()
+    (line,) = [line for line in lines if line.lstrip("✘ ").startswith("output power ")]
     assert "600.0" in line
     assert "1600" not in line
     assert "40.0 %" in line

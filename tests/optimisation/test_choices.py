@@ -518,7 +518,7 @@ def test_json_says_what_was_chosen_and_what_the_others_cost():
 def test_the_terminal_shows_the_table_without_colour_or_unicode(tmp_path):
     """The table has a row per combination, the chosen one first; NO_COLOR leaves no codes."""
     result = run(
-        "optimise", "-", "--starts", 1, "--out", tmp_path, stdin=listed(SEALS).encode(),
+        "optimise", "-", "-v", "--starts", 1, "--out", tmp_path, stdin=listed(SEALS).encode(),
         encoding="ascii", environment={"NO_COLOR": "1", "COLUMNS": "100"},
     )  # fmt: skip
     assert result.code == 0

@@ -451,7 +451,7 @@ def test_json_and_saved_design(tmp_path):
 
 def test_terminal(tmp_path):
     """Asked for: a table with plies and cost. Not asked for: one line that names the option."""
-    words = ("--starts", "1", "--out", tmp_path)
+    words = ("--starts", "1", "--out", tmp_path, "-v")
     shown = run("optimise", "-", *words, "--whole-plies", stdin=two_layers().encode())
     assert shown.code == 0
     for word in (
@@ -524,7 +524,8 @@ def test_plies_too_coarse_for_the_requirements(tmp_path):
     assert result.err == ""
     assert data["shown"]["design"] == "continuous"
     assert rounding["outcome"] in data["shown"]["sentence"]
-    shown = run("optimise", "-", "--whole-plies", "--out", tmp_path, stdin=text.encode())
+    words = ("optimise", "-", "--whole-plies", "--out", tmp_path, "-v")
+    shown = run(*words, stdin=text.encode())
     assert shown.code == 1
     assert "Whole plies: no design found" in shown.out
     head = " ".join(shown.out.split("stiffness_barrel")[0].split())

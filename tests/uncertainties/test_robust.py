@@ -127,7 +127,7 @@ def test_no_size_with_enough_yield_saves_nothing(tmp_path):
     file.write_text(one_wish(sizes=sizes), encoding="utf-8")
     plugin.write_text(PLUGIN, encoding="utf-8")
     more = ("--plugin", plugin, "--yield", "0.99", "--write", saved, "--no-record", "--starts", "1")
-    result = run("optimise", file, *more, "--out", tmp_path / "r")
+    result = run("optimise", file, *more, "-v", "--out", tmp_path / "r")
     assert result.code == 1
     assert not saved.exists()
     assert "not written" in result.err
