@@ -6,6 +6,7 @@ import inspect
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -82,7 +83,10 @@ def test_a_notebook_shows_the_main_parts(text):
     """Headline, limits, section and masses of the page: balanced, escaped, without a script."""
     name = "<script>alert(1)</script>"
     named = re.sub("^name: .*$", f"name: '{name}'", text, count=1, flags=re.MULTILINE)
-    shown = ao.evaluate(named)._repr_html_()
+    evaluated = ao.evaluate(named)
+    shown = replace(optimum(), evaluation=evaluated)._repr_html_()
+    assert shown.count("<h2>") == 2
+    shown = evaluated._repr_html_()
     assert len(shown.encode()) < 60_000
     seen = Balance()
     seen.feed(shown)
