@@ -7,10 +7,11 @@
 Most functions are named like the command that does the same in the terminal: `check`, `evaluate`,
 `optimise`, `sensitivity`, `pareto`, `sweep`, `uncertainty`, `compare`, `explore`, `seal`,
 `identify`, `calibrate`, `simulate`, `report`, `export` and `explain`. `catalogue` is the command
-`list`. `read` reads a design, `save` writes it, and `session` re-solves it quickly after changes.
-In the terminal, some functions are options: `bending` is `identify --span`, `compare_measured` is
-`simulate --measured`, `servo_sensitivities` is `simulate --sensitivity`, and `verify_dynamics` is
-`optimise --verify-dynamics`. A module with slow imports loads when a function first needs it.
+`list`, and `start` is `init` with a duty. `read` reads a design, `save` writes it, and `session`
+re-solves it quickly after changes. In the terminal, some functions are options: `bending` is
+`identify --span`, `compare_measured` is `simulate --measured`, `servo_sensitivities` is
+`simulate --sensitivity`, and `verify_dynamics` is `optimise --verify-dynamics`. A module with slow
+imports loads when a function first needs it.
 """
 
 from __future__ import annotations
@@ -79,6 +80,7 @@ if TYPE_CHECKING:
         servo_sensitivities as servo_sensitivities,
         session as session,
         simulate as simulate,
+        start as start,
         sweep as sweep,
         uncertainty as uncertainty,
         verify_dynamics as verify_dynamics,
@@ -149,9 +151,10 @@ _PUBLIC = {
         draw_sweep evaluate evaluate_many exit_code explain explore export identify optimise
         pareto prune_runs read read_record read_run read_scenario record record_front record_run
         record_sweep report report_run rerun restore runs save seal sensitivity
-        servo_sensitivities session simulate sweep uncertainty verify_dynamics write_calibration
-        write_comparison write_draws write_front write_front_csv write_identification write_seal
-        write_series write_signals write_simulation write_uncertainty
+        servo_sensitivities session simulate start sweep uncertainty verify_dynamics
+        write_calibration write_comparison write_draws write_front write_front_csv
+        write_identification write_seal write_series write_signals write_simulation
+        write_uncertainty
     """,
 }
 """The public names of each module; a module loads when one of its names is first used."""

@@ -82,6 +82,7 @@ if TYPE_CHECKING:
         write_signals as write_signals,
         write_simulation as write_simulation,
     )
+    from .starting import start as start
     from .studies import (
         seal as seal,
         uncertainty as uncertainty,
@@ -126,6 +127,7 @@ _PUBLIC = {
         Compared Trial compare_measured fitting read_scenario servo_sensitivities
         simulate verify_dynamics write_comparison write_signals write_simulation
     """,
+    "starting": "start",
     "studies": "seal uncertainty with_contact write_draws write_seal write_uncertainty",
     "sweeping": "draw_sweep evaluate_many sweep",
 }

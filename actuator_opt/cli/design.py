@@ -33,16 +33,23 @@ from .options import (
 
 if TYPE_CHECKING:
     from ..api import Restored
+    from ..api.starting import Duty
 
 
 def _named_file(name: str) -> tuple[str, Path]:
     """Title and file for `init NAME`: ``"left knee"`` is written to left_knee.yaml."""
+    from ..design.kinds import Text, ValueFault
+
     folder, base = os.path.split(name)
     title = base.removesuffix(".yaml").removesuffix(".yml")
     if base and not title.strip(". "):
         raise UsageError(
             Diagnostic(f"NAME: {shown(name)} is not a file name", "write e.g. left_knee")
         )
+    try:
+        Text().validate(title)
+    except ValueFault as fault:
+        raise UsageError(Diagnostic(f"NAME: {fault.message}", fault.remedy)) from None
     stem = re.sub(r"[^\w.+-]+", "_", title).strip("_.")
     return title, Path(folder, f"{stem or 'actuator'}.yaml")
 
@@ -53,7 +60,7 @@ def init(
         typer.Argument(
             metavar="NAME",
             help="Name of the actuator or scenario; NAME.yaml is written. "
-            "Without a name the text is printed.",
+            "Without a name the text is printed; without a duty it is a template of all keys.",
         ),
     ] = None,
     source: Annotated[
@@ -65,32 +72,144 @@ def init(
             "--scenario", metavar="DESIGN", help="Write a scenario for this design instead."
         ),
     ] = None,
+    push: Annotated[
+        str | None, typer.Option("--push", metavar="FORCE", help='Push force, e.g. "9 kN".')
+    ] = None,
+    pull: Annotated[
+        str | None, typer.Option("--pull", metavar="FORCE", help="Pull force; 0 N: none.")
+    ] = None,
+    stroke: Annotated[
+        str | None, typer.Option("--stroke", metavar="LENGTH", help='Stroke, e.g. "180 mm".')
+    ] = None,
+    pressure: Annotated[
+        str | None,
+        typer.Option("--pressure", metavar="PRESSURE", help='Supply pressure, e.g. "160 bar".'),
+    ] = None,
+    goal: Annotated[
+        str | None,
+        typer.Option("--goal", metavar="GOAL", help="What is best: mass, stiffness or friction."),
+    ] = None,
+    wall: Annotated[
+        str | None,
+        typer.Option(
+            "--wall",
+            metavar="WALL",
+            help="Barrel: steel, aluminium, lined_carbon or linerless.",
+        ),
+    ] = None,
+    yes: Annotated[
+        bool, typer.Option("--yes", help="Use the defaults instead of asking questions.")
+    ] = False,
     out: Annotated[
         Path | None,
         typer.Option("--out", metavar="FILE", help="Output file; - prints the text."),
     ] = None,
     as_json: Json = False,
     quiet: Quiet = False,
-) -> None:
-    """Write a commented start file for a design or a scenario."""
+) -> ExitCode:
+    """Write a commented start file: a design solved for a duty, a copy, or a scenario.
+
+    On a terminal, init asks for forces, stroke, pressure, goal and wall. Options answer in advance.
+    """
+    options = {
+        "push": push, "pull": pull, "stroke": stroke, "pressure": pressure,
+        "goal": goal, "wall": wall,
+    }  # fmt: skip
+    answers = {key: text for key, text in options.items() if text is not None}
+    copied = source is not None or scenario is not None
     if scenario is not None and source is not None:
         raise UsageError(Diagnostic("--from and --scenario", "use only one of them"))
+    if copied and (answers or yes):
+        flag = f"--{next(iter(answers), 'yes')}"
+        other = "--from" if scenario is None else "--scenario"
+        raise UsageError(Diagnostic(f"{flag} and {other}", "use only one of them"))
     title = {}
     if name is not None:
         title["name"], file = _named_file(name)
         out = file if out is None else out
     if out is not None and str(out) == "-":
         out = None
-    text = _start_text(source, scenario, out, title)
-    if out is None:
-        Job(as_json=as_json).answer(lambda: {"text": text}, lambda: text)
-        return
-    if os.path.lexists(out):
+    if out is not None and os.path.lexists(out):
         raise UsageError(Diagnostic("exists already", "choose another name", str(out)))
-    store.require_writable(out)
-    store.write_text(out, text)
-    files = [{"path": str(out)}]
-    Job(as_json=as_json, quiet=quiet).answer(lambda: {"files": files}, files=files)
+    if out is not None:
+        store.require_writable(out)
+    job = Job(as_json=as_json, quiet=quiet)
+    verdict: dict[str, Any] = {}
+    faults = []
+    if answers or yes or (out is not None and not copied):
+        duty = _duty(answers, ask=not as_json, defaults=yes)
+        from ..api.starting import solved_start
+
+        start = job.run(solved_start, duty, **title)
+        text, verdict = start.text, {"met": start.met}
+        if not start.met:
+            faults = [Diagnostic("nothing fits yet", start.sentence, str(out or ""))]
+            verdict["remedy"] = start.sentence
+    else:
+        text = _start_text(source, scenario, out, title)
+    if out is None:
+        job.answer(lambda: {"text": text} | verdict, lambda: text, faults=faults)
+    else:
+        store.write_text(out, text)
+        files = [{"path": str(out)}]
+        job.answer(lambda: {"files": files} | verdict, files=files, faults=faults)
+    return ExitCode.MISSED if faults else ExitCode.MET
+
+
+_QUESTIONS = (
+    ("push and pull force", ("push", "pull")),
+    ("stroke", ("stroke",)),
+    ("supply pressure", ("pressure",)),
+    ("goal", ("goal",)),
+    ("wall", ("wall",)),
+)
+"""Questions of `init`, each with the keys that it answers."""
+
+
+def _duty(answers: dict[str, str], *, ask: bool, defaults: bool) -> Duty:
+    """The duty from stated answers, from questions on a terminal, or from defaults.
+
+    Raises
+    ------
+    UsageError : a stated answer is unsuitable, or answers are missing without a terminal
+    """
+    from ..api import starting
+
+    def read(key: str, text: str, prefix: str) -> float | str:
+        if key in starting.DUTY:
+            return starting.duty_value(key, text, prefix)
+        return starting.duty_word(key, text, prefix)
+
+    usual = {key: text for key, (_, text) in starting.DUTY.items()}
+    usual |= {"goal": next(iter(starting.GOALS)), "wall": next(iter(starting.WALLS))}
+    values = {key: read(key, text, "--") for key, text in answers.items()}
+    missing = [key for key in usual if key not in values]
+    if missing and not defaults and not (ask and streams.asking()):
+        flags = " ".join(f'--{key} "{usual[key]}"' for key in missing)
+        message = "no terminal to ask for the duty"
+        raise UsageError(Diagnostic(message, f"add {flags}, or --yes for these defaults"))
+    for words, keys in _QUESTIONS:
+        open_keys = [key for key in keys if key in missing]
+        if not open_keys:
+            continue
+        offered = ", ".join(usual[key] for key in open_keys)
+        if defaults:
+            values |= {key: read(key, usual[key], "") for key in open_keys}
+            continue
+        choices = {"goal": starting.GOALS, "wall": starting.WALLS}.get(open_keys[0])
+        label = words if choices is None else f"{words} ({', '.join(choices)})"
+        label = label if len(open_keys) == len(keys) else open_keys[0]
+        while True:
+            text = streams.ask(f"{label} [{offered}]: ").strip() or offered
+            parts = re.split(r"\s*[;,](?!\d)\s*", text) if len(open_keys) > 1 else [text]
+            try:
+                if len(parts) != len(open_keys):
+                    raise UsageError(Diagnostic(f'"{shown(text)}"', f'write e.g. "{offered}"'))
+                values |= {k: read(k, part, "") for k, part in zip(open_keys, parts, strict=True)}
+                break
+            except UsageError as error:
+                streams.err(str(error.diagnostics[0]))
+    return starting.Duty(**values)  # type: ignore[arg-type]
 
 
 def _start_text(

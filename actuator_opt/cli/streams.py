@@ -19,7 +19,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any, TextIO
 
 from ..base.dataclass import dataclass
-from ..base.errors import Diagnostic, ExitCode, InputError, escaped, shown
+from ..base.errors import Diagnostic, ExitCode, InputError, UsageError, escaped, shown
 from ..base.progress import watched
 from ..base.units import whole
 from ..version import VERSION
@@ -159,6 +159,27 @@ def err(text: str) -> None:
         stream.flush()
     except OSError:  # no stream remains for the message
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def asking() -> bool:
+    """Whether questions can be asked: standard input and standard error are a terminal."""
+    return all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stderr))
+
+
+def ask(question: str) -> str:
+    """Ask a question on standard error; return the line that the user types.
+
+    Raises
+    ------
+    UsageError : the input has ended
+    """
+    sys.stderr.write(question)
+    sys.stderr.flush()
+    line = sys.stdin.readline()
+    if not line:
+        sys.stderr.write("\n")
+        raise UsageError(Diagnostic("the input ended, nothing was written", "answer, or use --yes"))
+    return line
 
 
 @contextmanager

@@ -279,6 +279,14 @@ def test_what_cannot_be_recorded_stays_with_numpy(function, reason):
     assert reason in made.reason
 
 
+def test_a_recording_of_no_points_gives_no_columns():
+    """A search whose variables are all fixed has no steps to take."""
+    made = used(lambda x: np.stack([x[0] * x[1], x[0] + x[1]]), np.array([2.0, 1.0]))
+    assert made.recording is not None
+    for dtype in (float, complex):
+        assert made(np.empty((2, 0), dtype)).shape == (2, 0)
+
+
 def test_a_wrong_recording_is_refused():
     """A function that differs for symbols is caught by the check, and not used."""
 

@@ -13,6 +13,7 @@ import yaml
 from cli_runner import BENCH, DESIGNS, KNEE, run, spawn, surroundings
 from frozen_cases import commands
 
+from actuator_opt.cli import streams
 from actuator_opt.design.writer import init_text
 
 COMMANDS = [(), ("optimize",), *commands()]
@@ -145,12 +146,12 @@ def test_init_writes_the_file_that_its_name_promises(name, file, title, tmp_path
     """NAME.yaml is written and named in one line; `check` takes it, nothing overwrites it."""
     (tmp_path / "legs").mkdir()
     monkeypatch.chdir(tmp_path)
-    result = run("init", name)
+    result = run("init", name, "--from", KNEE)
     assert (result.code, result.out, result.err) == (0, "", f"wrote {file}\n")
     written = (tmp_path / file).read_bytes()
     assert run("check", file).code == 0
     assert run("evaluate", file, "--json").json["name"] == title
-    again = run("init", name)
+    again = run("init", name, "--from", KNEE)
     assert (again.code, again.out) == (2, "")
     assert file in again.err
     assert (tmp_path / file).read_bytes() == written
@@ -158,7 +159,7 @@ def test_init_writes_the_file_that_its_name_promises(name, file, title, tmp_path
     (tmp_path / file).symlink_to(tmp_path / "elsewhere.yaml")
     assert run("init", name).code == 2
     assert not (tmp_path / "elsewhere.yaml").exists()
-    assert run("init", name, "--out", "-").out.encode() == written
+    assert run("init", name, "--out", "-", "--from", KNEE).out.encode() == written
 
 
 @pytest.mark.parametrize("name", [".", "..", ".yaml", "/", "legs/"])
@@ -172,7 +173,7 @@ def test_init_refuses_a_name_without_a_file(name):
 def test_init_makes_a_good_start(tmp_path):
     """The start file passes check, evaluates, is a schema's example; no file is overwritten."""
     file = tmp_path / "start.yaml"
-    assert run("init", "left knee: α", "--out", file).code == 0
+    file.write_text(run("init", "left knee: α", "--out", "-").out, encoding="utf-8")
     assert run("check", file).code == 0
     assert run("evaluate", file, "--json").json["name"] == "left knee: α"
     before = file.read_bytes()
@@ -181,12 +182,53 @@ def test_init_makes_a_good_start(tmp_path):
     assert file.read_bytes() == before
     assert run("init").out == init_text()
     assert run("init", "--json").json == {"text": init_text()}
-    assert run("init", "--out", tmp_path / "no" / "x.yaml").code == 3
+    assert run("init", "--out", tmp_path / "no" / "x.yaml", "--yes").code == 3
     other = run("init", "copy", "--from", file, "--out", "-")
     assert other.out.replace("name: copy", 'name: "left knee: α"') in (
         file.read_text(encoding="utf-8"),
         file.read_text(encoding="utf-8").replace("name: 'left", 'name: "left').replace("α'", 'α"'),
     )
+
+
+DUTY = ("--push", "3 kN", "--pull", "1 kN", "--stroke", "50 mm", "--pressure", "120 bar")
+
+
+def test_init_without_a_terminal_needs_a_duty(tmp_path, monkeypatch):
+    """Exit 2 names the missing flags; nothing is written; a copy takes no duty."""
+    monkeypatch.chdir(tmp_path)
+    for words in ((), DUTY[:2]):
+        result = run("init", "leg", *words)
+        assert (result.code, result.out) == (2, "")
+        (line,) = result.err.splitlines()
+        assert '--stroke "100 mm"' in line
+        assert ("--push" in line) == (not words)
+    for words, word in ((("--push", "9"), '--push: "9"'), (("--wall", "wood"), "--wall")):
+        assert word in run("init", "leg", "--yes", *words).err
+    assert "only one" in run("init", "leg", "--from", KNEE, "--yes").err
+    assert not list(tmp_path.iterdir())
+
+
+def test_init_asks_on_a_terminal(tmp_path, monkeypatch):
+    """Five questions with defaults; a bad answer is asked again; the end of input writes nothing.
+
+    The same duty by flags gives the same file.
+    """
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(streams, "asking", lambda: True)
+    answers = "3 kN\n3 kN, 1 kN\n50\n50 mm\n120 bar\n\n"
+    result = run("init", "leg", stdin=answers.encode())
+    assert result.code == 2
+    assert "nothing was written" in result.err
+    assert not list(tmp_path.iterdir())
+    result = run("init", "leg", stdin=f"{answers}oak\n\n".encode())
+    assert result.code == 0
+    for question in ("[5 kN, 3 kN]", "stroke [100 mm]", "goal (mass,", "steel,", "[160 bar]"):
+        assert question in result.err
+    for remark in ('"3 kN"; write', "unit missing", '"oak" is not a wall'):
+        assert result.err.count(remark) == 1
+    text = (tmp_path / "leg.yaml").read_text(encoding="utf-8")
+    assert run("init", "leg", "--out", "-", *DUTY, "--yes").out == text
+    assert run("evaluate", "leg.yaml").code == 0
 
 
 def test_schema_is_draft_7_and_takes_our_designs():

@@ -1,0 +1,679 @@
+"""Start designs: a complete, solved design file from a duty of five answers.
+
+The duty is push and pull force, stroke, supply pressure, goal and wall. Simple formulas give sizes,
+and bounds around them, to a template of one line per part. The optimiser then solves this file, and
+its result is written with round numbers.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from math import ceil, pi, sqrt
+
+from ..base import units
+from ..base.dataclass import dataclass
+from ..base.errors import Diagnostic, UsageError, remedy, shown
+from ..base.quantities import INPUTS, Quantity
+from ..design import Design, standard_sizes, with_values
+from ..design.housings import extrusion_tables
+from ..design.kinds import Text, ValueFault, read_quantity
+from ..design.paths import quantity_of
+from ..design.writer import exact_text, scalar, to_yaml
+from ..evaluation import evaluate, prepare
+from ..evaluation.build import limits_of, margins_many
+from ..evaluation.rings import EXTRUSION_TABLE
+from ..models.gland import extrusion_gap_limit, extrusion_pressure_end
+from ..optimisation.result import Optimisation
+from ..optimisation.solution import MET
+from .actuator import Actuator, read
+
+DUTY: Mapping[str, tuple[Quantity, str]] = {
+    "push": (INPUTS["force"], "5 kN"),
+    "pull": (INPUTS["force"], "3 kN"),
+    "stroke": (INPUTS["stroke"], "100 mm"),
+    "pressure": (INPUTS["working_pressure"], "160 bar"),
+}
+"""The numbers of a duty, each with its quantity and default."""
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """What is best: its words, and the objective of the design file."""
+
+    words: str
+    objective: str
+
+
+GOALS: Mapping[str, Goal] = {
+    "mass": Goal("lightest", "minimise: mass"),
+    "stiffness": Goal("stiffest", "maximise: stiffness_min"),
+    "friction": Goal("least friction", "minimise: friction_running"),
+}
+"""The goals; all but the first limit the mass to `HEAVIER` times the lightest."""
+
+HEAVIER = 1.25
+"""Largest mass of a design that is not the lightest, divided by the least mass. Our choice: without
+such a limit, the stiffest design has every wall at its upper bound."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wall:
+    """Material of the barrel: its words, and the materials and joint that suit it.
+
+    `strength` [Pa] is that of the wall, for its first size. A layer is a material, its angle (empty
+    for metal) and its share of the wall; `thinnest` is the lower bound of a metal layer [m].
+    `clearance` is the radial clearance of a large piston, divided by the bore.
+    """
+
+    words: str
+    layers: tuple[tuple[str, str, float], ...]
+    strength: float
+    caps: str
+    joint: str
+    thinnest: float = 1e-3
+    clearance: float = 1 / 2000
+
+
+_PLIES = "t700_epoxy"
+WALLS: Mapping[str, Wall] = {
+    "steel": Wall("steel", (("steel_e355", "", 1.0),), 580e6, "steel_42crmo4", "thread"),
+    "aluminium": Wall("aluminium", (("al_7075_t6", "", 1.0),), 570e6, "al_7075_t6", "thread"),
+    "lined_carbon": Wall(
+        "lined carbon",
+        (("al_7075_t6", "", 0.2), (_PLIES, "88 deg", 0.8)),
+        500e6,
+        "al_7075_t6",
+        "plug_thread",
+        0.4e-3,
+    ),
+    "linerless": Wall(
+        "linerless carbon",
+        ((_PLIES, "88 deg", 0.65), (_PLIES, "25 deg", 0.35)),
+        500e6,
+        "al_7075_t6",
+        "tie_rods",
+        clearance=1 / 1000,
+    ),
+}
+"""The walls. Lined carbon has the joint of the robot knee (designs/knee.yaml), metal that of
+designs/steel_baseline.yaml, carbon alone that of designs/aerospace.yaml. In carbon alone, which
+hardly expands, an aluminium piston takes (24e-6/K)(60 K)/2 of the bore and 5 um. The ratio for
+the others is our choice."""
+
+BURST, BUCKLING = 4.0, 3.5
+"""Safety factors, as in the check list and in the template."""
+
+SPEED = 0.1
+"""Piston speed of both load cases [m/s], at which the friction coefficients of the seals apply."""
+
+PORT_SPEED = 4.0
+"""Oil speed in the ports, related to the bore [m/s]: half the limit of the check list."""
+
+LARGEST = 0.6
+"""Largest bore of a start [m]; its bounds stay within the range of bores."""
+
+CLEARANCE = 30e-6
+"""Least radial clearance of piston and head [m], as in the shipped designs."""
+GAP_RATIO = 2.5
+"""Gap that the seals must bear, divided by the clearance: the bore grows. Our choice."""
+
+SECTION = 1 / 15
+"""Largest section of a ring, divided by bore or rod diameter. Our choice: 1.78 mm up to 39 mm."""
+
+RESERVE = 0.01
+"""Margin that the solved start keeps beyond each limit, so that round numbers still meet it."""
+ROUNDING = 5e-5
+"""The same for geometry with a limit of zero [m]: five last decimals of a written length."""
+LIFE = 0.1
+"""The same for `cycle_life`, which falls with a high power of the stress."""
+STARTS = 4
+"""Number of local searches; more than four were no better for twelve random duties."""
+
+ROD_THREADS = (
+    (4, 0.5), (5, 0.5), (6, 0.75), (8, 1), (10, 1.25), (12, 1.25), (14, 1.5), (16, 1.5), (18, 1.5),
+    (20, 1.5), (22, 1.5), (24, 2), (27, 2), (30, 2), (33, 2), (36, 2), (42, 2), (48, 2), (56, 2),
+    (64, 3), (72, 3), (80, 3), (90, 3), (100, 3), (110, 3), (125, 4), (140, 4), (160, 4), (180, 4),
+    (200, 4), (220, 4), (250, 6), (280, 6),
+)  # fmt: skip
+"""Threads of rod ends, diameter and pitch [mm]: ISO 4395, quoted from memory, unverified."""
+BOLTS = (
+    (3, 0.5), (4, 0.7), (5, 0.8), (6, 1), (8, 1.25), (10, 1.5), (12, 1.75), (16, 2), (20, 2.5),
+    (24, 3), (30, 3.5), (36, 4), (42, 4.5), (48, 5), (56, 5.5), (64, 6), (72, 6), (80, 6), (90, 6),
+    (100, 6),
+)  # fmt: skip
+"""Coarse threads of tie rods, diameter and pitch [mm]: ISO 261, quoted from memory, unverified."""
+
+RODS = 6
+"""Number of tie rods, as in designs/aerospace.yaml."""
+_ROD_YIELD, _BOLT_YIELD, _ROD_MODULUS = 650e6, 1080e6, 205e9
+"""Yield strengths of rod and tie rods, Young's modulus of the rod [Pa], for first sizes only."""
+_HOLLOW = 0.8
+"""Inner by outer diameter of the rod, for first sizes only."""
+
+
+@dataclass(frozen=True, slots=True)
+class Duty:
+    """What an actuator must do (SI), what is best, and the wall."""
+
+    push: float
+    pull: float
+    stroke: float
+    pressure: float
+    goal: str = "mass"
+    wall: str = "steel"
+
+    @property
+    def return_pressure(self) -> float:
+        """Pressure at the other port: 2 % of supply, at most the 5 bar of the shipped designs."""
+        return min(5e5, 0.02 * self.pressure)
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """A start design, whether it meets its limits, and what to do if it does not."""
+
+    actuator: Actuator
+    met: bool
+    sentence: str
+
+    @property
+    def text(self) -> str:
+        """Text of the design file."""
+        assert self.actuator.source is not None
+        return self.actuator.source.text
+
+
+def start(
+    *,
+    push: float | str = "5 kN",
+    pull: float | str = "3 kN",
+    stroke: float | str = "100 mm",
+    pressure: float | str = "160 bar",
+    goal: str = "mass",
+    wall: str = "steel",
+    name: str = "my actuator",
+) -> Actuator:
+    """A complete design for a duty, solved, and with round numbers.
+
+    Every number is SI, or a text with a unit. If nothing fits, this is the nearest design, and
+    `evaluate` lists what it misses.
+
+    Parameters
+    ----------
+    push, pull : forces, N; 0: no load case in this direction
+    stroke : m
+    pressure : gauge supply pressure, Pa
+    goal : "mass", "stiffness" or "friction"
+    wall : "steel", "aluminium", "lined_carbon" or "linerless"
+    name : title of the design
+
+    Raises
+    ------
+    UsageError : a value is unsuitable, or the bore would be larger than 600 mm
+    """
+    numbers = {"push": push, "pull": pull, "stroke": stroke, "pressure": pressure}
+    values = {key: duty_value(key, value) for key, value in numbers.items()}
+    duty = Duty(**values, goal=duty_word("goal", goal), wall=duty_word("wall", wall))
+    return solved_start(duty, name).actuator
+
+
+def duty_value(key: str, value: object, prefix: str = "") -> float:
+    """A number of a duty in SI; a fault names it as ``prefix + key``.
+
+    >>> duty_value("push", "9 kN")
+    9000.0
+    """
+    try:
+        return read_quantity(value, DUTY[key][0])
+    except ValueFault as fault:
+        raise UsageError(Diagnostic(f"{prefix}{key}: {fault.message}", fault.remedy)) from None
+
+
+def duty_word(key: str, value: str, prefix: str = "") -> str:
+    """The `goal` or `wall` of a duty; a fault names it as ``prefix + key``.
+
+    >>> duty_word("wall", "lined carbon")
+    'lined_carbon'
+    """
+    words = GOALS if key == "goal" else WALLS
+    word = value.strip().casefold().replace("-", "_").replace(" ", "_")
+    if word not in words:
+        message = f'{prefix}{key}: "{shown(value)}" is not a {key}'
+        raise UsageError(Diagnostic(message, remedy(word, words)))
+    return word
+
+
+def solved_start(duty: Duty, name: str = "my actuator") -> Start:
+    """A start design with its verdict; `name` and faults as for `start`."""
+    try:
+        title = Text().validate(name)
+    except ValueFault as fault:
+        raise UsageError(Diagnostic(f"name: {fault.message}", fault.remedy)) from None
+    if duty.push == 0 and duty.pull == 0:
+        raise UsageError(Diagnostic("push and pull: both are 0", "state a force"))
+    sizes = _first_sizes(duty)
+    light = _solved(replace(duty, goal="mass"), sizes, title)
+    if duty.goal == "mass" or not light.met:
+        return light
+    return _solved(duty, sizes, title, light.actuator.design)
+
+
+def _solved(duty: Duty, sizes: _Sizes, title: str, lightest: Design | None = None) -> Start:
+    """Solve the template, with stops in the cylinder if possible, else outside it."""
+    stops = ("external",) if sizes.stop_outside else ("internal", "external")
+    limit = None if lightest is None else HEAVIER * _mass(lightest)
+    templates = [read(_text(duty, sizes, title, stop, limit)) for stop in stops]
+    if lightest is not None:
+        templates = [
+            replace(x, design=with_values(x.design, _values(lightest, x.design))) for x in templates
+        ]
+    for reserve in (True, False):
+        for template in templates:
+            optimum = _optimum(template, reserve=reserve)
+            missed = _missed(optimum.design)
+            if not missed:
+                return Start(_written(template, optimum.design), True, "")
+            if optimum.status != "infeasible":  # no variable affects what is missed
+                return _unfit(template, optimum, missed)
+    return _unfit(template, optimum, missed)
+
+
+def _unfit(template: Actuator, optimum: Optimisation, missed: Sequence[str]) -> Start:
+    """A start that misses limits, with the nearest repair, or else with these limits."""
+    sentence = f"missed: {', '.join(missed)}"
+    if optimum.infeasibility is not None:
+        sentence = optimum.infeasibility.sentence.removeprefix("infeasible: ")
+    return Start(_written(template, optimum.design, sentence), False, sentence)
+
+
+def _mass(design: Design) -> float:
+    """Mass of a design, kg."""
+    mass = evaluate(prepare(design)).metrics["mass"].value
+    assert mass is not None
+    return mass
+
+
+def _optimum(actuator: Actuator, *, reserve: bool) -> Optimisation:
+    """The optimum of a template; with `reserve`, every limit keeps `RESERVE`."""
+    from ..optimisation.run import optimise
+
+    subject = actuator.subject()
+    if reserve:
+        values, reserves = subject.values(), {}
+        for limit in limits_of(subject):
+            if limit.value(values):
+                reserves[limit.name] = LIFE if limit.metric == "cycle_life" else RESERVE
+            elif limit.origin == "geometry":
+                reserves[limit.name] = ROUNDING
+        subject = replace(subject, reserves=reserves)
+    return optimise(subject, prices=False, starts=STARTS, explain=not reserve)
+
+
+def _missed(design: Design) -> tuple[str, ...]:
+    """The limits that a design misses: requirements, checks and geometry."""
+    margins = margins_many(prepare(design), {}, 1)
+    return tuple(name for name, margin in margins.items() if not margin[0] >= -MET)
+
+
+def _values(source: Design, target: Design) -> dict[str, float]:
+    """The values in `source` of the variables of `target`."""
+    numbers = prepare(source).numbers
+    return {path: numbers[path] for path in target.variables}
+
+
+_STEPS = {"length": (2, "mm"), "ratio": (1, "%"), "angle": (1, "deg"), "force": (2, "kN")}
+"""Decimals and unit of a written variable, by dimension."""
+
+
+def _written(template: Actuator, design: Design, remark: str = "") -> Actuator:
+    """The design in the template's text, with the roundest numbers that meet the limits."""
+    chosen = design
+    for finer in (0, 2):
+        rounded = with_values(design, _rounded(design, finer), contradictions=False)
+        if not _missed(rounded):
+            chosen = rounded
+            break
+    text = to_yaml(chosen, template.source)
+    return read(f"# Nothing fits yet: {remark}.\n{text}" if remark else text)
+
+
+def _rounded(design: Design, finer: int) -> dict[str, float]:
+    """The variables with the decimals of `_STEPS` and `finer` more, within their bounds."""
+    values = {}
+    for path, value in _values(design, design).items():
+        quantity, variable = quantity_of(path, design), design.variables[path]
+        decimals, unit = _STEPS[quantity.dimension]
+        number = units.unit(unit, quantity.dimension).from_si(value)
+        text = f"{number:.{decimals + finer}f} {unit}"
+        rounded = units.parse(text, quantity.dimension)
+        values[path] = min(max(rounded, variable.lower), variable.upper)
+    return values
+
+
+# --- first sizes ----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Sizes:
+    """First sizes of the parts (SI)."""
+
+    bore: float
+    rod: float
+    wall: float
+    layers: tuple[float, ...]
+    clearance: float
+    stop_outside: bool
+    rod_thread: tuple[float, float]
+    stall: float
+    """Force of the supply pressure on the piston, N."""
+
+    @property
+    def pitch(self) -> float:
+        """Pitch of the caps' thread: 2 % of the bore, at least 1 mm."""
+        return max(1e-3, 0.02 * self.bore)
+
+    @property
+    def section(self) -> float:
+        """Section of the piston's ring."""
+        return _section(self.bore)
+
+    @property
+    def piston(self) -> float:
+        """Length of a piston with one groove."""
+        return 1.4 * self.section + 2e-3
+
+    @property
+    def pin(self) -> float:
+        """Diameter of the pins in double shear, with a factor of 2.2 on shear yield."""
+        return max(4e-3, sqrt(2.2 * self.stall / (2 * pi / 4 * 0.577 * _ROD_YIELD)))
+
+
+def _first_sizes(duty: Duty) -> _Sizes:
+    """Bore, rod and wall from simple formulas, each with some reserve.
+
+    The rod is a hollow column over twice the stroke that carries the stall force with the
+    safety factor of buckling (Euler); it also carries the pull. The bore has the area for
+    push, and for pull beside the rod, and room for the rings of piston and rod. The wall is a
+    thin tube at burst pressure. Stops in the cylinder suddenly meet all force that the load
+    leaves over, so oil at the stop reaches twice this force by its area; above proof pressure
+    the stops must be outside.
+    """
+    pressure, back = duty.pressure, duty.return_pressure
+    bore = rod = 6e-3
+    for _ in range(80):  # converges: rod area grows with the root of the bore's area
+        area = pi / 4 * bore**2
+        inertia = 0.9 * BUCKLING * pressure * area * (2 * duty.stroke + 0.05) ** 2
+        inertia /= pi**2 * _ROD_MODULUS
+        column = (64 * inertia / (pi * (1 - _HOLLOW**4))) ** 0.25
+        tension = sqrt(4 * 2.2 * duty.pull / (pi * 0.9 * _ROD_YIELD * (1 - _HOLLOW**2)))
+        rod = max(6e-3, column, tension)
+        needed = max(duty.push / pressure, duty.pull / (pressure - back)) * 1.06
+        pulled = 1.06 * duty.pull / (pressure - back) + pi / 4 * rod**2
+        bore += 0.5 * (max(sqrt(4 / pi * max(needed, pulled)), rod + 8e-3) - bore)
+    if bore > LARGEST:
+        raise UsageError(
+            Diagnostic(
+                f"push and pull need a bore of {1e3 * bore:.0f} mm at {pressure / 1e5:.4g} bar, "
+                f"more than {1e3 * LARGEST:.0f} mm",
+                "raise the pressure, or lower force or stroke",
+            )
+        )
+    area, ring = pi / 4 * bore**2, pi / 4 * (bore**2 - rod**2)
+    peak = max(
+        2 * (pressure * area - back * ring - duty.push) / ring,
+        2 * (pressure * ring - back * area - duty.pull) / area,
+    )
+    wall = WALLS[duty.wall]
+    thickness = max(1.3 * BURST * pressure * bore / 2 / wall.strength, 1e-3)
+    if wall.joint == "thread":  # metal that must remain under the thread
+        thickness = max(thickness, 1.1e-3 + 0.62 * max(1e-3, 0.02 * bore))
+    layers = tuple(max(share * thickness, 0.6e-3) for _, _, share in wall.layers)
+    thread = _thread(ROD_THREADS, 4 / pi * 2 * pressure * area / _ROD_YIELD)
+    outside = peak > 1.35 * pressure
+    return _Sizes(
+        bore,
+        max(rod, thread[0]),
+        thickness,
+        layers,
+        max(CLEARANCE, wall.clearance * bore),
+        outside,
+        thread,
+        pressure * area,
+    )
+
+
+def _thread(sizes: Sequence[tuple[float, float]], square: float) -> tuple[float, float]:
+    """The first thread (diameter, pitch in m) whose root diameter squared reaches `square` [m^2].
+
+    The root diameter is d - 1.2268 P [ISO68-1].
+    """
+    for diameter, pitch in sizes:
+        if (1e-3 * (diameter - 1.2268 * pitch)) ** 2 >= square:
+            break
+    return 1e-3 * diameter, 1e-3 * pitch
+
+
+def _section(diameter: float) -> float:
+    """Section of the ring for a bore or rod: the largest tabulated one of at most `SECTION`."""
+    sections = standard_sizes.o_ring_sections("as568")
+    return max((x for x in sections if x <= SECTION * diameter), default=sections[0])
+
+
+def _compound(pressure: float, needed: float) -> tuple[str, bool]:
+    """The softest O-ring that bears a gap at a pressure, and whether it needs back-up rings."""
+    table = extrusion_tables()[EXTRUSION_TABLE].rows
+    for compound, hardness in (("nbr_70", 70.0), ("nbr_90", 90.0)):
+        gap = extrusion_gap_limit(hardness=hardness, pressure=pressure, table=table)
+        if gap >= needed and pressure <= extrusion_pressure_end(hardness=hardness, table=table):
+            return compound, False
+    return compound, True
+
+
+@dataclass(frozen=True, slots=True)
+class _Joint:
+    """The joint of both ends: its line in the file, and the bounds of its variables."""
+
+    line: str
+    bounds: tuple[str, ...]
+
+
+def _screwed_caps(sizes: _Sizes) -> _Joint:
+    """Caps screwed over the barrel, with a pitch of 2 % of the bore, at least 1 mm."""
+    bore, pitch = sizes.bore, sizes.pitch
+    return _Joint(
+        f"{{type: thread, length: {_mm(max(0.2 * bore, 6 * pitch))}, "
+        f"wall: {_mm(max(0.05 * bore, 1.5e-3))}, thread: {{pitch: {_mm(pitch)}}}}}",
+        (
+            _bounds("retention.length", 3 * pitch, bore + 10 * pitch),
+            _bounds("retention.wall", 1e-3, 0.25 * bore + 3e-3),
+        ),
+    )
+
+
+def _screwed_plugs(sizes: _Sizes) -> _Joint:
+    """Plugs screwed into the ends of the liner, which is thicker there under a cone of 1:5."""
+    bore, pitch, liner = sizes.bore, 0.75 * sizes.pitch, sizes.layers[0]
+    lift = 0.04 * bore + 1e-3
+    return _Joint(
+        f"{{type: plug_thread, length: {_mm(max(0.2 * bore, 6 * pitch))}, "
+        f"wall: {_mm(max(0.1 * bore, 2e-3))}, thread: {{pitch: {_mm(pitch)}}},\n"
+        f"  sleeve: {{material: al_7075_t6, wall: {_mm(liner + lift)}, "
+        f"inner_length: {_mm(5.2 * lift + 1e-3)}}}}}",
+        (
+            _bounds("retention.length", 3 * pitch, bore + 10 * pitch),
+            _bounds("retention.wall", 1e-3, 0.25 * bore + 3e-3),
+            _bounds("retention.sleeve.wall", 1e-3, 0.25 * bore + 3e-3),
+            _bounds("retention.sleeve.inner_length", 3e-3, bore + 10e-3),
+        ),
+    )
+
+
+def _tie_rods(sizes: _Sizes) -> _Joint:
+    """Rods of class 12.9 between the caps, whose preload proof pressure does not take away."""
+    stall = sizes.stall
+    diameter, pitch = _thread(BOLTS, 4 / pi * 1.2 * BURST * stall / RODS / _BOLT_YIELD)
+    return _Joint(
+        f"{{type: tie_rods, material: steel_bolt_12_9, count: {RODS}, "
+        f"length: {_mm(1.2 * diameter)},\n"
+        f"  preload: {1.5e-3 * stall:.2f} kN, "
+        f"thread: {{diameter: {_mm(diameter)}, pitch: {_mm(pitch)}}}}}",
+        (
+            f"  retention.preload: {{lower: {0.5e-3 * stall:.2f} kN, "
+            f"upper: {20e-3 * stall:.2f} kN}}",
+        ),
+    )
+
+
+_JOINTS = {"thread": _screwed_caps, "plug_thread": _screwed_plugs, "tie_rods": _tie_rods}
+
+
+# --- the text -------------------------------------------------------------------------------
+
+_TEMPLATE = """\
+# @wall@ actuator, @goal@: @asked@.
+# The sizes are solved. After a change, look at them, or solve them again:
+#   actuator-opt evaluate FILE      actuator-opt optimise FILE
+# Every value has a PATH, such as cylinder.bore, for --set and for `variables`.
+name: @name@
+
+# Duty: every requirement holds in the worst load case. The speeds are assumed.
+load_cases:
+@cases@
+requirements:                   # besides those of the check list
+  burst_factor: {min: 4}        # burst divided by supply pressure
+  proof_factor: {min: 1}        # first damage divided by proof pressure
+  buckling_factor: {min: 3.5}   # extended, stalled at supply pressure
+@mass_limit@
+objective: {@objective@}
+
+# Oil and surroundings
+supply: {pressure: @pressure@, return_pressure: @return_pressure@}
+fluid: {material: iso_vg_32, temperature: 40 degC}
+environment: {temperature_min: 0 degC, temperature_max: 80 degC@cure@}
+
+# Parts
+cylinder: {bore: @bore@, stroke: @stroke@, mount: cap_clevis, end_stop: @stop@,
+  port_diameter: @port@, stop_travel: 1 mm}
+barrel:
+  layup:                        # from the bore outwards
+@layers@
+rod: {material: steel_42crmo4, outer_diameter: @rod@, inner_diameter: @inner@,
+  extension: @extension@, thread: {diameter: @thread@, pitch: @pitch@}}
+piston: {material: @metal@, length: @piston@, clearance: @clearance@ um}
+head: {material: @metal@, length: @head@, clearance: @clearance@ um}
+caps: {material: @metal@, thickness: @cap@}
+retention: @joint@
+clevis: {material: steel_42crmo4, pin_diameter: @pin@}
+seals:
+@seals@
+
+# Sizes that the optimiser varies between these bounds; all others are fixed.
+variables:
+@bounds@
+"""
+"""The file; names between @ are replaced."""
+
+
+def _mm(value: float) -> str:
+    return f"{1e3 * value:.2f}".rstrip("0").rstrip(".") + " mm"
+
+
+def _bounds(path: str, lower: float, upper: float) -> str:
+    return f"  {path}: {{lower: {_mm(lower)}, upper: {_mm(upper)}}}"
+
+
+def _text(duty: Duty, sizes: _Sizes, title: str, stop: str, mass: float | None) -> str:
+    """The template with first sizes; `mass` is the largest mass, if limited."""
+    wall, bore, rod = WALLS[duty.wall], sizes.bore, sizes.rod
+    stated = {key: exact_text(getattr(duty, key), DUTY[key][0]) for key in DUTY}
+    short = {key: quantity.text(getattr(duty, key)) for key, (quantity, _) in DUTY.items()}
+    limit = "" if mass is None else f"  mass: {{max: {1e3 * mass:.4g} g}}".ljust(32)
+    cases = [
+        f"  - {{name: {key}, direction: {key}, force: {stated[key]}, speed: {SPEED} m/s}}"
+        for key in ("push", "pull")
+        if getattr(duty, key) > 0
+    ]
+    layers = [
+        f"    - {{material: {material}, {f'angle: {angle}, ' if angle else ''}"
+        f"thickness: {_mm(thickness)}}}"
+        for (material, angle, _), thickness in zip(wall.layers, sizes.layers, strict=True)
+    ]
+    joint = _JOINTS[wall.joint](sizes)
+    fields = {
+        "wall": wall.words.capitalize(),
+        "goal": GOALS[duty.goal].words,
+        "asked": "{push} push, {pull} pull, {stroke} stroke at {pressure}".format(**short),
+        "name": scalar(title),
+        "cases": "\n".join(cases),
+        "mass_limit": limit and f"{limit}# {HEAVIER} x the lightest",
+        "objective": GOALS[duty.goal].objective,
+        "pressure": stated["pressure"],
+        "return_pressure": exact_text(duty.return_pressure, DUTY["pressure"][0]),
+        "cure": ", cure_temperature: 120 degC" if len(wall.layers) > 1 else "",
+        "bore": _mm(bore),
+        "stroke": stated["stroke"],
+        "stop": stop,
+        "port": f"{ceil(max(3.0, 1e3 * bore * sqrt(SPEED / PORT_SPEED)))} mm",
+        "layers": "\n".join(layers),
+        "rod": _mm(rod),
+        "inner": _mm(min(_HOLLOW * rod, rod - 2.2e-3)),
+        "extension": _mm(0.5 * rod + 5e-3),
+        "thread": _mm(sizes.rod_thread[0]),
+        "pitch": _mm(sizes.rod_thread[1]),
+        "metal": wall.caps,
+        "piston": _mm(sizes.piston),
+        "head": _mm(max(1.5 * rod, sizes.piston)),
+        "clearance": f"{1e6 * sizes.clearance:.0f}",
+        "cap": _mm(0.18 * bore),
+        "joint": joint.line,
+        "pin": f"{ceil(1e3 * sizes.pin)} mm",
+        "seals": "\n".join(_seals(duty, sizes)),
+        "bounds": "\n".join([*_part_bounds(wall, sizes), *joint.bounds]),
+    }
+    text = _TEMPLATE if mass is not None else _TEMPLATE.replace("@mass_limit@\n", "")
+    return re.sub(r"@(\w+)@", lambda match: fields[match[1]], text)
+
+
+def _part_bounds(wall: Wall, sizes: _Sizes) -> list[str]:
+    """Bounds of the variables that every joint has, around the first sizes."""
+    bore, rod, longest = sizes.bore, sizes.rod, 2 * sizes.piston + 3 * sizes.rod
+    bounds = [_bounds("cylinder.bore", bore / 1.4, 1.4 * bore)]
+    for index, (layer, thickness) in enumerate(zip(wall.layers, sizes.layers, strict=True)):
+        least = 0.2e-3 if layer[1] else wall.thinnest
+        bounds.append(_bounds(f"barrel.layup[{index}].thickness", least, 3 * thickness + 2e-3))
+    return [
+        *bounds,
+        _bounds("rod.outer_diameter", max(sizes.rod_thread[0], rod / 1.5), 1.5 * rod),
+        _bounds("rod.inner_diameter", 1e-3, 1.4 * rod),
+        _bounds("piston.length", sizes.piston - 1e-3, longest),
+        _bounds("head.length", sizes.piston - 1e-3, longest),
+        _bounds("caps.thickness", 1e-3, 0.5 * bore + 2e-3),
+        *(f"  seals.{place}.squeeze: {{lower: 8 %, upper: 25 %}}" for place in ("piston", "rod")),
+    ]
+
+
+def _seals(duty: Duty, sizes: _Sizes) -> list[str]:
+    """O-rings of piston, rod and ends, with back-up rings where their gap needs them."""
+    compound, back_up = _compound(duty.pressure, GAP_RATIO * sizes.clearance)
+    lines = []
+    for place, diameter, rings in (("piston", sizes.bore, "both"), ("rod", sizes.rod, "one")):
+        section = _section(diameter)
+        line = (
+            f"  {place}: {{type: o_ring, compound: {compound}, section: {_mm(section)}, "
+            "squeeze: 14 %, tolerance: 0.05 mm"
+        )
+        if back_up:
+            gland = standard_sizes.gland(section)
+            ring = (sum(gland.widths(1)) - sum(gland.widths(0))) / 2
+            line += (
+                f",\n    back_up: {rings}, back_up_material: back_up_ptfe, "
+                f"back_up_thickness: {_mm(ring)}"
+            )
+        lines.append(f"{line}}}")
+    static = (
+        f"  static: {{compound: {compound}, section: {_mm(sizes.section)}, squeeze: 20 %, "
+        "tolerance: 0.05 mm}"
+    )
+    return [*lines, static]

@@ -1,0 +1,94 @@
+"""Start designs: a duty gives a solved design of one page."""
+
+from __future__ import annotations
+
+import re
+from math import pi
+
+import pytest
+import yaml
+
+import actuator_opt as ao
+from actuator_opt.api import starting
+from actuator_opt.api.starting import Duty
+from actuator_opt.metrics.table import CHECKS
+
+DUTIES = [
+    Duty(500.0, 150.0, 0.02, 350e5),
+    Duty(500.0, 500.0, 0.5, 350e5),
+    Duty(50e3, 50e3, 0.5, 50e5),
+    Duty(3e3, 1e3, 0.3, 100e5, wall="aluminium"),
+    Duty(6e3, 4e3, 0.11, 210e5, wall="lined_carbon"),
+    Duty(2e3, 1e3, 0.06, 120e5, wall="linerless"),
+]
+"""The corners of forces, stroke and pressure, and each wall."""
+
+
+def missed_checks(evaluation):
+    """The checks that a design misses, without those that only advise."""
+    advice = {line.name for _, line in CHECKS if line.advice}
+    return {check.name for check in evaluation.checks if check.status == "missed"} - advice
+
+
+@pytest.mark.parametrize("duty", DUTIES, ids=lambda duty: f"{duty.wall} {duty.push:g} N")
+def test_a_start_meets_its_limits_on_one_page(duty):
+    """Every limit is met with round numbers; areas by hand carry the forces; at most 60 lines."""
+    start = starting.solved_start(duty, "leg: α")
+    assert (start.met, start.sentence) == (True, "")
+    lines = start.text.splitlines()
+    assert len(lines) <= 60
+    assert max(map(len, lines)) <= 100
+    assert yaml.safe_load(start.text)["name"] == "leg: α"
+    assert not re.search(r"\.\d{5}", start.text)
+    design = ao.read(start.text).design
+    evaluation = ao.evaluate(design)
+    assert evaluation.met
+    assert not missed_checks(evaluation)
+    assert [case.force for case in design.load_cases] == [duty.push, duty.pull]
+    bore, rod = design.cylinder.bore, design.rod.outer_diameter
+    ring = pi / 4 * (bore**2 - rod**2)
+    assert duty.pressure * pi / 4 * bore**2 - duty.return_pressure * ring > duty.push
+    assert duty.pressure * ring - duty.return_pressure * pi / 4 * bore**2 > duty.pull
+    for path, variable in design.variables.items():
+        assert variable.lower <= variable.start <= variable.upper, path
+
+
+def test_other_goals_weigh_little_more_than_the_lightest():
+    """Friction falls below that of the lightest, and the mass stays within its limit."""
+    light = ao.evaluate(ao.start(push="4 kN", stroke=0.05)).metrics
+    smooth = ao.evaluate(ao.start(push=4e3, stroke="50 mm", goal="friction")).metrics
+    assert smooth["friction_running"].value < light["friction_running"].value
+    assert smooth["mass"].value <= starting.HEAVIER * light["mass"].value
+
+
+def test_what_does_not_fit_says_why(monkeypatch):
+    """The seals bear 0.5 m/s: a faster start is the nearest design, with the reason on top."""
+    monkeypatch.setattr(starting, "SPEED", 0.6)
+    start = starting.solved_start(Duty(5e3, 2e3, 0.05, 160e5))
+    assert not start.met
+    assert start.sentence == "missed: piston speed"
+    assert start.text.startswith("# Nothing fits yet: missed: piston speed.\n")
+    missed = [
+        check.name for check in ao.evaluate(start.actuator).checks if check.status == "missed"
+    ]
+    assert missed == ["piston speed"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"push": "9"}, 'push: "9": unit missing'),
+        ({"pull": -1.0}, "pull: -1"),
+        ({"pressure": "40 mm"}, "pressure"),
+        ({"wall": "double_rod"}, "use one of steel, aluminium, lined_carbon, linerless"),
+        ({"goal": "mas"}, 'did you mean "mass"?'),
+        ({"push": 0.0, "pull": 0.0}, "state a force"),
+        ({"push": "900 kN", "pressure": "10 bar"}, "raise the pressure"),
+        ({"name": "two\nlines"}, "unprintable"),
+    ],
+)
+def test_unsuitable_duties(changes, words):
+    """One clear line each, before anything is solved."""
+    with pytest.raises(ao.ActuatorError, match=r"^[^\n]*$") as error:
+        ao.start(**changes)
+    assert words in str(error.value)
