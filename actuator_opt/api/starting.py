@@ -14,7 +14,7 @@ from math import ceil, pi, sqrt
 
 from ..base import units
 from ..base.dataclass import dataclass
-from ..base.errors import Diagnostic, UsageError, remedy, shown
+from ..base.errors import Diagnostic, InputError, UsageError, remedy, shown
 from ..base.quantities import INPUTS, Quantity
 from ..design import Design, standard_sizes, with_values
 from ..design.housings import extrusion_tables
@@ -285,7 +285,11 @@ def _unfit(template: Actuator, optimum: Optimisation, missed: Sequence[str]) -> 
     sentence = f"missed: {', '.join(missed)}"
     if optimum.infeasibility is not None:
         sentence = optimum.infeasibility.sentence.removeprefix("infeasible: ")
-    return Start(_written(template, optimum.design, sentence), False, sentence)
+    try:
+        actuator = _written(template, optimum.design, sentence)
+    except InputError:  # its sizes contradict each other, so no file can state them
+        actuator = _written(template, template.design, sentence)
+    return Start(actuator, False, sentence)
 
 
 def _mass(design: Design) -> float:

@@ -107,7 +107,7 @@ def init(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Write a commented start file: a design solved for a duty, a copy, or a scenario.
+    """Write a commented start file for a design or a scenario.
 
     On a terminal, init asks for forces, stroke, pressure, goal and wall. Options answer in advance.
     """

@@ -90,13 +90,7 @@ def _closed(view: FileView) -> float | None:
         count = view.number("extra_masses", index, "count")
         length = view.number("extra_masses", index, "length")
         further += (count or 0.0) * (length or 0.0)
-    section, spigot = view.number("seals", "static", "section"), 0.0
-    if section is not None:
-        place, _ = seal_faults.static_places(view)
-        spigot = float(spigot_length(place=place, section=section))
-    cap = wall_faults.ends(view)[0]
-    if cap.joint is not None and cap.joint.inner_skirt:
-        spigot += cap.number("retention", "length") or 0.0
+    spigot = _spigot(view)
     return float(
         closed_length(
             barrel_length=barrel,
@@ -107,6 +101,18 @@ def _closed(view: FileView) -> float | None:
             eye=eye,
         )
     )
+
+
+def _spigot(view: FileView) -> float:
+    """Length of the cap's spigot and inner skirt, which lengthen the barrel; 0 without them."""
+    section, spigot = view.number("seals", "static", "section"), 0.0
+    if section is not None:
+        place, _ = seal_faults.static_places(view)
+        spigot = float(spigot_length(place=place, section=section))
+    cap = wall_faults.ends(view)[0]
+    if cap.joint is not None and cap.joint.inner_skirt:
+        spigot += cap.number("retention", "length") or 0.0
+    return spigot
 
 
 def _reach(view: FileView) -> _Reach | None:
@@ -644,7 +650,7 @@ CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
     piston_nut,
     parts,
     barrel_length,
-    wall_faults.skirts,
+    lambda view: wall_faults.skirts(view, _spigot(view)),
     supply,
     environment,
     wall_faults.keys,

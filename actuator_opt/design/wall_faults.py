@@ -421,8 +421,11 @@ def _have(joints: list[Joint]) -> str:
     return "have" if len(joints) > 1 or joints[0].plural else "has"
 
 
-def skirts(view: FileView) -> Iterator[Fault]:
-    """Check that the skirts of cap and head, which overlap the barrel, do not meet on it."""
+def skirts(view: FileView, spigot: float) -> Iterator[Fault]:
+    """Check that the skirts of cap and head, which overlap the barrel, do not meet on it.
+
+    The cap's `spigot` [m] lengthens the barrel.
+    """
     with_skirts = [end for end in ends(view) if end.joint and end.joint.form == "skirts"]
     overlaps = [end.number(_BLOCK, "length") for end in with_skirts]
     length = view.number("barrel", "length")
@@ -430,6 +433,7 @@ def skirts(view: FileView) -> Iterator[Fault]:
     lengths = [number for number in (view.number(*part) for part in parts) if number is not None]
     if length is None and len(lengths) == len(parts):
         length = sum(lengths)
+    length = None if length is None else length + spigot
     known = [overlap for overlap in overlaps if overlap is not None]
     if not known or len(known) < len(overlaps) or length is None:
         return

@@ -14,14 +14,19 @@ from actuator_opt.api.starting import Duty
 from actuator_opt.metrics.table import CHECKS
 
 DUTIES = [
-    Duty(500.0, 150.0, 0.02, 350e5),
     Duty(500.0, 500.0, 0.5, 350e5),
-    Duty(50e3, 50e3, 0.5, 50e5),
-    Duty(3e3, 1e3, 0.3, 100e5, wall="aluminium"),
-    Duty(6e3, 4e3, 0.11, 210e5, wall="lined_carbon"),
+    Duty(50e3, 50e3, 0.5, 50e5, wall="aluminium"),
+    Duty(43e3, 42e3, 0.023, 250e5),  # skirts that nearly meet, on a spigot
+    Duty(1.2e3, 1e3, 0.04, 60e5, wall="lined_carbon"),
     Duty(2e3, 1e3, 0.06, 120e5, wall="linerless"),
 ]
 """The corners of forces, stroke and pressure, and each wall."""
+
+
+@pytest.fixture(autouse=True)
+def _one_search(monkeypatch):
+    """The first sizes alone lead to a design."""
+    monkeypatch.setattr(starting, "STARTS", 1)
 
 
 def missed_checks(evaluation):
@@ -53,10 +58,13 @@ def test_a_start_meets_its_limits_on_one_page(duty):
         assert variable.lower <= variable.start <= variable.upper, path
 
 
-def test_other_goals_weigh_little_more_than_the_lightest():
+def test_other_goals_weigh_little_more_than_the_lightest(monkeypatch):
     """Friction falls below that of the lightest, and the mass stays within its limit."""
-    light = ao.evaluate(ao.start(push="4 kN", stroke=0.05)).metrics
-    smooth = ao.evaluate(ao.start(push=4e3, stroke="50 mm", goal="friction")).metrics
+    starts, solved = [], starting._solved
+    monkeypatch.setattr(starting, "_solved", lambda *a: starts.append(solved(*a)) or starts[-1])
+    smooth = ao.start(push=4e3, stroke="50 mm", goal="friction")
+    assert starts[1].actuator is smooth
+    light, smooth = (ao.evaluate(start.actuator).metrics for start in starts)
     assert smooth["friction_running"].value < light["friction_running"].value
     assert smooth["mass"].value <= starting.HEAVIER * light["mass"].value
 
@@ -68,10 +76,7 @@ def test_what_does_not_fit_says_why(monkeypatch):
     assert not start.met
     assert start.sentence == "missed: piston speed"
     assert start.text.startswith("# Nothing fits yet: missed: piston speed.\n")
-    missed = [
-        check.name for check in ao.evaluate(start.actuator).checks if check.status == "missed"
-    ]
-    assert missed == ["piston speed"]
+    assert missed_checks(ao.evaluate(start.actuator)) == {"piston speed"}
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ import yaml
 from cli_runner import BENCH, DESIGNS, KNEE, run, spawn, surroundings
 from frozen_cases import commands
 
+from actuator_opt.api import starting
 from actuator_opt.cli import streams
 from actuator_opt.design.writer import init_text
 
@@ -215,6 +216,7 @@ def test_init_asks_on_a_terminal(tmp_path, monkeypatch):
     """
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(streams, "asking", lambda: True)
+    monkeypatch.setattr(starting, "STARTS", 1)
     answers = "3 kN\n3 kN, 1 kN\n50\n50 mm\n120 bar\n\n"
     result = run("init", "leg", stdin=answers.encode())
     assert result.code == 2
