@@ -77,7 +77,7 @@ def sweep(
     seed : seed for "sobol" and "lhs"
     metrics : metrics in the rows of a full sweep, besides mass and objective; default: all
     rows : whether to keep all rows in memory, for `Swept.table` and `Swept.to_frame`; default: if
-        they take less than 2 GB
+        they take less than 2 GB and no file is written
     store : database file; rows already in it are reused, and new rows are added
     csv : CSV file to write, with one row for each design
     parquet : the same table as an Apache Parquet file, with data types and metadata (extra
@@ -148,7 +148,7 @@ def sweep(
             workers=1 if actuator.plugins or engine != "numpy" else workers,
             cluster=cluster,
             watch=watched,
-            rows=_keeps_rows(study) if rows is None else rows and not reduce,
+            rows=_keeps_rows(study, files) if rows is None else rows and not reduce,
         )
     if figures and out is not None:
         draw_sweep(swept, figures, show=show, out=out)
@@ -221,8 +221,9 @@ def _only(
     return names
 
 
-def _keeps_rows(study: Study) -> bool:
-    return study.full and len(study.columns) * study.plan.count <= MOST_KEPT
+def _keeps_rows(study: Study, files: Sequence[Path]) -> bool:
+    """Whether to keep the rows in memory, unless the user states it (see `sweep`)."""
+    return study.full and not files and len(study.columns) * study.plan.count <= MOST_KEPT
 
 
 def _require_workers(workers: int | None) -> None:

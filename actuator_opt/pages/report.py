@@ -42,6 +42,8 @@ from ..rendering.text import DASH
 from ..studies.seal import SealStudy
 from . import dynamics, optimum, prices, seal, section, stiffness, trust, wall
 
+REQUIREMENTS, MASSES = "Requirements", "Parts and mass"
+"""Titles of the tables that a summary of the page shows."""
 KEY_FIGURES = (
     "mass",
     "stiffness_min",
@@ -103,6 +105,7 @@ def page(
         scale=drawing.scale,
         items=[(item.number, item.part, item.material) for item in drawing.items],
         lists_input=True,
+        summary=(REQUIREMENTS, MASSES),
     )
 
     later: list[Block] = []
@@ -414,7 +417,7 @@ def requirements(evaluation: Evaluation, *, shown: bool = True, labelled: bool =
         ]
         rows.append(Row(cells, row.state))
     if not rows:
-        return Notes("Requirements", ["The design states no requirement."], on=on)
+        return Notes(REQUIREMENTS, ["The design states no requirement."], on=on)
     columns = [
         _MARK,
         Column("requirement", "left", 1.0 if labelled else 1.2, breaks=22, mono=True, least=16),
@@ -432,7 +435,7 @@ def requirements(evaluation: Evaluation, *, shown: bool = True, labelled: bool =
     note = " ".join([note, *(f"{line}." for line in _row_notes(evaluation))])
     shown_columns = [k for k, column in enumerate(columns) if labelled or column.head != "quantity"]
     return Table(
-        "Requirements",
+        REQUIREMENTS,
         [columns[k] for k in shown_columns],
         [Row([row.cells[k] for k in shown_columns], row.state) for row in rows],
         note=note,
@@ -549,7 +552,7 @@ def masses(evaluation: Evaluation) -> Block:
         Column("", "left", "40mm"),
     ]
     note = mass_leaves_out(evaluation)
-    return Table("Parts and mass", columns, rows, total=below, note=note, on="paper")
+    return Table(MASSES, columns, rows, total=below, note=note, on="paper")
 
 
 def mass_leaves_out(evaluation: Evaluation) -> str:

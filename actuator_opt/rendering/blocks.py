@@ -373,6 +373,7 @@ class Page:
     design : name in the title block; default: `name`
     least : minimum height of the large figure [mm]; if necessary, blocks move to the next sheet
     lists_input : whether the text of the design file follows at the end
+    summary : titles of the tables in a summary; default: the first two
     """
 
     name: str
@@ -387,6 +388,7 @@ class Page:
     design: str = ""
     least: float = 0.0
     lists_input: bool = False
+    summary: Sequence[str] = ()
 
 
 def text_table(

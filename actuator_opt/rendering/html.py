@@ -151,25 +151,30 @@ def fragment(page: Page, origin: Origin | None = None) -> str:
 SUMMARY = 60_000
 """Largest size of a summary in bytes (our choice: a notebook with many results stays small)."""
 SUMMARY_TABLES = 2
-"""Number of tables in a summary; the first two of a design are its limits and its masses."""
+"""Number of tables in a summary, if the page does not name them."""
 
 
 def summary(page: Page) -> str:
-    """Headline, key figures, large figure and first tables of a page, as HTML for notebooks."""
+    """Headline, key figures, large figure and main tables of a page, as HTML for notebooks."""
     parts = [f"<style>{_STYLE}</style>", '<article class="ao">', *_top(page)]
     if page.tiles:
         parts += ['<div class="tiles">', *map(_tile, page.tiles), "</div>"]
     end = ['<p class="note">print(…) shows everything, ao.report(…) writes it.</p>', "</article>"]
-    picture = svg(page.hero(max(HERO, page.least)), page.kind)
-    tables = [table for table in _tables(page.blocks) if table.on != "terminal"][:SUMMARY_TABLES]
-    for piece in (
-        ["".join(_table(table)) for table in tables[:1]],
-        [picture],
-        *(["".join(_table(table))] for table in tables[1:]),
-    ):
-        if sum(len(part.encode()) + 1 for part in [*parts, *piece, *end]) < SUMMARY:
-            parts += piece
-    return "\n".join([*parts, *end])
+    tables = [table for table in _tables(page.blocks) if table.on != "terminal"]
+    named = [table for table in tables if table.title in page.summary]
+    tables = named or tables[:SUMMARY_TABLES]
+    written: list[str] = []
+    for text in ("".join(_table(table)) for table in tables):
+        written += [text] if len(text.encode()) < _room(*parts, *written, *end) else []
+    hero, room = page.hero(max(HERO, page.least)), _room(*parts, *written, *end)
+    pictures = (svg(hero, page.kind, places) for places in (2, 1))
+    picture = next((text for text in pictures if len(text.encode()) < room), "")
+    return "\n".join([*parts, *written[:1], picture, *written[1:], *end])
+
+
+def _room(*parts: str) -> int:
+    """Bytes that a summary has left after some parts, which are joined by new lines."""
+    return SUMMARY - sum(len(part.encode()) + 1 for part in parts)
 
 
 def _tables(blocks: Iterable[Block]) -> Iterator[Table]:
@@ -346,20 +351,20 @@ def _reach(change: float, met: bool) -> str:
 # ---- drawings ----
 
 
-def svg(ink: Ink, title: str = "") -> str:
-    """A drawing as SVG text; its coordinates are millimetres on paper, rounded to 0.01."""
+def svg(ink: Ink, title: str = "", places: int = 2) -> str:
+    """A drawing as SVG text; its coordinates are millimetres on paper, rounded to some decimals."""
     size = f'viewBox="0 0 {ink.width:g} {ink.height:g}" width="{6 * ink.width:g}"'
     parts = [f'<svg class="drawing" {size} role="img" xmlns="http://www.w3.org/2000/svg"']
     parts.append(' fill-rule="evenodd" stroke-linejoin="round">')
     parts.append(f"<title>{_say(title)}</title>" if title else "")
-    parts += [_text(mark) if "text" in mark else _path(mark) for mark in ink.marks]
+    parts += [_text(mark) if "text" in mark else _path(mark, places) for mark in ink.marks]
     return "".join([*parts, "</svg>"])
 
 
-def _path(mark: PathMark) -> str:
+def _path(mark: PathMark, places: int) -> str:
     lines = mark["path"]
     end = "Z" if mark["closed"] else ""
-    data = "".join("M" + "L".join(_point(*at) for at in line) + end for line in lines)
+    data = "".join("M" + "L".join(_point(x, y, places) for x, y in line) + end for line in lines)
     dash = mark["dash"]
     dashed = f' stroke-dasharray="{" ".join(f"{d:g}" for d in dash)}"' if dash else ""
     return (
@@ -369,8 +374,8 @@ def _path(mark: PathMark) -> str:
     )
 
 
-def _point(x: float, y: float) -> str:
-    return f"{round(x, 2):g} {round(y, 2):g}"
+def _point(x: float, y: float, places: int) -> str:
+    return f"{round(x, places):g} {round(y, places):g}"
 
 
 def _text(mark: TextMark) -> str:

@@ -6,6 +6,7 @@ import inspect
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -23,8 +24,9 @@ BONDED = DESIGNS / "knee_bonded.yaml"
 SLOW = {
     "Prices", "ParetoFront", "Uncertainty", "SealStudy", "Simulation", "Compared", "Identification",
     "Calibrated", "KeptSweep", "Restored", "Run", "Rerun", "Sensitivities", "Verification",
+    "Installation",
 }  # fmt: skip
-"""Kinds that `tests/cli/test_job.py` makes anyway, and holds to the same."""
+"""Kinds that `tests/cli/test_job.py` or `tests/rendering/test_html.py` makes and checks."""
 BENDING = "".join(f"{k / 10:g},{3 * k:g},{k / 50:g}\n" for k in range(60))
 
 
@@ -49,18 +51,20 @@ def test_the_repr_of_every_result_is_one_short_line(tmp_path):
     bent = ao.bending(tmp_path / "bend.csv", specimen=specimen)
     objects = [
         evaluation(), optimum(), session, ao.compare(BENCH, BONDED), bent, bent.record, specimen,
-        ao.sweep(BENCH, ["retention.wall=3mm,4mm"], workers=1), ao.doctor(), ao.load_library(),
+        ao.sweep(BENCH, ["retention.wall=3mm,4mm"], workers=1), ao.load_library(),
         ao.read(BENCH), evaluation().design, ao.Diagnostic("x" * 500, "y" * 500),
         ao.read_scenario(DESIGNS / "scenarios" / "knee_step.yaml"), ao.explain("mass"),
-        ao.explain("mass").entry, ao.catalogue("metrics"),
+        ao.explain("mass").entry, ao.catalogue("metrics"), evaluation().table("metrics"),
         ao.Prediction(0.2, {f"path{k}": 0.1 for k in range(40)}, valid=True),
         ao.Price("a.b", 0.1, 0.2, 0.3, (0.05, None), ("x" * 200, None), {"c": 0.1}),
         ao.OptimumCurve("a.b", evaluation()["mass"].quantity, (0.1,), (None,), ({},)),
     ]  # fmt: skip
     made = {type(one).__name__ for one in objects}
+    made |= {type(evaluation()[name]).__name__ for name in ("mass", "rod.material")}
     kinds = {name.partition(":")[2] for name in results.KINDS}
     classes = {name for name in ao.__all__ if isinstance(getattr(ao, name), type)}
-    assert kinds | classes <= made | SLOW | {"ActuatorError", "InputError"}
+    errors = {name for name in classes if issubclass(getattr(ao, name), Exception)}
+    assert kinds | classes - errors <= made | SLOW
     for one in objects:
         one_line(one)
         if type(one).__name__ in kinds:
@@ -79,7 +83,10 @@ def test_a_notebook_shows_the_main_parts(text):
     """Headline, limits, section and masses of the page: balanced, escaped, without a script."""
     name = "<script>alert(1)</script>"
     named = re.sub("^name: .*$", f"name: '{name}'", text, count=1, flags=re.MULTILINE)
-    shown = ao.evaluate(named)._repr_html_()
+    evaluated = ao.evaluate(named)
+    shown = replace(optimum(), evaluation=evaluated)._repr_html_()
+    assert shown.count("<h2>") == 2
+    shown = evaluated._repr_html_()
     assert len(shown.encode()) < 60_000
     seen = Balance()
     seen.feed(shown)

@@ -6,6 +6,7 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from cases.one_line import one_line
 from cli_runner import run
 
 import actuator_opt as ao
@@ -188,7 +189,9 @@ def test_a_notebook_shows_the_page():
     seen.feed(ao.evaluate(KNEE)._repr_html_())
     assert not seen.open
     assert {"robot knee", "Requirements"} <= set(seen.words)
-    assert ao.doctor()._repr_html_().startswith("<")
+    installation = ao.doctor()
+    assert installation._repr_html_().startswith("<")
+    one_line(installation)
 
 
 def test_the_report_is_written_as_asked(tmp_path):
