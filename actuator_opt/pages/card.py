@@ -192,7 +192,7 @@ _QUALITY = {
 
 
 def _quality(optimisation: Optimisation) -> str:
-    """How good the design is: whether it is an optimum, and what is proven."""
+    """Whether the design is an optimum, and the share of it that is proven."""
     if optimisation.status != "optimal":
         return _QUALITY.get(optimisation.status, optimisation.status)
     certificate = optimisation.certificate
@@ -686,7 +686,7 @@ def _offers(optimisation: Optimisation) -> Iterator[Block]:
 
 
 def _doubts(subject: Evaluation | Optimisation) -> Iterator[Block]:
-    """What a good verdict does not cover: no reserve, not checked, unverified, extrapolated."""
+    """Doubts beside a good verdict: no reserve, not checked, unverified, extrapolated."""
     evaluation, optimisation = report.parts_of(subject)
     counts, parts = evaluation.counts, []
     if tight := (optimisation or evaluation).tight:

@@ -254,13 +254,14 @@ def test_what_a_report_needs_is_asked_for_in_one_line():
 
 def test_every_command_is_registered():
     """The public functions of the modules of `cli` are commands, but for those that all share."""
-    shared = {"__init__", "app", "faults", "job", "options", "streams"}
+    shared = {"__init__", "app", "completion", "faults", "job", "options", "streams"}
     known = {("materials", "materials"), ("runs", "runs")}
     for file in Path(cli.__file__).parent.glob("*.py"):
         own = [] if file.stem in shared else ast.parse(file.read_text("utf-8")).body
         plain = (x for x in own if isinstance(x, ast.FunctionDef) and not x.decorator_list)
         known |= {(x.name, file.stem) for x in plain if not x.name.startswith("_")}
-    assert known == {one for one in COMMANDS.items() if one[0] not in HIDDEN}
+    named = {name: home.partition(".") for name, home in COMMANDS.items() if name not in HIDDEN}
+    assert known == {(function or name, module) for name, (module, _, function) in named.items()}
 
 
 def test_only_the_command_asked_for_is_there():
