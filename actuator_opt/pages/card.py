@@ -192,7 +192,7 @@ _QUALITY = {
 
 
 def _quality(optimisation: Optimisation) -> str:
-    """Whether the design is an optimum, and the share of it that is proven."""
+    """Whether the design is an optimum, and whether that is proven."""
     if optimisation.status != "optimal":
         return _QUALITY.get(optimisation.status, optimisation.status)
     certificate = optimisation.certificate
