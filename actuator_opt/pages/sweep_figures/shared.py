@@ -266,7 +266,9 @@ USUAL = 5
 
 
 def chosen(study: Study, show: Sequence[str]) -> tuple[str, ...]:
-    """The metrics to show: as requested, or else the metrics of objective and requirements.
+    """The metrics to show: as requested, or else those of objective and requirements.
+
+    A sweep may have kept only some of them.
 
     Raises
     ------
@@ -281,7 +283,8 @@ def chosen(study: Study, show: Sequence[str]) -> tuple[str, ...]:
         return tuple(dict.fromkeys(show))
     goal = [*study.goal.weights]
     own = [limit.metric for limit in study.binding if limit.origin in ORIGINS]
-    return tuple(dict.fromkeys([*goal, *own]))[:USUAL]
+    kept = dict.fromkeys(name for name in (*goal, *own) if name in study.metrics)
+    return tuple(kept)[:USUAL]
 
 
 def watched(study: Study, kinds: Sequence[str], show: Sequence[str]) -> tuple[str, ...]:
