@@ -34,7 +34,7 @@ MOST_KEPT = 2**28
 """Largest number of values that a sweep keeps in memory unless asked to: 2 GB (our choice)."""
 
 Varied: TypeAlias = "str | Sequence[float | str] | Array"
-"""Values of a PATH: a text such as ``"18..40 mm:12"``, or numbers (SI) and texts."""
+"""Values of a PATH: a text such as ``"18..40 mm:12"``, or numbers (SI) and texts with units."""
 
 MOST_WORKERS = 1024
 """Maximum number of processes on a machine: our choice; a larger number is probably a typing error
@@ -71,7 +71,8 @@ def sweep(
     ----------
     design : the base design
     vary : ``"PATH=A..B:N"`` (N values from A to B) or ``"PATH=a,b,c"``, several in a list; or a
-        mapping of each PATH to such a text, or to a list or array of numbers (SI) or texts
+        mapping of each PATH to such a text, or to a list or array of numbers (SI) and texts, each
+        with its own unit
     method : "grid" (full factorial), "sobol" or "lhs" (Latin hypercube)
     n : number of points for "sobol" and "lhs"
     seed : seed for "sobol" and "lhs"
@@ -172,8 +173,8 @@ def evaluate_many(
     Parameters
     ----------
     design : the base design
-    columns : for each PATH, a list or one-dimensional array of numbers (SI) or texts, all of one
-        length
+    columns : for each PATH, a list or one-dimensional array of numbers (SI) and texts, each with
+        its own unit; all of one length
     metrics : metrics to return, besides mass and objective; default: all
     plugins : the user's metrics and constraints
     workers : number of processes; default: one per core

@@ -24,7 +24,7 @@ from ..base.numeric import Array
 from ..base.quantities import Quantity
 from ..design import Design, with_values
 from ..design.materials import load_library
-from ..design.paths import canonical, get
+from ..design.paths import canonical, get, quantity_of
 
 Metrics: TypeAlias = Mapping[str, Quantity] | None
 _RANGE = re.compile(r"(?P<first>.+?)\.\.(?P<last>.+?)(?::(?P<count>[^:]*))?")
@@ -108,7 +108,7 @@ def read_axis(text: str, design: Design, metrics: Metrics = None) -> SweepAxis:
     match = _RANGE.fullmatch(values.strip())
     if match is None:
         parts = [part.strip() for part in values.split(",")]
-        return _listed(path, parts, design, metrics)
+        return _listed(path, _with_unit(parts), design, metrics)
     first, last, count = match["first"].strip(), match["last"].strip(), match["count"]
     steps = _steps(text, count)
     ends = [_number(path, end, design, metrics) for end in _with_unit([first, last])]
@@ -135,17 +135,18 @@ def given_axis(path: str, values: object, design: Design, metrics: Metrics = Non
 
     Parameters
     ----------
-    values : a text as in `read_axis`; or a list or one-dimensional array of numbers (SI) and texts
+    values : a text as in `read_axis`; or a list or one-dimensional array of numbers (SI) and texts,
+        each with its own unit
 
     Raises
     ------
     InputError
-        also if an array is empty, not one-dimensional or not finite
+        also if an array is empty, not one-dimensional or not finite, or a text lacks its unit
     """
     if isinstance(values, str):
         return read_axis(f"{path}={values}", design, metrics)
     path = _canonical(path, design)
-    given = _one_dimensional(path, values)
+    given = _one_dimensional(path, values, design)
     if not isinstance(given, np.ndarray):
         return _listed(path, given, design, metrics)
     numbers = _checked(path, given, design, metrics)
@@ -157,8 +158,8 @@ def given_axis(path: str, values: object, design: Design, metrics: Metrics = Non
     return SweepAxis(path, numbers)
 
 
-def _one_dimensional(path: str, values: object) -> Array | list[str]:
-    """Values as an array of numbers, or all as texts if there is a text among them."""
+def _one_dimensional(path: str, values: object, design: Design) -> Array | list[str]:
+    """Values as an array of numbers, or all as texts (bare: SI) if there is a text among them."""
     advice = "give a list or a one-dimensional array of numbers (SI) or texts"
     array = np.asarray(values) if hasattr(values, "__array__") else None
     if array is not None and array.ndim != 1:
@@ -170,6 +171,7 @@ def _one_dimensional(path: str, values: object) -> Array | list[str]:
         items = list(values) if array is None else array.tolist()  # type: ignore[call-overload]
         numbers = [x if isinstance(x, str) else _scalar(path, k, x) for k, x in enumerate(items)]
         if any(isinstance(x, str) for x in numbers):
+            _require_units(path, numbers, design)
             return [x if isinstance(x, str) else repr(x) for x in numbers]
         array = np.array(numbers)
     if not len(array):
@@ -180,6 +182,25 @@ def _one_dimensional(path: str, values: object) -> Array | list[str]:
         message = f"the value at index {place} is {array[place]}"
         raise InputError(Diagnostic(message, "give finite numbers", path=path))
     return array.astype(float)
+
+
+def _require_units(path: str, values: Sequence[str | float], design: Design) -> None:
+    """Refuse a text that is a number without the unit that its PATH needs.
+
+    Raises
+    ------
+    InputError
+        it states the index of the text
+    """
+    try:
+        quantity = quantity_of(path, design)
+    except InputError:  # a word, such as the name of a material
+        return
+    for index, text in enumerate(values if quantity.si_unit else ()):
+        if isinstance(text, str) and _bare(text) is not None:
+            message = f'the text at index {index} has no unit: "{shown(text)}"'
+            advice = f'write e.g. "{shown(text)} {quantity.unit}", or a number in {quantity.si_unit}'
+            raise InputError(Diagnostic(message, advice, path=path))
 
 
 def _scalar(path: str, index: int, item: object) -> float:
@@ -280,7 +301,10 @@ def _bare(text: str) -> float | None:
     return None if unit else number
 
 
-def _listed(path: str, parts: list[str], design: Design, metrics: Metrics) -> SweepAxis:
+def _listed(
+    path: str, parts: list[str], design: Design, metrics: Metrics, *, distinct: bool = True
+) -> SweepAxis:
+    """The axis of listed values; `distinct` refuses equal values, such as 20 mm and 2 cm."""
     if not all(parts):
         raise UsageError(Diagnostic(f"--vary {path}: one of the values is empty", FORM))
     if len(parts) > MOST_LISTED:
@@ -289,9 +313,8 @@ def _listed(path: str, parts: list[str], design: Design, metrics: Metrics) -> Sw
                 f"--vary {path}: {len(parts)} values are too many for a list", "write a range"
             )
         )
-    parts = _with_unit(parts)
     values = [_value(path, part, design, metrics) for part in dict.fromkeys(parts)]
-    if len(set(values)) < len(parts):  # finds duplicates such as 20 mm and 2 cm
+    if distinct and len(set(values)) < len(parts):
         raise UsageError(Diagnostic(f"--vary {path}: a value is given twice", FORM))
     if all(
         isinstance(value, (int, float))
@@ -427,20 +450,20 @@ def paired(columns: Mapping[str, object], design: Design, metrics: Metrics = Non
 
     Parameters
     ----------
-    columns : for each PATH, a list or array of numbers (SI) or texts
+    columns : for each PATH, a list or array of numbers (SI) and texts, each with its own unit
 
     Raises
     ------
     InputError
-        a PATH is unknown or given twice, a value does not suit it, an array is not one-dimensional
-        or not finite, or the arrays have different lengths
+        a PATH is unknown or given twice, a value does not suit it, a text lacks its unit, an array
+        is not one-dimensional or not finite, or the arrays have different lengths
     """
     axes: list[SweepAxis] = []
     numbers: list[Array] = []
     count, first, variant = 0, "", np.zeros(1, dtype=np.int64)
     for name, values in columns.items():
         path = _canonical(name, design)
-        given = _one_dimensional(path, [values] if isinstance(values, str) else values)
+        given = _one_dimensional(path, [values] if isinstance(values, str) else values, design)
         if path in (axis.path for axis in axes):
             raise InputError(Diagnostic("is given twice", "join its values", path=path))
         if first and len(given) != count:
@@ -455,7 +478,8 @@ def paired(columns: Mapping[str, object], design: Design, metrics: Metrics = Non
                 SweepAxis(path, unique) if few else SweepAxis(path, unique[[0, -1]], range=True)
             )
         else:
-            axes.append(_listed(path, list(dict.fromkeys(given)), design, metrics))
+            different = list(dict.fromkeys(given))
+            axes.append(_listed(path, different, design, metrics, distinct=False))
             place = {text: k for k, text in enumerate(axes[-1].texts)}
             codes = np.array([place[text] for text in given], dtype=np.int64)
             if axes[-1].values is None:

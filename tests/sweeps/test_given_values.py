@@ -108,6 +108,8 @@ def test_many_points_run_as_a_compiled_program(design):
         ({"cylinder.bore": [10**400]}, "cylinder.bore: the value at index 0 is not a number"),
         ({"cylinder.bore": [0.02, 3.0]}, "cylinder.bore: value at index 1: 3 m: "),
         ({"cylinder.bore": ["2 kg"]}, "cylinder.bore: "),
+        ({"cylinder.bore": [20, "21 mm"]}, "cylinder.bore: 20 m: outside the valid range"),
+        ({"cylinder.bore": ["20 mm", "21"]}, "cylinder.bore: the text at index 1 has no unit"),
         ({"seals.piston.count": [1, 1.5]}, "seals.piston.count: value at index 1: 1.5: must be a"),
         ({"cylinder.bore": []}, "cylinder.bore: has no values"),
         ({"cylinder.bore": 0.02}, "cylinder.bore: 0.02 is not a list"),
@@ -124,6 +126,15 @@ def test_values_that_cannot_be_varied(design, columns, told):
             call(design, columns)
         assert str(fault.value).startswith(told)
         assert len(str(fault.value).splitlines()) == 1
+
+
+def test_numbers_among_texts_are_si(design):
+    """A text never lends its unit to a number; points may repeat a value in another unit."""
+    many = ao.evaluate_many(design, {"cylinder.bore": [0.02, "21 mm", "2 cm"]}, metrics=["mass"])
+    np.testing.assert_allclose(many["cylinder.bore"], [0.02, 0.021, 0.02], rtol=1e-12)
+    assert many["mass"][0] == many["mass"][2] < many["mass"][1]
+    swept = ao.sweep(design, {"cylinder.bore": [0.02, "21 mm"]}, metrics=["mass"], workers=1)
+    np.testing.assert_array_equal(swept.table()["mass"], many["mass"][:2])
 
 
 def test_values_that_do_not_belong_together(design):
