@@ -7,6 +7,8 @@ from dataclasses import asdict, field, replace
 from math import isfinite
 from typing import Any, Literal, TypeAlias
 
+import numpy as np
+
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, UsageError, remedy, shown
 from ..base.quantities import INPUTS
@@ -15,7 +17,7 @@ from ..design import choice_list
 from ..design.model import Design
 from ..evaluation.result import TABLES, Evaluation, Metric, PathValue
 from ..metrics import of_metric
-from ..rendering.tables import DataTable
+from ..rendering.tables import DataColumn, DataTable, coded
 from . import prices
 from .prices import Offers, Sensitivity, offers
 from .problem import Robust
@@ -486,8 +488,8 @@ class Optimisation(Displayed):
 
         Parameters
         ----------
-        name : "variables", "prices" (objective per unit of the parameter, both in SI), or a table
-            of the design to build (see `Evaluation.table`)
+        name : "variables", "prices" (objective per unit of the parameter, in `price_unit`), or a
+            table of the design to build (see `Evaluation.table`)
 
         Raises
         ------
@@ -504,17 +506,40 @@ class Optimisation(Displayed):
                 scaled=["value", "lower", "upper", "start"],
             )
         if name == "prices":
-            rows = self.sensitivities
-            keys = [key for key in self.columns() if key not in ("unit", "holds_until")]
-            keys[2:2] = ["holds_until"]
-            columns = {key: [getattr(row, key) for row in rows] for key in keys}
-            quantities = [self[row.parameter].quantity for row in rows]
-            scaled = ["limit", "holds_until"]
-            return DataTable.of(name, columns, quantities=quantities, scaled=scaled)
+            return self._price_table()
         if name not in TABLES:
             names = ("variables", "prices", *TABLES)
             raise UsageError(Diagnostic(f'no table "{shown(name)}"', remedy(str(name), names)))
         return self.best_evaluation.table(name)
+
+    def _price_table(self) -> DataTable:
+        """The prices, each in the objective's unit per unit of its parameter."""
+        rows, metric = self.sensitivities, self.evaluation.metrics.get(self.objective_metric)
+        objective = of_metric(self.objective_metric) if metric is None else metric.quantity
+        quantities = [self[row.parameter].quantity for row in rows]
+        factors = (objective.to_display(1.0) - objective.to_display(0.0)) * np.array(
+            [row.scale for row in rows]
+        )
+        columns: dict[str, list[Any] | DataColumn] = {
+            key: [getattr(row, key) for row in rows]
+            for key in ("parameter", "limit", "holds_until", "active")
+        }
+        si_units, display_units = (
+            coded([_per(getattr(objective, unit), getattr(q, unit, "")) for q in quantities])
+            for unit in ("si_unit", "unit")
+        )
+        unit_column = DataColumn("price_unit", si_units, None, display_units)
+        for key in ("price", "price_up", "price_down"):
+            si = np.array([getattr(row, key) for row in rows], dtype=float)
+            columns[key] = DataColumn(key, si, None, si * factors)
+            columns["price_unit"] = unit_column
+        columns["percent_per_percent"] = [row.percent_per_percent for row in rows]
+        for key in ("predicted_10", "resolved_10", "predicted_minus10", "resolved_minus10"):
+            si = np.array([getattr(row, key) for row in rows], dtype=float)
+            columns[key] = DataColumn(key, si, objective)
+        columns["next_active"] = [row.next_active for row in rows]
+        scaled = ["limit", "holds_until"]
+        return DataTable.of("prices", columns, quantities=quantities, scaled=scaled)
 
     def columns(self) -> dict[str, list[Any]]:
         """The sensitivity table as columns (SI); `limit` is in its display `unit`."""
@@ -585,3 +610,14 @@ class Optimisation(Displayed):
         if self.rounding is None:
             return None
         return self.rounding.to_dict() | {"continuous_evaluation": self.evaluation.to_dict()}
+
+
+def _per(unit: str, parameter: str) -> str:
+    """Unit of a price.
+
+    >>> _per("g", "mm"), _per("g", "kN/mm"), _per("g", ""), _per("", "mm"), _per("", "")
+    ('g/mm', 'g/(kN/mm)', 'g', '1/mm', '')
+    """
+    if not parameter:
+        return unit
+    return f"{unit or 1}/{f'({parameter})' if set(parameter) & set('/*') else parameter}"

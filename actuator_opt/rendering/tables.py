@@ -133,7 +133,7 @@ class DataTable(OneLine):
     def of(
         cls,
         name: str,
-        columns: Mapping[str, Sequence[Any]],
+        columns: Mapping[str, Sequence[Any] | DataColumn],
         *,
         quantities: Sequence[Quantity | None] = (),
         scaled: Sequence[str] = (),
@@ -143,12 +143,15 @@ class DataTable(OneLine):
         Parameters
         ----------
         name : name of the table
-        columns : values by name of the column, SI
+        columns : values by name of the column, SI; or a column that is made already
         quantities : quantity of each row, if these differ; a column `unit` is added
         scaled : columns of numbers with these quantities
         """
         made = []
         for title, values in columns.items():
+            if isinstance(values, DataColumn):
+                made.append(values)
+                continue
             display = None
             if title in scaled:
                 display = _values(

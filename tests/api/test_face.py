@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import inspect
 import re
 import subprocess
@@ -19,6 +20,7 @@ from rendering.test_html import Balance
 import actuator_opt as ao
 from actuator_opt.api import results
 from actuator_opt.base.arguments import guarded
+from actuator_opt.optimisation.prices import Sensitivity
 
 BONDED = DESIGNS / "knee_bonded.yaml"
 SLOW = {
@@ -156,6 +158,32 @@ def test_any_path_by_its_name():
     assert not evaluation()["sensor.mass"].value
     for variable in optimum().best_variables:
         assert float(optimum()[variable.path]) == variable.value
+
+
+def test_a_price_states_its_unit(tmp_path):
+    """2e-8 kg/Pa = 2e-8 * 1e3 g * 1e5 / bar = 2 g/bar; 0.3 kg per unit of a factor = 300 g."""
+    rows = (("supply.pressure", "bar", 1e5, 2e-8), ("requirements.burst_factor.min", "", 1.0, 0.3))
+    table = replace(
+        optimum(),
+        sensitivities=tuple(
+            Sensitivity(
+                parameter=path, label="", unit=unit, scale=scale, limit=1.0, price=price,
+                percent_per_percent=None, predicted_10=0.25, resolved_10=None,
+                predicted_minus10=None, resolved_minus10=None, holds_until=None, next_active=None,
+                active=True, price_up=price, price_down=None,
+            )
+            for path, unit, scale, price in rows
+        ),
+    ).table("prices")  # fmt: skip
+    assert [*table["price"]] == [2e-8, 0.3]
+    assert [*table["price_unit"]] == ["kg/Pa", "kg"]
+    text = table.to_csv(tmp_path / "prices.csv").read_text()
+    shown = list(csv.DictReader(text.splitlines()))
+    for key in ("price", "price_up"):
+        assert [float(row[key]) for row in shown] == pytest.approx([2, 300], rel=1e-12)
+    assert [row["price_unit"] for row in shown] == ["g/bar", "g"]
+    assert float(shown[0]["predicted_10 [g]"]) == 250
+    assert "g/bar" in str(table)
 
 
 @pytest.mark.parametrize(
