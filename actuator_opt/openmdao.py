@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .api.actuator import Actuator, as_actuator, located
+from .api.actuator import Actuator, Result, as_actuator, located
 from .api.sessions import Price, Session
 from .base.errors import ActuatorError, Diagnostic, InputError, UsageError, library, remedy
 from .base.numeric import STEP, namespace
@@ -61,7 +61,11 @@ class _Component(ExplicitComponent):
     """A component with numbers of a design as inputs, and some outputs in SI."""
 
     def __init__(
-        self, design: Actuator | Design | str | Path, *, inputs: Sequence[str], **options: Any
+        self,
+        design: Actuator | Design | Result | str | Path,
+        *,
+        inputs: Sequence[str],
+        **options: Any,
     ) -> None:
         super().__init__(**options)
         self.actuator = as_actuator(design)
@@ -115,7 +119,7 @@ class EvaluateComponent(_Component):
 
     def __init__(
         self,
-        design: Actuator | Design | str | Path,
+        design: Actuator | Design | Result | str | Path,
         *,
         inputs: Sequence[str],
         outputs: Sequence[str] = ("mass",),
@@ -188,7 +192,11 @@ class OptimumComponent(_Component):
     """
 
     def __init__(
-        self, design: Actuator | Design | str | Path, *, inputs: Sequence[str], **options: Any
+        self,
+        design: Actuator | Design | Result | str | Path,
+        *,
+        inputs: Sequence[str],
+        **options: Any,
     ) -> None:
         super().__init__(design, inputs=inputs, **options)
         self.session = Session(self.actuator)

@@ -11,17 +11,25 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from numbers import Real
 from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
 
 from ..base.arguments import guarded
 from ..base.cluster import Cluster, connected
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.tables import OneLine
-from ..design import Design, FileSource, LoadedDesign, read_design, with_values
+from ..design import Design, FileSource, Fraction, LoadedDesign, read_design, with_values
 from ..design.reader import TEXT
-from ..evaluation import PreparedDesign, compute, prepare
+from ..evaluation import Evaluation, PreparedDesign, compute, prepare
 from ..evaluation.plugin import Plugin, View, collect, load, with_own
+
+if TYPE_CHECKING:
+    from ..optimisation.result import Optimisation
+
+Result: TypeAlias = "Evaluation | Optimisation"
+"""A result in place of a design: the design evaluated, or the design to build of an optimum."""
 
 Plugins = Iterable["Plugin | Callable[[View], object] | str | Path"]
 
@@ -47,10 +55,38 @@ class Actuator(OneLine):
         """Copy the actuator with new values, keyed by PATH (such as ``cylinder.stroke``).
 
         A value is a number in SI, or text with a unit.
+
+        Raises
+        ------
+        UsageError : `values` is not a mapping
+        InputError : a PATH is unknown, or a value does not suit it
         """
+        require_changes(values)
         quantities = with_own(self.plugins)
-        design = with_values(self.design, dict(values), metrics=quantities)
+        changes = {k: float(x) if isinstance(x, Real) else x for k, x in values.items()}
+        design = with_values(self.design, changes, metrics=quantities)
         return Actuator(design, self.source, self.plugins)
+
+
+def require_changes(changes: object) -> None:
+    """Refuse anything but a mapping from PATH to numbers and texts.
+
+    Raises
+    ------
+    UsageError : it is not a mapping
+    InputError : a PATH is not a text, or a value is neither a number nor a text
+    """
+    if not isinstance(changes, Mapping):
+        message = f"changes: must be a mapping from PATH to number, not {type(changes).__name__}"
+        raise UsageError(Diagnostic(message, 'write {"cylinder.stroke": "112 mm"}'))
+    for path, value in changes.items():
+        if not isinstance(path, str):
+            message = f"must be a PATH, not {type(path).__name__}"
+            raise InputError(Diagnostic(message, "write a text"))
+        if isinstance(value, bool) or not isinstance(value, (Real, str, Fraction)):
+            message = f"must be a number, not {type(value).__name__}"
+            advice = 'write SI, or a text with a unit such as "112 mm"'
+            raise InputError(Diagnostic(message, advice, path=path))
 
 
 def plugins_of(sources: Plugins) -> tuple[Plugin, ...]:
@@ -91,6 +127,9 @@ def read(
     InputError
         lists every fault of the file, each with its line and remedy
     """
+    if isinstance(source, Actuator | Design | Evaluation) or hasattr(source, "best_evaluation"):
+        message = f"read: source is {type(source).__name__}, which needs no reading"
+        raise UsageError(Diagnostic(message, "for new values, write design.changed({...})"))
     loaded_plugins = plugins_of(plugins)
     pairs = set.items() if isinstance(set, Mapping) else set
     loaded: LoadedDesign = read_design(
@@ -121,12 +160,19 @@ def read_as(
     return replace(actuator, source=replace(source, document=document))
 
 
-def as_actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -> Actuator:
-    """Turn a design (file, text, `Design` or `Actuator`) into an `Actuator`."""
+def as_actuator(design: Actuator | Design | Result | str | Path, plugins: Plugins = ()) -> Actuator:
+    """Turn a design (file, text, `Design`, `Actuator` or result) into an `Actuator`.
+
+    A result gives its design: an evaluation the design evaluated, an optimum the design to build.
+    """
     if isinstance(design, Actuator):
         return design
+    result = getattr(design, "best_evaluation", design)  # of an optimum, the design to build
+    if isinstance(result, Evaluation):
+        design = result.design
     if isinstance(design, Design):
         return Actuator(design, None, plugins_of(plugins))
+    assert isinstance(design, str | Path)
     return read(design, plugins=plugins)
 
 
@@ -158,7 +204,7 @@ def located(actuator: Actuator) -> Iterator[None]:
 
 
 def checked_design(
-    design: Actuator | Design | str | Path, plugins: Plugins
+    design: Actuator | Design | Result | str | Path, plugins: Plugins
 ) -> tuple[Actuator, PreparedDesign]:
     """Read a design; return the `Actuator`, and the `PreparedDesign` that the models take.
 

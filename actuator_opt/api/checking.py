@@ -12,7 +12,7 @@ from ..base.errors import ActuatorError, Diagnostic, InputError
 from ..design import Design, is_scenario
 from ..design.reader import TEXT, opened
 from ..evaluation import PreparedDesign, without_films
-from .actuator import Actuator, Plugins, as_actuator, fault_of, read, requirement_faults
+from .actuator import Actuator, Plugins, Result, as_actuator, fault_of, read, requirement_faults
 from .simulations import read_scenario
 
 
@@ -25,7 +25,7 @@ class Examined(NamedTuple):
 
 @guarded
 def check(
-    source: Actuator | Design | str | Path,
+    source: Actuator | Design | Result | str | Path,
     *,
     set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
     plugins: Plugins = (),
@@ -39,7 +39,7 @@ def check(
 
 
 def examine(
-    source: Actuator | Design | str | Path,
+    source: Actuator | Design | Result | str | Path,
     *,
     set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
     plugins: Plugins = (),
@@ -53,7 +53,7 @@ def examine(
         ]
         return Examined(faults, examined.warnings)
     try:
-        if isinstance(source, Actuator | Design):
+        if not isinstance(source, str | Path):
             actuator = as_actuator(source, plugins).changed(dict(set))
         elif is_scenario(source):
             scenario = read_scenario(source, set=set)

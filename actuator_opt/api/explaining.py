@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ..evaluation import Evaluation
     from ..metrics.documentation import ModelDocumentation
     from ..rendering.console import Style
-    from .actuator import Actuator, Plugins
+    from .actuator import Actuator, Plugins, Result
 
 MOST_MOVERS = 5
 """Largest number of influences listed."""
@@ -93,7 +93,7 @@ class Explanation(Displayed):
 @guarded
 def explain(
     word: str,
-    design: Actuator | Design | str | Path | None = None,
+    design: Actuator | Design | Result | str | Path | None = None,
     *,
     set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
     plugins: Plugins = (),

@@ -18,7 +18,16 @@ from ..design import Design
 from ..evaluation import Evaluation, PreparedDesign, evaluate as evaluate_subject, prepare
 from ..evaluation.plugin import Plugin
 from ..evaluation.result import YieldEstimate
-from .actuator import Actuator, Plugins, as_actuator, checked_design, fault_of, located, workers_for
+from .actuator import (
+    Actuator,
+    Plugins,
+    Result,
+    as_actuator,
+    checked_design,
+    fault_of,
+    located,
+    workers_for,
+)
 from .reports import ReportArguments, page_of, report_files
 
 if TYPE_CHECKING:
@@ -31,13 +40,17 @@ if TYPE_CHECKING:
 
 @guarded
 def evaluate(
-    design: Actuator | Design | str | Path, *, plugins: Plugins = (), seed: int | None = None
+    design: Actuator | Design | Result | str | Path,
+    *,
+    plugins: Plugins = (),
+    seed: int | None = None,
 ) -> Evaluation:
     """Compute every metric, requirement and check of a design.
 
     Parameters
     ----------
-    design : the design
+    design : the design: a file, its text, a `Design`, an `Actuator`, or the result of `evaluate` or
+        `optimise` (its design to build)
     plugins : the user's own metrics and constraints
     seed : seed of the samples for a quick estimate of the yield (see `with_yield`); None: no
         estimate
@@ -70,7 +83,7 @@ def with_yield(
 
 @guarded
 def optimise(
-    design: Actuator | Design | str | Path,
+    design: Actuator | Design | Result | str | Path,
     *,
     algorithm: str = "auto",
     starts: int = 6,
@@ -151,7 +164,7 @@ def estimated(optimisation: Optimisation, plugins: tuple[Plugin, ...]) -> Optimi
 
 @guarded
 def sensitivity(
-    design: Actuator | Design | str | Path, *, seed: int = 0, plugins: Plugins = ()
+    design: Actuator | Design | Result | str | Path, *, seed: int = 0, plugins: Plugins = ()
 ) -> tuple[Sensitivity, ...]:
     """Compute the prices of requirements and parameters at the design's optimum.
 
@@ -195,7 +208,7 @@ class Prices(Displayed):
 
 @guarded
 def pareto(
-    design: Actuator | Design | str | Path,
+    design: Actuator | Design | Result | str | Path,
     objectives: Sequence[str],
     *,
     n: int = 50,

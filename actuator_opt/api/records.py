@@ -12,7 +12,7 @@ from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..base.tables import Displayed
 from ..design import Design
-from .actuator import Actuator, as_actuator
+from .actuator import Actuator, Result, as_actuator
 from .reports import ReportArguments, page_of
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def read_record(
 def identify(
     record: Record | str | Path,
     *,
-    design: Actuator | Design | str | Path,
+    design: Actuator | Design | Result | str | Path,
     columns: Mapping[str, str] | None = None,
     units: Units = None,
     cutoff: float = 30.0,
@@ -170,7 +170,7 @@ def bending(
     record: Record | str | Path,
     *,
     span: float | None = None,
-    design: Actuator | Design | str | Path | None = None,
+    design: Actuator | Design | Result | str | Path | None = None,
     part: Part = "rod",
     specimen: Specimen | None = None,
     columns: Mapping[str, str] | None = None,
@@ -251,7 +251,7 @@ class Calibrated(Displayed):
 def calibrate(
     record: Identification | Record | str | Path,
     *,
-    design: Actuator | Design | str | Path,
+    design: Actuator | Design | Result | str | Path,
     columns: Mapping[str, str] | None = None,
     units: Units = None,
     search: bool = True,

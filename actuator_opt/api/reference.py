@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ..design.model import Design
     from ..design.structure import KeyEntry
     from ..rendering.console import Style
-    from .actuator import Actuator, Plugins
+    from .actuator import Actuator, Plugins, Result
 
 NEAREST = 5
 """Number of names offered for an unknown word."""
@@ -306,7 +306,7 @@ def unknown(word: str) -> UsageError:
 @guarded
 def catalogue(
     kind: str,
-    design: Actuator | Design | str | Path | None = None,
+    design: Actuator | Design | Result | str | Path | None = None,
     word: str = "",
     *,
     set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
@@ -359,17 +359,16 @@ def _near(word: str, entries: Sequence[Entry], kind: str) -> list[Entry]:
 
 
 def actuator_of(
-    design: Actuator | Design | str | Path,
+    design: Actuator | Design | Result | str | Path,
     changes: Mapping[str, str | float] | Sequence[tuple[str, str]],
     plugins: Plugins,
 ) -> Actuator:
     """A design in any form, with changed values and user metrics."""
-    from ..design.model import Design
-    from .actuator import Actuator, as_actuator, read
+    from .actuator import as_actuator, read
 
-    if isinstance(design, Actuator | Design):
-        return as_actuator(design, plugins).changed(dict(changes))
-    return read(design, set=changes, plugins=plugins)
+    if isinstance(design, str | Path):
+        return read(design, set=changes, plugins=plugins)
+    return as_actuator(design, plugins).changed(dict(changes))
 
 
 def _with_values(kind: str, entries: list[Entry], actuator: Actuator) -> list[Entry]:

@@ -19,7 +19,17 @@ from ..base.quantities import Quantity
 from ..base.tables import OneLine, aligned
 from ..design import Design, canonical, get, quantity_of
 from ..evaluation import PreparedDesign
-from .actuator import Actuator, Plugins, as_actuator, fault_of, located, read, requirement_faults
+from .actuator import (
+    Actuator,
+    Plugins,
+    Result,
+    as_actuator,
+    fault_of,
+    located,
+    read,
+    require_changes,
+    requirement_faults,
+)
 
 if TYPE_CHECKING:
     from ..optimisation.actuator import ActuatorProblem
@@ -412,22 +422,10 @@ class Session(OneLine):
 
     def _changed(self, changes: Changes) -> tuple[Actuator, dict[str, float]]:
         """The changed design, and the changed numbers in SI by canonical PATH."""
-        if not isinstance(changes, Mapping):
-            message = (
-                f"changes: must be a mapping from PATH to number, not {type(changes).__name__}"
-            )
-            raise UsageError(Diagnostic(message, 'write e.g. {"cylinder.stroke": "112 mm"}'))
+        require_changes(changes)
         actuator, numbers = self._actuator, {}
-        for path, value in changes.items():
+        for path in changes:
             name = self._path(path)
-            if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-                raise InputError(
-                    Diagnostic(
-                        f"must be a number, not {type(value).__name__}",
-                        'write SI, or a text with a unit such as "112 mm"',
-                        path=path,
-                    )
-                )
             if name in self._actuator.design.variables:
                 raise UsageError(
                     Diagnostic(
@@ -578,7 +576,7 @@ def _require_continuous(actuator: Actuator, sizes: object) -> None:
 
 @guarded
 def session(
-    design: Actuator | Design | str | Path,
+    design: Actuator | Design | Result | str | Path,
     *,
     set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
     plugins: Plugins = (),

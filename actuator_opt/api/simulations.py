@@ -15,7 +15,7 @@ from ..base.numeric import Array
 from ..base.tables import Displayed, OneLine
 from ..design import Design
 from ..studies.plant import plant
-from .actuator import Actuator, as_actuator
+from .actuator import Actuator, Result, as_actuator
 from .records import Units
 from .reports import ReportArguments, ReportPlace, page_of
 
@@ -313,7 +313,7 @@ def servo_sensitivities(
 
 @guarded
 def verify_dynamics(
-    scenario: Trial | str | Path, design: Actuator | Design | str | Path | None = None
+    scenario: Trial | str | Path, design: Actuator | Design | Result | str | Path | None = None
 ) -> Verification:
     """Verify by simulation every dynamic requirement of a design and of a scenario.
 
@@ -330,7 +330,7 @@ def verify_dynamics(
         return verify(trial.scenario, actuator.subject(), records=trial.records)
 
 
-def fitting(trial: Trial, design: Actuator | Design | str | Path) -> Actuator:
+def fitting(trial: Trial, design: Actuator | Design | Result | str | Path) -> Actuator:
     """Do as `with_design`, but refuse a scenario in which another component replaces the cylinder.
 
     Raises
@@ -347,7 +347,7 @@ def fitting(trial: Trial, design: Actuator | Design | str | Path) -> Actuator:
     return with_design(trial, design)
 
 
-def with_design(trial: Trial, design: Actuator | Design | str | Path) -> Actuator:
+def with_design(trial: Trial, design: Actuator | Design | Result | str | Path) -> Actuator:
     """Put another design into a scenario, with the values that the scenario sets.
 
     Raises

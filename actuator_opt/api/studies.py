@@ -10,7 +10,7 @@ from ..base.arguments import guarded
 from ..base.errors import Diagnostic, UsageError
 from ..design import Design
 from ..evaluation.rings import Place
-from .actuator import Actuator, Plugins, as_actuator, checked_design, located, workers_for
+from .actuator import Actuator, Plugins, Result, as_actuator, checked_design, located, workers_for
 from .reports import ReportArguments, page_of
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ LEAST, MOST = 20, 10_000_000
 
 @guarded
 def uncertainty(
-    design: Actuator | Design | str | Path,
+    design: Actuator | Design | Result | str | Path,
     *,
     count: int = 10_000,
     seed: int = 0,
@@ -111,7 +111,7 @@ def write_draws(study: Uncertainty, path: str | Path) -> ReportFile:
 
 @guarded
 def seal(
-    design: Actuator | Design | str | Path,
+    design: Actuator | Design | Result | str | Path,
     *,
     place: Place,
     speed: float | None = None,

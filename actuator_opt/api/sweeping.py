@@ -15,7 +15,7 @@ from ..base.numeric import Array
 from ..base.tables import Displayed
 from ..design import Design
 from ..evaluation import PreparedDesign, compute
-from .actuator import Actuator, Plugins, as_actuator, requirement_faults, workers_for
+from .actuator import Actuator, Plugins, Result, as_actuator, requirement_faults, workers_for
 from .recorded_runs import Run
 from .reports import ReportArguments, file_name, report_files
 
@@ -43,7 +43,7 @@ and may overload the machine."""
 
 @guarded
 def sweep(
-    design: Actuator | Design | str | Path,
+    design: Actuator | Design | Result | str | Path,
     vary: Sequence[str] | Mapping[str, Varied],
     *,
     method: Method = "grid",
@@ -158,7 +158,7 @@ def sweep(
 
 @guarded
 def evaluate_many(
-    design: Actuator | Design | str | Path,
+    design: Actuator | Design | Result | str | Path,
     columns: Mapping[str, Sequence[float | str] | Array],
     *,
     metrics: Sequence[str] | None = None,

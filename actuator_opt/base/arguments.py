@@ -57,12 +57,22 @@ def guarded(function: Callable[P, R]) -> Callable[P, R]:
         except Exception as error:
             if isinstance(error, ActuatorError) and not isinstance(error, WrongArgument):
                 raise
+            if "set" in kwargs and isinstance(error, TypeError):
+                _require_set(function)
             fault = next(_faults(function, args, kwargs), None)
             if fault is None:
                 raise
-            raise WrongArgument(fault) from error
+            raise WrongArgument(fault) from None
 
     return call
+
+
+def _require_set(function: Callable[..., Any]) -> None:
+    """Refuse new values for a function that takes none; raises `UsageError`."""
+    parameters = inspect.signature(function).parameters
+    if "set" not in parameters and "design" in parameters:
+        message = f"{function.__name__}: takes no set"
+        raise UsageError(Diagnostic(message, "write design.changed({...})")) from None
 
 
 def _require_usual(place: str, name: str, value: int) -> None:
@@ -102,6 +112,10 @@ class _Names(dict[str, Any]):
     def __init__(self, function: Callable[..., Any]) -> None:
         super().__init__(function.__globals__)
         self._package = import_module(__package__.partition(".")[0])
+
+    def __getitem__(self, name: str) -> Any:
+        value = super().__getitem__(name)
+        return self.hint(value) if isinstance(value, str) else value  # an alias in quotes
 
     def __missing__(self, name: str) -> Any:
         public = getattr(self._package, name, None)

@@ -199,7 +199,9 @@ def _require_units(path: str, values: Sequence[str | float], design: Design) -> 
     for index, text in enumerate(values if quantity.si_unit else ()):
         if isinstance(text, str) and _bare(text) is not None:
             message = f'the text at index {index} has no unit: "{shown(text)}"'
-            advice = f'write e.g. "{shown(text)} {quantity.unit}", or a number in {quantity.si_unit}'
+            advice = (
+                f'write e.g. "{shown(text)} {quantity.unit}", or a number in {quantity.si_unit}'
+            )
             raise InputError(Diagnostic(message, advice, path=path))
 
 

@@ -264,7 +264,7 @@ def fault_of(call):
     [
         (
             lambda: ao.evaluate(3),
-            "evaluate: design is 3; give Actuator or Design or a text or a pa",
+            "evaluate: design is 3; give Actuator or Design or Evaluation or O",
         ),
         (lambda: ao.optimise(BENCH, seed=-1), "optimise: seed is -1; give 0 to 4294967295"),
         (lambda: ao.optimise(BENCH, seed=2**32), "optimise: seed is 4294967296; give 0 to 42"),
@@ -274,6 +274,11 @@ def fault_of(call):
         (lambda: ao.pareto(BENCH, [3]), "pareto: objectives[0] is 3; give a text"),
         (lambda: ao.save(evaluation(), None), "save: path is None; give a text or a path"),
         (lambda: ao.exit_code(1.0), "float is not a result"),
+        (lambda: ao.read(ao.read(BENCH), set={}), "read: source is Actuator, which needs no read"),
+        (lambda: ao.optimise(BENCH, set={}), "optimise: takes no set; write design.changed({...})"),
+        (lambda: ao.read(BENCH).changed(None), "changes: must be a mapping from PATH to number"),
+        (lambda: ao.read(BENCH).changed(["x"]), "changes: must be a mapping from PATH to number"),
+        (lambda: ao.read(BENCH).changed({"cylinder.bore": True}), "cylinder.bore: must be a num"),
     ],
 )
 def test_a_wrong_argument_is_named(call, told):
@@ -281,6 +286,19 @@ def test_a_wrong_argument_is_named(call, told):
     with pytest.raises(ao.ActuatorError) as fault:
         call()
     assert str(fault.value).startswith(told)
+    assert fault.value.__cause__ is None
+
+
+def test_a_result_stands_for_its_design():
+    """An optimum for its design to build, an evaluation for the design evaluated."""
+    best = float(optimum()["cylinder.bore"])
+    assert float(ao.evaluate(optimum())["mass"]) == pytest.approx(optimum().best_objective)
+    many = ao.evaluate_many(optimum(), {"cylinder.bore": [best]}, metrics=["mass"], workers=1)
+    assert many["mass"] == pytest.approx([optimum().best_objective], rel=1e-9)
+    assert not ao.check(evaluation())
+    again = ao.evaluate(ao.evaluate(evaluation().design))
+    assert float(again["mass"]) == float(evaluation()["mass"])
+    assert ao.explain("cylinder.bore", evaluation()).value.startswith("22 mm; ")
 
 
 def test_a_fault_of_the_program_stays_one():
