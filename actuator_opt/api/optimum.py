@@ -99,14 +99,35 @@ def optimise(
     yield_target: float | None = None,
     scheduler: str | None = None,
 ) -> Optimisation:
-    """Find the best design; parameters as for `optimisation.run.optimise`.
+    """Find the best design: variables and choices within their bounds that meet all limits.
 
-    With a `yield_target`, the optimum meets all limits with that probability under the design's
-    uncertain inputs (`uncertainties.robust`); the result's `robust` has the details. Without a
-    target, `best_evaluation` contains a quick estimate of the yield.
+    Parameters
+    ----------
+    design : the design, as for `evaluate`, with an objective and variables or choices
+    algorithm : "auto" or an NLopt name such as ``LD_SLSQP``
+    starts : number of local searches, each from one of the best points of a global sweep
+    seed : seed of sweep and stochastic algorithms; the same seed gives the same result
+    plugins : the user's own metrics and constraints
+    prices : whether to compute the prices of requirements and parameters, and to re-optimise with
+        each of them changed by ±10 %
+    max_seconds : time limit of the search; the best design so far is kept
+    whole_plies : whether to find also the best design with whole plies and allowed angles
+    keep_interrupted : whether the best design so far is kept after Ctrl-C; not for designs with
+        choices
+    standard_sizes : whether to find also the best design with standard sizes for all variables that
+        have them
+    shop : whether to find also the best design whose other variables are in steps of a workshop
+    certify : whether to prove how far the design is from the best possible design
+    yield_target : probability (0 to 1) with which the optimum shall meet all limits under the
+        design's uncertain inputs (`uncertainties.robust`); the result's `robust` has the details.
+        None: `best_evaluation` contains a quick estimate of the yield
+    scheduler : address of a Dask scheduler, used instead of this process for combinations of
+        choices (extra `cluster`)
 
-    `scheduler` is the address of a Dask scheduler, used instead of this process for combinations of
-    choices (extra `cluster`); a design without choices is refused with `UsageError`.
+    Raises
+    ------
+    InputError : the design has a fault, or neither variables nor choices
+    UsageError : an option is invalid, or a scheduler is given for a design without choices
     """
     from ..optimisation.run import optimise as run
 

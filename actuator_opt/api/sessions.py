@@ -12,10 +12,13 @@ from dataclasses import asdict, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..base.arguments import guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, Unsolvable, UsageError, remedy
-from ..base.quantities import Quantity
+from ..base.numeric import Array
+from ..base.quantities import INPUTS, Quantity
 from ..base.tables import OneLine, aligned
 from ..design import Design, canonical, get, quantity_of
 from ..evaluation import PreparedDesign
@@ -36,6 +39,7 @@ if TYPE_CHECKING:
     from ..optimisation.result import Optimisation
     from ..optimisation.solution import Solution
     from ..optimisation.warm_start import WarmStart
+    from ..rendering.tables import DataTable
 
 Changes = Mapping[str, float | str]
 """New values of numbers by PATH, such as ``cylinder.stroke``: in SI, or as text with a unit."""
@@ -119,6 +123,7 @@ class OptimumCurve(OneLine):
     objectives : objective of each optimum; None if there is no feasible design
     variables : the free dimensions of each optimum by PATH; empty if there is no design
     objective : physical quantity of the objective; None for a weighted sum
+    quantities : physical quantity of each free dimension by PATH
     """
 
     path: str
@@ -127,6 +132,7 @@ class OptimumCurve(OneLine):
     objectives: tuple[float | None, ...]
     variables: tuple[Mapping[str, float], ...]
     objective: Quantity | None = None
+    quantities: Mapping[str, Quantity] = field(default_factory=dict)
 
     def __len__(self) -> int:
         """Number of values."""
@@ -154,6 +160,19 @@ class OptimumCurve(OneLine):
         return result | {
             name: [row.get(name, math.nan) for row in self.variables] for name in names
         }
+
+    def table(self) -> DataTable:
+        """The `columns` as a table with units, for arrays, CSV and data frames."""
+        from ..rendering.tables import DataColumn, DataTable
+
+        known = {**self.quantities, self.path: self.quantity, "objective": self.objective}
+        return DataTable(
+            self.path,
+            [
+                DataColumn(name, np.array(values, dtype=float), known.get(name))
+                for name, values in self.columns().items()
+            ],
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, SI."""
@@ -378,7 +397,7 @@ class Session(OneLine):
     def curve(
         self,
         path: str,
-        values: Sequence[float | str],
+        values: Sequence[float | str] | Array,
         *,
         stop: Callable[[], bool] | None = None,
     ) -> OptimumCurve:
@@ -391,17 +410,20 @@ class Session(OneLine):
         Parameters
         ----------
         path : PATH of the number
-        values : values in SI, or text with a unit
+        values : list or one-dimensional array of values in SI, or texts with a unit
         stop : called between steps; True ends the search, and values not solved by then have no
             design
 
         Raises
         ------
         InputError, UsageError
-            as for `solve`; or `values` is empty
+            as for `solve`; or `values` is empty, not one-dimensional or not finite
         """
-        if isinstance(values, str) or not len(values):
+        from ..sweeps.plan import one_dimensional
+
+        if isinstance(values, str) or (isinstance(values, Sequence) and not values):
             raise UsageError(Diagnostic("a curve needs a list of values", 'e.g. [0.1, "112 mm"]'))
+        one_dimensional(self._path(path), values, self._actuator.design)
         numbers = [self._changed({path: value})[1] for value in values]
         path = next(iter(numbers[0]))
         si_values = [number[path] for number in numbers]
@@ -418,6 +440,7 @@ class Session(OneLine):
             objectives=tuple(None if x is None else goal.shown(x.objective) for x in optima),
             variables=tuple({} if x is None else self._named(x.x) for x in optima),
             objective=None if single is None else metrics[single].quantity,
+            quantities={x.path: INPUTS[x.quantity] for x in self.optimum.variables},
         )
 
     def _changed(self, changes: Changes) -> tuple[Actuator, dict[str, float]]:

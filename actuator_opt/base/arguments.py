@@ -44,7 +44,7 @@ def guarded(function: Callable[P, R]) -> Callable[P, R]:
     >>> area("25 mm")
     Traceback (most recent call last):
     ...
-    actuator_opt.base.arguments.WrongArgument: area: diameter is 25 mm; give a number
+    actuator_opt.base.arguments.WrongArgument: area: diameter is "25 mm"; give a number
     """
 
     @wraps(function)
@@ -186,6 +186,8 @@ def _words(hint: Any) -> list[str]:
 def _text(value: Any) -> str:
     if isinstance(value, int) and value.bit_length() > 63:
         return f"a whole number of {value.bit_length()} bits"  # Python prints no endless digits
-    if value is None or isinstance(value, str | bool | int | float):
-        return f'"{value}"' if value == "" else str(value)
+    if isinstance(value, str):
+        return f'"{shown(value, 58)}"'
+    if value is None or isinstance(value, bool | int | float):
+        return str(value)
     return f"of type {type(value).__name__}"

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -292,8 +292,16 @@ def opened(source: str | Path, kind: str = "design") -> tuple[str, str]:
     """Text and name of a source: a file, standard input, or a text of several lines."""
     if isinstance(source, str) and ("\n" in source or "\r" in source):
         return source, TEXT
+    if isinstance(source, str) and not source.strip():
+        raise InputError(Diagnostic("the path is empty", f"name a {kind} file"))
     name = STDIN if source == "-" else str(source)
-    data = read_bytes(source, most=MAX_BYTES + 1, kinds=(".yaml", ".yml"), what=f"{kind} file")
+    try:
+        data = read_bytes(source, most=MAX_BYTES + 1, kinds=(".yaml", ".yml"), what=f"{kind} file")
+    except InputError as error:
+        if ": " not in name:
+            raise
+        remedy = "name a file; a text needs at least two lines"
+        raise InputError([replace(x, remedy=remedy) for x in error.diagnostics]) from None
     return decode(data, name, kind), name
 
 

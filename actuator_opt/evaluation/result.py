@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, field
+from numbers import Real
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
@@ -151,6 +152,8 @@ State: TypeAlias = Literal["met", "no_reserve", "missed", "not_checked"]
 class Valued:
     """Base class of a named value: its text, its number, and its repr such as ``<mass 265.1 g>``.
 
+    A format such as ``f"{mass:.3f}"``, and comparisons such as ``mass < 0.3``, take the number.
+
     `value` is in SI; None without a value, for the reason `why`.
     """
 
@@ -190,6 +193,28 @@ class Valued:
             message = f"is not a number: {self.text}" if value is not None else self.text
             raise InputError(Diagnostic(message, "read .text or .value", path=self.name))
         return value
+
+    def __format__(self, form: str) -> str:
+        """The number (SI) or the word in this format; without a format, as `str`."""
+        if not form:
+            return str(self)
+        return format(self.value if isinstance(self.value, str) else float(self), form)
+
+    def __lt__(self, other: object) -> bool:
+        """Whether the number (SI) is less than another; raises `InputError` without a number."""
+        return float(self) < float(other) if isinstance(other, Real | Valued) else NotImplemented
+
+    def __le__(self, other: object) -> bool:
+        """As `__lt__`, or equal."""
+        return float(self) <= float(other) if isinstance(other, Real | Valued) else NotImplemented
+
+    def __gt__(self, other: object) -> bool:
+        """Whether the number (SI) is greater than another; raises `InputError` without a number."""
+        return float(self) > float(other) if isinstance(other, Real | Valued) else NotImplemented
+
+    def __ge__(self, other: object) -> bool:
+        """As `__gt__`, or equal."""
+        return float(self) >= float(other) if isinstance(other, Real | Valued) else NotImplemented
 
     def __repr__(self) -> str:
         """Name and text, in one line."""

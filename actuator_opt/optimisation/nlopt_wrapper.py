@@ -156,7 +156,7 @@ def _one(name: str) -> Algorithm:
 
 
 def _refusal(message: str, remedy: str) -> UsageError:
-    return UsageError(Diagnostic(message, remedy, path="--algorithm"))
+    return UsageError(Diagnostic(message, remedy, path="algorithm"))
 
 
 def suit(text: str, problem: BoxProblem) -> str:

@@ -158,26 +158,13 @@ def optimise(
     explain: bool = True,
     cluster: Cluster = HERE,
 ) -> Optimisation:
-    """Find the best design of an actuator.
+    """Find the best design of an actuator; parameters not listed here as for `api.optimise`.
 
     Parameters
     ----------
     subject : the prepared design
     fault : builds the Diagnostic of a faulty variable, with its line in the file
-    algorithm : "auto" or an NLopt name such as ``LD_SLSQP``
-    starts : number of starts from the global sweep
-    seed : seed of sweep and stochastic algorithms; the same seed gives the same result
-    prices : whether to compute the prices of requirements and parameters, and to re-optimise with
-        each of them changed by ±10 %
-    max_seconds : time limit of the search; the best design so far is kept
-    whole_plies : whether to find also the best design with whole plies and allowed angles
-    standard_sizes : whether to find also the best design with standard sizes for all variables that
-        have them
-    shop : whether to find also the best design whose other variables are in steps of a workshop
-    certify : whether to prove how far the design is from the best possible design
     explain : whether to explain an infeasible result
-    keep_interrupted : whether the best design so far is kept after Ctrl-C; not for designs with
-        choices
     cluster : workers for combinations of choices (see `choices`)
     """
     began = time.perf_counter()

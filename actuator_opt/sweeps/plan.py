@@ -146,7 +146,7 @@ def given_axis(path: str, values: object, design: Design, metrics: Metrics = Non
     if isinstance(values, str):
         return read_axis(f"{path}={values}", design, metrics)
     path = _canonical(path, design)
-    given = _one_dimensional(path, values, design)
+    given = one_dimensional(path, values, design)
     if not isinstance(given, np.ndarray):
         return _listed(path, given, design, metrics)
     numbers = _checked(path, given, design, metrics)
@@ -158,8 +158,15 @@ def given_axis(path: str, values: object, design: Design, metrics: Metrics = Non
     return SweepAxis(path, numbers)
 
 
-def _one_dimensional(path: str, values: object, design: Design) -> Array | list[str]:
-    """Values as an array of numbers, or all as texts (bare: SI) if there is a text among them."""
+def one_dimensional(path: str, values: object, design: Design) -> Array | list[str]:
+    """Values as an array of numbers, or all as texts (bare: SI) if there is a text among them.
+
+    Raises
+    ------
+    InputError
+        the values are empty, not one-dimensional, neither numbers nor texts, or not finite, or a
+        text lacks its unit; the message states PATH and index
+    """
     advice = "give a list or a one-dimensional array of numbers (SI) or texts"
     array = np.asarray(values) if hasattr(values, "__array__") else None
     if array is not None and array.ndim != 1:
@@ -465,7 +472,7 @@ def paired(columns: Mapping[str, object], design: Design, metrics: Metrics = Non
     count, first, variant = 0, "", np.zeros(1, dtype=np.int64)
     for name, values in columns.items():
         path = _canonical(name, design)
-        given = _one_dimensional(path, [values] if isinstance(values, str) else values, design)
+        given = one_dimensional(path, [values] if isinstance(values, str) else values, design)
         if path in (axis.path for axis in axes):
             raise InputError(Diagnostic("is given twice", "join its values", path=path))
         if first and len(given) != count:

@@ -129,6 +129,12 @@ def test_a_metric_by_its_name():
     assert float(mass) == mass.value == pytest.approx(sum(evaluation().mass_parts.values()))
     assert mass.text == f"{1000 * mass.value:.4g} g"
     assert repr(mass) == f"<mass {mass.text}>"
+    assert (f"{mass:.3f}", f"{mass}") == (f"{mass.value:.3f}", str(mass))
+    assert mass <= mass.value < 1.001 * mass.value > mass >= mass.value
+    assert not mass < mass.value
+    assert not mass > mass.value
+    with pytest.raises(TypeError):
+        mass < "0.3"  # noqa: B015
     assert (force.case, force.model) == ("stance", "forces.push_force")
     assert optimum()["mass"].value == optimum().best_objective
     assert [*evaluation()] == [*evaluation().metrics]
@@ -155,6 +161,7 @@ def test_any_path_by_its_name():
     )  # fmt: skip
     with pytest.raises(ao.InputError, match=r"rod\.material: is not a number"):
         float(word)
+    assert f"{word:>15}" == "  steel_42crmo4"
     assert not evaluation()["sensor.mass"].value
     for variable in optimum().best_variables:
         assert float(optimum()[variable.path]) == variable.value
@@ -269,11 +276,21 @@ def fault_of(call):
         (lambda: ao.optimise(BENCH, seed=-1), "optimise: seed is -1; give 0 to 4294967295"),
         (lambda: ao.optimise(BENCH, seed=2**32), "optimise: seed is 4294967296; give 0 to 42"),
         (lambda: ao.optimise(BENCH, starts=10**400), "optimise: starts is a whole number of 1329"),
-        (lambda: ao.optimise(BENCH, starts="many"), "optimise: starts is many; give a whole num"),
-        (lambda: ao.seal(BENCH, place="rodd"), "seal: place is rodd; give 'piston' or 'rod'"),
+        (lambda: ao.optimise(BENCH, starts="many"), 'optimise: starts is "many"; give a whole n'),
+        (lambda: ao.seal(BENCH, place="rodd"), "seal: place is \"rodd\"; give 'piston' or 'rod'"),
         (lambda: ao.pareto(BENCH, [3]), "pareto: objectives[0] is 3; give a text"),
         (lambda: ao.save(evaluation(), None), "save: path is None; give a text or a path"),
         (lambda: ao.exit_code(1.0), "float is not a result"),
+        (
+            lambda: ao.optimise(BENCH, algorithm="slsqpp"),
+            'algorithm: there is no algorithm "SLSQPP"; did you mean',
+        ),
+        (lambda: ao.optimise(BENCH, starts="6"), 'optimise: starts is "6"; give a whole number'),
+        (lambda: ao.read(""), "the path is empty; name a design file"),
+        (
+            lambda: ao.read("cylinder: {bore: 20 mm}"),
+            "cylinder: {bore: 20 mm}: no such file; name a file; a text needs at least two lines",
+        ),
         (lambda: ao.read(ao.read(BENCH), set={}), "read: source is Actuator, which needs no read"),
         (lambda: ao.optimise(BENCH, set={}), "optimise: takes no set; write design.changed({...})"),
         (lambda: ao.read(BENCH).changed(None), "changes: must be a mapping from PATH to number"),

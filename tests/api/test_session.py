@@ -221,6 +221,28 @@ def test_a_curve_is_its_solves(steel):
         assert x == pytest.approx({v.path: v.value for v in alone.variables}, rel=1e-3)
     assert "120 mm" in str(curve).splitlines()[1]
     assert curve.columns()["objective"] == list(curve.objectives)
+    table = curve.table()
+    assert (table.units[STROKE], table.units["objective"]) == ("m", "kg")
+    assert [*table["objective"]] == list(curve.objectives)
+    again = steel.curve(STROKE, np.array([0.12, 0.1]))
+    assert again.objectives == pytest.approx(curve.objectives[:2], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("values", "told"),
+    [
+        (np.zeros((2, 2)), "cylinder.stroke: an array of 2 dimensions"),
+        (np.array([0.1, np.nan]), "cylinder.stroke: the value at index 1 is nan"),
+        ([0.1, None], "cylinder.stroke: the value at index 1 is not a number"),
+        (np.array([]), "cylinder.stroke: has no values"),
+        (["0.1 m", "110"], "cylinder.stroke: the text at index 1 has no unit"),
+    ],
+)
+def test_values_that_a_curve_cannot_take(steel, values, told):
+    """One line with PATH and index."""
+    with pytest.raises(ao.InputError) as fault:
+        steel.curve(STROKE, values)
+    assert str(fault.value).startswith(told)
 
 
 def test_a_curve_of_what_decides_more_than_the_models_read(steel):
