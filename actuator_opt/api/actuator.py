@@ -129,7 +129,10 @@ def read(
     """
     if isinstance(source, Actuator | Design | Evaluation) or hasattr(source, "best_evaluation"):
         message = f"read: source is {type(source).__name__}, which needs no reading"
-        raise UsageError(Diagnostic(message, "for new values, write design.changed({...})"))
+        remedy = "for new values, write design.changed({...})"
+        if not isinstance(source, Actuator):
+            remedy = "for new values, save it, and read the file with set"
+        raise UsageError(Diagnostic(message, remedy))
     loaded_plugins = plugins_of(plugins)
     pairs = set.items() if isinstance(set, Mapping) else set
     loaded: LoadedDesign = read_design(

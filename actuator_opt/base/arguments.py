@@ -72,7 +72,8 @@ def _require_set(function: Callable[..., Any]) -> None:
     parameters = inspect.signature(function).parameters
     if "set" not in parameters and "design" in parameters:
         message = f"{function.__name__}: takes no set"
-        raise UsageError(Diagnostic(message, "write design.changed({...})")) from None
+        remedy = "read the design with set, or give design.changed({...})"
+        raise UsageError(Diagnostic(message, remedy)) from None
 
 
 def _require_usual(place: str, name: str, value: int) -> None:
