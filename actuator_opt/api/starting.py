@@ -655,6 +655,7 @@ def _part_bounds(wall: Wall, sizes: _Sizes) -> list[str]:
         _bounds("head.length", sizes.piston - 1e-3, longest),
         _bounds("caps.thickness", 1e-3, 0.5 * bore + 2e-3),
         *(f"  seals.{place}.squeeze: {{lower: 8 %, upper: 25 %}}" for place in ("piston", "rod")),
+        _bounds("clevis.pin_diameter", sizes.pin / 2, 4 * sizes.pin),
     ]
 
 

@@ -104,7 +104,8 @@ def _name(row: Requirement | Check, evaluation: Evaluation) -> str:
     if isinstance(row, Check) and row.metric is None:
         return row.name
     if isinstance(row, Requirement) and row.path.startswith("load_cases"):
-        words = words_of(row.path)
+        by_arm = row.metric != "joint_torque_min"
+        words = words_of(row.path.replace(".joint_torque", ".force") if by_arm else row.path)
     else:
         words = term_of(row.metric or "")
     if isinstance(row, Requirement) and row.name.endswith((" (min)", " (max)")):
