@@ -24,6 +24,7 @@ from ..design.writer import exact_text, scalar, to_yaml
 from ..evaluation import evaluate, prepare
 from ..evaluation.build import limits_of, margins_many
 from ..evaluation.rings import EXTRUSION_TABLE
+from ..metrics import METRICS
 from ..models.gland import extrusion_gap_limit, extrusion_pressure_end
 from ..optimisation.result import Optimisation
 from ..optimisation.solution import MET
@@ -177,6 +178,11 @@ class Start:
     actuator: Actuator
     met: bool
     sentence: str
+
+    @property
+    def mass(self) -> str:
+        """Mass with its unit."""
+        return METRICS["mass"].text(_mass(self.actuator.design), 4)
 
     @property
     def text(self) -> str:
