@@ -174,7 +174,7 @@ def _terms() -> Iterator[Entry]:
     from .glossary import terms
 
     for term in terms().values():
-        yield Entry(term.name, "term", term.definition)
+        yield Entry(term.name, "term", term.definition, aliases=term.aliases)
 
 
 def _key(path: str, key: KeyEntry) -> Entry:
