@@ -50,7 +50,9 @@ def test_a_shipped_design_has_no_faults(path) -> None:
     assert verbs.check(path) == []
 
 
-@pytest.mark.parametrize("path", [pytest.param(p, marks=LONG.get(p.stem, ())) for p in ALL], ids=STEMS)
+@pytest.mark.parametrize(
+    "path", [pytest.param(p, marks=LONG.get(p.stem, ())) for p in ALL], ids=STEMS
+)
 def test_a_shipped_design_evaluates_to_finite_numbers(path) -> None:
     """Every metric is finite or says why not; nothing in the JSON object is NaN or infinite."""
     evaluation = verbs.evaluate(path)
