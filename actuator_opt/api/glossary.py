@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 
 class Term(NamedTuple):
-    """A term with its definition, its source, and names to look up next."""
+    """A term with its definition, its source, other words for it, and names to look up next."""
 
     name: str
+    aliases: tuple[str, ...]
     definition: str
     source: str
     related: tuple[str, ...]
@@ -27,24 +28,24 @@ load case | A duty of the actuator: direction, force or joint torque, speed, pos
 variable | A number that the optimiser may move between two bounds, under `variables` in the design file. All other numbers are fixed. | our choice | objective, choices
 objective | The metric that `optimise` makes as small or as large as possible, or a weighted sum of metrics, each divided by its value in the file. | our choice | variable, optimum
 margin | Distance from a limit as a share of it: (value - limit)/abs(limit) for a minimum, with the opposite sign for a maximum. Met if at least -1e-6. If the limit is 0, the margin is the value itself. | our choice | requirement, reserve
-reserve | A limit met with a margin below 0.1 % has no reserve: an optimum lies on such limits, and tolerances make some of the built actuators miss them. | our choice, IT7 of ISO 286-1 at 20 mm | margin, yield
+reserve / no reserve / without reserve | A limit met with a margin below 0.1 % has no reserve: an optimum lies on such limits, and tolerances make some of the built actuators miss them. | our choice, IT7 of ISO 286-1 at 20 mm | margin, yield
 price | Change of the best objective per unit of a limit or fixed number: what the requirement costs. It is the derivative of the Lagrangian at the optimum, exact for small changes. | [Fiacco1983] | KKT, active limit, sensitivity
 sensitivity | Another word for price; also the command that lists all prices, each solved again at +-10 %. | [Fiacco1983] | price, influence
 influence | Relative change of a metric per relative change of a number of the design, in % per %, with all other numbers fixed. It is not a price: the design is not optimised again. | [Squire1998] | price
-active limit | A limit that the optimum just meets. It holds the design: the objective would be better without it. | [NocedalWright2006] | KKT, price
+active limit / at its limit / just met | A limit that the optimum just meets. It holds the design: the objective would be better without it. | [NocedalWright2006] | KKT, price
 multiplier | Factor of a limit in the Lagrangian; positive for an active limit, 0 for others. Prices follow from the multipliers. | [NocedalWright2006] | KKT, price
-KKT | Karush-Kuhn-Tucker conditions of an optimum: the slope of the objective is balanced by those of the active limits, with multipliers that are not negative. The residual is the unbalanced share; 1e-6 or less is an optimum. | [NocedalWright2006] | multiplier, active limit
+KKT / KKT residual / stationary | Karush-Kuhn-Tucker conditions of an optimum: the slope of the objective is balanced by those of the active limits, with multipliers that are not negative. The residual is the unbalanced share; 1e-6 or less is an optimum. | [NocedalWright2006] | multiplier, active limit
 optimum | The best design found: no requirement or check is missed, and no small change of the variables improves the objective. | [NocedalWright2006] | KKT, certificate
-certificate | Proof of how far the best design is at most from the best possible one: a lower bound of the objective over the whole box of variables, by `optimise --certify`. The gap is a fraction of the objective. | [McCormick1976], [Neumaier2004] | optimum
+certificate / certify / proven / gap | Proof of how far the best design is at most from the best possible one: a lower bound of the objective over the whole box of variables, by `optimise --certify`. The gap is a fraction of the objective. | [McCormick1976], [Neumaier2004] | optimum
 infeasible | No design within the bounds meets every limit. `optimise` then lists the conflicting limits and changes that help. | [Chinneck2008] | requirement, variable
 Pareto front | Designs of which none is better in one objective without being worse in another; by `pareto`. | [Das1999], [PascolettiSerafini1984] | knee
 knee | Point of a Pareto front at which more of one objective begins to cost much of the other. | [Deb2005] | Pareto front
 yield | Probability that an actuator built to the design meets every requirement, given scatter and tolerances; by `uncertainty`. Not the yield strength of a metal. | [Clopper1934] | reserve, uncertainty, yield_strength
 scatter | Variation of a library value from lot to lot: coefficient of variation (CV), tolerance, or factor. | our choice | yield, confidence
-confidence | How well a library value was checked. verified: read in its primary source; secondary: in another source; unverified: from memory or a rule; derived: computed from others. | our choice | scatter
+confidence / unverified / verified | How well a library value was checked. verified: read in its primary source; secondary: in another source; unverified: from memory or a rule; derived: computed from others. | our choice | scatter
 basis | Statistics of a library strength: mean, typical, A (99 %) or B (90 % of the population, with 95 % confidence), S (specification), minimum. | CMH-17 practice | knock-down
 knock-down | Factor from a library strength to an allowable one: temperature, moisture, basis of the statistics, process. | our choice | basis, basis_knockdown
-extrapolated | A model was used outside its valid range, or a library value outside its data. The result is marked and warns. | our choice | confidence
+extrapolated / in range / valid range | A model was used outside its valid range, or a library value outside its data. The result is marked and warns. | our choice | confidence
 working pressure | Supply pressure of the design, gauge. Burst and proof factors are relative to it. | ISO 10100 practice | supply.pressure, proof pressure
 proof pressure | Test pressure that must leave no permanent damage: supply.proof_ratio times the supply pressure. | ISO 10100 practice | proof_factor, supply.proof_ratio
 first-ply failure | First damage of any ply of a laminate, by the criterion of barrel.criterion; without a liner it is the leak pressure. | [Jones1999] | first_ply_factor, burst_factor
@@ -58,17 +59,22 @@ LuGre model | Friction model with bristles: stiffness before sliding, the Stribe
 secant damping | Friction divided by speed at the stated speed; not the slope of the friction. | [Huang2017] | damping_seal, damping_ratio
 dead volume | Oil in a chamber with the piston at its end, including ports. It lowers the stiffness. | [Merritt1967] | cylinder.dead_volume_a, stiffness_oil
 seed | Number that starts the random samples of a search; the same seed gives the same result. | our choice | optimum
+degenerate optimum / vertex / degenerate | Optimum with more active limits than variables. A limit then may have one price for an increase and another for a decrease. | [Gauvin1982] | price, active limit
+Sobol index / Sobol / Sobol indices | Share of the scatter of a metric that one input causes, alone or together with others; by `uncertainty`. | [Saltelli2010] | scatter, yield
+spec hash | Short code of all inputs of a result: design, material data and program version. Equal codes mean equal inputs. | our choice | run, seed
 run | Record of an `optimise`, `pareto` or `sweep`: input, versions, seed and result; see `runs list`. | our choice | seed
 display unit | Unit of a quantity on terminal, in reports and CSV. JSON and scripts use SI. | our choice | PATH
 """
-"""A term a line: name, definition, source, names to look up next."""
+"""A term a line: name and other words for it, definition, source, names to look up next."""
 
 
 @cache
 def terms() -> Mapping[str, Term]:
     """All terms by name."""
     rows = [[cell.strip() for cell in line.split("|")] for line in _ROWS.strip().splitlines()]
-    return {
-        name: Term(name, definition, source, tuple(word.strip() for word in related.split(",")))
-        for name, definition, source, related in rows
-    }
+    known = {}
+    for names, definition, source, related in rows:
+        name, *aliases = (word.strip() for word in names.split("/"))
+        see = tuple(word.strip() for word in related.split(","))
+        known[name] = Term(name, tuple(aliases), definition, source, see)
+    return known

@@ -127,9 +127,10 @@ class Catalogue(Displayed):
 
 
 def _metrics() -> Iterator[Entry]:
-    from ..metrics.table import ROWS
+    from ..metrics.table import ROWS, term_of
 
-    return (Entry(name, "metric", row.label, row.quantity) for name, row in ROWS.items())
+    for name, row in ROWS.items():
+        yield Entry(name, "metric", row.label, row.quantity, aliases=(term_of(name), row.label))
 
 
 def _checks() -> Iterator[Entry]:
@@ -173,7 +174,7 @@ def _terms() -> Iterator[Entry]:
     from .glossary import terms
 
     for term in terms().values():
-        yield Entry(term.name, "term", term.definition)
+        yield Entry(term.name, "term", term.definition, aliases=term.aliases)
 
 
 def _key(path: str, key: KeyEntry) -> Entry:
@@ -269,6 +270,8 @@ def _path(word: str, metrics: Mapping[str, Quantity] | None) -> Entry | None:
 
     generic = re.sub(r"\[[^\[\]]*\]", "[*]", fold(word))
     known = templates()
+    if generic not in known and (dotted := ".".join(word.casefold().split())) in known:
+        word = generic = dotted
     if generic in known:
         return replace(_key(generic, known[generic]), name=word.strip())
     if generic in blocks():

@@ -24,6 +24,7 @@ from ..design.writer import exact_text, scalar, to_yaml
 from ..evaluation import evaluate, prepare
 from ..evaluation.build import limits_of, margins_many
 from ..evaluation.rings import EXTRUSION_TABLE
+from ..metrics import METRICS
 from ..models.gland import extrusion_gap_limit, extrusion_pressure_end
 from ..optimisation.result import Optimisation
 from ..optimisation.solution import MET
@@ -177,6 +178,11 @@ class Start:
     actuator: Actuator
     met: bool
     sentence: str
+
+    @property
+    def mass(self) -> str:
+        """Mass with its unit."""
+        return METRICS["mass"].text(_mass(self.actuator.design), 4)
 
     @property
     def text(self) -> str:
@@ -655,6 +661,7 @@ def _part_bounds(wall: Wall, sizes: _Sizes) -> list[str]:
         _bounds("head.length", sizes.piston - 1e-3, longest),
         _bounds("caps.thickness", 1e-3, 0.5 * bore + 2e-3),
         *(f"  seals.{place}.squeeze: {{lower: 8 %, upper: 25 %}}" for place in ("piston", "rod")),
+        _bounds("clevis.pin_diameter", sizes.pin / 2, 4 * sizes.pin),
     ]
 
 

@@ -135,13 +135,15 @@ def init(
         store.require_writable(out)
     job = Job(as_json=as_json, quiet=quiet)
     verdict: dict[str, Any] = {}
-    faults = []
+    faults, remarks = list[Diagnostic](), list[str]()
     if answers or yes or (out is not None and not copied):
         duty = _duty(answers, ask=not as_json, defaults=yes)
         from ..api.starting import solved_start
 
         start = job.run(solved_start, duty, **title)
         text, verdict = start.text, {"met": start.met}
+        if start.met:
+            remarks = [f"solved: {start.mass}, every limit is met; edit it, or optimise it"]
         if not start.met:
             faults = [Diagnostic("nothing fits yet", start.sentence, str(out or ""))]
             verdict["remedy"] = start.sentence
@@ -152,7 +154,7 @@ def init(
     else:
         store.write_text(out, text)
         files = [{"path": str(out)}]
-        job.answer(lambda: {"files": files} | verdict, files=files, faults=faults)
+        job.answer(lambda: {"files": files} | verdict, remarks=remarks, files=files, faults=faults)
     return ExitCode.MISSED if faults else ExitCode.MET
 
 

@@ -630,8 +630,8 @@ def _case_force(loc: Loc, case: dict[str, Any], *, linked: bool) -> Iterator[Fau
         other = "joint_torque" if torque else "lever_arm"
         yield Fault(
             (*loc, other),
-            "both force and joint torque in one load case",
-            "keep one of them",
+            "a load case has either force, or joint_torque with lever_arm",
+            'keep one of them, e.g. "joint_torque: 120 N*m" with "lever_arm: 40 mm"',
             at_key=True,
         )
     elif torque and not arm and not linked:

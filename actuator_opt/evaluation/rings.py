@@ -270,7 +270,8 @@ def gland_metrics(
     if ring.element.seal_type.o_ring_gland:
         metrics["seal_fill"] = {OWN: _fill(ring) * most}
         metrics["seal_stretch"] = {OWN: ring["stretch"]}
-        metrics["seal_section"] = {OWN: ring["section"]}
+        if ring.name != "static":  # the limit is against twisting by the stroke
+            metrics["seal_section"] = {OWN: ring["section"]}
     return {
         metric: {", ".join(x for x in (ring.label, path) if x): x for path, x in values.items()}
         for metric, values in metrics.items()

@@ -104,7 +104,8 @@ def _name(row: Requirement | Check, evaluation: Evaluation) -> str:
     if isinstance(row, Check) and row.metric is None:
         return row.name
     if isinstance(row, Requirement) and row.path.startswith("load_cases"):
-        words = words_of(row.path)
+        by_arm = row.metric != "joint_torque_min"
+        words = words_of(row.path.replace(".joint_torque", ".force") if by_arm else row.path)
     else:
         words = term_of(row.metric or "")
     if isinstance(row, Requirement) and row.name.endswith((" (min)", " (max)")):
@@ -269,6 +270,13 @@ def _limit_table(
         metric = evaluation.metrics.get(row.metric or "")
         if row.value is None and metric is not None and metric.why:
             blocks.append(_line(f"{_name(row, evaluation)} not computed: {metric.why}"))
+    if advised := [row.metric for row in rows[:most] if _is_advice(row)]:
+        blocks.append(
+            _line(
+                f"advice does not bind: bind it by requirements.{advised[0]}, or accept it by "
+                f"waivers.{advised[0]} with a reason"
+            )
+        )
     hidden = rows[most:]
     missed = sum(row.state == "missed" for row in hidden)
     if hidden:
@@ -277,11 +285,17 @@ def _limit_table(
     return blocks
 
 
+def _is_advice(row: Requirement | Check) -> bool:
+    """Whether a limit is advice, which does not bind the optimiser (`CheckLine.advice`)."""
+    return isinstance(row, Check) and row.source.startswith("advice")
+
+
 def _limit_cells(row: Requirement | Check, evaluation: Evaluation) -> list[Cell]:
     quantity, met = text.metric(row.metric or ""), row.state != "missed"
     where = text.brief(row.case, row.place)
     if isinstance(row, Check):
-        where = f"check; {where}" if where else "check"
+        kind = "advice" if _is_advice(row) else "check"
+        where = f"{kind}; {where}" if where else kind
     return [
         Status(row.state, " "),
         _name(row, evaluation),

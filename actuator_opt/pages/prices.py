@@ -44,6 +44,13 @@ def price_blocks(optimisation: Optimisation, *, moving: bool = False) -> list[Bl
 # ---- prices ----
 
 
+def _value(row: Sensitivity, limit: Requirement) -> str:
+    """Result at a limit in the unit of its parameter; a torque by a lever arm limits a force."""
+    if row.parameter.endswith(".joint_torque") and limit.metric != "joint_torque_min":
+        return text.value_text(text.metric(limit.metric), limit.value)
+    return text.number(display_of(row, limit.value))
+
+
 def sensitivities(optimisation: Optimisation) -> Table:
     """Table of the price of every limit and parameter, checked by re-optimising at ±10 %."""
     objective = text.metric(optimisation.objective_metric)
@@ -56,7 +63,7 @@ def sensitivities(optimisation: Optimisation) -> Table:
             [
                 row.parameter.removeprefix("requirements."),
                 text.with_unit(text.trimmed(display_of(row, row.limit)), unit),
-                DASH if limit is None else text.number(display_of(row, limit.value)),
+                DASH if limit is None else _value(row, limit),
                 DASH if limit is None else _margin(limit),
                 "●" if row.active else "",
                 _price(optimisation, row, objective),

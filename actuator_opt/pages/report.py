@@ -420,7 +420,7 @@ def requirements(evaluation: Evaluation, *, shown: bool = True, labelled: bool =
         return Notes(REQUIREMENTS, ["The design states no requirement."], on=on)
     columns = [
         _MARK,
-        Column("requirement", "left", 1.0 if labelled else 1.2, breaks=22, mono=True, least=16),
+        Column("requirement", "left", 1.0 if labelled else 1.2, breaks=21, mono=True, least=16),
         Column("quantity", "left", 1.3, on="paper"),
         Column("limit", "right"),
         Column("result", "right", style="bold"),

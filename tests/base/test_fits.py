@@ -91,6 +91,7 @@ def test_double_exponential_agrees_with_another_solver():
         assert (upper - rate, rate - lower) == pytest.approx((half, half), rel=1e-3)
 
 
+@pytest.mark.long
 def test_bounds_hold_the_truth_as_often_as_they_say():
     """200 power laws with independent scatter: 95 % bounds of the exponent hold it 95 % of times.
 

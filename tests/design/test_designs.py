@@ -29,6 +29,11 @@ GROUPS = {
 """Which group a requirement of the knee belongs to."""
 
 
+LONG = {"huang_110_80_560": pytest.mark.long}
+"""Designs whose oil films take seconds; the tests of the paper evaluate them too."""
+STEMS = [path.stem for path in ALL]
+
+
 @pytest.fixture(scope="module")
 def optima() -> dict[str, Optimisation]:
     """Every shipped design that has variables, optimised from few starts."""
@@ -45,7 +50,9 @@ def test_a_shipped_design_has_no_faults(path) -> None:
     assert verbs.check(path) == []
 
 
-@pytest.mark.parametrize("path", ALL, ids=lambda p: p.stem)
+@pytest.mark.parametrize(
+    "path", [pytest.param(p, marks=LONG.get(p.stem, ())) for p in ALL], ids=STEMS
+)
 def test_a_shipped_design_evaluates_to_finite_numbers(path) -> None:
     """Every metric is finite or says why not; nothing in the JSON object is NaN or infinite."""
     evaluation = verbs.evaluate(path)

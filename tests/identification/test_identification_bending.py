@@ -82,7 +82,9 @@ def test_a_short_test_is_read_by_force():
     assert any("does not cover the usual strains" in one for one in found.doubts)
 
 
-@pytest.mark.parametrize(("memory", "cycles"), [(0.0, 1), (0.9, 1), (0.97, 3)])
+@pytest.mark.parametrize(
+    ("memory", "cycles"), [(0.0, 1), (0.9, 1), pytest.param(0.97, 3, marks=pytest.mark.long)]
+)
 def test_bounds_hold_the_slope(memory, cycles):
     """95 % bounds hold the true slope in 90 to 99 % of 200 records, however noise remembers."""
     slope, held = slope_of(6e10), 0

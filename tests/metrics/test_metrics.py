@@ -81,7 +81,10 @@ def test_an_undeclared_metric_cannot_be_computed():
         MetricArrays().put("span", 1.0)
 
 
-@pytest.mark.parametrize("file", DESIGNS, ids=lambda file: file.stem)
+QUICK = [file for file in DESIGNS if file.stem != "huang_110_80_560"]  # its films take seconds
+
+
+@pytest.mark.parametrize("file", QUICK, ids=lambda file: file.stem)
 def test_every_metric_is_computed_or_says_why_not(file):
     """A row that nothing computes is found in every design."""
     actuator = ao.read(file)

@@ -411,7 +411,7 @@ def test_damping_ratio_follows_what_moves_the_films(path):
     assert step == pytest.approx((ends[1] - ends[0]) / 2e-3, rel=0.05)  # to the first order
 
 
-@pytest.mark.parametrize("stroke", ["drive", "return"])
+@pytest.mark.parametrize("stroke", [pytest.param("drive", marks=pytest.mark.long), "return"])
 def test_slopes_of_a_pair_against_pairs_solved_anew(stroke):
     """Exact derivatives of drag, load, film, flow and the pressure between, by what moves them."""
     kinds = PAIR.replace("15 %", "16 %")
@@ -443,6 +443,7 @@ variables:
 """
 
 
+@pytest.mark.long
 def test_stated_error_is_that_of_films_within_the_box():
     """At thirty points of the box the surrogate is not further off than the table says.
 
