@@ -162,7 +162,7 @@ EXPECTED = [
     ((36, 5), "load_cases[0].force", "missing", "joint_torque"),
     ((38, 11), "load_cases[1].name", "also the name of entry 0", "own name"),
     ((40, 12), "load_cases[1].force", 'unknown unit "x10 kN"', "kN"),
-    ((41, 5), "load_cases[1].joint_torque", "force and joint torque", "keep one"),
+    ((41, 5), "load_cases[1].joint_torque", "either force, or joint_torque", "keep one"),
     ((42, 15), "load_cases[1].position", "120 %: outside", "0 % to 100 %"),
     ((44, 3), "variables.cylinder.bor", "unknown PATH", 'did you mean "cylinder.bore"?'),
     ((49, 12), "variables.rod.outer_diameter.upper", "bounds reversed", "swap"),
