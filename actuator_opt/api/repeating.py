@@ -203,6 +203,7 @@ def parser() -> argparse.ArgumentParser:
     options.add_argument("-n", type=_within(FRONT), default=50)
     options.add_argument("--checks", type=_within(CHECKS), default=3)
     options.add_argument("--yield", type=float, dest="yield_target")
+    options.add_argument("--max-seconds", type=float)
     for name in _VALUES:
         options.add_argument(name)
     for name in _FLAGS:
@@ -270,6 +271,7 @@ def _again(
         algorithm=options.algorithm or "auto",
         starts=options.starts,
         seed=options.seed,
+        max_seconds=options.max_seconds,
         whole_plies=options.whole_plies,
         standard_sizes=options.standard_sizes,
         shop=options.shop,

@@ -395,6 +395,8 @@ def test_runs_are_compared_on_a_page(short, tmp_path):
 def test_edges_that_leak_unlike_are_told_in_the_linear_model():
     """Its held pressures are those of alike edges; with alike ones nothing is said."""
     knee = str(DESIGNS / "servo_knee.yaml")
-    unlike = " ".join(run("evaluate", "-v", knee, "--set=valve.tank_leakage_drop=20 bar").out.split())
+    unlike = " ".join(
+        run("evaluate", "-v", knee, "--set=valve.tank_leakage_drop=20 bar").out.split()
+    )
     assert "tank edges and supply edges leak differently" in unlike
     assert "leak differently" not in " ".join(run("evaluate", "-v", knee).out.split())

@@ -167,7 +167,7 @@ def test_plug_against_finite_elements(name):
     def absent(r, z):
         sloped = np.maximum(low, top - (z - edge) * tan(angle))
         return (
-            ((z < plate) & (r > outer)) | ((z > plate) & (r < inner)) | ((z > edge) & (r > sloped))
+            ((z < plate) & (r > outer)) | ((z > plate) & (r < inner)) | ((z > edge) & (r > sloped + 1e-6))
         )
 
     def on_flank(r, z):

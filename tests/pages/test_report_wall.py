@@ -82,7 +82,11 @@ def test_the_wall_stands_before_the_check_list():
     ]
     places = [k for k, title in enumerate(titles) if title.startswith("Barrel wall")]
     assert places == list(range(places[0], places[0] + 9))
-    assert titles[places[-1] + 1 :][:2] == ["Why these limits", "Check list"]
+    assert titles[places[-1] + 1 :][:3] == [
+        "Limits, place by place",
+        "Why these limits",
+        "Check list",
+    ]
     assert titles[places[0] - 1] == "Dynamics"
 
 

@@ -158,7 +158,7 @@ class RecordedFunction:
             self.reason = "the models take different branches for different designs"
             return
         self.recordings += 1
-        key = "" if self.structure is None else program_store.key_of([self.structure, *self.names])
+        key = "" if self.structure is None else program_store.key_of([self.structure, len(point)])
         known = program_store.read(key) if key else []
         for stored in known:
             if stored.checked and stored.covers(point):
