@@ -10,7 +10,7 @@ accepts other types of file, such as scenarios.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from ..base import errors, quantities, units
@@ -86,10 +86,13 @@ def resolve(
     tree: Any,
     metrics: Mapping[str, Quantity] | None = None,
     root: type[Section] = Design,
+    *,
+    near: bool = True,
 ) -> Target:
     """Find the value that `path` names in `tree`.
 
-    `tree` is an object of type `root`, or its contents as dicts and lists.
+    `tree` is an object of type `root`, or its contents as dicts and lists. `near` states whether
+    the remedy for an unknown PATH names similar ones, which takes time.
 
     Raises
     ------
@@ -109,7 +112,18 @@ def resolve(
     if rest and head in _TABLES and head in entries(root):
         return _resolve_table(head, rest, tree, METRICS if metrics is None else metrics)
     tokens = [_Token(m[1] or m[2], m[1] is not None) for m in _TOKEN.finditer(path)]
-    return _resolve_section(path, tokens, (tree, root), tree, root, ())
+    try:
+        return _resolve_section(path, tokens, (tree, root), tree, root, ())
+    except _UnknownPath as unknown:
+        raise _no_such(path, unknown.candidates() if near else {}) from None
+
+
+class _UnknownPath(Exception):
+    """An unknown PATH; `candidates` gives the known ones with their meanings."""
+
+    def __init__(self, candidates: Callable[[], Mapping[str, str]]) -> None:
+        super().__init__()
+        self.candidates = candidates
 
 
 def _resolve_section(
@@ -127,9 +141,13 @@ def _resolve_section(
     name, rest = tokens[0].text, tokens[1:]
     entry = keys.get(name)
     if entry is None or tokens[0].bracket:
-        known = {spell((*loc, key), tree): entry.meaning for key, entry in keys.items()}
-        known |= {spell(at, tree): entry.meaning for at, entry, _ in leaves(*whole)}
-        raise _no_such(path, known | _limits(tree))
+
+        def candidates() -> Mapping[str, str]:
+            known = {spell((*loc, key), tree): entry.meaning for key, entry in keys.items()}
+            known |= {spell(at, tree): entry.meaning for at, entry, _ in leaves(*whole)}
+            return known | _limits(tree)
+
+        raise _UnknownPath(candidates)
     node, loc = child(node, name), (*loc, name)
     if entry.shape in ("value", "choice"):
         if rest:

@@ -80,11 +80,16 @@ def requirements(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Itera
             )
 
 
+NAMED = 100
+"""Number of unknown variables for which similar PATHs are searched; more are not shown."""
+
+
 def variables(tree: dict[str, Any]) -> Iterator[Fault]:
     """Check variables: each is the PATH of a number, with valid bounds and a start between them."""
     block = tree.get("variables")
     if not isinstance(block, dict):
         return
+    unknown = 0
     for path, bounds in block.items():
         loc = ("variables", path)
         if in_faulty_block(path, tree):
@@ -95,8 +100,9 @@ def variables(tree: dict[str, Any]) -> Iterator[Fault]:
             }  # the block as a whole already has a fault
             continue
         try:
-            target = _movable(path, tree)
+            target = _movable(path, tree, near=unknown < NAMED)
         except ValueFault as fault:
+            unknown += 1
             yield Fault(loc, fault.message, fault.remedy, at_key=True)
             continue
         quantity = target.quantity
@@ -166,10 +172,10 @@ def in_faulty_block(path: str, tree: dict[str, Any]) -> bool:
     return not isinstance(tree[name], (list, tuple) if entry.shape == "list" else dict)
 
 
-def _movable(path: str, tree: dict[str, Any]) -> Target:
+def _movable(path: str, tree: dict[str, Any], *, near: bool) -> Target:
     """Find the number that a variable varies; raise `ValueFault` if there is none."""
     try:
-        target = resolve(path, tree)
+        target = resolve(path, tree, near=near)
     except ValueFault as fault:
         raise ValueFault(fault.message.removeprefix(f"{path}: "), fault.remedy) from None
     if target.quantity is None:

@@ -210,7 +210,7 @@ def _paths(tree: Any) -> list[str]:
         if not isinstance(lower, float) or not isinstance(upper, float) or lower > upper:
             continue
         try:
-            target = resolve(path, tree)
+            target = resolve(path, tree, near=False)
         except ValueFault:
             continue
         if target.quantity is not None:

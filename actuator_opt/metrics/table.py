@@ -369,8 +369,8 @@ ROWS = table((
               check=CheckLine("3.4", "rod thread root", 1.5,
                               "our choice: factor 1.5 against yield")),
     MetricRow("piston_nut_factor", "S_n", "ratio", "",
-              "least preload of the piston's nut divided by the preload that proof pressure takes "
-              "away, and the permitted preload divided by the greatest",
+              "least preload of the piston's nut over its loss at proof pressure; permitted preload "
+              "over the greatest",
               term="piston nut preload", worst="min", model="piston_nut.least_stud_share", feeds=(),
               at={"while tightened": "piston_nut.torsion_factor"},
               check=CheckLine("3.7", "piston stays clamped on the rod", 1.0,
