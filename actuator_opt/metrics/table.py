@@ -476,8 +476,8 @@ ROWS = table((
               model=None, feeds=(), check=None,
               by_wall={"layered": "liner.liner_cycle", "thin_laminate": "liner.liner_cycle"}),
     MetricRow("joint_factor", "S_j", "ratio", "",
-              "least tie-rod preload divided by the preload that proof pressure takes away, and "
-              "the permitted preload divided by the greatest",
+              "least tie-rod preload over its loss at proof pressure; permitted preload over the "
+              "greatest",
               term="tie-rod preload", worst="min", model="barrel_ends.tie_rod_forces", feeds=(),
               at={"while tightened": "piston_nut.torsion_factor"},
               check=CheckLine("11.7", "tie-rod joint stays closed", 1.0,

@@ -145,7 +145,7 @@ def test_no_design_lies_below_the_bound(some):
 
 
 GAPS = {
-    "steel": (("steel_baseline", ("piston.material", "al_7075_t6")), 0.008),
+    "steel": (("steel_baseline", ("piston.material", "al_7075_t6")), 0.012),
     "knee_bonded": (("knee_bonded",), 0.16),
     "knee of 90 mm, sized by stiffness": (
         ("knee_bonded", ("cylinder.stroke", "90 mm"), ("requirements.stiffness_min.min", "12e6")),

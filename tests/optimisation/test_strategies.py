@@ -35,7 +35,10 @@ def test_the_default_agrees_with_itself_on_shipped_designs(name):
     assert [*bench_strategies.shipped()] == [
         "aerospace", "knee", "knee_bonded", "knee_gap_tolerant", "steel_baseline", "servo_knee",
     ]  # fmt: skip
-    first, other = (solve(case.problem, samples=1024, seed=seed, starts=2) for seed in (11, 12))
+    starts = 6 if name == "aerospace" else 2  # its tie rods have two optima, 0.3 % apart
+    first, other = (
+        solve(case.problem, samples=1024, seed=seed, starts=starts) for seed in (11, 12)
+    )
     assert first.outcome is other.outcome is Outcome.OPTIMUM
     assert first.objective == pytest.approx(other.objective, rel=1e-7)
     design = verbs.read(bench_strategies.DESIGNS / f"{name}.yaml").design
