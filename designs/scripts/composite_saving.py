@@ -122,6 +122,7 @@ def print_reasons(saving: Saving) -> None:
         if rest > 0
         else f"saves nothing more: that actuator is {-rest:.1%} of the steel mass heavier"
     )
+    metal = f"save {ends:.1%} already" if ends > 0 else "save nothing"
     thick = saving.thick.metrics["mass"].value
     wall = steel.design.barrel.layup[0].thickness
     bores = [1e3 * optimum.design.cylinder.bore for optimum in (steel, composite)]
@@ -129,8 +130,8 @@ def print_reasons(saving: Saving) -> None:
         f"the barrel alone saves {saving.part_share('barrel'):.0%}: the makers' largest figures are"
         " for a barrel or a rod, not for a whole cylinder",
         f"{same:.0%} of the composite actuator is steel in both designs: {', '.join(kept)}",
-        f"aluminium caps, head and piston on a steel barrel save {ends:.1%} already:"
-        f" {1e3 * saving.mixed.objective_value:.1f} g; the carbon barrel with the bond it needs"
+        f"aluminium caps, head and piston on a steel barrel {metal}:"
+        f" {1e3 * saving.mixed.objective_value:.1f} g; the carbon barrel with the ends it needs"
         f" {carbon}",
         f"the makers compare with walls of {1e3 * THICK_WALL:.0f} mm and more, the steel optimum"
         f" has {1e3 * wall:.2f} mm; with {1e3 * THICK_WALL:.0f} mm it weighs {1e3 * thick:.0f} g"
