@@ -19,9 +19,9 @@ from typing import Any
 import actuator_opt as ao
 
 KNEE = Path(__file__).parents[1] / "knee.yaml"
-GUIDE = 0.6
+GUIDE = 0.7
 """Least length of the piston over the bore: own rule against tilting."""
-OIL = "65 ml"
+OIL = "71 ml"
 """Most oil per cycle: what an assumed on-board pump leaves this joint."""
 
 
