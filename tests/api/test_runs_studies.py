@@ -118,6 +118,7 @@ def test_every_number_that_varied_is_shown(folder, design, vary, words):
     assert words in shown.out
 
 
+@pytest.mark.long
 def test_the_record_of_a_large_sweep_stays_small(folder, design, monkeypatch):
     """Whatever is kept or fails: a few best designs and the commonest reasons."""
     small = swept(design, "--reduce", "best:1")

@@ -314,6 +314,7 @@ def test_the_knee_end_to_end(tmp_path):
     assert run("evaluate", file, "-q").code == 0
 
 
+@pytest.mark.long
 def test_a_certificate_is_proven_and_repeats():
     """The steel knee is within 1.1 % of the best possible; the same input gives the same proof.
 

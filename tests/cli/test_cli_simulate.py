@@ -158,6 +158,7 @@ def test_the_best_design_is_verified_in_time(short, tmp_path):
     )
 
 
+@pytest.mark.long
 def test_sensitivities_are_ranked(short):
     """The most effective parameter leads, and every effect says whether it is sure."""
     found = json.loads(run("simulate", str(short), "--sensitivity", "--json").out)["sensitivities"]

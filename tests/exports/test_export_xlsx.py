@@ -33,7 +33,10 @@ def rows_of(book, title):
     return {cell.value: cell.row for cell in book[title]["A"][4:] if cell.value}
 
 
-@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+QUICK = [path for path in SHIPPED if path.stem != "huang_110_80_560"]  # its films take seconds
+
+
+@pytest.mark.parametrize("path", QUICK, ids=lambda path: path.stem)
 def test_formulas_give_the_evaluations_margins(path):
     """Margin and verdict of every requirement and check, computed from the cells alone."""
     evaluation = ao.evaluate(path)

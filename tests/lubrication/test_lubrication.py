@@ -240,6 +240,7 @@ def test_flow_carries_the_density_of_the_oil():
     assert film.flow == pytest.approx(rise * plain.flow, rel=1e-6)
 
 
+@pytest.mark.long
 def test_random_points_converge():
     """150 random points over 1e-4..1 m/s, 0.1..40 MPa, -20..100 degC, three seals: 99 % or more.
 

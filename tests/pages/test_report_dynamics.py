@@ -563,6 +563,7 @@ def test_a_needle_is_cut_at_both_edges():
     assert axes.clipped([0, 4], [-1.0, 3.0]) == [[(2.5, 10.0), (5.0, 0.0)]]
 
 
+@pytest.mark.long
 def test_equal_designs_give_equal_files(tmp_path):
     """The report of a design with a loop has the same bytes again; the plain one can draw it."""
     given = {"stem": "r", "source_text": "a: 1\n", "source_name": "a.yaml", "command": "c"}

@@ -151,6 +151,7 @@ def test_the_pages_say_what_is_proven_and_what_is_not(tables):
     assert "Every exponent is below 0" in fits
 
 
+@pytest.mark.long
 def test_another_seal_turns_the_verdicts(other):
     """A relief beyond the turning one: the step ring's B falls and its film grows; a short one not.
 

@@ -201,6 +201,7 @@ def tandem(speed, sealed, **options):
 SLOW = (("supply.return_pressure", "20 bar"), ("load_cases[pull].speed", "0.05 m/s"))
 
 
+@pytest.mark.long
 def test_tandem_is_the_solved_pair():
     """Both films at the pressure where they pass the same flow; that pressure is a metric."""
     lubed = metrics(O_RING, PAIR, SLOW)
@@ -514,6 +515,7 @@ def limited():
     return ao.read(text(RING, f"{RING}, friction: film", LIMITED))
 
 
+@pytest.mark.long
 def test_alone_and_in_the_optimiser_a_design_is_the_same(limited):
     """Objective and margins at a point are those of the Evaluation of the design there."""
     ready = limited.subject()

@@ -584,6 +584,7 @@ def test_processes_may_begin_a_database_together(tmp_path):
                 assert connection.execute("SELECT count(*) FROM rows").fetchone() == (4,)
 
 
+@pytest.mark.long
 def test_rows_that_stand_are_not_held(tmp_path):
     """A sweep all of whose rows stand takes the same memory at three times the size."""
     peaks = []

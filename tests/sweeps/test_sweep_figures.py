@@ -232,6 +232,7 @@ def test_contours_are_whole_and_clear(swept):
             assert drawn.limit_words(swept.study.binding[one.number]) in said
 
 
+@pytest.mark.long
 def test_same_sweep_same_bytes(knee, tmp_path):
     """Two runs into two folders write the same files."""
     folders = [tmp_path / "a", tmp_path / "b"]

@@ -214,6 +214,7 @@ def test_without_scatter_the_yield_is_the_verdict():
         assert any("no input is uncertain" in words for words in found.notes)
 
 
+@pytest.mark.long
 def test_same_seed_same_result():
     """The seed fixes everything; another seed draws anew."""
 
