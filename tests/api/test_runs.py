@@ -84,6 +84,7 @@ def test_its_report_is_the_report_of_the_command(folder, design, tmp_path, optio
     assert digests(made) == digests(again)
 
 
+@pytest.mark.long
 def test_infeasible_and_chosen_designs_are_reported_again(folder, tmp_path):
     """The card of an impossible design and the table of choices stand in the record too."""
     cases = {

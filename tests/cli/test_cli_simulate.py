@@ -131,6 +131,7 @@ def test_check_and_schema_know_scenarios(short):
     assert "duration" in json.loads(run("schema", "--scenario").out)["properties"]
 
 
+@pytest.mark.long
 def test_the_best_design_is_verified_in_time(short, tmp_path):
     """`optimise --verify-dynamics` tells both tiers of every dynamic requirement."""
     text = (DESIGNS / "servo_knee.yaml").read_text(encoding="utf-8")

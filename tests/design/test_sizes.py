@@ -238,6 +238,7 @@ def test_pressure_vessel_of_gauges():
     assert np.min(cost[(length <= 200) & (length >= 10)]) >= found.objective * (1 - 1e-9)
 
 
+@pytest.mark.long
 def test_gear_train():
     """Four gears of 12 to 60 teeth for a ratio of 1/6.931: 2.7008571e-12 [Sandgren1990].
 

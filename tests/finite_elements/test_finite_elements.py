@@ -215,6 +215,7 @@ def test_pressure_on_both_sides_only_adds_itself(monkeypatch):
     assert after[inner] - before[inner] == pytest.approx(np.full(len(inner), 0.7), rel=5e-3)
 
 
+@pytest.mark.long
 def test_refinement_converges():
     """Load and peak at pressure change by less than 1.5 % from 64 to 128 elements around."""
     coarse, fine = (ring(0.2, 0.5, around=around).contacts[1] for around in (64, 128))

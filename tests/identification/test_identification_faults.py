@@ -248,6 +248,7 @@ def test_steps_of_the_position_widen_the_lag():
         assert lag.upper - lag.lower > 2e-3
 
 
+@pytest.mark.long
 def test_slow_speeds_do_not_tell_the_level():
     """1 to 2 mm/s lie within the Stribeck rise of v_s = 4 mm/s: 270 N there is not F_C = 150 N."""
     found = identify(plateaus((0.001, 0.0015, 0.002)), bench(), LATE)

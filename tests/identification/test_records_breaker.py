@@ -202,6 +202,7 @@ def test_the_shipped_record_is_where_the_readme_says():
     assert text.count(str(Path("designs/records/knee_bench.csv"))) >= 2
 
 
+@pytest.mark.long
 def test_weighted_objectives_are_compared_term_by_term():
     """A weighted sum has other divisors before and after: each metric is shown by itself."""
     text = KNEE.read_text(encoding="utf-8").replace(

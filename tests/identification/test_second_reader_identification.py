@@ -499,6 +499,7 @@ def test_a_naive_slope_is_not_the_stiffness():
     assert found.lugre.parameters["coulomb"].value == pytest.approx(150.0, rel=0.03)
 
 
+@pytest.mark.long
 def test_bristle_damping_acts_as_a_lead():
     """In stuck contact sigma_0 z + sigma_1 dz/dt is sigma_0 z(t + sigma_1/sigma_0).
 

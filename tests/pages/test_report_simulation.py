@@ -626,6 +626,7 @@ def no_typst(monkeypatch):
     )
 
 
+@pytest.mark.long
 def test_the_plain_renderer_draws_it_too(tmp_path, no_typst):
     """Without typst every table and note is drawn, one below the other."""
     assert written(paged("step"), tmp_path)[0].path.read_bytes().startswith(b"%PDF")

@@ -178,6 +178,7 @@ def test_equal_designs_give_equal_pages():
     assert fixture.page_data(first, **SOURCE) == fixture.page_data(second, **SOURCE)
 
 
+@pytest.mark.long
 def test_the_plain_report_draws_it_too():
     """Without the typst wheel the section is there, on sheets of the fallback."""
     data = fixture.page_data(evaluated("knee_bonded.yaml"), **SOURCE) | {

@@ -156,6 +156,7 @@ def test_asperities_carry_what_oil_that_falls_evenly_leaves(found, pressure):
     assert solved.friction[0, 0] == pytest.approx(expected, rel=0.03)
 
 
+@pytest.mark.long
 def test_damping_falls_with_speed(studied):
     """As in figures 3, 7, 15 and 16: at every pressure of both cylinders."""
     for damping in (studied.cylinder.damping, studied.plunger.damping):

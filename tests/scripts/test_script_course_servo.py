@@ -47,6 +47,7 @@ def numbers(request, fresh) -> dict[str, Any]:
     return fresh if request.param == "quick" else _committed()
 
 
+@pytest.mark.long
 def test_every_loop_has_the_rows_that_the_course_asks(numbers) -> None:
     """P, PI and PID by the rule, each part of the PID halved and doubled, and the tool's own."""
     assert set(numbers["loops"]) == {"position", "speed", "angle"}

@@ -376,6 +376,7 @@ ROUGH = replace(
     ],
     ids=["constant", "fixed", "controlled"],
 )
+@pytest.mark.long
 def test_rough_run_balances_and_two_integrators_agree(supply):
     """Air, leakage, bristles, a stop, a full command: mass and energy close, Radau is LSODA."""
     circuit = replace(ROUGH, supply=supply)

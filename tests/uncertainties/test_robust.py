@@ -82,6 +82,7 @@ def test_one_limit_one_input_in_closed_form(target):
     assert found.to_dict()["robust"]["yield"]["value"] == made.rate
 
 
+@pytest.mark.long
 def test_without_scatter_the_plain_optimum_is_robust():
     """No input: the yield is 1, no reserve is kept, nothing gets heavier."""
     text = one_wish().replace(
@@ -104,6 +105,7 @@ def test_no_room_for_the_reserve_is_infeasible_in_words():
     assert not found.robust.reached
 
 
+@pytest.mark.long
 def test_the_yield_is_that_of_the_size_to_build():
     """Sizes of 15 mm and a bit: the first one 2.39 deviations beyond 15 mm or more is taken."""
     found = optimum(0.99, sizes="15 mm, 15.2 mm, 15.6 mm, 16 mm")
@@ -160,6 +162,7 @@ def test_scatter_of_a_material_that_is_not_chosen_waits(rod, drawn):
     assert (path in [one.path for one in found.inputs]) == drawn
 
 
+@pytest.mark.long
 def test_the_certificate_speaks_of_limits_without_reserves():
     """The bound holds for what meets the limits themselves: below both optima, and said so."""
     text = ao.read(one_wish(), plugins=[thick_rod])
@@ -180,6 +183,7 @@ def test_reserves_refused_are_those_of_the_yield():
     assert joint["relaxation"] == pytest.approx(whole - 0.1 / 15, rel=0.2)
 
 
+@pytest.mark.long
 def test_what_does_not_settle_is_said(monkeypatch):
     """Too few rounds: the sentence says that the margins did not converge, and what holds."""
     monkeypatch.setattr(robust, "ROUNDS", 1)
@@ -199,6 +203,7 @@ def test_a_design_that_never_met_its_limits_is_told_as_ever():
     assert found.infeasibility is not None
 
 
+@pytest.mark.long
 def test_same_seed_same_design():
     """The seed fixes the draws, so the design."""
     one, other = known(0.9), optimum(0.9)
