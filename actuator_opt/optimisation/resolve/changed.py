@@ -62,9 +62,13 @@ class ChangedProblems:
         parameters = parameters if numbers is None else parameters[:, list(numbers)]
         space, (nf, count) = evaluator.space, z.shape
         x = space.to_x(z)
-        problem = self.parametric.with_columns(np.repeat(parameters, nf, axis=1))
-        rows = problem.rows(space.complex_steps(x)).reshape(-1, count, nf)
-        values, slopes = rows.real[:, :, 0], np.asarray(rows.imag / STEP, dtype=float)
+        if nf:
+            problem = self.parametric.with_columns(np.repeat(parameters, nf, axis=1))
+            rows = problem.rows(space.complex_steps(x)).reshape(-1, count, nf)
+            values, slopes = rows.real[:, :, 0], np.asarray(rows.imag / STEP, dtype=float)
+        else:  # every variable is fixed
+            values = np.real(self.parametric.with_columns(parameters).rows(x))
+            slopes = np.empty((*values.shape, 0))
         values = Evaluator.screen(values)
         violation = evaluator.violations(values, "worst")
         valid = np.isfinite(values).all(axis=0) & np.isfinite(slopes).all(axis=(0, 2))
