@@ -7,7 +7,7 @@ from functools import cache
 from typing import NamedTuple
 
 
-class Term(NamedTuple):
+class GlossaryTerm(NamedTuple):
     """A term with its definition, its source, other words for it, and names to look up next."""
 
     name: str
@@ -69,12 +69,12 @@ display unit | Unit of a quantity on terminal, in reports and CSV. JSON and scri
 
 
 @cache
-def terms() -> Mapping[str, Term]:
+def terms() -> Mapping[str, GlossaryTerm]:
     """All terms by name."""
     rows = [[cell.strip() for cell in line.split("|")] for line in _ROWS.strip().splitlines()]
     known = {}
     for names, definition, source, related in rows:
         name, *aliases = (word.strip() for word in names.split("/"))
         see = tuple(word.strip() for word in related.split(","))
-        known[name] = Term(name, tuple(aliases), definition, source, see)
+        known[name] = GlossaryTerm(name, tuple(aliases), definition, source, see)
     return known

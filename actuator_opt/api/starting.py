@@ -40,17 +40,17 @@ DUTY: Mapping[str, tuple[Quantity, str]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Goal:
+class StartGoal:
     """A goal: its words, and the objective of the design file."""
 
     words: str
     objective: str
 
 
-GOALS: Mapping[str, Goal] = {
-    "mass": Goal("lightest", "minimise: mass"),
-    "stiffness": Goal("stiffest", "maximise: stiffness_min"),
-    "friction": Goal("least friction", "minimise: friction_running"),
+GOALS: Mapping[str, StartGoal] = {
+    "mass": StartGoal("lightest", "minimise: mass"),
+    "stiffness": StartGoal("stiffest", "maximise: stiffness_min"),
+    "friction": StartGoal("least friction", "minimise: friction_running"),
 }
 """The goals; all but the first limit the mass to `HEAVIER` times the lightest."""
 
@@ -60,7 +60,7 @@ such a limit, the stiffest design has every wall at its upper bound."""
 
 
 @dataclass(frozen=True, slots=True)
-class Wall:
+class StartWall:
     """Material of the barrel: its words, and the materials and joint that suit it.
 
     `strength` [Pa] is that of the wall, for its first size. A layer is a material, its angle (empty
@@ -78,10 +78,10 @@ class Wall:
 
 
 _PLIES = "t700_epoxy"
-WALLS: Mapping[str, Wall] = {
-    "steel": Wall("steel", (("steel_e355", "", 1.0),), 580e6, "steel_42crmo4", "thread"),
-    "aluminium": Wall("aluminium", (("al_7075_t6", "", 1.0),), 570e6, "al_7075_t6", "thread"),
-    "lined_carbon": Wall(
+WALLS: Mapping[str, StartWall] = {
+    "steel": StartWall("steel", (("steel_e355", "", 1.0),), 580e6, "steel_42crmo4", "thread"),
+    "aluminium": StartWall("aluminium", (("al_7075_t6", "", 1.0),), 570e6, "al_7075_t6", "thread"),
+    "lined_carbon": StartWall(
         "lined carbon",
         (("al_7075_t6", "", 0.2), (_PLIES, "88 deg", 0.8)),
         500e6,
@@ -89,7 +89,7 @@ WALLS: Mapping[str, Wall] = {
         "plug_thread",
         0.4e-3,
     ),
-    "linerless": Wall(
+    "linerless": StartWall(
         "linerless carbon",
         ((_PLIES, "88 deg", 0.65), (_PLIES, "25 deg", 0.35)),
         500e6,
@@ -646,7 +646,7 @@ def _text(duty: Duty, sizes: _Sizes, title: str, stop: str, mass: float | None) 
     return re.sub(r"@(\w+)@", lambda match: fields[match[1]], text)
 
 
-def _part_bounds(wall: Wall, sizes: _Sizes) -> list[str]:
+def _part_bounds(wall: StartWall, sizes: _Sizes) -> list[str]:
     """Bounds of the variables that every joint has, around the first sizes."""
     bore, rod, longest = sizes.bore, sizes.rod, 2 * sizes.piston + 3 * sizes.rod
     bounds = [_bounds("cylinder.bore", bore / 1.4, 1.4 * bore)]

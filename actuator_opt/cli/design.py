@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Mapping
 from os.path import relpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -28,6 +29,8 @@ from .options import (
     Report,
     Seed,
     Set,
+    UnusedOut,
+    UnusedSeed,
     Verbose,
 )
 
@@ -116,23 +119,12 @@ def init(
         "goal": goal, "wall": wall,
     }  # fmt: skip
     answers = {key: text for key, text in options.items() if text is not None}
+    _only_one(
+        {"--scenario": scenario, "--from": source, "--yes": yes or None}
+        | {f"--{key}": text for key, text in answers.items()}
+    )
     copied = source is not None or scenario is not None
-    if scenario is not None and source is not None:
-        raise UsageError(Diagnostic("--from and --scenario", "use only one of them"))
-    if copied and (answers or yes):
-        flag = f"--{next(iter(answers), 'yes')}"
-        other = "--from" if scenario is None else "--scenario"
-        raise UsageError(Diagnostic(f"{flag} and {other}", "use only one of them"))
-    title = {}
-    if name is not None:
-        title["name"], file = _named_file(name)
-        out = file if out is None else out
-    if out is not None and str(out) == "-":
-        out = None
-    if out is not None and os.path.lexists(out):
-        raise UsageError(Diagnostic("exists already", "choose another name", str(out)))
-    if out is not None:
-        store.require_writable(out)
+    title, out = _target(name, out)
     job = Job(as_json=as_json, quiet=quiet)
     verdict: dict[str, Any] = {}
     faults, remarks = list[Diagnostic](), list[str]()
@@ -144,7 +136,7 @@ def init(
         text, verdict = start.text, {"met": start.met}
         if start.met:
             remarks = [f"solved: {start.mass}, every limit is met; edit it, or optimise it"]
-        if not start.met:
+        else:
             faults = [Diagnostic("nothing fits yet", start.sentence, str(out or ""))]
             verdict["remedy"] = start.sentence
     else:
@@ -156,6 +148,29 @@ def init(
         files = [{"path": str(out)}]
         job.answer(lambda: {"files": files} | verdict, remarks=remarks, files=files, faults=faults)
     return ExitCode.MISSED if faults else ExitCode.MET
+
+
+def _only_one(sources: Mapping[str, object]) -> None:
+    """Refuse two sources of the file; a design, a scenario and a duty exclude each other."""
+    stated = [option for option, value in sources.items() if value is not None]
+    copies = [option for option in stated if option in ("--scenario", "--from")]
+    if copies and len(stated) > 1:
+        other = next(option for option in reversed(stated) if option != copies[0])
+        raise UsageError(Diagnostic(f"{other} and {copies[0]}", "use only one of them"))
+
+
+def _target(name: str | None, out: Path | None) -> tuple[dict[str, str], Path | None]:
+    """Title of the design, if it has a name, and the new file; None: the text is printed."""
+    title = {}
+    if name is not None:
+        title["name"], file = _named_file(name)
+        out = file if out is None else out
+    if out is None or str(out) == "-":
+        return title, None
+    if os.path.lexists(out):
+        raise UsageError(Diagnostic("exists already", "choose another name", str(out)))
+    store.require_writable(out)
+    return title, out
 
 
 _QUESTIONS = (
@@ -241,8 +256,8 @@ def check(
     plugin: PluginFile = None,
     as_json: Json = False,
     quiet: Quiet = False,
-    out: Annotated[Path, typer.Option("--out", hidden=True)] = REPORTS,
-    seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
+    out: UnusedOut = REPORTS,
+    seed: UnusedSeed = 0,
 ) -> ExitCode:
     """List all faults of design and scenario files."""
     from .. import api as verbs

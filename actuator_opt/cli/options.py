@@ -159,6 +159,9 @@ Format = Annotated[
     ),
 ]
 REPORTS = Path("reports")
+UnusedOut = Annotated[Path, typer.Option("--out", hidden=True)]
+UnusedSeed = Annotated[int, typer.Option("--seed", hidden=True)]
+"""Options that every command for designs takes, for commands on which they have no effect."""
 
 
 def quantity_of(option: str, text: str | None, quantity: Quantity) -> float | None:

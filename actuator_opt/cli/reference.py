@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from os.path import isfile
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -12,7 +11,7 @@ import typer
 from ..base.errors import Diagnostic, ExitCode, UsageError
 from . import streams
 from .job import Job
-from .options import REPORTS, Json, PluginFile, Quiet, Set
+from .options import REPORTS, Json, PluginFile, Quiet, Set, UnusedOut, UnusedSeed
 
 Words = Annotated[
     list[str],
@@ -38,12 +37,17 @@ def _is_design(word: str) -> bool:
     return word == "-" or word.lower().endswith((".yaml", ".yml")) or isfile(word)
 
 
-def _parted(words: Sequence[str], first: int) -> tuple[str | None, list[str]]:
-    """The design among the words after the first ones, and all other words."""
-    files = [word for word in words[first:] if _is_design(word)]
+def _parted(words: Sequence[str], job: Job) -> tuple[str | None, list[str]]:
+    """The design among the words after the first, and all other words.
+
+    Two designs, or ``--set`` without a design, are refused.
+    """
+    files = [word for word in words[1:] if _is_design(word)]
     if len(files) > 1:
         raise UsageError(Diagnostic(f"{files[1]}: a second design", "name one design"))
-    others = [word for k, word in enumerate(words) if k < first or word not in files]
+    if job.sets and not files:
+        raise UsageError(Diagnostic("--set: there is no design", "name a design file"))
+    others = [word for k, word in enumerate(words) if k == 0 or word not in files]
     return (files[0] if files else None), others
 
 
@@ -53,15 +57,14 @@ def explain(
     plugin: PluginFile = None,
     as_json: Json = False,
     quiet: Quiet = False,
-    out: Annotated[Path, typer.Option("--out", hidden=True)] = REPORTS,
-    seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
+    out: UnusedOut = REPORTS,
+    seed: UnusedSeed = 0,
 ) -> ExitCode:
     """Explain a name: meaning, value, influences, source."""
     from .. import api as verbs
 
-    design, others = _parted(words, 1)
     job = Job(sets=sets, as_json=as_json, quiet=quiet)
-    _only_with_design(design, job)
+    design, others = _parted(words, job)
     options = {"set": job.set, "plugins": plugin or []}
     explanation = job.run(verbs.explain, " ".join(others), design, **options)
     job.answer(explanation.to_dict, lambda: explanation.text(**streams.style()))
@@ -74,8 +77,8 @@ def list_names(
     plugin: PluginFile = None,
     as_json: Json = False,
     quiet: Quiet = False,
-    out: Annotated[Path, typer.Option("--out", hidden=True)] = REPORTS,
-    seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
+    out: UnusedOut = REPORTS,
+    seed: UnusedSeed = 0,
 ) -> ExitCode:
     """List names with value, unit and meaning.
 
@@ -83,9 +86,8 @@ def list_names(
     """
     from .. import api as verbs
 
-    design, others = _parted(words, 1)
     job = Job(sets=sets, as_json=as_json, quiet=quiet)
-    _only_with_design(design, job)
+    design, others = _parted(words, job)
     options = {"set": job.set, "plugins": plugin or []}
     listed = job.run(verbs.catalogue, others[0], design, " ".join(others[1:]), **options)
 
@@ -94,9 +96,3 @@ def list_names(
 
     job.answer(listed.to_dict, text)
     return ExitCode.MET
-
-
-def _only_with_design(design: str | None, job: Job) -> None:
-    """Refuse ``--set`` without a design."""
-    if design is None and job.sets:
-        raise UsageError(Diagnostic("--set: there is no design", "name a design file"))

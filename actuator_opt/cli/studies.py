@@ -26,6 +26,7 @@ from .options import (
     Seed,
     Set,
     Units,
+    UnusedSeed,
     file_of_units,
     named_columns,
     quantity_of,
@@ -263,7 +264,7 @@ def simulate(
     format: Format = "pdf",
     as_json: Json = False,
     quiet: Quiet = False,
-    seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
+    seed: UnusedSeed = 0,
 ) -> ExitCode:
     """Simulate a scenario: servo, pressures, energy."""
     from .. import api as verbs

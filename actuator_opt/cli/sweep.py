@@ -14,7 +14,18 @@ from ..base.errors import ActuatorError, Diagnostic, ExitCode, UsageError, shown
 from ..base.units import whole
 from . import completion, streams
 from .job import Job
-from .options import REPORTS, DesignFile, Json, NoRecord, PluginFile, Quiet, Scheduler, Seed, Set
+from .options import (
+    REPORTS,
+    DesignFile,
+    Json,
+    NoRecord,
+    PluginFile,
+    Quiet,
+    Scheduler,
+    Seed,
+    Set,
+    UnusedSeed,
+)
 
 if TYPE_CHECKING:
     from ..sweeps import Swept
@@ -212,7 +223,7 @@ def explore(
     plugin: PluginFile = None,
     as_json: Json = False,
     quiet: Quiet = False,
-    seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
+    seed: UnusedSeed = 0,
 ) -> None:
     """Write a sweep or Pareto front as one offline HTML page."""
     from .. import api as verbs

@@ -72,7 +72,7 @@ class Settling:
 
 
 @dataclass(frozen=True, slots=True)
-class MetalTube:
+class MetalBarrel:
     """A metal barrel for the design's bore and pressure; or, without `material`, the design's wall.
 
     `for_growth` and `for_burst` are the wall thicknesses [m] that bore growth and burst pressure
@@ -237,7 +237,7 @@ def metal_tubes(
     layers: Sequence[Layer],
     densities: Sequence[float],
     run: ModelRun,
-) -> tuple[MetalTube, ...]:
+) -> tuple[MetalBarrel, ...]:
     """The wall of the design, and the thinnest barrel for the same duty from each of `METALS`.
 
     The duty is the bore growth of the design's wall without axial force, and the required burst
@@ -246,7 +246,7 @@ def metal_tubes(
     """
     wall, inner, pressure = run.wall, float(run.geometry.inner_radius), v["supply.pressure"]
     burst = least(wall.burst_pressure)[0]
-    own = MetalTube(
+    own = MetalBarrel(
         material="",
         for_growth=None,
         for_burst=None,
@@ -301,7 +301,7 @@ def metal_tube(
     strain: float,
     burst_pressure: float | None,
     axial_forces_per_pressure: Sequence[float],
-) -> MetalTube:
+) -> MetalBarrel:
     """The thinnest tube of a metal that meets limits of bore strain and burst pressure.
 
     `strain` is the largest bore strain without axial force, `burst_pressure` the required burst
@@ -315,7 +315,7 @@ def metal_tube(
     strength = stock.allowable(name, "yield_strength")
     ultimate = stock.allowable(name, "ultimate_strength")
     if strength is None or ultimate is None:  # a user material with this name
-        return MetalTube(name, None, None)
+        return MetalBarrel(name, None, None)
     strengths = {"yield_strength": strength, "ultimate_strength": ultimate}
     ratios = [force / (pi * inner * inner) for force in axial_forces_per_pressure]
     for_burst = None
@@ -330,7 +330,7 @@ def metal_tube(
             strain=strain, pressure=pressure, closed=False, **elastic
         )
     except ValueError:  # no wall of this metal is stiff enough, however thick
-        return MetalTube(name, None, for_burst)
+        return MetalBarrel(name, None, for_burst)
     for_growth = float(inner * (wall_ratio - 1))
     thickness = max(for_growth, for_burst or 0.0)
     size = {"inner_radius": inner, "outer_radius": inner + thickness}
@@ -341,7 +341,7 @@ def metal_tube(
         yields.append(float(strength / mises))
         bursts.append(barrel.burst_pressure_thick(**size, **strengths, axial_force_ratio=ratio))
     area = pi * (size["outer_radius"] * size["outer_radius"] - inner * inner)
-    return MetalTube(
+    return MetalBarrel(
         material=name,
         for_growth=for_growth,
         for_burst=for_burst,

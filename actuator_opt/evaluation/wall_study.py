@@ -38,7 +38,7 @@ from .plies import Climate, Layer, stress_of
 from .values import Values, plain
 from .wall_alternatives import (
     Difference,
-    MetalTube,
+    MetalBarrel,
     Settling,
     Thickness,
     differences,
@@ -179,7 +179,7 @@ class WallStudy:
     main_layer: int
     thicknesses: tuple[Thickness, ...]
     settling: Settling
-    metals: tuple[MetalTube, ...]
+    metals: tuple[MetalBarrel, ...]
 
     def to_dict(self) -> dict[str, Any]:
         """The object `wall` that `evaluate --json` writes (SI); profiles are only in the report."""

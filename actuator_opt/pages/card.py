@@ -23,7 +23,7 @@ from ..rendering import text
 from ..rendering.blocks import Block, Cell, Column, Notes, Pair, Row, Status, Table
 from ..rendering.terminal import PAINTS
 from ..rendering.text import DASH, sentence
-from . import optimum, report
+from . import limits, optimum, report
 
 MOST_LIMITS = 11
 """Largest number of limits in a table: misses first, then the smallest margins."""
@@ -110,7 +110,7 @@ def _name(row: Requirement | Check, evaluation: Evaluation) -> str:
         words = term_of(row.metric or "")
     if isinstance(row, Requirement) and row.name.endswith((" (min)", " (max)")):
         words += row.name[-6:]
-    return words + report.flag(evaluation, row.metric)
+    return words + limits.flag(evaluation, row.metric)
 
 
 # ---- verdict ----
@@ -601,7 +601,7 @@ def _others(evaluation: Evaluation) -> Iterator[Block]:
     """Key figures without a limit."""
     limited = {row.metric for row in evaluation.requirements} | {"mass"}
     words = [
-        f"{term_of(name)}{report.flag(evaluation, name)} {text.value_text(metric.quantity, x)}"
+        f"{term_of(name)}{limits.flag(evaluation, name)} {text.value_text(metric.quantity, x)}"
         for name in report.KEY_FIGURES
         if name not in limited
         and (metric := evaluation.metrics.get(name)) is not None
@@ -684,8 +684,8 @@ def _offers(optimisation: Optimisation) -> Iterator[Block]:
     objective = optimisation.objective_value
     offers: list[tuple[float, str]] = []
     for row in optimisation.sensitivities:
-        limits = row.active and row.parameter in required
-        if limits or row.parameter.startswith("requirements."):
+        binding = row.active and row.parameter in required
+        if binding or row.parameter.startswith("requirements."):
             continue
         for sign, _, solved in row.ends:
             gain = -math.inf if solved is None else direction * (solved - objective)

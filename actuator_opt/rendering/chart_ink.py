@@ -45,8 +45,8 @@ from .chart_layout import (
     SMALL,
     TITLE,
     ColumnLayout,
-    Entry,
     Frame,
+    LegendEntry,
     curves_named_at_end,
     level_style,
     line_style,
@@ -109,7 +109,7 @@ def _key(ink: Ink, curves: Sequence[Curve]) -> float:
     """Draw names of curves in equal columns above all panels; return the height of their rows."""
     if not curves:
         return 0.0
-    entries = [Entry(curve.words, line_style(curve, k)) for k, curve in enumerate(curves)]
+    entries = [LegendEntry(curve.words, line_style(curve, k)) for k, curve in enumerate(curves)]
     longest = min(max(entry.width() for entry in entries), ink.width / 2)
     columns = max(1, min(len(entries), int(ink.width / longest)))
     wide = ink.width / columns
@@ -231,7 +231,7 @@ def _head(ink: Ink, box: Box, frame: Frame, edge: float) -> None:
         _legend(ink, box[0], y, row)
 
 
-def _legend(ink: Ink, x: float, y: float, row: Sequence[Entry]) -> None:
+def _legend(ink: Ink, x: float, y: float, row: Sequence[LegendEntry]) -> None:
     for entry in row:
         if entry.line is not None:
             ink.line((x, y), (x + SKETCH, y), **entry.line)

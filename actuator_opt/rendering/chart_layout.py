@@ -78,7 +78,7 @@ TITLE, SIZE, SMALL = 6.8, 6.5, 6.2
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class LegendEntry:
     """A name of the legend with its line, its point, or both."""
 
     words: str
@@ -108,7 +108,7 @@ class Frame:
     label: str = ""
     shared: bool = False
     notes: list[str] = field(default_factory=list)
-    rows: list[list[Entry]] = field(default_factory=list)
+    rows: list[list[LegendEntry]] = field(default_factory=list)
     beside: bool = True
     above: float = 0.0
     right: float = 0.0
@@ -311,9 +311,9 @@ def _fit_head(frame: Frame, wide: float, right: float) -> None:
         room -= entry.width()
 
 
-def _entries(frame: Frame, wide: float) -> Iterator[Entry]:
+def _entries(frame: Frame, wide: float) -> Iterator[LegendEntry]:
     """Legend entries of points, curves and full-width `Level` lines, without duplicates."""
-    panel, entries = frame.panel, dict[str, Entry]()
+    panel, entries = frame.panel, dict[str, LegendEntry]()
 
     def add(words: str, **sketch: Any) -> None:
         if words:
@@ -322,7 +322,7 @@ def _entries(frame: Frame, wide: float) -> Iterator[Entry]:
             point = sketch.get("point") or (known.point if known else None)
             room = wide - (SKETCH + 1.3 if line else 2.8)
             small, weight = sketch.get("small"), sketch.get("weight", "normal")
-            entries[words] = Entry(fitted(words, room, SIZE), line, point, small, weight)
+            entries[words] = LegendEntry(fitted(words, room, SIZE), line, point, small, weight)
 
     for k, points in enumerate(panel.points):
         style = k if points.style is None else points.style

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import actuator_opt as ao
-from actuator_opt.pages import report
+from actuator_opt.pages import limits, report
 
 DESIGNS = Path(__file__).parents[2] / "designs"
 
@@ -37,7 +37,7 @@ def test_the_order_of_assembly_is_in_the_report() -> None:
 def test_places_of_the_limits_worst_first() -> None:
     """The first place of each limit is the governing one; far places are only counted."""
     evaluation = ao.evaluate(ao.read(DESIGNS / "knee.yaml"))
-    table = next(iter(report.places(evaluation)))
+    table = next(iter(limits.places(evaluation)))
     names = [str(row.cells[0]) for row in table.rows]
     starts = [k for k, name in enumerate(names) if name]
     assert names.count("cap retention at burst pressure") == 1
