@@ -16,6 +16,7 @@ from ..base.quantities import Quantity
 from ..design.paths import words_of
 from ..evaluation.result import Check, Evaluation, Requirement, count_words, percent
 from ..metrics import term_of
+from ..metrics.table import ROWS
 from ..optimisation.prices import PER_CENT, Sensitivity
 from ..optimisation.problem import Robust
 from ..optimisation.result import Infeasibility, Optimisation, VariableResult
@@ -119,10 +120,13 @@ def _name(row: Requirement | Check, evaluation: Evaluation) -> str:
 def _head(subject: Evaluation | Optimisation) -> Iterator[Block]:
     """Name, objective, limits met, and quality of the optimum; a remedy if there is no optimum."""
     evaluation, optimisation = report.parts_of(subject)
-    failed = len(_missed_checks(evaluation))
+    missed = _missed_checks(evaluation)
+    advised = sum(map(_is_advice, missed))
     parts = [f"{_objective(evaluation, optimisation)}{_sizes(optimisation)}", _tally(evaluation)]
-    if failed:
-        parts.append(f"{_count(failed, 'check')} missed")
+    if binding := len(missed) - advised:
+        parts.append(f"{_count(binding, 'check')} missed")
+    if advised:
+        parts.append(f"{_count(advised, 'piece')} of advice not followed")
     if optimisation is not None:
         parts.append(_quality(optimisation))
     name, words = evaluation.name, ", ".join(filter(None, parts))
@@ -287,7 +291,9 @@ def _limit_table(
 
 def _is_advice(row: Requirement | Check) -> bool:
     """Whether a limit is advice, which does not bind the optimiser (`CheckLine.advice`)."""
-    return isinstance(row, Check) and row.source.startswith("advice")
+    if not isinstance(row, Check) or (metric := ROWS.get(row.metric or "")) is None:
+        return False
+    return metric.check is not None and metric.check.advice
 
 
 def _limit_cells(row: Requirement | Check, evaluation: Evaluation) -> list[Cell]:
@@ -685,7 +691,7 @@ def _offers(optimisation: Optimisation) -> Iterator[Block]:
     offers: list[tuple[float, str]] = []
     for row in optimisation.sensitivities:
         binding = row.active and row.parameter in required
-        if binding or row.parameter.startswith("requirements."):
+        if binding or row.parameter.startswith("requirements.") or not _buyable(row):
             continue
         for sign, _, solved in row.ends:
             gain = -math.inf if solved is None else direction * (solved - objective)
@@ -697,6 +703,11 @@ def _offers(optimisation: Optimisation) -> Iterator[Block]:
         offers.sort(key=lambda offer: -offer[0])
         names = [words for _, words in offers[:MOST_NAMED]]
         yield _line(f"would pay: {', '.join(names)}")
+
+
+def _buyable(row: Sensitivity) -> bool:
+    """Whether a designer can change this number; of a material, only a strength has grades."""
+    return row.kind != "material" or row.parameter.endswith("strength")
 
 
 def _doubts(subject: Evaluation | Optimisation) -> Iterator[Block]:
