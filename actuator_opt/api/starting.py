@@ -1,7 +1,8 @@
 """Start designs: a complete, solved design file from a duty of five answers.
 
-The duty is push and pull force, stroke, supply pressure, goal and wall. Simple formulas give sizes,
-and bounds around them, to a template of one line per part. The optimiser then solves this file, and
+The duty is push and pull force, stroke, supply pressure, goal and wall; a lever arm, a speed and a
+stiffness may be added. Simple formulas give sizes, and bounds around them, to a template of one
+line per part. The optimiser then solves this file, and
 its result is written with round numbers.
 """
 
@@ -37,6 +38,13 @@ DUTY: Mapping[str, tuple[Quantity, str]] = {
     "pressure": (INPUTS["working_pressure"], "160 bar"),
 }
 """The numbers of a duty, each with its quantity and default."""
+
+ADDED: Mapping[str, Quantity] = {
+    "lever_arm": INPUTS["lever_arm"],
+    "speed": INPUTS["speed"],
+    "stiffness": METRICS["stiffness_min"],
+}
+"""Numbers that may be added to a duty; without them there is no lever arm and no such limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +115,7 @@ BURST, BUCKLING = 4.0, 3.5
 """Safety factors, as in the check list and in the template."""
 
 SPEED = 0.1
-"""Piston speed of both load cases [m/s], at which the friction coefficients of the seals apply."""
+"""Default piston speed [m/s], at which the friction coefficients of the seals apply."""
 
 PORT_SPEED = 4.0
 """Oil speed in the ports, related to the bore [m/s]: half the limit of the check list."""
@@ -150,13 +158,19 @@ RODS = 6
 """Number of tie rods, as in designs/aerospace.yaml."""
 _ROD_YIELD, _BOLT_YIELD, _ROD_MODULUS = 650e6, 1080e6, 205e9
 """Yield strengths of rod and tie rods, Young's modulus of the rod [Pa], for first sizes only."""
+_OIL = 4e9
+"""Stiffness at mid-stroke times stroke, divided by the bore's area [Pa], for first sizes only:
+two oil columns of 1.4 GPa in parallel give 4 x 1.4 GPa, less the rod's area and other parts."""
 _HOLLOW = 0.8
 """Inner by outer diameter of the rod, for first sizes only."""
 
 
 @dataclass(frozen=True, slots=True)
 class Duty:
-    """Forces, stroke and supply pressure of an actuator (SI), its goal and its wall."""
+    """Forces, stroke and supply pressure of an actuator (SI), its goal and its wall.
+
+    With a lever arm, the file states torques. Without `stiffness` there is no such limit.
+    """
 
     push: float
     pull: float
@@ -164,6 +178,9 @@ class Duty:
     pressure: float
     goal: str = "mass"
     wall: str = "steel"
+    lever_arm: float | None = None
+    speed: float = SPEED
+    stiffness: float | None = None
 
     @property
     def return_pressure(self) -> float:
@@ -199,6 +216,9 @@ def start(
     pressure: float | str = "160 bar",
     goal: str = "mass",
     wall: str = "steel",
+    lever_arm: float | str | None = None,
+    speed: float | str = SPEED,
+    stiffness: float | str | None = None,
     name: str = "my actuator",
 ) -> Actuator:
     """A complete design for a duty, solved, and with round numbers.
@@ -208,33 +228,64 @@ def start(
 
     Parameters
     ----------
-    push, pull : forces, N; 0: no load case in this direction
+    push, pull : forces, N; 0: no load case in this direction. With a lever arm, a text may
+        be a torque, such as "540 N*m"
     stroke : m
     pressure : gauge supply pressure, Pa
     goal : "mass", "stiffness" or "friction"
     wall : "steel", "aluminium", "lined_carbon" or "linerless"
+    lever_arm : lever arm of the joint, m; None: the file states forces
+    speed : piston speed in both directions, m/s
+    stiffness : least stiffness over the stroke, N/m; None: no limit
     name : title of the design
 
     Raises
     ------
     UsageError : a value is unsuitable, or the bore would be larger than 600 mm
     """
-    numbers = {"push": push, "pull": pull, "stroke": stroke, "pressure": pressure}
-    values = {key: duty_value(key, value) for key, value in numbers.items()}
-    duty = Duty(**values, goal=duty_word("goal", goal), wall=duty_word("wall", wall))
+    arm = None if lever_arm is None else duty_value("lever_arm", lever_arm)
+    numbers = {"push": push, "pull": pull, "stroke": stroke, "pressure": pressure, "speed": speed}
+    values = {key: duty_value(key, value, arm=arm) for key, value in numbers.items()}
+    duty = Duty(
+        **values,
+        goal=duty_word("goal", goal),
+        wall=duty_word("wall", wall),
+        lever_arm=arm,
+        stiffness=None if stiffness is None else duty_value("stiffness", stiffness),
+    )
     return solved_start(duty, name).actuator
 
 
-def duty_value(key: str, value: object, prefix: str = "") -> float:
+def duty_value(key: str, value: object, prefix: str = "", arm: float | None = None) -> float:
     """A number of a duty in SI; a fault names it as ``prefix + key``.
+
+    With the lever arm `arm` [m], a force may be stated as a torque.
 
     >>> duty_value("push", "9 kN")
     9000.0
+    >>> duty_value("push", "540 N*m", arm=0.06)
+    9000.0
     """
+    quantity = ADDED[key] if key in ADDED else DUTY[key][0]
     try:
-        return read_quantity(value, DUTY[key][0])
+        if quantity.dimension == "force" and isinstance(value, str) and _is_torque(value):
+            torque = read_quantity(value, INPUTS["torque"])
+            if arm is None:
+                raise ValueFault(f"{shown(value)} is a torque", "add the lever arm")
+            return torque / arm
+        return read_quantity(value, quantity)
     except ValueFault as fault:
-        raise UsageError(Diagnostic(f"{prefix}{key}: {fault.message}", fault.remedy)) from None
+        place = prefix + (key.replace("_", "-") if prefix else key)
+        raise UsageError(Diagnostic(f"{place}: {fault.message}", fault.remedy)) from None
+
+
+def _is_torque(text: str) -> bool:
+    """Whether a text is a number with a unit of torque."""
+    try:
+        units.parse(text, "torque")
+    except units.UnitError:
+        return False
+    return True
 
 
 def duty_word(key: str, value: str, prefix: str = "") -> str:
@@ -405,10 +456,10 @@ def _first_sizes(duty: Duty) -> _Sizes:
 
     The rod is a hollow column over twice the stroke that carries the stall force with the
     safety factor of buckling (Euler); it also carries the pull. The bore has the area for
-    push, and for pull beside the rod, and room for the rings of piston and rod. The wall is a
-    thin tube at burst pressure. Stops in the cylinder suddenly meet all force that the load
-    leaves over, so oil at the stop reaches twice this force by its area; above proof pressure
-    the stops must be outside.
+    push, for pull beside the rod, and for the stiffness of the oil at mid-stroke; it has room
+    for the rings of piston and rod. The wall is a thin tube at burst pressure. Stops in the
+    cylinder suddenly meet all force that the load leaves over, so oil at the stop reaches twice
+    this force by its area; above proof pressure the stops must be outside.
     """
     pressure, back = duty.pressure, duty.return_pressure
     bore = rod = 6e-3
@@ -420,6 +471,7 @@ def _first_sizes(duty: Duty) -> _Sizes:
         tension = sqrt(4 * 2.2 * duty.pull / (pi * 0.9 * _ROD_YIELD * (1 - _HOLLOW**2)))
         rod = max(6e-3, column, tension)
         needed = max(duty.push / pressure, duty.pull / (pressure - back)) * 1.06
+        needed = max(needed, (duty.stiffness or 0.0) * duty.stroke / _OIL)
         pulled = 1.06 * duty.pull / (pressure - back) + pi / 4 * rod**2
         bore += 0.5 * (max(sqrt(4 / pi * max(needed, pulled)), rod + 8e-3) - bore)
     if bore > LARGEST:
@@ -548,15 +600,14 @@ _TEMPLATE = """\
 # Every value has a PATH, such as cylinder.bore, for --set and for `variables`.
 name: @name@
 
-# Duty: every requirement holds in the worst load case. The speeds are assumed.
+# Duty: every requirement holds in the worst load case.
 load_cases:
 @cases@
 requirements:                   # besides those of the check list
   burst_factor: {min: 4}        # burst divided by supply pressure
   proof_factor: {min: 1}        # first damage divided by proof pressure
   buckling_factor: {min: 3.5}   # extended, stalled at supply pressure
-@mass_limit@
-objective: {@objective@}
+@limits@objective: {@objective@}
 
 # Oil and surroundings
 supply: {pressure: @pressure@, return_pressure: @return_pressure@}
@@ -599,9 +650,16 @@ def _text(duty: Duty, sizes: _Sizes, title: str, stop: str, mass: float | None) 
     wall, bore, rod = WALLS[duty.wall], sizes.bore, sizes.rod
     stated = {key: exact_text(getattr(duty, key), DUTY[key][0]) for key in DUTY}
     short = {key: quantity.text(getattr(duty, key)) for key, (quantity, _) in DUTY.items()}
-    limit = "" if mass is None else f"  mass: {{max: {1e3 * mass:.4g} g}}".ljust(32)
+    limits = []
+    if duty.stiffness is not None:
+        least = exact_text(duty.stiffness, ADDED["stiffness"])
+        limits.append(f"  stiffness_min: {{min: {least}}}".ljust(32) + "# least over the stroke")
+    if mass is not None:
+        limit = f"  mass: {{max: {1e3 * mass:.4g} g}}".ljust(32)
+        limits.append(f"{limit}# {HEAVIER} x the lightest")
     cases = [
-        f"  - {{name: {key}, direction: {key}, force: {stated[key]}, speed: {SPEED} m/s}}"
+        f"  - {{name: {key}, direction: {key}, {_load(duty, key)}, "
+        f"speed: {exact_text(duty.speed, ADDED['speed'])}}}"
         for key in ("push", "pull")
         if getattr(duty, key) > 0
     ]
@@ -617,7 +675,7 @@ def _text(duty: Duty, sizes: _Sizes, title: str, stop: str, mass: float | None) 
         "asked": "{push} push, {pull} pull, {stroke} stroke at {pressure}".format(**short),
         "name": scalar(title),
         "cases": "\n".join(cases),
-        "mass_limit": limit and f"{limit}# {HEAVIER} x the lightest",
+        "limits": "".join(f"{line}\n" for line in limits),
         "objective": GOALS[duty.goal].objective,
         "pressure": stated["pressure"],
         "return_pressure": exact_text(duty.return_pressure, DUTY["pressure"][0]),
@@ -625,7 +683,7 @@ def _text(duty: Duty, sizes: _Sizes, title: str, stop: str, mass: float | None) 
         "bore": _mm(bore),
         "stroke": stated["stroke"],
         "stop": stop,
-        "port": f"{ceil(max(3.0, 1e3 * bore * sqrt(SPEED / PORT_SPEED)))} mm",
+        "port": f"{ceil(max(3.0, 1e3 * bore * sqrt(duty.speed / PORT_SPEED)))} mm",
         "layers": "\n".join(layers),
         "rod": _mm(rod),
         "inner": _mm(min(_HOLLOW * rod, rod - 2.2e-3)),
@@ -642,8 +700,16 @@ def _text(duty: Duty, sizes: _Sizes, title: str, stop: str, mass: float | None) 
         "seals": "\n".join(_seals(duty, sizes)),
         "bounds": "\n".join([*_part_bounds(wall, sizes), *joint.bounds]),
     }
-    text = _TEMPLATE if mass is not None else _TEMPLATE.replace("@mass_limit@\n", "")
-    return re.sub(r"@(\w+)@", lambda match: fields[match[1]], text)
+    return re.sub(r"@(\w+)@", lambda match: fields[match[1]], _TEMPLATE)
+
+
+def _load(duty: Duty, key: str) -> str:
+    """The load of a direction: a force, or a torque on the lever arm."""
+    force = getattr(duty, key)
+    if duty.lever_arm is None:
+        return f"force: {exact_text(force, DUTY[key][0])}"
+    torque = exact_text(force * duty.lever_arm, INPUTS["torque"])
+    return f"joint_torque: {torque}, lever_arm: {exact_text(duty.lever_arm, ADDED['lever_arm'])}"
 
 
 def _part_bounds(wall: StartWall, sizes: _Sizes) -> list[str]:

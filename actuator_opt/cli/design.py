@@ -100,6 +100,22 @@ def init(
             help="Barrel: steel, aluminium, lined_carbon or linerless.",
         ),
     ] = None,
+    lever_arm: Annotated[
+        str | None,
+        typer.Option(
+            "--lever-arm",
+            metavar="LENGTH",
+            help='Lever arm of a joint; push and pull may then be torques, e.g. "540 N*m".',
+        ),
+    ] = None,
+    speed: Annotated[
+        str | None,
+        typer.Option("--speed", metavar="SPEED", help='Piston speed; without it "0.1 m/s".'),
+    ] = None,
+    stiffness: Annotated[
+        str | None,
+        typer.Option("--stiffness", metavar="STIFFNESS", help='Least stiffness, e.g. "10 kN/mm".'),
+    ] = None,
     yes: Annotated[
         bool, typer.Option("--yes", help="Use the defaults instead of asking questions.")
     ] = False,
@@ -115,13 +131,13 @@ def init(
     On a terminal, init asks for forces, stroke, pressure, goal and wall. Options answer in advance.
     """
     options = {
-        "push": push, "pull": pull, "stroke": stroke, "pressure": pressure,
-        "goal": goal, "wall": wall,
+        "lever_arm": lever_arm, "push": push, "pull": pull, "stroke": stroke,
+        "pressure": pressure, "goal": goal, "wall": wall, "speed": speed, "stiffness": stiffness,
     }  # fmt: skip
     answers = {key: text for key, text in options.items() if text is not None}
     _only_one(
         {"--scenario": scenario, "--from": source, "--yes": yes or None}
-        | {f"--{key}": text for key, text in answers.items()}
+        | {f"--{key.replace('_', '-')}": text for key, text in answers.items()}
     )
     copied = source is not None or scenario is not None
     title, out = _target(name, out)
@@ -192,14 +208,19 @@ def _duty(answers: dict[str, str], *, ask: bool, defaults: bool) -> Duty:
     """
     from ..api import starting
 
+    values: dict[str, float | str] = {}
+    arm: float | None = None
+
     def read(key: str, text: str, prefix: str) -> float | str:
-        if key in starting.DUTY:
-            return starting.duty_value(key, text, prefix)
+        if key in starting.DUTY or key in starting.ADDED:
+            return starting.duty_value(key, text, prefix, arm)
         return starting.duty_word(key, text, prefix)
 
     usual = {key: text for key, (_, text) in starting.DUTY.items()}
     usual |= {"goal": next(iter(starting.GOALS)), "wall": next(iter(starting.WALLS))}
-    values = {key: read(key, text, "--") for key, text in answers.items()}
+    if "lever_arm" in answers:
+        arm = values["lever_arm"] = starting.duty_value("lever_arm", answers.pop("lever_arm"), "--")
+    values |= {key: read(key, text, "--") for key, text in answers.items()}
     missing = [key for key in usual if key not in values]
     if missing and not defaults and not (ask and streams.asking()):
         flags = " ".join(f'--{key} "{usual[key]}"' for key in missing)

@@ -435,7 +435,7 @@ def _candidate_choices(
     """Choices that may resolve the conflict: PATH, alternative, entries to change with it.
 
     A choice is included if numbers of its part have an effect (`gains`), and for a seal also if the
-    seal misses a limit (`places`).
+    seal misses a limit (`places`). Stops in the cylinder may always move outside it.
     """
     design = subject.design
 
@@ -452,6 +452,8 @@ def _candidate_choices(
             if seal.seal_type.o_ring_gland:
                 for compound in SUBSTITUTES["seal"]:
                     yield f"{section}.compound", compound, {}
+    if design.cylinder.end_stop == "internal":
+        yield "cylinder.end_stop", "external", {}
     blocks = [] if design.retention is None else list(design.retention.ends)
     ends = [f"retention.{name}" if name else "retention" for name in blocks]
     for end in ends:

@@ -69,10 +69,26 @@ def test_other_goals_weigh_little_more_than_the_lightest(monkeypatch):
     assert smooth["mass"].value <= starting.HEAVIER * light["mass"].value
 
 
-def test_what_does_not_fit_says_why(monkeypatch):
+def test_a_joint_is_stated_by_torque_arm_speed_and_stiffness():
+    """Torques stand in the file with their arm; by hand, the force is torque by arm."""
+    actuator = ao.start(
+        push="540 N*m", pull=3e3, lever_arm="60 mm", stroke="180 mm", speed="0.2 m/s",
+        stiffness="20 kN/mm", wall="aluminium",
+    )  # fmt: skip
+    cases = actuator.design.load_cases
+    assert [case.joint_torque for case in cases] == pytest.approx([540.0, 180.0])
+    assert {(case.lever_arm, case.speed, case.force) for case in cases} == {(0.06, 0.2, None)}
+    assert len(actuator.source.text.splitlines()) <= 60
+    evaluation = ao.evaluate(actuator)
+    assert evaluation.met
+    assert evaluation.metrics["push_force"].value > 9e3
+    assert evaluation.metrics["stiffness_min"].value > 20e6
+    assert "stiffness_min: {min: 20 kN/mm}" in actuator.source.text
+
+
+def test_what_does_not_fit_says_why():
     """The seals bear 0.5 m/s: a faster start is the nearest design, with the reason on top."""
-    monkeypatch.setattr(starting, "SPEED", 0.6)
-    start = starting.solved_start(Duty(5e3, 2e3, 0.05, 160e5))
+    start = starting.solved_start(Duty(5e3, 2e3, 0.05, 160e5, speed=0.6))
     assert not start.met
     assert start.sentence == "missed: piston speed"
     assert start.text.startswith("# Nothing fits yet: missed: piston speed.\n")
@@ -83,6 +99,10 @@ def test_what_does_not_fit_says_why(monkeypatch):
     ("changes", "words"),
     [
         ({"push": "9"}, 'push: "9": unit missing'),
+        ({"push": "540 N*m"}, "push: 540 N*m is a torque; add the lever arm"),
+        ({"lever_arm": 0.0}, "lever_arm: 0 m: must be > 0"),
+        ({"stiffness": "9 kN"}, "stiffness"),
+        ({"speed": "fast"}, "speed"),
         ({"pull": -1.0}, "pull: -1"),
         ({"pressure": "40 mm"}, "pressure"),
         ({"wall": "double_rod"}, "use one of steel, aluminium, lined_carbon, linerless"),

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from cli_runner import DESIGNS, KNEE, bench, run
 
+import actuator_opt as ao
 from actuator_opt.api import read
 from actuator_opt.design.materials import load_library
 from actuator_opt.optimisation import cures
@@ -226,6 +227,17 @@ def test_a_back_up_ring_is_offered_with_all_it_needs():
     for cure in (ring, compound):
         values = {cure["parameter"]: cure["needed"], **cure.get("beside", {})}
         assert solved(actuator, values).status == "optimal"
+
+
+def test_stops_outside_the_cylinder_are_offered():
+    """Oil at the stop meets the stall force on a narrow ring: the cure moves the stops outside."""
+    start = ao.start(push="1 kN", pull=0.0, stroke="200 mm", pressure="210 bar").source.text
+    assert "end_stop: external" in start
+    text = start.replace("end_stop: external", "end_stop: internal")
+    first = best_of(read(text)).infeasibility.cures[0]
+    assert (first["parameter"], first["now"]) == ("cylinder.end_stop", "internal")
+    assert (first["needed"], first["advised"]) == ("external", True)
+    assert first["objective"] is not None
 
 
 def test_what_is_tried_in_place_of_materials_is_in_the_library():
