@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 NEAREST = 5
 """Number of names offered for an unknown word."""
+LEAST, ALMOST = 0.5, 0.75
+"""Least score of an offered name, and the least share of the best name's score. Our choice."""
 MATCH = 0.75
 """Least score of an entry that a word of `list` keeps."""
 LONGEST = 200
@@ -298,7 +300,7 @@ def _path(word: str, metrics: Mapping[str, Quantity] | None) -> Entry | None:
 def unknown(word: str) -> UsageError:
     """The error for an unknown word, with the nearest names by letters and meaning."""
     known = {entry.name: f"{entry.phrase} {' '.join(entry.aliases)}" for entry in all_entries()}
-    near = [name for _, name, _ in ranked(word, known, 0.3)[:NEAREST]]
+    near = _nearest(ranked(word, known, LEAST))
     advice = f"nearest: {', '.join(near)}" if near else "see: actuator-opt list metrics"
     return UsageError(Diagnostic(f'"{shown(word)}" is no name known here', advice))
 
@@ -342,11 +344,17 @@ def catalogue(
     return Catalogue(kind, tuple(entries), design is not None)
 
 
+def _nearest(found: Sequence[tuple[float, str, bool]]) -> list[str]:
+    """Names of at most `NEAREST` entries that are hardly less near than the first."""
+    return [name for score, name, _ in found if score >= ALMOST * found[0][0]][:NEAREST]
+
+
 def _near(word: str, entries: Sequence[Entry], kind: str) -> list[Entry]:
     """Entries that contain a word or are near to it, in their order."""
     folded = fold(word)
     known = {entry.name: f"{entry.phrase} {' '.join(entry.aliases)}" for entry in entries}
-    scores = {name: score for score, name, _ in ranked(word, known, 0.3)}
+    found = ranked(word, known, LEAST)
+    scores = {name: score for score, name, _ in found}
     kept = [
         entry
         for entry in entries
@@ -355,7 +363,7 @@ def _near(word: str, entries: Sequence[Entry], kind: str) -> list[Entry]:
         or scores.get(entry.name, 0.0) >= MATCH
     ]
     if not kept:
-        near = ", ".join(sorted(scores, key=lambda name: -scores[name])[:NEAREST])
+        near = ", ".join(_nearest(found))
         advice = f"nearest: {near}" if near else f"see: actuator-opt list {kind}"
         raise UsageError(Diagnostic(f'no {kind} match "{shown(word)}"', advice))
     return kept

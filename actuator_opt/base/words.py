@@ -15,8 +15,8 @@ LONGEST = 80
 """Largest number of characters of a word for which near names are sought."""
 
 SYNONYMS = """
-mass weight
-stiffness rigidity
+mass weight heavy light
+stiffness rigidity spring compliance wobble
 stroke travel
 rod shaft
 barrel tube
@@ -37,8 +37,8 @@ friction drag
 breakaway stiction
 damping damper
 frequency eigenfrequency resonance
-buckling euler
-burst rupture
+buckling buckle euler
+burst rupture break
 fatigue endurance life
 price sensitivity multiplier
 flow discharge
@@ -75,7 +75,31 @@ stainless inox
 near names, that with the earlier word of a line comes first."""
 
 _STOP = frozenset(
-    {"a", "an", "and", "at", "by", "for", "from", "in", "of", "on", "or", "the", "to"}
+    [
+        "a",
+        "an",
+        "and",
+        "are",
+        "at",
+        "by",
+        "do",
+        "does",
+        "for",
+        "from",
+        "how",
+        "in",
+        "is",
+        "it",
+        "my",
+        "of",
+        "on",
+        "or",
+        "the",
+        "to",
+        "what",
+        "which",
+        "why",
+    ]
 )
 _EXTREMES = frozenset({"min", "max", "ref"})
 """Parts of a name that hardly change what it means."""
@@ -87,8 +111,8 @@ _ORDER = 0.001
 """Deduction for each place in a line of synonyms."""
 _EXTRA, _MOST_EXTRA = 0.015, 0.1
 """Deduction for each further part of the name, and the largest deduction."""
-_ALIKE = 0.75
-"""Least similarity of two words that may be the same word with a slip."""
+_ALIKE, _SLIP = 0.75, 0.85
+"""Least similarity of two words that may be the same word with a slip: of a name, of a synonym."""
 
 
 def fold(word: str) -> str:
@@ -102,7 +126,7 @@ def fold(word: str) -> str:
 
 @lru_cache(maxsize=1 << 12)
 def tokens(text: str) -> tuple[str, ...]:
-    """The words of a text or name in lower case, without articles and prepositions.
+    """The words of a text or name in lower case, without articles and the like.
 
     >>> tokens("axial stiffness of the rod"), tokens("rod.outer_diameter")
     (('axial', 'stiffness', 'rod'), ('rod', 'outer', 'diameter'))
@@ -123,11 +147,25 @@ def _lines() -> Mapping[str, Mapping[int, int]]:
 
 def _synonym(word: str, other: str) -> float:
     """Match of two words as synonyms, from 0 to 1; 0 if they are none."""
-    known = _lines()
-    first = known.get(word) or known.get(_singular(word)) or {}
-    second = known.get(other) or known.get(_singular(other)) or {}
+    first = _lines_of(word) or _lines_of(_corrected(word))
+    second = _lines_of(other)
     places = [place for line, place in second.items() if line in first]
     return _SYNONYM - _ORDER * min(places) if places else 0.0
+
+
+def _lines_of(word: str) -> Mapping[int, int]:
+    """Lines of synonyms that contain a word or its singular, with its place in them."""
+    known = _lines()
+    return known.get(word) or known.get(_singular(word)) or {}
+
+
+@lru_cache(maxsize=1 << 10)
+def _corrected(word: str) -> str:
+    """The word of `SYNONYMS` that a long word almost equals, or the word itself."""
+    if len(word) < 5 or _lines_of(word):
+        return word
+    score, best = max((_similarity(word, other, _SLIP), other) for other in _lines())
+    return best if score else word
 
 
 def _singular(word: str) -> str:
@@ -168,7 +206,7 @@ def _match(word: str, other: str, *, spelled: bool) -> float:
 def _forms(word: str) -> frozenset[str]:
     """Singular, first four letters and lines of synonyms of a word: matches share one of them."""
     singular = _singular(word)
-    lines = {**_lines().get(word, {}), **_lines().get(singular, {})}
+    lines = {**_lines_of(_corrected(word)), **_lines_of(word), **_lines().get(singular, {})}
     return frozenset({singular, f"{word[:4]}*", *map(str, lines)})
 
 
