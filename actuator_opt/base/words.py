@@ -75,32 +75,11 @@ stainless inox
 near names, that with the earlier word of a line comes first."""
 
 _STOP = frozenset(
-    [
-        "a",
-        "an",
-        "and",
-        "are",
-        "at",
-        "by",
-        "do",
-        "does",
-        "for",
-        "from",
-        "how",
-        "in",
-        "is",
-        "it",
-        "my",
-        "of",
-        "on",
-        "or",
-        "the",
-        "to",
-        "what",
-        "which",
-        "why",
-    ]
-)
+    {
+        "a", "an", "and", "are", "at", "by", "do", "does", "for", "from", "how", "in", "is", "it",
+        "my", "of", "on", "or", "the", "to", "what", "which", "why",
+    }
+)  # fmt: skip
 _EXTREMES = frozenset({"min", "max", "ref"})
 """Parts of a name that hardly change what it means."""
 _SAME, _PLURAL, _SYNONYM, _TYPO = 1.0, 0.97, 0.93, 0.9
