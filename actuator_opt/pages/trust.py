@@ -130,7 +130,7 @@ def _scale_block(optimisation: Optimisation) -> list[Block]:
         "To the left of the bound, no design meets the limits covered by the proof. Between the "
         "bound and the optimum, a better design may exist."
     )
-    title = "Proven bound, optimum, and other designs"
+    title = "Optimum and other designs" if bound is None else "Proven bound, optimum, other designs"
     return [Drawing(title, scale(optimisation), "" if bound is None else note)]
 
 
