@@ -25,7 +25,7 @@ from actuator_opt.optimisation.actuator import build, goal_of
 from actuator_opt.optimisation.pareto import ParetoFront
 from actuator_opt.optimisation.rounding import design_at
 from actuator_opt.optimisation.stored_results import from_plain, to_plain
-from actuator_opt.pages import report as page
+from actuator_opt.pages import limits as limit_tables, report as page
 from actuator_opt.rendering import paper, terminal, text
 from actuator_opt.rendering.blocks import short
 from actuator_opt.rendering.console import Console
@@ -88,7 +88,7 @@ def margin(value, limit, sense):
 
 def table_rows(evaluation):
     """First value of every metric in the terminal's table."""
-    table = next(page.quantities(evaluation))
+    table = next(limit_tables.quantities(evaluation))
     shown = terminal.block_text(table, Console(width=400)).replace("(!)", "").splitlines()
     cells = (re.split(" +", line) for line in shown)
     return {row[0]: row[1] for row in cells if len(row) > 2}
@@ -106,7 +106,7 @@ def test_a_limited_metric_is_governed_by_its_limit(name, sense):
     as_json = json.loads(json.dumps(evaluation.to_dict()))
     rows = {row["name"]: row for row in as_json["requirements"]}
     shown, printed = table_rows(evaluation), str(evaluation).splitlines()
-    data = paper.plain_blocks([page.requirements(evaluation)])[0]
+    data = paper.plain_blocks([limit_tables.requirements(evaluation)])[0]
     names = ((row, row[0] if isinstance(row[0], str) else "".join(row[0]))
              for row in data["rows"])  # fmt: skip
     block = {name.removesuffix(" (!)"): row[3] for row, name in names}  # outside its range or not

@@ -9,7 +9,7 @@ import pytest
 from certificate_cases import HEAVIER, case
 
 from actuator_opt.optimisation.certificate.bounding import Bounding
-from actuator_opt.optimisation.certificate.certify import BoxSearch, certify
+from actuator_opt.optimisation.certificate.certify import BOXES, BoxSearch, certify
 from actuator_opt.optimisation.certificate.intervals import Box, Layout
 
 FREE_PRESSURE = (
@@ -145,7 +145,7 @@ def test_no_design_lies_below_the_bound(some):
 
 
 GAPS = {
-    "steel": (("steel_baseline", ("piston.material", "al_7075_t6")), 0.012),
+    "steel": (("steel_baseline", ("piston.material", "al_7075_t6")), 0.002),
     "knee_bonded": (("knee_bonded",), 0.16),
     "knee of 90 mm, sized by stiffness": (
         ("knee_bonded", ("cylinder.stroke", "90 mm"), ("requirements.stiffness_min.min", "12e6")),
@@ -170,10 +170,16 @@ bore, so that the bound of knee and 90 mm rests on looser limits.
 
 @pytest.mark.parametrize("name", marked(GAPS))
 def test_bound_and_gap(name):
-    """The bound is below the optimum, closest on metal; every limit is covered or dropped."""
+    """The bound is below the optimum, closest on metal; every limit is covered or dropped.
+
+    On metal, twice the boxes close the gap; with fewer it depends on the machine's last bits.
+    """
     what, gap = GAPS[name]
     found = case(*what)
-    relaxed, bound = certify(found.actuator, found.x, found.objective, seconds=math.inf)
+    most = 2 * BOXES if name == "steel" else BOXES
+    relaxed, bound = certify(
+        found.actuator, found.x, found.objective, seconds=math.inf, max_boxes=most
+    )
     assert (1 - gap) * found.objective <= math.exp(bound.bound) <= found.objective
     told = [claim.limit.name for claim in relaxed.covered] + list(relaxed.dropped)
     for row in found.actuator.rows:

@@ -25,7 +25,15 @@ from actuator_opt.evaluation.result import Check, Unverified, YieldEstimate, wit
 from actuator_opt.optimisation.problem import Robust
 from actuator_opt.optimisation.result import Optimisation
 from actuator_opt.optimisation.stored_results import from_plain, to_plain
-from actuator_opt.pages import calibration, comparison, pareto, report as page, runs, sweep
+from actuator_opt.pages import (
+    calibration,
+    comparison,
+    limits as limit_tables,
+    pareto,
+    report as page,
+    runs,
+    sweep,
+)
 from actuator_opt.rendering import paper, paper_plain as fallback, terminal as renderer
 from actuator_opt.rendering.terminal import blocks_text
 from actuator_opt.uncertainties.estimate import exact, normal_quantile
@@ -223,7 +231,7 @@ def test_the_verdict_is_amber_where_a_limit_has_no_reserve(optimum):
 def test_rows_without_reserve_are_marked_on_paper_and_in_the_terminal(optimum):
     """The state of a row is a word: it reads in grey and without colour."""
     evaluation = optimum.best_evaluation
-    rows = paper.plain_blocks([page.requirements(evaluation)])[0]["rows"]
+    rows = paper.plain_blocks([limit_tables.requirements(evaluation)])[0]["rows"]
     states = {"".join(row[0]): row[6]["text"] for row in rows}
     assert states["buckling_factor"] == "no reserve"
     assert states["burst_factor"] == "met"
@@ -282,7 +290,7 @@ def test_counts_of_unverified_and_extrapolated_stand_on_page_one(wide):
     shown = fixture.shown(evaluation, colour=True)
     assert f"\x1b[33mvalues not verified: {len(evaluation.unverified)}; EXTRAPOLATED" in shown
     assert "extrapolated: cycle_life" in shown
-    table = paper.plain_blocks([page.requirements(evaluation)])[0]
+    table = paper.plain_blocks([limit_tables.requirements(evaluation)])[0]
     names = ["".join(row[0]) for row in table["rows"]]
     assert "cycle_life (!)" in names
     assert "(!) EXTRAPOLATED" in table["note"]

@@ -83,7 +83,8 @@ def test_the_committed_page_is_of_these_models(ran):
     def words(data: bytes) -> list[str]:
         pages = pypdf.PdfReader(BytesIO(data)).pages
         assert len(pages) == 2
-        return [word for page in pages for word in page.extract_text().split()]
+        every = [word for page in pages for word in page.extract_text().split()]
+        return [word for word in every if not re.fullmatch("[0-9a-f]{16}", word)]  # last bits
 
     _, folder = ran
     assert words((folder / SAMPLE.name).read_bytes()) == words(SAMPLE.read_bytes())

@@ -390,8 +390,8 @@ class BoxSearch:
 Report: TypeAlias = Callable[[float], None] | None
 
 BOXES = 200
-"""Default limit on the number of boxes, which takes some three seconds. Unlike a time limit, it
-gives the same bound on every machine."""
+"""Default limit on the number of boxes, which takes some six seconds. Unlike a time limit, it
+does not depend on how busy a machine is."""
 
 AIM = 0.049
 """Target gap of a coarse search, which only has to exclude much better designs."""
