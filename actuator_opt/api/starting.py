@@ -595,8 +595,7 @@ _JOINTS = {"thread": _screwed_caps, "plug_thread": _screwed_plugs, "tie_rods": _
 
 _TEMPLATE = """\
 # @wall@ actuator, @goal@: @asked@.
-# The sizes are solved. After a change, look at them, or solve them again:
-#   actuator-opt evaluate FILE      actuator-opt optimise FILE
+# The sizes are solved. After a change: actuator-opt evaluate FILE, or actuator-opt optimise FILE.
 # Every value has a PATH, such as cylinder.bore, for --set and for `variables`.
 name: @name@
 
@@ -614,7 +613,6 @@ supply: {pressure: @pressure@, return_pressure: @return_pressure@}
 fluid: {material: iso_vg_32, temperature: 40 degC}
 environment: {temperature_min: 0 degC, temperature_max: 80 degC@cure@}
 
-# Parts
 cylinder: {bore: @bore@, stroke: @stroke@, mount: cap_clevis, end_stop: @stop@,
   port_diameter: @port@, stop_travel: 1 mm}
 barrel:
