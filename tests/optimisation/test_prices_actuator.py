@@ -12,6 +12,9 @@ from report_fixture import overlaps
 
 import actuator_opt as ao
 from actuator_opt import api as verbs
+from actuator_opt.design.model import Limit
+from actuator_opt.evaluation import prepare
+from actuator_opt.evaluation.plugin import collect
 from actuator_opt.optimisation import actuator as actuator_module
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.prices import prices, ranked, sensitivities
@@ -210,6 +213,32 @@ def test_a_price_table_takes_few_calls_of_the_model(monkeypatch):
     rows = sensitivities(actuator, solution)
     assert 2 * len(rows) == 44
     assert len(calls) < 44
+
+
+def test_a_limit_of_zero_has_the_price_of_its_equal():
+    """Stiffness divided by 10 kN/mm, less 1, at least 0: the price of stiffness by 10 kN/mm."""
+
+    @ao.metric("room", dimension="ratio")
+    def room(values):
+        return values.metric("stiffness_min") / 10e6 - 1
+
+    design = ao.read(DESIGNS / "steel_baseline.yaml").design
+    others = {k: v for k, v in design.requirements.items() if k != "stiffness_min"}
+    assert design.requirements["stiffness_min"].min == 10e6
+    other = design.model_copy(update={"requirements": others | {"room": Limit(min=0.0)}})
+    known = {}
+    for name, subject in {
+        "stiffness_min": prepare(design),
+        "room": prepare(other, plugins=collect(room)),
+    }.items():
+        actuator = build(subject)
+        rows = sensitivities(actuator, solve(actuator.problem, samples=256, starts=1))
+        known[name] = next(x for x in rows if x.parameter == f"requirements.{name}.min")
+    equal = known["stiffness_min"]
+    assert known["room"].active
+    assert known["room"].limit == 0
+    assert known["room"].price == pytest.approx(10e6 * equal.price, rel=1e-6)
+    assert equal.price > 0
 
 
 def test_prices_between_tie_rods_take_few_calls(monkeypatch):
