@@ -138,10 +138,7 @@ def fragment(page: Page, origin: Origin | None = None) -> str:
     parts = [f"<style>{_STYLE}</style>", '<article class="ao">', *_top(page)]
     if page.tiles:
         parts += ['<div class="tiles">', *map(_tile, page.tiles), "</div>"]
-    parts.append(svg(page.hero(max(HERO, page.least)), page.kind))
-    if page.items:
-        items = (f"<b>{n}</b> {_say(part)}, {_say(material)}" for n, part, material in page.items)
-        parts.append(f'<p class="note">{" · ".join(items)}</p>')
+    parts += [svg(page.hero(max(HERO, page.least)), page.kind), _legend(page)]
     for block in with_input(page, origin):
         parts += _block(block)
     parts += [*_footer(page, origin), "</article>"]
@@ -167,9 +164,16 @@ def summary(page: Page) -> str:
     for text in ("".join(_table(table)) for table in tables):
         written += [text] if len(text.encode()) < _room(*parts, *written, *end) else []
     hero, room = page.hero(max(HERO, page.least)), _room(*parts, *written, *end)
-    pictures = (svg(hero, page.kind, places) for places in (2, 1))
+    pictures = (f"{svg(hero, page.kind, places)}\n{_legend(page)}" for places in (2, 1))
     picture = next((text for text in pictures if len(text.encode()) < room), "")
     return "\n".join([*parts, *written[:1], picture, *written[1:], *end])
+
+
+def _legend(page: Page) -> str:
+    """Part and material of every number in the large figure."""
+    items = (f"<b>{n}</b> {_say(part)}, {_say(material)}" for n, part, material in page.items)
+    text = " · ".join(items)
+    return f'<p class="note">{text}</p>' if text else ""
 
 
 def _room(*parts: str) -> int:
