@@ -42,7 +42,7 @@ def changed(tmp_path, source, change, name="x.pdf"):
     return path
 
 
-@pytest.mark.parametrize("kind", ["e", "o"])
+@pytest.mark.parametrize("kind", ["e", pytest.param("o", marks=pytest.mark.long)])
 def test_a_report_repeats_to_the_byte(reports, tmp_path, kind):
     """The same numbers, the same PDF, and JSON as the command's own with `rerun`."""
     result = run("rerun", reports[kind], "--json", "--out", tmp_path)

@@ -72,7 +72,14 @@ def test_a_record_holds_the_whole_run(folder, design):
     assert last[2] <= 1e-6
 
 
-@pytest.mark.parametrize("options", [(), ("--standard-sizes",), ("--date", "2025-02-03")])
+@pytest.mark.parametrize(
+    "options",
+    [
+        pytest.param((), marks=pytest.mark.long),
+        pytest.param(("--standard-sizes",), marks=pytest.mark.long),
+        ("--date", "2025-02-03"),
+    ],
+)
 def test_its_report_is_the_report_of_the_command(folder, design, tmp_path, options, monkeypatch):
     """The same bytes, and nothing is solved."""
     made, again = tmp_path / "made", tmp_path / "again"
@@ -106,6 +113,7 @@ def test_infeasible_and_chosen_designs_are_reported_again(folder, tmp_path):
         assert digests(tmp_path / name / "a") == digests(tmp_path / name / "b")
 
 
+@pytest.mark.long
 def test_own_metrics_come_back_where_their_file_is_named(folder, design, tmp_path):
     """A record by itself runs no program; a changed plugin is no silent change of the report."""
     plugin = tmp_path / "own.py"

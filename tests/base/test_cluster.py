@@ -81,6 +81,7 @@ def killer(cluster, monkeypatch, at):
     return killed
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "study",
     [yields, quasi_random, pytest.param(front, marks=pytest.mark.long), choices, evaluated],

@@ -211,9 +211,16 @@ def _ended(result):
     assert result.code in (ExitCode.MET, ExitCode.MISSED), result.err
 
 
-@pytest.mark.parametrize(
-    "name", [kind.type.rpartition(":")[2] for kind in results.KINDS.values() if kind.report]
-)
+def _reported():
+    """Names of the kinds that have a report; those that take longest are marked."""
+    for kind in results.KINDS.values():
+        name = kind.type.rpartition(":")[2]
+        if kind.report:
+            slow = name in ("Optimisation", "Simulation", "Rerun", "Calibrated")
+            yield pytest.param(name, marks=[pytest.mark.long] if slow else [])
+
+
+@pytest.mark.parametrize("name", _reported())
 def test_the_terminal_and_the_library_write_the_same_bytes(name, monkeypatch):
     """Every kind with a report has a case; only the command is the library's to state."""
     call, words = CASES[name]

@@ -58,6 +58,7 @@ def tight(least):
     ]
 
 
+@pytest.mark.long
 def test_the_friction_needed_is_the_least_there_is(tight, least):
     """The limit that alone would do is the least friction of any design, wherever it was set."""
     for card in tight:
@@ -67,6 +68,7 @@ def test_the_friction_needed_is_the_least_there_is(tight, least):
         assert card.joint[0]["needed"] == pytest.approx(least, rel=5e-6)
 
 
+@pytest.mark.long
 def test_what_repairs_a_large_miss_repairs_a_small_one(tight):
     """Every limit that alone makes up for 20 N too little does so for 0.1 N, with less."""
     far, near = ({row["parameter"]: row["relaxation"] for row in card.sole} for card in tight)
@@ -138,6 +140,7 @@ def test_limits_that_contradict_each_other_by_definition():
     assert high > 0.20
 
 
+@pytest.mark.long
 def test_knee_with_thick_rings():
     """Rings of 2.62 mm and 315 N: infeasible, exit 1; with the limits as printed it is not."""
     sets = {
@@ -172,7 +175,8 @@ def solved(actuator, values=(), **options):
 
 
 @pytest.mark.parametrize(
-    ("path", "now"), [("retention.wall", "1 mm"), ("retention.length", "13 mm")]
+    ("path", "now"),
+    [pytest.param("retention.wall", "1 mm", marks=pytest.mark.long), ("retention.length", "13 mm")],
 )
 def test_a_fixed_dimension_that_alone_is_enough_comes_first(path, now):
     """At the value printed a design fits, at 1 % less none; safety factors come last."""

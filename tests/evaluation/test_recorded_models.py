@@ -181,7 +181,9 @@ def test_designs_with_other_materials_share_a_recording(old, one, other):
         ("knee_bonded", "max: 290 N", "max: 280 N", True),
         ("knee_bonded", "upper: 4 mm", "upper: 5 mm", True),
         ("knee_bonded", "  seals: sliding", "  seals: sticking", False),
-        ("huang_110_80_560", "upper: 700 mm", "upper: 690 mm", False),
+        pytest.param(
+            "huang_110_80_560", "upper: 700 mm", "upper: 690 mm", False, marks=pytest.mark.long
+        ),
     ],
 )
 def test_which_designs_share_a_recording(name, old, new, equal):

@@ -813,6 +813,7 @@ def test_rows_of_the_rod_have_exact_slopes(gentle):
             assert worst[i] < 2e-4, (labels[i], worst[i])
 
 
+@pytest.mark.long
 def test_a_laminated_rod_is_optimised(gentle):
     """Optimal, feasible, stationary; the rod's own limits are active, and each costs mass.
 

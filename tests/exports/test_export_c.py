@@ -99,7 +99,14 @@ def exported(name, folder):
 
 @recorded
 @compiled
-@pytest.mark.parametrize("name", ["knee_bonded", "steel_baseline", "servo_knee"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "knee_bonded",
+        pytest.param("steel_baseline", marks=pytest.mark.long),
+        pytest.param("servo_knee", marks=pytest.mark.long),
+    ],
+)
 def test_the_compiled_file_equals_the_models(name, tmp_path):
     """At 200 random points of the box: values to 1e-12, gradients to 1e-9, NaN at the same places.
 
@@ -178,6 +185,7 @@ def test_inputs_are_the_numbers_of_the_design(tmp_path):
         )
 
 
+@pytest.mark.long
 @recorded
 @compiled
 def test_another_branch_is_reported(tmp_path):

@@ -262,6 +262,7 @@ def test_same_design_same_bytes():
     assert ezdxf.options.write_fixed_meta_data_for_testing == before
 
 
+@pytest.mark.long
 def test_same_bytes_in_another_process(tmp_path):
     """Not even the order of sets, which differs from process to process, is in the file."""
     file, found = tmp_path / "d.yaml", set()

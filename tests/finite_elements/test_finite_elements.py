@@ -139,7 +139,10 @@ def test_slightly_squeezed_ring_is_a_line_contact():
     assert approach == pytest.approx(0.02 * SECTION, rel=0.03)
 
 
-@pytest.mark.parametrize("squeeze", [0.10, 0.20, 0.30])
+@pytest.mark.parametrize(
+    "squeeze",
+    [0.10, pytest.param(0.20, marks=pytest.mark.long), pytest.param(0.30, marks=pytest.mark.long)],
+)
 def test_mounted_ring_meets_the_closed_form(squeeze):
     """Line load to 2.5 %, width to 5 %, peak to 6 %, and to 2.5 % with its own load and width."""
     contact = ring(squeeze, around=128).contacts[0]
@@ -152,6 +155,7 @@ def test_mounted_ring_meets_the_closed_form(squeeze):
     assert contact.peak_pressure == pytest.approx(own, rel=0.025)
 
 
+@pytest.mark.long
 def test_pressurised_ring():
     """Peak p0 + p to 4 %; load and width lie up to 12 % below the closed form of the model."""
     mounted, *pressed = ring(0.15, 0.25, 0.5, 1.0, around=96).contacts
@@ -171,6 +175,7 @@ def test_pressurised_ring():
     assert widths == sorted(widths)
 
 
+@pytest.mark.long
 def test_forces_of_a_pressurised_ring_balance():
     """Face and groove bottom carry the same; the side wall the fluid on the gland's depth."""
     squeeze = 0.2
@@ -224,6 +229,7 @@ def test_refinement_converges():
     assert coarse.width == pytest.approx(fine.width, rel=0.03)
 
 
+@pytest.mark.long
 def test_only_the_sum_of_the_constants_counts_in_plane_strain():
     """With one stretch 1 and the volume constant both invariants are equal, up to the mesh."""
     one, other = (
@@ -246,6 +252,7 @@ def test_a_wide_ring_is_plane_and_a_narrow_one_is_not():
     assert narrow.contacts[0].opposite_load > 1.05 * narrow.contacts[0].line_load
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("on_rod", "sign"), [(True, 1), (False, -1)])
 def test_the_side_wall_of_a_round_groove_carries_an_annulus(on_rod, sign):
     """Around a rod the fluid acts on p H (1 + H/2r) per circumference of it, in a bore on less."""
@@ -274,6 +281,7 @@ def test_bad_input_is_one_clear_line(change, message):
     assert all(d.remedy for d in error.value.diagnostics)
 
 
+@pytest.mark.long
 def test_a_pressure_out_of_reach_is_said_in_words(monkeypatch):
     """Far beyond the modulus no equilibrium is found: what was reached stays, with the reason."""
     monkeypatch.setattr(equilibrium, "SHORTEST_STEP", 0.09)

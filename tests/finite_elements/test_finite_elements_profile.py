@@ -19,6 +19,7 @@ from actuator_opt.models.contact_profile import o_ring_profile
 SECTION, MODULUS, GROOVE = 3.53e-3, 8e6, 4.82e-3
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("squeeze", [0.10, 0.15, 0.20])
 def test_the_closed_profile_follows_the_elements(squeeze):
     """1 - t^10 with the mounted ellipse: within 0.15 p everywhere, mean 0.88 to 0.94 p."""

@@ -99,6 +99,7 @@ def test_a_wide_flat_land_hands_on_the_rubber_ring_s_load():
     assert contact.width > 0.9 * shape.land_width
 
 
+@pytest.mark.long
 def test_forces_on_the_step_ring_balance(pressed):
     """The side wall carries the fluid on the whole gland depth; the profile adds up to the load."""
     depth = SHAPE.thickness + (1 - SQUEEZE) * SECTION

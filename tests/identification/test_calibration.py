@@ -169,6 +169,7 @@ def test_without_steady_sliding_there_is_nothing_to_calibrate(kind):
         calibration(replace(identified(kind), points=()))
 
 
+@pytest.mark.long
 def test_a_film_is_refused():
     """Friction by an oil film has no coefficient to calibrate."""
     film = knee().changed({"seals.rod.friction": "film"})

@@ -15,6 +15,9 @@ import actuator_opt as ao
 from actuator_opt.identification import Settings, identify
 from actuator_opt.studies.bench import bench as bench_of
 
+pytestmark = pytest.mark.long
+
+
 DESIGNS = Path(__file__).parents[2] / "designs"
 SPEEDS = (0.0007, 0.0013, 0.0025, 0.004, 0.006, 0.01, 0.025, 0.06, 0.12, 0.2)
 TRUTH = oracle.Friction()

@@ -82,6 +82,7 @@ def test_a_short_test_is_read_by_force():
     assert any("does not cover the usual strains" in one for one in found.doubts)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("memory", "cycles"), [(0.0, 1), (0.9, 1), pytest.param(0.97, 3, marks=pytest.mark.long)]
 )

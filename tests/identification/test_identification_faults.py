@@ -97,6 +97,7 @@ def test_a_slow_record_leaves_no_windows():
     assert "no reversal can be used, because a cut-off" in found.lugre
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("stated", [22.5, 22.95, 23.05, 23.5])
 def test_a_wrong_bore_is_named_with_the_true_one(stated):
     """A_1 by a wrong D leaves p_1 (A - A') alike both ways: D = 23 mm is told within 0.1 mm."""
@@ -202,6 +203,7 @@ def test_reversed_pressures_are_two_options():
     assert "F_L seems to have the wrong sign" in refused(but(knee(), F_L=-knee()["F_L"]))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("factor", "told"), [(2.0, "2.00"), (-1.0, "-1.00"), (0.0, "0.00")])
 def test_a_velocity_that_is_not_the_slope_of_x(factor, told):
     """A channel v of k dx/dt is noted with its k; one that agrees is not."""

@@ -51,6 +51,7 @@ def recorded(motion, *, friction=RUBBER, sensors=QUIET, position_noise=0.0, seed
     return Record(record.time, {**record.channels, "x": place}, "plunger.csv")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("speeds", "longest", "noise", "seed"),
     [(SLOW, 1.0, 1e-6, 0), (SLOW, 1.0, 2e-5, 2), (WIDE, 0.8, 1e-5, 0), (WIDE, 0.8, 1e-5, 3)],
@@ -113,6 +114,7 @@ def test_micro_damping_is_no_lag():
     assert any("a lag τ would add σ₀ τ" in one for one in found.lugre.doubts)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("amplitude", "frequency"), [(1.5e-4, 0.5), (5e-4, 1.0)])
 @pytest.mark.parametrize("exponent", [0.8, 1.0])
 def test_bounds_hold_what_another_exponent_does(amplitude, frequency, exponent):

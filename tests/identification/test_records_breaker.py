@@ -30,6 +30,7 @@ def named(name):
     return replace(whole, record=replace(whole.record, name=name))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["", " ", "x" * 300, "two\nlines.csv", "b\udce9d.csv", "a: b #c"])
 def test_any_name_of_a_record_fits_a_design_and_a_page(name, tmp_path):
     """Empty, long, with control letters or bytes that are no UTF-8: written, read back, printed."""

@@ -17,6 +17,9 @@ from actuator_opt.identification import Record
 from actuator_opt.identification.conditioning import condition, low_pass, pass_cutoff
 from actuator_opt.studies.bench import bench
 
+pytestmark = pytest.mark.long
+
+
 DESIGNS = Path(__file__).parents[2] / "designs"
 BORE, ROD, STROKE, SECTION, SQUEEZE = 0.023, 0.013, 0.11, 1.78e-3, 0.14
 WALL_RATIO, STEEL, POISSON = 13.5 / 11.5, 206e9, 0.3

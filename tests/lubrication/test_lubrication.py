@@ -147,6 +147,7 @@ def test_leak_at_rest_is_poiseuille():
     assert drop == pytest.approx(5e6 - AIR, rel=2e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("speed", [1.0, -1.0])
 def test_thick_film_follows_blok(speed):
     """A soft seal on a film far above its roughness: q = U h*/2, h* = sqrt(8 eta U/(9 w)).

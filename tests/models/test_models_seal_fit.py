@@ -46,6 +46,7 @@ def test_the_default_law_is_within_3_percent_of_the_finite_elements(quantity, wi
     np.testing.assert_allclose(law, GRID[QUANTITIES[quantity]], rtol=within)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("squeeze", "pressure", "force"), [(0.15, 0.25, 0.2467), (0.1, 0.5, 0.325)]
 )

@@ -219,6 +219,7 @@ def test_skirt_of_the_plug_by_finite_elements(wall, length, plate, share):
     assert abs(bending) + mean < axial  # tension
 
 
+@pytest.mark.long
 def test_the_screwed_knee_beats_the_bonded_knee():
     """Without the nut, which the bonded knee does not have, by at least 15 %."""
     bonded = ao.optimise(ao.read(DESIGNS / "knee_bonded.yaml"), prices=False)

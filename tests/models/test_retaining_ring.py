@@ -317,7 +317,9 @@ def best(name, **changes):
 EASED = {"requirements.seal_gap.max": "60 um", "requirements.stiffness_min.min": "6 kN/mm"}
 
 
-@pytest.mark.parametrize(("changes", "saving"), [({}, 0.1), (EASED, 0.3)])
+@pytest.mark.parametrize(
+    ("changes", "saving"), [pytest.param({}, 0.1, marks=pytest.mark.long), (EASED, 0.3)]
+)
 def test_the_composite_knee_beats_steel(changes, saving):
     """By 10 % at the shipped limits, and by 30 % at a gap of 60 um and 6 kN/mm."""
     held, steel = best("knee.yaml", **changes), best("steel_baseline.yaml", **changes)

@@ -199,6 +199,7 @@ def test_a_chosen_pitch_waits_for_the_free_wall():
     assert "leaves 0.1597 mm" in fixed[1]
 
 
+@pytest.mark.long
 def test_a_search_leaves_the_least_metal_under_the_thread():
     """A wall free to go down to 0.5 mm ends with 1 mm under the root, at any factor asked."""
     soft = STEEL.replace("    lower: 1 mm                 # what", "    lower: 0.5 mm  # what")

@@ -34,6 +34,7 @@ ROUNDING = 1e-9
 
 
 LONG = {
+    "knee_bonded",
     "knee sized by strength",
     "knee of free pressure",
     "steel of free pressure",
@@ -132,6 +133,7 @@ def test_objective_of_the_relaxation_is_that_of_the_design(some):
     assert there == pytest.approx(masses, rel=1e-12)
 
 
+@pytest.mark.long
 def test_no_design_lies_below_the_bound(some):
     """The bound of a short search is no more than any design's objective, and only rises."""
     found, designs = some

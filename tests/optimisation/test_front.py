@@ -158,6 +158,7 @@ def pieces_of(curve, result):
     return [(inside[k], inside[k + 1], across[k]) for k in jumps]
 
 
+@pytest.mark.long
 @settings(max_examples=10, deadline=None)
 @given(st.floats(0.05, 0.4), st.floats(1, 3), st.floats(0, 6), st.integers(20, 60))
 def test_gaps_are_even_or_jumps(height, waves_, shift, count):

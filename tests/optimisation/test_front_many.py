@@ -105,6 +105,7 @@ def searched(evaluate, bounds, names, count, **more) -> Front:
     return result
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("shape", "objective_count", "count", "most", "short"),
     [
@@ -134,6 +135,7 @@ def test_covers_all_of_it(shape, objective_count, count, most, short):
     np.testing.assert_allclose(own.max(axis=1), 1, atol=short)
 
 
+@pytest.mark.long
 def test_front_in_four_pieces():
     """f3 falls, rises and falls along f1 and along f2: two pieces of each, four of the front."""
 

@@ -159,6 +159,7 @@ def own(v):
 """
 
 
+@pytest.mark.long
 def test_an_end_that_is_not_found_is_named(tmp_path):
     """The objective whose best lies on a kink is no proven optimum: named, with the reason."""
     plugin = tmp_path / "own.py"

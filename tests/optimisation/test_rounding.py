@@ -449,6 +449,7 @@ def test_json_and_saved_design(tmp_path):
         assert f"thickness: {1e3 * thickness['value']:.9g} mm\n" in file.read_text("utf-8")
 
 
+@pytest.mark.long
 def test_terminal(tmp_path):
     """Asked for: a table with plies and cost. Not asked for: one line that names the option."""
     words = ("--starts", "1", "--out", tmp_path, "-v")
@@ -492,6 +493,7 @@ def test_what_cannot_be_rounded(text, path, words):
         assert text.splitlines()[fault["line"] - 1].strip() == f"{path}:"
 
 
+@pytest.mark.long
 def test_plies_too_coarse_for_the_requirements(tmp_path):
     """A window of stiffness that lies between 2 and 3 pairs: exit 1, a remedy, nothing saved."""
     fixed = (("bore: 22 mm", "bore: 20 mm"), (AXIAL, AXIAL.replace("1.6", "2")))

@@ -88,6 +88,7 @@ def paths(ink, **wanted):
 # ---- stress ----
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", BOTH)
 def test_words_under_the_sections_are_the_solution(name):
     """Pressure, highest stress and contact width of every section, rounded to three digits."""

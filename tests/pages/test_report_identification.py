@@ -353,6 +353,7 @@ def test_thinning_keeps_every_peak(values, most):
     assert (kept[0], kept[-1]) == (0, whole.size - 1)
 
 
+@pytest.mark.long
 def test_a_long_record_stays_small():
     """Sixty times the samples add no path points beyond the envelope's: a spike of one stays."""
     found = case.identified("sine")

@@ -561,6 +561,7 @@ def test_terminal_text_keeps_its_width(width):
     assert f"{studied('rings', 'rod').out.friction:.4g}" in words
 
 
+@pytest.mark.long
 def test_the_sheet_is_a_document_with_equal_bytes(tmp_path):
     """PDF and PNG of one place, the same bytes again; the plain renderer can draw it too."""
     given = {"stem": "s"}

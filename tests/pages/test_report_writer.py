@@ -40,7 +40,7 @@ def write(subject, folder, **changes):
     return fixture.write_report(subject, folder=folder, **(given | changes))
 
 
-@pytest.mark.parametrize("date", ["", "2026-02-03"])
+@pytest.mark.parametrize("date", ["", pytest.param("2026-02-03", marks=pytest.mark.long)])
 def test_same_input_same_bytes_in_any_process(tmp_path, date):
     """Two processes with different hash seeds, folders and clocks write equal files."""
     printed = []

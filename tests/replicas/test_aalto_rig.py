@@ -265,6 +265,7 @@ def test_with_the_needle_as_stated_no_check_valve_opens_at_0_percent() -> None:
 # ---- full throttle ----
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("place", [0.055, 0.110, 0.165, 0.185])
 def test_shut_needles_pump_to_the_closed_form(place) -> None:
     """Mean pressures of both chambers, within 0.3 bar, where A rules and where B does."""

@@ -18,6 +18,9 @@ from actuator_opt.replicas import huang_models
 from actuator_opt.studies.film_walk import film_map
 from actuator_opt.studies.seal import study as seal_study
 
+pytestmark = pytest.mark.long
+
+
 DESIGN = Path(__file__).parents[2] / "designs" / "huang_110_80_560.yaml"
 SPEEDS = (0.5e-3, 2.1e-3, 10e-3)
 

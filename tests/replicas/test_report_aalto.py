@@ -241,6 +241,7 @@ def test_functions_named_in_remarks_exist():
         assert hasattr(importlib.import_module(f"actuator_opt.models.{module}"), function)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("changes", [{}, *OTHERS], ids=lambda c: " ".join(c) or "as shipped")
 def test_tables_and_figures_bear_any_design(changes):
     """Whatever the design: every table is made, no label overlaps or leaves the drawing."""

@@ -19,6 +19,9 @@ from actuator_opt.pages.report import page
 from actuator_opt.rendering.blocks import Drawing, Table
 from actuator_opt.replicas import MODULES, huang, huang_figures, huang_models
 
+pytestmark = pytest.mark.long
+
+
 DESIGN = Path(__file__).parents[2] / "designs" / "huang_110_80_560.yaml"
 UNDRAWN = ("why damping rises or falls with pressure", "functions for its equations")
 """Tables without a drawing."""

@@ -41,10 +41,10 @@ def _committed() -> dict[str, Any]:
     return json.loads(pypdf.PdfReader(REPORT).attachments["course_servo.json"][0])
 
 
-@pytest.fixture(params=["quick", "committed"])
-def numbers(request, fresh) -> dict[str, Any]:
+@pytest.fixture(params=[pytest.param("quick", marks=pytest.mark.long), "committed"])
+def numbers(request) -> dict[str, Any]:
     """The numbers of a quick run, and those that the committed report carries inside."""
-    return fresh if request.param == "quick" else _committed()
+    return request.getfixturevalue("fresh") if request.param == "quick" else _committed()
 
 
 @pytest.mark.long
@@ -140,6 +140,7 @@ def test_the_calm_loop_is_calm(numbers) -> None:
         assert own["gain_margin"] > 2
 
 
+@pytest.mark.long
 def test_the_committed_report_is_this_study(fresh) -> None:
     """The loops of a fresh run have the numbers of the committed one."""
     before = _committed()
@@ -172,6 +173,7 @@ def _shaped(size: float, rate: float) -> Any:
     return SimpleNamespace(time=time, signals={"y": 1 + swing}, servo=step)
 
 
+@pytest.mark.long
 def test_the_page_tells_the_numbers(quick, fresh) -> None:
     """One PDF: every sentence stands in it, the numbers are attached."""
     pypdf = pytest.importorskip("pypdf")

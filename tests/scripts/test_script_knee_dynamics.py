@@ -92,6 +92,7 @@ def test_every_point_meets_every_requirement(numbers) -> None:
             assert all(one.margin > -1e-5 for one in evaluation.requirements)  # seven digits
 
 
+@pytest.mark.long
 def test_what_is_free_is_free() -> None:
     """Where a series begins, leaving the requirement out saves no mass."""
     for metric, found in carried(REPORT)["series"].items():

@@ -134,6 +134,7 @@ def test_longer_pipes_ask_for_more_pressure() -> None:
     assert pressures == sorted(pressures)
 
 
+@pytest.mark.long
 def test_a_search_from_many_starts_finds_no_lighter_one() -> None:
     """Warm starts along the pressures do not end in a worse optimum: 275 bar from four starts."""
     row = next(r for r in carried(REPORT)["rows"] if round(study.bar(r)) == 275)

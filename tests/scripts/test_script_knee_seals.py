@@ -60,6 +60,7 @@ def test_every_point_by_coefficient_meets_every_requirement(numbers) -> None:
             assert all(one.margin > -1e-5 for one in evaluation.requirements)  # seven digits
 
 
+@pytest.mark.long
 def test_the_film_meets_its_limit_within_the_error_of_its_surrogate() -> None:
     """Solved without a surrogate's box, friction on the film is within 2 % of what was asked."""
     rows = carried(REPORT)["series"]["film"][1:]

@@ -159,6 +159,7 @@ def test_rod_film_is_the_solved_one(kind):
         assert lubed["damping_seal"][""][i, 0] == near(total / v)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", list(KINDS))
 def test_piston_film_sees_the_bore_move_inwards(kind):
     """The bore runs from the return side to the driven one either way; leakage is the film's."""
@@ -222,6 +223,7 @@ def test_tandem_is_the_solved_pair():
         assert lubed["rod_leakage"][""][i, 0] == pytest.approx(max(lost, 0), rel=1e-3, abs=1e-13)
 
 
+@pytest.mark.long
 def test_a_pair_does_not_break_away_below_its_running_friction():
     """What stands between the rings while they run (78 bar) still presses the outer one at rest."""
     lubed = metrics(O_RING, PAIR, SLOW)
@@ -230,6 +232,7 @@ def test_a_pair_does_not_break_away_below_its_running_friction():
     assert lubed["friction_breakaway"][""][1, 0] - 3 * piston >= running
 
 
+@pytest.mark.long
 def test_a_pair_at_return_pressure_has_a_film():
     """Dragged out at 0.1 m/s and 6 bar the room between fills: the solved pair's pressure."""
     found = evaluated(O_RING, PAIR, (("load_cases[pull].speed", "0.1 m/s"),))
@@ -375,6 +378,7 @@ def test_complex_step_against_films_solved_anew(path):
     assert step / scale == pytest.approx((ends[1] - ends[0]) / 6e-4 / scale, rel=1e-4, abs=1e-5)
 
 
+@pytest.mark.long
 def test_warmer_oil_also_thickens_less_under_pressure():
     """Roelands' coefficient falls with the temperature, and with it the film's friction."""
     sets = (("fluid.viscosity_pressure", "roelands"),)
@@ -412,6 +416,7 @@ def test_damping_ratio_follows_what_moves_the_films(path):
     assert step == pytest.approx((ends[1] - ends[0]) / 2e-3, rel=0.05)  # to the first order
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("stroke", [pytest.param("drive", marks=pytest.mark.long), "return"])
 def test_slopes_of_a_pair_against_pairs_solved_anew(stroke):
     """Exact derivatives of drag, load, film, flow and the pressure between, by what moves them."""
@@ -482,6 +487,7 @@ variables:
 """
 
 
+@pytest.mark.long
 @pytest.mark.xfail(strict=True, reason="squeeze held at the end of the samples, no slope there")
 def test_a_corner_of_the_bounds_has_its_slope():
     """Least squeeze, widest bore and thinnest wall are allowed together: squeeze still matters."""

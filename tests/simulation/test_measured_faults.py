@@ -370,6 +370,7 @@ def test_a_fit_at_the_end_of_a_range_says_which_way():
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", case.KINDS)
 def test_no_name_of_a_curve_is_cut_for_a_record(kind):
     """With every signal measured, legends of strips and panels hold their words whole."""

@@ -257,6 +257,7 @@ def test_an_emptied_chamber_stays_above_vacuum_and_keeps_its_air():
     assert pressure[late] - VACUUM == pytest.approx(101325.0 * gas[late] ** -1.4, rel=1e-3)
 
 
+@pytest.mark.long
 def test_pump_that_gives_too_little_does_not_stop_the_run():
     """The rod draws more than the pump gives: the line falls below the tank, the relief is shut."""
     stated = {

@@ -305,6 +305,7 @@ def test_a_course_is_cubic_and_crosses_no_jump():
 # Where parameters enter
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "value"),
     [
@@ -424,6 +425,7 @@ def test_bounds_hold_the_truth_as_often_as_they_say():
     assert sum(held) >= 7
 
 
+@pytest.mark.long
 def test_late_uneven_records_with_gaps_are_fitted():
     """Channels of other rates that begin late, with a gap, on a clock 40 ms behind."""
     time, signals = measured_signals(step=5e-4)
@@ -476,6 +478,7 @@ def test_a_channel_that_stands_still_is_left_out():
     assert "position is constant in the record and was not used in the fit" in found.doubts
 
 
+@pytest.mark.long
 def test_a_leakage_that_is_not_there_is_bounded_from_zero():
     """A tight piston: no leakage is among the values allowed, and what it is at most."""
     found = fit(*case(), {}, bench(3, piston_leakage=0.0), ("piston_leakage",))
@@ -497,6 +500,7 @@ def test_a_model_that_lacks_something_says_so():
     )
 
 
+@pytest.mark.long
 def test_pairs_that_hide_in_each_other_are_named():
     """At one speed, one way, friction is a load: the record tells their sum."""
     whole = bench(6).channels

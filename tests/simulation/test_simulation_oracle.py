@@ -326,6 +326,7 @@ def test_run_is_that_of_the_oracle(case):
     assert tuple(event.name for event in ours.found.events) == asked.events
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", CASES)
 def test_default_tolerances_are_close(case):
     """At the tolerances that a run has by default, everything is within 1e-4 of its span."""

@@ -185,6 +185,7 @@ def test_a_decay_has_frequency_and_damping_of_the_check_list(ends, ratio):
     assert found["damping_ratio"] == pytest.approx(ratio, rel=0.01)
 
 
+@pytest.mark.long
 def test_sticking_friction_raises_the_ultimate_gain():
     """Bristles hold the piston: the loop takes more gain, and the reason tells the swing seen."""
     found = row(sticking(), "ultimate_gain")

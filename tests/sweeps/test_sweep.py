@@ -96,6 +96,7 @@ MORE = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("more", MORE)
 def test_a_screen_loses_none_of_the_best(more, monkeypatch):
     """The best of a reduced sweep are those of all rows, found in chunks with a falling limit."""

@@ -71,6 +71,7 @@ def overlaps(ink):
     return out + both
 
 
+@pytest.mark.long
 def test_boundaries_pass_where_the_margin_is_zero(swept):
     """Points of every line, each read and evaluated by itself, just meet their limit."""
     found = list(field(swept.study).boundaries())

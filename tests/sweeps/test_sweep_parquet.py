@@ -46,6 +46,7 @@ def files(tmp_path_factory):
     return swept, folder / "r.csv", folder / "r.parquet"
 
 
+@pytest.mark.long
 def test_every_cell_is_that_of_the_csv(files):
     """Numbers to the nine digits of the CSV, blanks as null, texts and verdicts as they are."""
     swept, text, binary = files

@@ -61,7 +61,7 @@ known = cache(optimum)
 """The robust optimum, solved once for all tests that only read it."""
 
 
-@pytest.mark.parametrize("target", [0.9, 0.99])
+@pytest.mark.parametrize("target", [pytest.param(0.9, marks=pytest.mark.long), 0.99])
 def test_one_limit_one_input_in_closed_form(target):
     """The rod is thicker by z deviations, z of the failures aimed at; the sample agrees."""
     found = known(target)
@@ -95,6 +95,7 @@ def test_without_scatter_the_plain_optimum_is_robust():
     assert found.objective_value == found.robust.nominal_objective
 
 
+@pytest.mark.long
 def test_no_room_for_the_reserve_is_infeasible_in_words():
     """The rod may not grow as far as the yield asks: infeasible, with the limit named."""
     found = known(0.99, upper="15.1 mm")
@@ -136,6 +137,7 @@ def test_no_size_with_enough_yield_saves_nothing(tmp_path):
     assert "without margins for scatter" in " ".join(result.out.split())
 
 
+@pytest.mark.long
 def test_choices_are_those_of_the_plain_optimum_and_said_so():
     """The lighter of two rods is kept, told in words and in the record of the choices."""
     text = one_wish() + "\nchoices:\n  rod.material: [steel_42crmo4, ti_6al4v]\n"
