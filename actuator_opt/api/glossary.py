@@ -23,8 +23,10 @@ metric | A result that an evaluation computes, such as stiffness_min. It has a v
 governing value | Value of a metric that is compared with its limit: the largest if a maximum is required or the metric is minimised, the smallest if a minimum is required or it is maximised; else the worst by the table of metrics. | our choice | metric, margin
 requirement | A smallest (min) or largest (max) value of a metric that the design must have in every load case. `optimise` meets all requirements; their prices say what each costs. | our choice | metric, margin, price, check
 check | A line of the professional check list: a metric with a usual limit and its source. `optimise` meets all checks except advice and waived ones. | our choice | requirement, waiver
+advice | A line of the check list that is shown and gives a warning, but does not bind the optimiser. A requirement on the same metric binds it; a waiver accepts it. | our choice | check, waiver, requirement
 waiver | A check that does not apply, with the reason, under `waivers` in the design file. Reports print it. | our choice | check
 load case | A duty of the actuator: direction, force or joint torque, speed, position, temperature, side load. Every requirement holds in every load case. | our choice | load_cases, requirement
+bound / bounds | Smallest or largest value that a variable may have, under `variables` in the design file. An optimum at a bound may improve if the bound is wider. | our choice | variable, optimum
 variable | A number that the optimiser may move between two bounds, under `variables` in the design file. All other numbers are fixed. | our choice | objective, choices
 objective | The metric that `optimise` makes as small or as large as possible, or a weighted sum of metrics, each divided by its value in the file. | our choice | variable, optimum
 margin | Distance from a limit as a share of it: (value - limit)/abs(limit) for a minimum, with the opposite sign for a maximum. Met if at least -1e-6. If the limit is 0, the margin is the value itself. | our choice | requirement, reserve
@@ -46,10 +48,11 @@ confidence / unverified / verified | How well a library value was checked. verif
 basis | Statistics of a library strength: mean, typical, A (99 %) or B (90 % of the population, with 95 % confidence), S (specification), minimum. | CMH-17 practice | knock-down
 knock-down | Factor from a library strength to an allowable one: temperature, moisture, basis of the statistics, process. | our choice | basis, basis_knockdown
 extrapolated / in range / valid range | A model was used outside its valid range, or a library value outside its data. The result is marked and warns. | our choice | confidence
+safety factor / factor of safety | Strength divided by load: burst, proof, buckling, fatigue and other metrics that end in _factor. Their limits are requirements, or usual limits of the check list. | our choice | requirement, check, burst_factor
 working pressure | Supply pressure of the design, gauge. Burst and proof factors are relative to it. | ISO 10100 practice | supply.pressure, proof pressure
-proof pressure | Test pressure that must leave no permanent damage: supply.proof_ratio times the supply pressure. | ISO 10100 practice | proof_factor, supply.proof_ratio
+proof pressure / proof | Test pressure that must leave no permanent damage: supply.proof_ratio times the supply pressure. | ISO 10100 practice | proof_factor, supply.proof_ratio
 first-ply failure | First damage of any ply of a laminate, by the criterion of barrel.criterion; without a liner it is the leak pressure. | [Jones1999] | first_ply_factor, burst_factor
-lay-up | Layers of a wound tube from the bore outwards, each with material, angle to the axis and thickness; 90 deg is a hoop layer. | [Jones1999] | barrel.layup
+lay-up / layup / laminate | Layers of a wound tube from the bore outwards, each with material, angle to the axis and thickness; 90 deg is a hoop layer. | [Jones1999] | barrel.layup
 autofrettage | One-time pressure that yields the liner, so that it stays under compression and bears more pressure cycles. | [Hill1950] | barrel.autofrettage_pressure, reverse_yield_factor
 squeeze | Radial compression of a seal as a share of its free cross-section. Bore growth and tolerances reduce it. | [EngineersEdgeGlands] | seal_squeeze, seal_gap
 extrusion gap | Radial gap that the pressure can press the seal into: clearance plus bore growth at the seal. | [SealAndDesignExtrusion] | seal_gap, extrusion_factor

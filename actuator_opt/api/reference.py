@@ -18,7 +18,7 @@ from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, UsageError, remedy, shown
 from ..base.quantities import MATERIAL_PROPERTIES, Quantity, short
 from ..base.tables import Displayed
-from ..base.words import fold, ranked
+from ..base.words import fold, ranked, usual
 
 if TYPE_CHECKING:
     from ..design.model import Design
@@ -251,7 +251,8 @@ def find(word: str, metrics: Mapping[str, Quantity] | None = None) -> Entry | No
     """The entry of a name; None if it is unknown.
 
     Lower and upper case, spaces and hyphens do not matter. A PATH may have any index or name in its
-    brackets; its last key alone is enough if only one PATH ends with it.
+    brackets; its last key alone is enough if only one PATH ends with it. A synonym of a name is
+    enough too.
     """
     folded = fold(word)
     if re.search(r"[a-z_]\.|\[", folded) is None:
@@ -261,7 +262,8 @@ def find(word: str, metrics: Mapping[str, Quantity] | None = None) -> Entry | No
             for entry in entries():
                 if folded in map(fold, (entry.name, *entry.aliases)):
                     return entry
-    return _path(word, metrics)
+    known, other = _path(word, metrics), usual(word)
+    return known if known is not None or other is None else find(other, metrics)
 
 
 def _path(word: str, metrics: Mapping[str, Quantity] | None) -> Entry | None:
@@ -333,6 +335,10 @@ def catalogue(
     InputError : the design has faults
     """
     if kind not in LISTS:
+        if find(kind) is not None:
+            message = f'"{shown(kind)}" is a name, not a kind of name'
+            advice = f"write: list metrics {kind}, or list paths {kind}"
+            raise UsageError(Diagnostic(message, advice))
         message = f'"{shown(kind)}" cannot be listed'
         raise UsageError(Diagnostic(message, remedy(kind, LISTS)))
     entries = list(LISTS[kind]())

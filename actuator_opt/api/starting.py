@@ -187,6 +187,12 @@ class Duty:
         """Pressure at the other port: 2 % of supply, at most the 5 bar of the shipped designs."""
         return min(5e5, 0.02 * self.pressure)
 
+    @property
+    def words(self) -> str:
+        """Forces, stroke and supply pressure in words."""
+        short = {key: quantity.text(getattr(self, key)) for key, (quantity, _) in DUTY.items()}
+        return "{push} push, {pull} pull, {stroke} stroke at {pressure}".format(**short)
+
 
 @dataclass(frozen=True, slots=True)
 class Start:
@@ -197,9 +203,14 @@ class Start:
     sentence: str
 
     @property
-    def mass(self) -> str:
-        """Mass with its unit."""
-        return METRICS["mass"].text(_mass(self.actuator.design), 4)
+    def solved(self) -> str:
+        """Mass and the limits in words, with the advice that the design does not follow."""
+        evaluation = evaluate(prepare(self.actuator.design))
+        mass = evaluation.metrics["mass"].value
+        assert mass is not None
+        advice = [check.name for check in evaluation.checks if check.status == "missed"]
+        words = f"{METRICS['mass'].text(mass, 4)}, every limit is met"
+        return f"{words}; advice not followed: {', '.join(advice)}" if advice else words
 
     @property
     def text(self) -> str:
@@ -647,14 +658,13 @@ def _text(duty: Duty, sizes: _Sizes, title: str, stop: str, mass: float | None) 
     """The template with first sizes; `mass` is the largest mass, if limited."""
     wall, bore, rod = WALLS[duty.wall], sizes.bore, sizes.rod
     stated = {key: exact_text(getattr(duty, key), DUTY[key][0]) for key in DUTY}
-    short = {key: quantity.text(getattr(duty, key)) for key, (quantity, _) in DUTY.items()}
     limits = []
     if duty.stiffness is not None:
         least = exact_text(duty.stiffness, ADDED["stiffness"])
-        limits.append(f"  stiffness_min: {{min: {least}}}".ljust(32) + "# least over the stroke")
+        limits.append(f"  stiffness_min: {{min: {least}}}".ljust(30) + "  # least over the stroke")
     if mass is not None:
-        limit = f"  mass: {{max: {1e3 * mass:.4g} g}}".ljust(32)
-        limits.append(f"{limit}# {HEAVIER} x the lightest")
+        limit = f"  mass: {{max: {1e3 * mass:.4g} g}}".ljust(30)
+        limits.append(f"{limit}  # {HEAVIER} x the lightest")
     cases = [
         f"  - {{name: {key}, direction: {key}, {_load(duty, key)}, "
         f"speed: {exact_text(duty.speed, ADDED['speed'])}}}"
@@ -670,7 +680,7 @@ def _text(duty: Duty, sizes: _Sizes, title: str, stop: str, mass: float | None) 
     fields = {
         "wall": wall.words.capitalize(),
         "goal": GOALS[duty.goal].words,
-        "asked": "{push} push, {pull} pull, {stroke} stroke at {pressure}".format(**short),
+        "asked": duty.words,
         "name": scalar(title),
         "cases": "\n".join(cases),
         "limits": "".join(f"{line}\n" for line in limits),

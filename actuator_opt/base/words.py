@@ -66,6 +66,7 @@ polyamide nylon pa pa6 pa12
 acetal pom delrin
 ptfe teflon
 nbr nitrile buna
+e355 st52
 fkm viton
 polyurethane pu tpu urethane
 polyethylene pe uhmw hdpe
@@ -136,6 +137,17 @@ def _lines_of(word: str) -> Mapping[int, int]:
     """Lines of synonyms that contain a word or its singular, with its place in them."""
     known = _lines()
     return known.get(word) or known.get(_singular(word)) or {}
+
+
+def usual(word: str) -> str | None:
+    """The word of design files for a synonym; None if there is none, or more than one.
+
+    >>> usual("weight"), usual("gland"), usual("mass")
+    ('mass', 'head', None)
+    """
+    lines = SYNONYMS.strip().splitlines()
+    first = {lines[number].split()[0] for number in _lines_of(word.strip().casefold())}
+    return first.pop() if len(first) == 1 and first != {word} else None
 
 
 @lru_cache(maxsize=1 << 10)

@@ -19,6 +19,7 @@ import typer
 from typer.exceptions import TyperException
 
 from ..base.errors import EXIT_CODES, ActuatorError, Diagnostic, ExitCode
+from ..base.words import nearest
 from ..version import VERSION
 from . import completion, streams
 
@@ -128,6 +129,12 @@ def _misunderstood(error: TyperException) -> ExitCode:
         streams.err(message)
         return ExitCode.USAGE
     remedy = "" if context is None else f"see: {context.command_path} --help"
+    unknown = getattr(error, "option_name", None)
+    if unknown is not None and context is not None and "(Possible" in message:
+        message = message.partition(" (Possible")[0]
+        options = [name for option in context.command.params for name in option.opts]
+        if near := nearest(unknown, options, 1):
+            remedy = f"did you mean {near[0]}? {remedy}"
     fault = Diagnostic(" ".join(message.split()).removesuffix("."), remedy)
     return streams.faults([fault], ExitCode.USAGE)
 

@@ -97,7 +97,8 @@ def init(
         typer.Option(
             "--wall",
             metavar="WALL",
-            help="Barrel: steel, aluminium, lined_carbon or linerless.",
+            help="Barrel: steel, aluminium, lined_carbon or linerless; but for steel, piston, "
+            "head and caps are aluminium.",
         ),
     ] = None,
     lever_arm: Annotated[
@@ -151,7 +152,7 @@ def init(
         start = job.run(solved_start, duty, **title)
         text, verdict = start.text, {"met": start.met}
         if start.met:
-            remarks = [f"solved: {start.mass}, every limit is met; edit it, or optimise it"]
+            remarks = [f"{duty.words}, solved: {start.solved}; edit it, or optimise it"]
         else:
             faults = [Diagnostic("nothing fits yet", start.sentence, str(out or ""))]
             verdict["remedy"] = start.sentence

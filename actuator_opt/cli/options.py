@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..base.bounds import SEED, STARTS
-from ..base.errors import Diagnostic, UsageError
+from ..base.errors import Diagnostic, UsageError, shown
 from . import completion
 
 if TYPE_CHECKING:
@@ -117,10 +117,29 @@ Certify = Annotated[
         help="Prove how close the result is to the best possible design (takes seconds).",
     ),
 ]
+
+
+def share(text: str) -> float:
+    """A share as a number or in per cent.
+
+    >>> share("0.99"), share("99 %")
+    (0.99, 0.99)
+    """
+    number, per_cent, rest = text.strip().partition("%")
+    try:
+        if rest:
+            raise ValueError
+        return float(number) / (100 if per_cent else 1)
+    except ValueError:
+        message = f'"{shown(text)}" is not a share; write e.g. 0.99 or "99 %"'
+        raise typer.BadParameter(message) from None
+
+
 Yield = Annotated[
     float | None,
     typer.Option(
         "--yield",
+        parser=share,
         metavar="P",
         help="Required probability of meeting all limits under scatter, e.g. 0.99.",
     ),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Generic, TypeVar
 
@@ -134,7 +135,9 @@ def _nothing(node: Any, loc: Loc) -> Iterator[Fault]:
     pairs = node.items() if isinstance(node, dict) else enumerate(node)
     for key, value in pairs:
         if value is None:
-            yield Fault((*loc, key), "no value", "write one, or remove the line")
+            comma = re.match(r"\d", str(key)) is not None  # "36,2 mm" between braces
+            remedy = "write a point, not a comma" if comma else "write one, or remove the line"
+            yield Fault((*loc, key), "no value", remedy)
         elif isinstance(value, (dict, list)):
             yield from _nothing(value, (*loc, key))
 

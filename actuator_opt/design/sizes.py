@@ -147,6 +147,8 @@ def _read_list(
             yield Fault((*loc, index), message, "remove it, or widen the bounds")
 
 
+STEP_LABEL = "steps of "
+"""First words of the label of sizes that are multiples of a step."""
 SHOP_STEPS = {"length": 1e-4, "angle": pi / 180, "ratio": 1e-2}
 """Steps of dimensions in a workshop, by dimension: 0.1 mm, 1 deg, and 1 % for the squeeze of a
 seal. Our choice."""
@@ -247,7 +249,7 @@ def _rule(view: FileView, path: str, plies: bool, standard: bool) -> _Rule | Non
 def _step_rule(view: FileView, path: str, step: float) -> _Rule:
     quantity, bounds = resolve(path, view.tree).quantity, _bounds(view, path)
     assert quantity is not None
-    return _Rule(path, f"steps of {quantity.text(step)}", f"multiple of {quantity.text(step)}",
+    return _Rule(path, f"{STEP_LABEL}{quantity.text(step)}", f"multiple of {quantity.text(step)}",
                  lambda _: _multiples(step, bounds))  # fmt: skip
 
 

@@ -58,6 +58,7 @@ NEAR = 0.02
 
 NO_ANSWER = "not computable for these dimensions"
 NOT_COMPUTED = "not computed for this design"
+UNLOADED = "no load case loads it"
 
 TOLERANCE = 1e-6
 """A margin of at least −TOLERANCE counts as met."""
@@ -428,6 +429,8 @@ def _check(
         )
         reason = computed.why.get(metric.name, NO_ANSWER)
         return Check(name, status, reason, metric.name, sense, result.limit)
+    if result.value is None:  # met, because it is unlimited
+        return Check(name, "not_checked", UNLOADED, metric.name, sense, result.limit)
     return Check(
         name=name,
         status="met" if result.met else "missed",

@@ -32,6 +32,8 @@ _IDLE = ("name", "notes")
 """Keys of a design that do not affect its results."""
 _DUTY = ("supply", "load", "load_cases", "fluid", "environment", "linkage")
 """Blocks of a design that state its duty."""
+_MADE = ("environment.cure_temperature",)
+"""PATHs in these blocks that state how the actuator is made."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +139,7 @@ class Comparison(Displayed):
     def duties_differ(self) -> tuple[str, ...]:
         """PATHs of differing inputs that state the duty, such as supply, load and environment."""
         roots = ((c.path, c.path.partition(".")[0].partition("[")[0]) for c in self.changes)
-        return tuple(path for path, root in roots if root in _DUTY)
+        return tuple(path for path, root in roots if root in _DUTY and path not in _MADE)
 
     def limits(self) -> Iterator[tuple[str, str, tuple[Any, ...]]]:
         """Yield name, sense and results of every requirement.

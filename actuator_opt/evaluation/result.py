@@ -23,6 +23,7 @@ from ..base.tables import Displayed, aligned
 from ..design.model import Design
 from ..design.paths import numbers, value_at
 from ..metrics import METRICS
+from ..metrics.table import ROWS
 from ..rendering.tables import DataColumn, DataTable, coded
 from .dynamics_study import DynamicsStudy
 from .wall_study import WallStudy
@@ -324,6 +325,12 @@ class Check:
             return self.status
         return "no_reserve" if without_reserve(self.margin, self.limit) else "met"
 
+    @property
+    def advice(self) -> bool:
+        """Whether the limit is advice, which does not bind the optimiser (`CheckLine.advice`)."""
+        row = ROWS.get(self.metric or "")
+        return row is not None and row.check is not None and row.check.advice
+
 
 @dataclass(frozen=True, slots=True)
 class ModelUse:
@@ -518,12 +525,17 @@ class Evaluation(Displayed):
 
     @property
     def tally(self) -> str:
-        """Sentence: number of requirements met and, if all are met, the missed checks."""
+        """Sentence: number of requirements met and, if all are met, missed checks and advice."""
         total, met = len(self.requirements), sum(row.met for row in self.requirements)
-        missed = [check.name for check in self.checks if check.status == "missed"]
-        more = f" and {len(missed) - 1} more" if len(missed) > 1 else ""
-        exception = f"; checks missed: {missed[0]}{more}" if missed and met == total else ""
-        return f"{met} of {total} requirements met{exception}"
+        words = f"{met} of {total} requirements met"
+        if met < total:
+            return words
+        missed = [check for check in self.checks if check.status == "missed"]
+        for head, advice in (("checks missed", False), ("advice not followed", True)):
+            if names := [check.name for check in missed if check.advice is advice]:
+                more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+                words += f"; {head}: {names[0]}{more}"
+        return words
 
     def __str__(self) -> str:
         """Requirements and metrics as a table."""

@@ -174,16 +174,16 @@ class SizeRemedy:
 class Rounding:
     """The best design with whole plies, standard or other listed sizes, and what rounding costs.
 
-    `name` is the kind of sizes ("whole plies", "standard sizes"). `cost` is the loss in the
-    objective (≥ 0, in its SI unit); `percent` is this loss relative to the continuous optimum. Both
-    are None, like `design` and `evaluation`, if no rounded design was feasible. `plies` gives the
-    number of plies of every layer with a ply thickness. `tried` and `feasible` are the numbers of
-    rounded designs tried and found feasible; `solves` is the number of re-optimisations. `complete`
-    is True if the search did not stop at its time limit. The result is not proven to be the best,
-    because branch and bound used local optima as bounds. `unmade` lists the PATHs of values that
-    are not whole plies or allowed angles because the requested sizes leave them free; such a design
-    cannot be built yet. `remedies` lists small changes of a limit, load or pressure that make
-    better sizes possible; they are computed only if rounding costs much.
+    `name` is the kind of sizes ("whole plies", "sizes in steps", "standard sizes"). `cost` is the
+    loss in the objective (≥ 0, in its SI unit); `percent` is this loss relative to the continuous
+    optimum. Both are None, like `design` and `evaluation`, if no rounded design was feasible.
+    `plies` gives the number of plies of every layer with a ply thickness. `tried` and `feasible`
+    are the numbers of rounded designs tried and found feasible; `solves` is the number of re-
+    optimisations. `complete` is True if the search did not stop at its time limit. The result is
+    not proven to be the best, because branch and bound used local optima as bounds. `unmade` lists
+    the PATHs of values that are not whole plies or allowed angles because the requested sizes leave
+    them free; such a design cannot be built yet. `remedies` lists small changes of a limit, load or
+    pressure that make better sizes possible; they are computed only if rounding costs much.
     """
 
     met: bool

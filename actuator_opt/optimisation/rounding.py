@@ -31,7 +31,7 @@ from ..base.quantities import INPUTS
 from ..design import Design, quantity_of, with_values
 from ..design.material import Material
 from ..design.model import Ply
-from ..design.sizes import groups
+from ..design.sizes import STEP_LABEL, groups
 from ..design.standard_sizes import WHOLE, along
 from ..evaluation import Evaluation, evaluate, prepare
 from . import repairs
@@ -259,9 +259,12 @@ class ListedSizes:
 
     @property
     def name(self) -> str:
-        """Name of the rounding: "whole plies" or "standard sizes"."""
-        plies = set(self.labels.values()) <= set(_OF_PLIES)
-        return "whole plies" if plies else "standard sizes"
+        """Name of the rounding: "whole plies", "sizes in steps" or "standard sizes"."""
+        labels = set(self.labels.values()) - set(_OF_PLIES)
+        if not labels:
+            return "whole plies"
+        steps = all(label.startswith(STEP_LABEL) for label in labels)
+        return "sizes in steps" if steps else "standard sizes"
 
 
 def layers(design: Design) -> Iterator[tuple[str, Ply]]:
@@ -558,6 +561,7 @@ def _values_of(
 _FINER = {
     "whole plies": "use thinner plies or allow more angles",
     "standard sizes": "allow more sizes",
+    "sizes in steps": "allow finer steps",
 }
 
 

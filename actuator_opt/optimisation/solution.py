@@ -23,8 +23,8 @@ class Outcome(Enum):
     NOT_STATIONARY = (
         "feasible",
         "all requirements are met, but the optimality conditions are not satisfied to 1e-6",
-        "run again with more starts or another seed, or check custom metrics for a kink "
-        "near this point (min, max, a look-up table or its edge)",
+        "run again with more starts or another seed; a kink of a limit may be near this point, "
+        "such as two places of equal stress, or min, max or a table in a custom metric",
     )
     SADDLE = (
         "feasible",

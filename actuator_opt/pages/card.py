@@ -12,11 +12,9 @@ import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from ..base.quantities import Quantity
 from ..design.paths import words_of
 from ..evaluation.result import Check, Evaluation, Requirement, count_words, percent
 from ..metrics import term_of
-from ..metrics.table import ROWS
 from ..optimisation.prices import PER_CENT, Sensitivity
 from ..optimisation.problem import Robust
 from ..optimisation.result import Infeasibility, Optimisation, VariableResult
@@ -121,7 +119,7 @@ def _head(subject: Evaluation | Optimisation) -> Iterator[Block]:
     """Name, objective, limits met, and quality of the optimum; a remedy if there is no optimum."""
     evaluation, optimisation = report.parts_of(subject)
     missed = _missed_checks(evaluation)
-    advised = sum(map(_is_advice, missed))
+    advised = sum(check.advice for check in missed)
     parts = [f"{_objective(evaluation, optimisation)}{_sizes(optimisation)}", _tally(evaluation)]
     if binding := len(missed) - advised:
         parts.append(f"{_count(binding, 'check')} missed")
@@ -274,11 +272,15 @@ def _limit_table(
         metric = evaluation.metrics.get(row.metric or "")
         if row.value is None and metric is not None and metric.why:
             blocks.append(_line(f"{_name(row, evaluation)} not computed: {metric.why}"))
-    if advised := [row.metric for row in rows[:most] if _is_advice(row)]:
+    if advised := [row for row in rows[:most] if isinstance(row, Check) and row.advice]:
+        name, sense, limit = advised[0].metric, advised[0].sense, advised[0].limit
+        assert name is not None
+        assert limit is not None
+        shown = text.metric(name).text(limit)
         blocks.append(
             _line(
-                f"advice does not bind: bind it by requirements.{advised[0]}, or accept it by "
-                f"waivers.{advised[0]} with a reason"
+                f'advice does not bind: requirements.{name}.{sense}="{shown}" binds it, '
+                f"waivers.{name} with a reason accepts it"
             )
         )
     hidden = rows[most:]
@@ -289,18 +291,11 @@ def _limit_table(
     return blocks
 
 
-def _is_advice(row: Requirement | Check) -> bool:
-    """Whether a limit is advice, which does not bind the optimiser (`CheckLine.advice`)."""
-    if not isinstance(row, Check) or (metric := ROWS.get(row.metric or "")) is None:
-        return False
-    return metric.check is not None and metric.check.advice
-
-
 def _limit_cells(row: Requirement | Check, evaluation: Evaluation) -> list[Cell]:
     quantity, met = text.metric(row.metric or ""), row.state != "missed"
     where = text.brief(row.case, row.place)
     if isinstance(row, Check):
-        kind = "advice" if _is_advice(row) else "check"
+        kind = "advice" if row.advice else "check"
         where = f"{kind}; {where}" if where else kind
     return [
         Status(row.state, " "),
@@ -355,22 +350,7 @@ def _changes(optimisation: Optimisation, row: Requirement, price: Sensitivity | 
         return [DASH, DASH]
     solved = {sign: value for sign, _, value in price.ends}
     looser = -1 if row.sense == "min" else 1
-    return [_change(optimisation, solved[sign]) for sign in (looser, -looser)]
-
-
-def _change(optimisation: Optimisation, solved: float | None) -> str:
-    """Change of the objective with its unit; "none found" without a design."""
-    if solved is None:
-        return "none found"
-    quantity = text.metric(optimisation.objective_metric)
-    change = _per_display(quantity) * (solved - optimisation.objective_value)
-    if abs(solved - optimisation.objective_value) <= 1e-6 * abs(optimisation.objective_value):
-        change = 0.0
-    return text.with_unit(text.number(change, 3, signed=True), text.unit_text(quantity.unit))
-
-
-def _per_display(quantity: Quantity) -> float:
-    return quantity.to_display(1.0) - quantity.to_display(0.0)
+    return [optimum.change_text(optimisation, solved[sign]) for sign in (looser, -looser)]
 
 
 def _checks_at_limit(optimisation: Optimisation) -> list[str]:
@@ -657,7 +637,7 @@ def _robust(optimisation: Optimisation, robust: Robust) -> Iterator[Block]:
     if math.isfinite(nominal):
         quantity = text.metric(optimisation.objective_metric)
         share = percent(robust.nominal_rate)
-        words += f"; without margins {text.value_text(quantity, nominal)}, yield {share} %"
+        words += f"; best without margins: {text.value_text(quantity, nominal)}, {share} %"
     yield _line(words, "" if robust.reached else "yellow")
     rows = {row.name: _name(row, evaluation) for row in evaluation.requirements}
     kept = [(x, rows.get(name, name)) for name, x in robust.reserves.items() if x >= LEAST_GAIN]
@@ -698,7 +678,7 @@ def _offers(optimisation: Optimisation) -> Iterator[Block]:
             if gain > LEAST_GAIN * abs(objective):
                 more = "more" if sign > 0 else "less"
                 words = f"{PER_CENT} % {more} {words_of(row.parameter)}"
-                offers.append((gain, f"{words} {_change(optimisation, solved)}"))
+                offers.append((gain, f"{words} {optimum.change_text(optimisation, solved)}"))
     if offers:
         offers.sort(key=lambda offer: -offer[0])
         names = [words for _, words in offers[:MOST_NAMED]]

@@ -453,3 +453,18 @@ def robust_tables(optimisation: Optimisation) -> Iterator[Table]:
             "draws miss this limit than the required yield allows."
         )
         yield Table("Margins added for scatter", columns, kept, note=note, on="paper")
+
+
+def change_text(optimisation: Optimisation, solved: float | None) -> str:
+    """Change of the objective with its unit; "none found" without a design."""
+    if solved is None:
+        return "none found"
+    quantity = text.metric(optimisation.objective_metric)
+    change = _per_display(quantity) * (solved - optimisation.objective_value)
+    if abs(solved - optimisation.objective_value) <= 1e-6 * abs(optimisation.objective_value):
+        change = 0.0
+    return text.with_unit(text.number(change, 3, signed=True), text.unit_text(quantity.unit))
+
+
+def _per_display(quantity: Quantity) -> float:
+    return quantity.to_display(1.0) - quantity.to_display(0.0)

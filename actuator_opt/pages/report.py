@@ -7,12 +7,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from ..design import assembly
+from ..design import Design, assembly
 from ..design.paths import get, quantity_of
 from ..evaluation import result
 from ..evaluation.parts_list import parts_list
 from ..evaluation.result import Evaluation, Requirement
 from ..metrics import METRICS
+from ..optimisation.prices import PER_CENT
 from ..optimisation.result import Optimisation
 from ..rendering import heights, text
 from ..rendering.blocks import (
@@ -215,8 +216,21 @@ def reserve_sentences(subject: Evaluation | Optimisation) -> list[str]:
 
 def _sentence(subject: Evaluation | Optimisation) -> str:
     optimisation = parts_of(subject)[1]
-    parts = [] if optimisation is None else sentences(optimisation)
+    parts = [] if optimisation is None else [*sentences(optimisation), *_dearest(optimisation)]
     return " ".join([*parts, *reserve_sentences(subject)])
+
+
+def _dearest(optimisation: Optimisation) -> Iterator[str]:
+    """Sentence on the requirement that costs most, and what it costs."""
+    required = {row.path: row for row in optimisation.best_evaluation.requirements}
+    for price in optimisation.sensitivities:
+        row = required.get(price.parameter)
+        if price.active and price.ends and row is not None:
+            looser = -1 if row.sense == "min" else 1
+            solved = next(value for sign, _, value in price.ends if sign == looser)
+            change = optimum.change_text(optimisation, solved)
+            yield f"The dearest limit is {row.name}: {PER_CENT} % looser, {change}."
+            return
 
 
 def verdict(subject: Evaluation | Optimisation) -> Verdict:
@@ -227,7 +241,7 @@ def verdict(subject: Evaluation | Optimisation) -> Verdict:
     """
     evaluation, optimisation = parts_of(subject)
     missed = sum(not row.met for row in evaluation.requirements)
-    failed = sum(check.status == "missed" for check in evaluation.checks)
+    failed = [check for check in evaluation.checks if check.status == "missed"]
     rounding = None if optimisation is None else optimisation.rounding
     robust = None if optimisation is None else optimisation.robust
     tight = len((optimisation or evaluation).tight)
@@ -245,7 +259,9 @@ def verdict(subject: Evaluation | Optimisation) -> Verdict:
     elif robust is not None and not robust.reached:
         state, words = "missed", "YIELD MISSED"
     elif failed:
-        state, words = "checks", "REQUIREMENTS MET, CHECKS MISSED"
+        advice = all(check.advice for check in failed)
+        state = "checks"
+        words = f"REQUIREMENTS MET, {'ADVICE NOT FOLLOWED' if advice else 'CHECKS MISSED'}"
     elif tight:
         state, words = "checks", f"REQUIREMENTS MET, {result.count_words(tight).upper()}"
     else:
@@ -307,6 +323,8 @@ def key_figures(subject: Evaluation | Optimisation) -> list[Tile]:
         metric, quantity = evaluation.metrics[name], text.metric(name)
         row = _limited(evaluation, name)
         value, note = metric.value, f'load case "{metric.case}"' if metric.case else ""
+        if name == "natural_frequency" and not _loaded(evaluation.design):
+            note = "no load: state load.mass"
         state: State = ""
         before = _before(optimisation, name)
         if name in first and before is not None and metric.value is not None:
@@ -331,6 +349,11 @@ def key_figures(subject: Evaluation | Optimisation) -> list[Tile]:
             )
         )
     return tiles
+
+
+def _loaded(design: Design) -> bool:
+    """Whether the design states a mass or moment of inertia of the load."""
+    return bool(design.load.mass or design.load.inertia)
 
 
 def _limited(evaluation: Evaluation, name: str) -> Requirement | None:

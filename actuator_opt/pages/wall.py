@@ -576,7 +576,7 @@ def _metals(study: WallStudy) -> Block:
         Column("against this\ndesign", "right"),
     ]
     note = (
-        "For each metal of the library: the thinnest tube of the same bore that has at most the "
+        "For each metal: the thinnest tube of the same bore that has at most the "
         "bore growth of this design (without axial load), and at least the required burst "
         "pressure (or this design's own, if that is lower). Computed by Lamé and Faupel, under "
         "the same axial forces, without a minimum wall for turning."
