@@ -707,8 +707,20 @@ def _doubts(subject: Evaluation | Optimisation) -> Iterator[Block]:
         parts.append(_count(len(warnings), "warning"))
     if optimisation is not None and evaluation.mass_leaves_out:
         parts.append(f"{_count(len(evaluation.mass_leaves_out), 'component')} not in the mass")
+    if left_out := _not_in_stiffness(evaluation):
+        parts.append(f"stiffness without {' or '.join(left_out)}")
     if parts:
         yield _line(f"care: {', '.join(parts)} {MORE}", "yellow")
+
+
+def _not_in_stiffness(evaluation: Evaluation) -> list[str]:
+    """Springs that the file does not state, if a stiffness is required."""
+    cylinder = evaluation.design.cylinder
+    if not any("stiffness" in row.metric for row in evaluation.requirements):
+        return []
+    oil = cylinder.dead_volume_a or cylinder.dead_volume_b or evaluation.design.lines
+    springs = (("mounts", cylinder.mount_stiffness), ("oil in ports and hoses", oil))
+    return [name for name, stated in springs if not stated]
 
 
 def _next(subject: Evaluation | Optimisation, again: str, *, written: bool) -> Iterator[Block]:
