@@ -452,6 +452,8 @@ def _candidate_choices(
             if seal.seal_type.o_ring_gland:
                 for compound in SUBSTITUTES["seal"]:
                     yield f"{section}.compound", compound, {}
+                for size in _near_sections(seal.section):
+                    yield f"{section}.section", INPUTS["cross_section"].text(size, 3), {}
     if design.cylinder.end_stop == "internal":
         yield "cylinder.end_stop", "external", {}
     blocks = [] if design.retention is None else list(design.retention.ends)
@@ -469,6 +471,14 @@ def _candidate_choices(
                 yield f"{part}.material", other, {}
 
 
+def _near_sections(section: float) -> list[float]:
+    """The next smaller and the next larger standard section of an O-ring."""
+    sizes = standards.o_ring_sections("as568")
+    smaller = [x for x in sizes if x < section - standards.WHOLE]
+    larger = [x for x in sizes if x > section + standards.WHOLE]
+    return [*smaller[-1:], *larger[:1]]
+
+
 def _rings(seal: Seal, section: str, count: int) -> dict[str, str] | None:
     """Entries to change for `count` back-up rings on a seal; None if no standard gland fits."""
     if seal.back_up_material is not None and seal.back_up_thickness is not None:
@@ -483,7 +493,7 @@ def _rings(seal: Seal, section: str, count: int) -> dict[str, str] | None:
 
 
 def _word_at(design: Design, path: str) -> str:
-    """The word or material that a design states at a PATH; "" if it states none."""
+    """The word, material or size that a design states at a PATH; "" if it states none."""
     value: object = design
     for step in re.split(r"\.|(?=\[)", path):
         layer = re.fullmatch(r"\[(\d+)\]", step)
@@ -491,6 +501,8 @@ def _word_at(design: Design, path: str) -> str:
             value = value[int(layer[1])]
         else:
             value = getattr(value, step, None)
+    if isinstance(value, float):
+        return quantity_of(path, design).text(value, 3)
     return value if isinstance(value, str) else ""
 
 

@@ -244,6 +244,18 @@ def test_stops_outside_the_cylinder_are_offered():
     assert first["objective"] is not None
 
 
+def test_a_thinner_ring_is_offered_against_friction():
+    """Rings of 3.53 mm rub more than those of 2.62 mm: the next section makes up for 8 %."""
+    start = ao.start(push=9e3, pull=3e3, stroke="180 mm", pressure="160 bar", stiffness=20e6)
+    thick = {f"seals.{place}.section": "3.53 mm" for place in ("piston", "rod")}
+    limits = {"requirements.friction_running.max": "500 N"}
+    cures = best_of(read(start.source.text, set=thick | limits)).infeasibility.cures
+    first = next(cure for cure in cures if cure["parameter"].endswith(".section"))
+    assert (first["now"], first["needed"], first["advised"]) == ("3.53 mm", "2.62 mm", True)
+    changed = thick | limits | {first["parameter"]: first["needed"]}
+    assert best_of(read(start.source.text, set=changed)).status == "optimal"
+
+
 def test_what_is_tried_in_place_of_materials_is_in_the_library():
     """Every substitute exists and is of its kind."""
     library = load_library()
