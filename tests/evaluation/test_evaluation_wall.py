@@ -292,3 +292,18 @@ def test_gradients_of_the_wall_are_those_of_differences(tmp_path):
     slope = (high - low) / 2e-6
     scale = np.max(np.abs(high), axis=1, keepdims=True)
     np.testing.assert_allclose(exact / scale, slope / scale, atol=2e-5)
+
+
+@pytest.mark.parametrize("stop", ["internal", "external"])
+@pytest.mark.parametrize("mount", ["cap_clevis", "head_flange"])
+@pytest.mark.parametrize("path", ["rod.outer_diameter", "cylinder.bore", "supply.pressure"])
+def test_many_designs_are_each_alone(stop, mount, path):
+    """Whichever number varies, and whichever area the stall pressure acts on."""
+    changes = {"cylinder.end_stop": stop, "cylinder.mount": mount}
+    values = ao.evaluate(ao.read(KNEE, set=changes))[path] * np.array([1.0, 1.02])
+    names = ["burst_factor", "proof_factor", "mass"]
+    many = ao.evaluate_many(ao.read(KNEE, set=changes), {path: values}, metrics=names)
+    for k, value in enumerate(values):
+        one = ao.evaluate(ao.read(KNEE, set=changes | {path: value}))
+        for name in names:
+            assert many[name][k] == pytest.approx(one[name].value, rel=1e-10), (name, value)

@@ -115,9 +115,9 @@ def load_path(
         cases = barrel_ends.axial_force_head_mounted(
             cap_side_pressure=state.moving_a, cap_side_area=g.area_a
         )
-    zero = 0.0 * np.atleast_1d(array_of(g.area_a))
-    name = STOP if design.cylinder.end_stop == "internal" else LARGEST
-    worst = {name: zero + largest_area(design, g)}
+    area = np.atleast_1d(array_of(largest_area(design, g)))
+    zero = 0.0 * area
+    worst = {STOP if design.cylinder.end_stop == "internal" else LARGEST: area}
     if not clamped(design):
         return LoadPath({NONE: zero, **worst}, 0.0, cases)
     return _clamped(v, design, stock, g, state, swelling, expansion, worst, cases)
