@@ -220,7 +220,7 @@ def _reported():
             yield pytest.param(name, marks=[pytest.mark.long] if slow else [])
 
 
-@pytest.mark.parametrize("name", _reported())
+@pytest.mark.parametrize("name", [*_reported()])
 def test_the_terminal_and_the_library_write_the_same_bytes(name, monkeypatch):
     """Every kind with a report has a case; only the command is the library's to state."""
     call, words = CASES[name]
