@@ -300,7 +300,7 @@ def test_gradients_of_the_wall_are_those_of_differences(tmp_path):
 def test_many_designs_are_each_alone(stop, mount, path):
     """Whichever number varies, and whichever area the stall pressure acts on."""
     changes = {"cylinder.end_stop": stop, "cylinder.mount": mount}
-    values = ao.evaluate(ao.read(KNEE, set=changes))[path] * np.array([1.0, 1.02])
+    values = float(ao.evaluate(ao.read(KNEE, set=changes))[path]) * np.array([1.0, 1.02])
     names = ["burst_factor", "proof_factor", "mass"]
     many = ao.evaluate_many(ao.read(KNEE, set=changes), {path: values}, metrics=names)
     for k, value in enumerate(values):
