@@ -189,6 +189,7 @@ def test_a_bomb_is_refused(tmp_path, monkeypatch):
     assert "is larger than" in result.errors[0]["message"]
 
 
+@pytest.mark.long
 def test_other_programs_may_have_saved_it(reports, tmp_path):
     """Saved again by another library it still runs; with a password it is said to be encrypted."""
     pypdf = pytest.importorskip("pypdf")

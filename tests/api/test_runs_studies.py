@@ -308,6 +308,7 @@ def test_rerun_repeats_a_front(folder, design, tmp_path):
     assert len(list(folder.iterdir())) == 2
 
 
+@pytest.mark.long
 def test_own_metrics_travel_with_the_record(folder, design, tmp_path, monkeypatch):
     """From any folder; a changed plugin is told, one named by the person is taken."""
     plugin = tmp_path / "own.py"
@@ -333,6 +334,7 @@ def test_own_metrics_travel_with_the_record(folder, design, tmp_path, monkeypatc
     assert not (tmp_path / "c").exists()
 
 
+@pytest.mark.long
 def test_a_sweep_by_an_own_metric(folder, design, tmp_path):
     """As objective and as requirement, whatever varies: numbers, texts, temperatures set apart."""
     plugin = tmp_path / "own.py"

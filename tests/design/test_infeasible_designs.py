@@ -81,6 +81,7 @@ def test_what_repairs_a_large_miss_repairs_a_small_one(tight):
     assert len(repairs) >= 3, "stiffness, buckling and squeeze trade against friction"
 
 
+@pytest.mark.long
 def test_a_mass_below_the_optimum():
     """Mass limited to four fifths of the optimum: alone it must give way to the optimum's mass."""
     mass = best(STEEL).objective_value
@@ -205,6 +206,7 @@ def test_a_fixed_dimension_that_alone_is_enough_comes_first(path, now):
     assert card.sentence in str(result)
 
 
+@pytest.mark.long
 def test_dimensions_that_are_enough_together():
     """Bond and skirt both too small: neither alone, both at once, at the values printed."""
     actuator = fixed(retention__length="13 mm", retention__wall="1.2 mm")

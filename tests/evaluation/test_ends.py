@@ -65,6 +65,7 @@ def test_the_same_joint_stated_for_each_end_changes_nothing(text):
     }
 
 
+@pytest.mark.long
 def test_the_optimum_of_equal_ends_is_that_of_one_joint():
     """The optimiser has two more variables, and finds the same lengths at both ends."""
     block = KNEE[KNEE.index("retention:\n") : KNEE.index("clevis:\n")]

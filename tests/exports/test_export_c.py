@@ -157,6 +157,7 @@ def bounded(margin):
     return 1.0 if margin > 1e9 else margin / (1 + margin) if margin > 0 else margin
 
 
+@pytest.mark.long
 @recorded
 @compiled
 def test_inputs_are_the_numbers_of_the_design(tmp_path):

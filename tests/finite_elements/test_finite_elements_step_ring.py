@@ -113,6 +113,7 @@ def test_forces_on_the_step_ring_balance(pressed):
         assert contact.contact_pressure[-1] == 0
 
 
+@pytest.mark.long
 def test_trends_over_pressure_against_the_published_figure(pressed):
     """Length and stress grow as published up to 5 MPa; our elastic peak grows on beyond.
 

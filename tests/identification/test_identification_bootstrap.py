@@ -79,6 +79,7 @@ def test_bounds_hold_the_truth():
         assert 0.90 <= np.mean(each) <= 0.99, name
 
 
+@pytest.mark.long
 def test_a_well_posed_case_agrees_with_the_linearised_model():
     """Forty points of small equal errors: bounds within a quarter of the linearised ones."""
     points = points_of(np.random.default_rng(4), np.geomspace(5e-4, 0.2, 20), error=0.5)

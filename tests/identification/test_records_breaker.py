@@ -160,6 +160,7 @@ def test_a_load_stated_twice_is_refused():
     assert "F_L" in result.err
 
 
+@pytest.mark.long
 def test_a_record_from_standard_input():
     """`-` reads the record from a pipe, as designs do."""
     done = subprocess.run(

@@ -315,6 +315,7 @@ def test_every_size_is_a_field_of_a_design():
         assert Of(size.quantity).validate(size.example) > 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", [x for x in TYPES.values() if x.elements], ids=lambda x: x.name)
 def test_finite_elements_are_near_the_closed_form(kind):
     """Mounted without pressure, line loads within a third: coarse, but the right seal."""

@@ -165,6 +165,7 @@ def brute_force(text, result, **options):
     return objectives, tuple(result.choices.best[path] for path in paths)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "lists"),
     [

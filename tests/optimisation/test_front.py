@@ -182,6 +182,7 @@ def test_gaps_are_even_or_jumps(height, waves_, shift, count):
         assert held >= gap.size - 2 * gap.reach - 1e-3
 
 
+@pytest.mark.long
 @settings(max_examples=8, deadline=None)
 @given(st.floats(0.003, 1), st.floats(1, 8), st.integers(12, 40))
 def test_bent_fronts_are_even(sharp, power, count):

@@ -155,6 +155,7 @@ def test_a_metric_nobody_asks_for_may_raise(plain):
     assert not any("own" in w for w in found.warnings)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["math", "interp", "if"])
 def test_functions_of_one_number_can_be_used(kind, plain):
     """What takes one real number at a time is asked for each design alone; slopes by differences.

@@ -23,6 +23,7 @@ def front():
     return ao.pareto(KNEE, ["mass:min", "stiffness_min:max"], n=20, checks=1)
 
 
+@pytest.mark.long
 def test_ends_are_the_optima_alone(front):
     """The lightest design is that of `optimise`; the stiffest that of its own optimum."""
     lightest = ao.optimise(KNEE, starts=2, prices=False)

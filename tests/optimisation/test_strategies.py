@@ -14,6 +14,7 @@ from actuator_opt.optimisation.solution import Outcome
 from actuator_opt.optimisation.solver import solve
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", bench_strategies.GENERIC)
 def test_the_default_finds_the_generic_optima(name):
     """Ten seeds, ten times the published optimum, without a start given."""
@@ -25,6 +26,7 @@ def test_the_default_finds_the_generic_optima(name):
         assert found.objective == pytest.approx(case.optimum, rel=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["knee", "steel_baseline", "aerospace"])
 def test_the_default_agrees_with_itself_on_shipped_designs(name):
     """Two sweeps by different seeds, with starts of their own alone, end on one optimum.

@@ -104,6 +104,7 @@ def test_ties_have_no_winner_and_groups_do(base):
     assert "their duties differ (load_cases[swing].speed)" in sentences(three)[-1]
 
 
+@pytest.mark.long
 def test_any_pair_of_shipped_designs(shipped):
     """Whatever their build: tables fit the terminal, labels the paper, JSON is JSON."""
     for a, b in itertools.combinations(shipped.values(), 2):
@@ -215,6 +216,7 @@ def test_turned_round_it_says_the_same(bore, thickness):
             assert dict(x.steps) == dict(y.steps)
 
 
+@pytest.mark.long
 def test_runs_are_compared_as_they_were(tmp_path, monkeypatch):
     """The optimum of a run beside the file it came from; --set does not reach a run."""
     monkeypatch.setenv("ACTUATOR_OPT_RUNS", str(tmp_path / "runs"))

@@ -104,6 +104,7 @@ def test_words_under_the_sections_are_the_solution(name):
     assert "0 bar, mounted" in said
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", BOTH)
 def test_sections_are_to_scale_in_their_groove(name):
     """Every body keeps its area times the scale, between walls and face; contacts in red there."""

@@ -19,6 +19,7 @@ def no_typst(monkeypatch):
     )
 
 
+@pytest.mark.long
 def test_plain_report_says_so_and_carries_its_input(tmp_path, no_typst):
     """PDF and PNG exist, the input is inside, and the sheet says why it is plain."""
     given = {"stem": "r", "source_text": "a: 1\n", "source_name": "a.yaml", "command": "c"}

@@ -467,6 +467,7 @@ def test_many_notes_go_on_to_a_second_sheet(tmp_path):
     assert files[0].pages == 2
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["levels", "bare"])
 def test_the_plain_renderer_draws_it_too(kind):
     """Without typst every table and note is drawn, one below the other."""

@@ -42,6 +42,7 @@ def _said(numbers: dict[str, Any]) -> str:
     return _words(study.page(numbers)[0])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("key", ["steel", "aluminium", "lined", "linerless"])
 def test_each_barrel_is_its_own_optimum_at_the_requirements_of_the_knee(key, numbers) -> None:
     """Solved afresh the mass is the committed one, and all requirements are met."""

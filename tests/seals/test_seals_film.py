@@ -367,6 +367,7 @@ def test_complex_step_against_central_differences_of_the_same_evaluation(path):
         assert np.all(step == 0)  # the film does not see the gap behind the ring
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", [p for p in MOVED[:-1] if "section" not in p])
 def test_complex_step_against_films_solved_anew(path):
     """The same derivative by films solved on both sides of the design (of a constant viscosity)."""

@@ -181,6 +181,7 @@ def scenes(draw, own):
     return stated
 
 
+@pytest.mark.long
 @settings(max_examples=30)
 @given(data=st.data())
 def test_mass_and_energy_are_kept(data):

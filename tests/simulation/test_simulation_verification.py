@@ -212,6 +212,7 @@ def test_the_bristles_of_sticking_seals_are_a_spring_beside_the_oil():
     assert (with_seals - without).real == pytest.approx(breakaway / 1e-4, rel=0.02)
 
 
+@pytest.mark.long
 def test_shares_make_up_the_difference():
     """Friction, amplitude and operating point together lead from one tier to the other."""
     told = [one for one in sticking().rows if one.shares]

@@ -179,6 +179,7 @@ except InputError as error:
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("group", ["1000", "100000"])
 @pytest.mark.parametrize("table", ["", "rows.csv"])
 def test_a_full_disk_leaves_what_stood(tmp_path, group, table):

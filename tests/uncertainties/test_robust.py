@@ -175,6 +175,7 @@ def test_the_certificate_speaks_of_limits_without_reserves():
         assert "without margins added for scatter" in found.certificate.sentence
 
 
+@pytest.mark.long
 def test_reserves_refused_are_those_of_the_yield():
     """What is said to be lacking is the whole reserve, not a part of it that was tried."""
     found = known(0.99, upper="15.1 mm")
@@ -224,6 +225,7 @@ def test_impossible_targets_are_one_line(target, tmp_path):
     assert "is outside the valid range" in fault["message"]
 
 
+@pytest.mark.long
 def test_the_report_tells_of_it(tmp_path):
     """Sentence on page 1, rounds and reserves as tables."""
     from dataclasses import replace
