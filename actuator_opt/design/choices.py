@@ -41,6 +41,14 @@ ViscosityLaw: TypeAlias = Annotated[
         VISCOSITY_LAWS,
     ),
 ]
+CylinderType: TypeAlias = Annotated[
+    Literal["differential", "double_rod", "plunger", "telescopic"],
+    Choice(
+        "build of the cylinder; differential: one rod, through the head; double_rod: a rod through "
+        "each end, the cap end with a gland like that of the head; plunger, telescopic: not "
+        "modelled, refused"
+    ),
+]
 Mount: TypeAlias = Annotated[
     Literal["cap_clevis", "head_flange", "head_trunnion", "cap_flange"],
     Choice(

@@ -20,7 +20,7 @@ from ..joints.joint import LEAST_METAL, ROUNDING, Joint
 from ..models import linkage as crank, mass
 from ..models.piston_nut import HEIGHT
 from ..models.spherical_bearing import lug_radius
-from . import assembly, choices, material, seal_faults, wall_faults
+from . import assembly, choices, double_rod, material, seal_faults, wall_faults
 from .kinds import MaterialName
 from .lengths import closed_length, spigot_length
 from .material import ROLES
@@ -98,13 +98,15 @@ def _closed(view: FileView) -> float | None:
             spigot=spigot,
             further=further,
             extension=extension,
-            eye=eye,
+            eyes=2 * eye,
         )
     )
 
 
 def _spigot(view: FileView) -> float:
     """Length of the cap's spigot and inner skirt, which lengthen the barrel; 0 without them."""
+    if double_rod.has_second_rod(view):  # its gland; a stated length of the barrel includes it
+        return 0.0 if view.has("barrel", "length") else view.number("head", "length") or 0.0
     section, spigot = view.number("seals", "static", "section"), 0.0
     if section is not None:
         place, _ = seal_faults.static_places(view)
@@ -536,18 +538,17 @@ def rod(view: FileView) -> Iterator[Fault]:
 
 
 def barrel_length(view: FileView) -> Iterator[Fault]:
-    """Check that the barrel is long enough for stroke, piston and head."""
-    length = view.number("barrel", "length")
-    parts = [
-        view.number("cylinder", "stroke"),
-        view.number("piston", "length"),
-        view.number("head", "length"),
-    ]
+    """Check that the barrel is long enough for stroke, piston and head, or both glands."""
+    length, head = view.number("barrel", "length"), view.number("head", "length")
+    parts = [view.number("cylinder", "stroke"), view.number("piston", "length"), head]
+    words = "stroke + piston + head"
+    if double_rod.has_second_rod(view):
+        parts, words = [*parts, head], "stroke + piston + two glands of head.length"
     needed = sum(part for part in parts if part is not None)
     if length is not None and length < needed * (1 - 1e-9):
         yield Fault(
             ("barrel", "length"),
-            f"{length_text(length)}: shorter than stroke + piston + head ({length_text(needed)})",
+            f"{length_text(length)}: shorter than {words} ({length_text(needed)})",
             f"write at least {length_text(needed)}, or remove it",
         )
 
@@ -646,6 +647,7 @@ def _case_force(loc: Loc, case: dict[str, Any], *, linked: bool) -> Iterator[Fau
 
 
 CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
+    double_rod.cylinder_type,
     rod,
     piston_nut,
     parts,

@@ -14,14 +14,15 @@ def closed_length(
     spigot: Array,
     further: Array,
     extension: Array,
-    eye: Array,
+    eyes: Array,
 ) -> Array:
-    """Pin-to-pin length of the retracted actuator [m].
+    """Pin-to-pin length of the retracted actuator [m]; the total length with a second rod.
 
-    `spigot` is the length of the cap's spigot, `eye` that of an eye. `further` is that of cushions'
-    bushes, the additional neck of the cap's eye, and the components between cap or rod and eye.
+    `spigot` is the length of the cap's spigot, `eyes` that of all eyes. `further` is that of
+    cushions' bushes, the additional neck of the cap's eye, the components between cap or rod and
+    eye, and a second rod outside the cap.
     """
-    return barrel_length + 2 * plate + spigot + further + extension + 2 * eye
+    return barrel_length + 2 * plate + spigot + further + extension + eyes
 
 
 def spigot_length(*, place: StaticPlace, section: Array) -> Array:

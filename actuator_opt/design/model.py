@@ -295,6 +295,7 @@ class Cylinder(Section):
 
     bore: Annotated[float, Of("bore", "inner diameter of the barrel")]
     stroke: Annotated[float, Of("stroke", "travel of the piston")]
+    type: choices.CylinderType = "differential"
     mount: choices.Mount = "cap_clevis"
     end_stop: choices.EndStop = "internal"
     dead_volume_a: Annotated[
@@ -433,6 +434,29 @@ class Rod(Section):
     thread: Thread | None = None
     layup: Annotated[tuple[Ply, ...], Field(max_length=MOST_LAYERS)] = ()
     fitting: Fitting | None = None
+
+
+class SecondRod(Section):
+    """The rod through the cap of a double-rod cylinder, where it differs from the block `rod`.
+
+    Without this block, material, diameters and extension are those of `rod`. The second rod is of
+    one metal, and has no thread. `extension` is its length outside the cap when the piston is fully
+    extended; retracted, the stroke adds to it.
+    """
+
+    material: Annotated[str | None, MaterialName("isotropic", ("metal",))] = None
+    outer_diameter: Annotated[
+        float | None,
+        Of("rod_diameter", "diameter of the second rod; default: that of the rod"),
+    ] = None
+    inner_diameter: Annotated[
+        float | None,
+        Of("rod_inner_diameter", "bore of the second rod; 0: solid; default: that of the rod"),
+    ] = None
+    extension: Annotated[
+        float | None,
+        Of("length", "length outside the cap when fully extended; default: that of the rod"),
+    ] = None
 
 
 class PistonNut(Section):
@@ -757,6 +781,7 @@ class Design(Section):
     cylinder: Cylinder
     barrel: Barrel
     rod: Rod
+    second_rod: SecondRod | None = None
     piston: Piston
     head: Annotated[Head, Field(default_factory=_like_the_piston)]
     caps: Annotated[Caps, Field(default_factory=_plain_caps)]
@@ -785,6 +810,11 @@ class Design(Section):
     materials: dict[str, dict[str, float]] = {}  # noqa: RUF012 (pydantic copies it)
     """Properties (SI) that replace those of the library in this design, by material name."""
     objective: Objective = Objective.model_construct(minimise="mass")
+
+    @property
+    def double_rod(self) -> bool:
+        """Whether a rod passes through the cap, too."""
+        return self.cylinder.type == "double_rod"
 
     @property
     def in_short(self) -> tuple[str, str]:

@@ -18,6 +18,7 @@ from ..seals.contact import GROOVE_WIDTH
 from ..seals.kinds import SIZES, TYPES
 from ..seals.seal_type import SealType, SizeFault
 from ..seals.u_cup import lip_faults
+from .double_rod import thickest_rod
 from .model import PLAIN_CAP
 from .seals import BACK_UPS
 from .structure import FileView, Loc, MaterialLookup, Properties, child_at
@@ -152,7 +153,7 @@ def _grooves(view: FileView, seal: str) -> Iterator[tuple[Loc, float, float]]:
 
 def grooves(view: FileView) -> Iterator[Fault]:
     """Check that seal grooves fit inside piston and head, and leave a core or wall of metal."""
-    bore, rod_diameter = view.number("cylinder", "bore"), view.number("rod", "outer_diameter")
+    bore, rod_diameter = view.number("cylinder", "bore"), thickest_rod(view)
     for seal, part in (("piston", "piston"), ("rod", "head")):
         seal_grooves = list(_grooves(view, seal))
         if not seal_grooves:
@@ -251,12 +252,12 @@ def static_seal(view: FileView) -> Iterator[Fault]:
             f"{length_text(length)} long",
             "increase head.length or use a smaller section",
         )
-    bore, rod_diameter = view.number("cylinder", "bore"), view.number("rod", "outer_diameter")
+    bore, rod_diameter = view.number("cylinder", "bore"), thickest_rod(view)
     inner = max((groove[1] for groove in _grooves(view, "rod")), default=None)
     if bore is None or rod_diameter is None or inner is None:
         return
     rest = (bore - rod_diameter) / 2 - inner - depth
-    free = ("cylinder.bore", "rod.outer_diameter")
+    free = ("cylinder.bore", "rod.outer_diameter", "second_rod.outer_diameter")
     if rest <= 0 and not any(view.has("variables", path) for path in free):
         yield Fault(
             (*loc, "section"),

@@ -16,6 +16,7 @@ from ..base.quantities import length_text
 from ..joints import sleeve
 from ..joints.joint import Joint
 from ..joints.kinds import JOINTS
+from .double_rod import has_second_rod, rod_size
 from .material import PLY_CONSTANTS, PLY_REQUIRED, compliance_determinant, ply_constants
 from .model import EndRetention, Ply
 from .paths import spell
@@ -272,6 +273,8 @@ class EndView(FileView):
             return (*self.at, *loc[1:])
         if loc[0] in ("choices", "variables"):
             return (loc[0], *(self._text(str(key)) for key in loc[1:]))
+        if loc == ("rod", "outer_diameter") and self.at[-1] == "cap":
+            return rod_size(self, "cap")[0] if has_second_rod(self) else loc
         return loc
 
     def _text(self, text: str) -> str:
@@ -288,8 +291,8 @@ class EndView(FileView):
 
     @property
     def at_head(self) -> bool:
-        """Whether the joint holds the head, alone or as well as the cap."""
-        return self.at[-1] != "cap"
+        """Whether a rod passes an end that the joint holds: the head, or the cap of two rods."""
+        return self.at[-1] != "cap" or has_second_rod(self)
 
     @property
     def joint(self) -> Joint | None:

@@ -46,12 +46,12 @@ from .limits import (
 )
 from .plugin import Plugin
 from .result import Check, Evaluation, Metric, Requirement, StrokeCurve
-from .rings import Place, Ring, squeezes
+from .rings import BLOCKS, Ring, squeezes
 from .validity import model_of
 from .values import Values, of_case
 from .wall_study import study as wall_study
 
-PLACES: tuple[Place, ...] = ("piston", "rod")
+PLACES: tuple[Literal["piston", "rod"], ...] = ("piston", "rod")
 
 NEAR = 0.02
 """Relative difference from a standard housing's depth or length above which a remark is made."""
@@ -69,10 +69,13 @@ _SIZES, _GLANDS, _SECTIONS = "standard sizes", "standard glands", "ISO 3601-2 se
 def sizes(design: Design) -> Check:
     """Check whether bore and rod are ISO 3320 sizes; if not, name the nearest sizes."""
     nonstandard = []
-    dimensions: tuple[tuple[Literal["bore", "rod"], float], ...] = (
+    dimensions: list[tuple[Literal["bore", "rod"], float]] = [
         ("bore", design.cylinder.bore),
         ("rod", design.rod.outer_diameter),
-    )
+    ]
+    second = design.second_rod
+    if design.double_rod and second is not None and second.outer_diameter is not None:
+        dimensions.append(("rod", second.outer_diameter))
     for part, value in dimensions:
         near = standards.nearest_standard(part, value, "nearest")
         if abs(near - value) > 1e-9:
@@ -135,7 +138,7 @@ def _housing(ring: Ring) -> Iterator[str]:
     if ring.name == "static":
         return
     try:
-        standard_housings = housings_for(ring.element.type, ring.name, ring["diameter"])
+        standard_housings = housings_for(ring.element.type, BLOCKS[ring.name], ring["diameter"])
     except InputError as error:
         yield f"{ring.label}: {error.diagnostics[0].message}"
         return
@@ -162,6 +165,8 @@ def names_of_materials(design: Design) -> list[str]:
     names += [ply.material for ply in design.barrel.layup]
     names += [ply.material for ply in design.rod.layup]
     names += [design.rod.material, design.piston.material, design.head.material]
+    if design.double_rod and design.second_rod is not None:
+        names += [name for name in [design.second_rod.material] if name is not None]
     if design.rod.fitting is not None:
         names += [design.rod.fitting.material or design.rod.material, design.rod.fitting.adhesive]
     names += [part.bearing for part in (design.piston, design.head) if part.bearing is not None]
@@ -230,6 +235,10 @@ def spec_hash(subject: PreparedDesign) -> str:
         for key, unset in (("count", 1.0), ("length", 0.0)):
             if component[key] == unset:
                 del component[key]
+    if not design["second_rod"]:
+        del design["second_rod"]
+    if design["cylinder"]["type"] == "differential":
+        del design["cylinder"]["type"]
     for block, key in ((design["cylinder"], "port_thread"), (design["clevis"], "bearing")):
         if block and block[key] is None:
             del block[key]

@@ -12,7 +12,7 @@ from .barrel import Wall
 from .geometry import Geometry
 from .limits import MaterialValues, MetricArrays
 from .linkage import Demand
-from .rods import RodSection
+from .rods import RodSection, material_of
 from .state import LoadState
 from .strength import LoadedJoint
 from .values import Values
@@ -28,7 +28,7 @@ def compute(
     g: Geometry,
     state: LoadState,
     wall: Wall,
-    section: RodSection,
+    sections: Sequence[RodSection],
     loaded_joints: Sequence[LoadedJoint],
     stop: Demand,
     net: Array,
@@ -41,13 +41,18 @@ def compute(
     """
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
-    _endurance(v, stock, design, g, wall, section, loaded_joints, supply, push, pull, out)
+    _endurance(v, stock, design, g, wall, sections, loaded_joints, supply, push, pull, out)
     _end_stop(v, design, g, state, supply, stop, net, out)
     _trapped(v, stock, design, g, state, wall, supply, out)
     _layers(stock, wall, out)
     _service(v, stock, design, out)
     _clearance(v, stock, design, g, wall, out)
-    out.put("blocked_port_factor", v["supply.proof_ratio"] * g.area_b / g.area_a)
+    factor = v["supply.proof_ratio"] * g.area_b / g.area_a
+    if design.double_rod:
+        back = v["supply.proof_ratio"] * g.area_a / g.area_b
+        out.put("blocked_port_factor", {"port b blocked": factor, "port a blocked": back})
+    else:
+        out.put("blocked_port_factor", factor)
 
 
 def _endurance(
@@ -56,7 +61,7 @@ def _endurance(
     design: Design,
     g: Geometry,
     wall: Wall,
-    section: RodSection,
+    sections: Sequence[RodSection],
     loaded_joints: Sequence[LoadedJoint],
     supply: Array,
     push: Array,
@@ -64,7 +69,7 @@ def _endurance(
     out: MetricArrays,
 ) -> None:
     """Compute the pressure-cycle life of metal layers, the rod (push and pull) and thread roots."""
-    cycles = wall.cycles | rod_strength.cycles(design, section, supply, push, pull)
+    cycles = wall.cycles | rod_strength.cycles(design, g, sections, supply, push, pull)
     for end in loaded_joints:
         cycles |= end.placed(end.beside.cycles)
     loads = [(place, c.material, c.span, c.mean) for place, c in cycles.items()]
@@ -72,7 +77,7 @@ def _endurance(
         stress = THREAD_NOTCH * rod.thread_stress(
             force=pull, diameter=v["rod.thread.diameter"], pitch=v["rod.thread.pitch"]
         )
-        loads.append(("rod thread", section.end_material, stress, stress / 2))
+        loads.append(("rod thread", sections[0].end_material, stress, stress / 2))
     lives = piston_nut.lives(v, design, stock, g, push, pull)
     for end in loaded_joints:
         fatigue = end.joint.fatigue(end.loaded)
@@ -247,14 +252,16 @@ def _clearance(
     if design.environment is None:
         out.skip("clearance_min", "no temperature range stated: add environment")
         return
-    rod = stock.get(design.rod.material, "thermal_expansion", "thermal_expansion_2")
     head = stock.get(design.head.material, "thermal_expansion", "thermal_expansion_2")
     piston = stock.get(design.piston.material, "thermal_expansion", "thermal_expansion_2")
     fits = []
     if wall.expansion is not None and piston is not None:
         fits.append(("piston", g.piston_clearance, g.inner_radius, wall.expansion[1] - piston))
-    if rod is not None and head is not None and not design.rod.layup:
-        fits.append(("head", g.head_clearance, g.rod_diameter / 2, head - rod))
+    for through in g.rods:
+        name = material_of(design, through)
+        rod = stock.get(name, "thermal_expansion", "thermal_expansion_2")
+        if rod is not None and head is not None and not design.rod.layup:
+            fits.append((through.gland, g.head_clearance, through.diameter / 2, head - rod))
     if not fits:
         out.skip("clearance_min", "thermal expansion of barrel or piston is unknown")
         return

@@ -2,13 +2,15 @@
 
 Axial layout, from the outer face of the cap plate: cap plate, barrel, head plate, exposed rod, eye.
 The barrel contains the piston (retracted against the cap plate), the stroke and the head plug.
+A second rod passes through the cap, whose gland then is between cap plate and chamber.
 Every seal element, wiper and guide has its groove in piston or head. Each end plate is held by a
 joint (see `joints`); the design states one joint for both ends, or one for each.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from math import pi
 from typing import Any, Literal, NamedTuple
 
@@ -142,15 +144,21 @@ def end_of(
     angles: Sequence[Array],
     barrel_length: Array,
     plate: Array,
-    rod_radius: Array,
+    rod_radii: Mapping[str, Array],
     head_length: Array,
     rings: Array,
     static: Sequence[Groove] = (),
 ) -> End:
     """Describe an end of the barrel; `thicknesses` and `angles` are those of its layers.
 
-    `rings` is the largest height of a ring above the bore.
+    `rod_radii` are the radii of the rods by the end that they pass, "head" or "cap". A joint of
+    both ends gets the larger one. `rings` is the largest height of a ring above the bore.
     """
+    radii = rod_radii if end_joint.name not in rod_radii else {"": rod_radii[end_joint.name]}
+    rod_radius, *others = radii.values()
+    for other in others:
+        rod_radius = maximum(rod_radius, other)
+    passed = end_joint.name != "cap" or "cap" in rod_radii
     layers = zip(design.barrel.layup, thicknesses, angles, strict=True)
     sealed = bool(static) and end_joint.joint.static_seal == "rim"
     return End(
@@ -166,7 +174,7 @@ def end_of(
         barrel_length=barrel_length,
         plate=plate,
         rod_radius=rod_radius,
-        head_length=None if end_joint.name == "cap" else head_length,
+        head_length=head_length if passed else None,
         seal_depth=static[0].gland_depth if sealed else 0.0,
         seal_lip=(plate - static[0].width) / 2 if sealed else None,
         ring_height=rings,
@@ -337,6 +345,37 @@ def groove_totals(grooves: Sequence[Groove]) -> tuple[Array, Array, Array]:
 
 
 @dataclass(frozen=True, slots=True)
+class RodThrough:
+    """A rod through an end of the barrel, and the gland there.
+
+    `path` is the PATH of its block in the design. `outside` is its length outside the end in the
+    retracted actuator, and `length` that from the piston to its tip.
+    """
+
+    end: Literal["head", "cap"]
+    path: Literal["rod", "second_rod"]
+    diameter: Array
+    inner_diameter: Array
+    outside: Array
+    length: Array
+    grooves: tuple[Groove, ...]
+
+    @property
+    def name(self) -> str:
+        """Name of the rod in results.
+
+        >>> RodThrough("cap", "second_rod", 0.0, 0.0, 0.0, 0.0, ()).name
+        'second rod'
+        """
+        return self.path.replace("_", " ")
+
+    @property
+    def gland(self) -> str:
+        """Name of its gland in results: the head, or the second gland."""
+        return "head" if self.end == "head" else "second gland"
+
+
+@dataclass(frozen=True, slots=True)
 class Geometry:
     """Dimensions in m, areas in m²; floats or arrays (designs,)."""
 
@@ -349,11 +388,9 @@ class Geometry:
     stroke: Array
     area_a: Array
     area_b: Array
-    rod_diameter: Array
-    rod_inner_diameter: Array
+    rods: tuple[RodThrough, ...]
+    """The rod through the head; then the second rod, through the cap, if there is one."""
     rod_thicknesses: tuple[Array, ...]
-    rod_extension: Array
-    rod_length: Array
     piston_length: Array
     piston_clearance: Array
     nut: Array
@@ -375,7 +412,6 @@ class Geometry:
     pin_diameter: Array
     closed_length: Array
     piston_grooves: tuple[Groove, ...]
-    rod_grooves: tuple[Groove, ...]
     rings: Array
     """Largest height above the bore of a ring that enters the barrel."""
     static_grooves: tuple[Groove, ...]
@@ -384,7 +420,7 @@ class Geometry:
     """Places of the static seals of cap and head, both empty without static seals."""
     spigot: Array
     """Length of the cap's spigot, which has the groove of the static seal or is its skirt in the
-    bore; 0 without one."""
+    bore; 0 without one. With a second rod, it is the length of the cap's gland."""
     cushion: Array
     """Diameter of the cushions' spear and collar; 0 without cushions."""
     cap_bush: Array
@@ -398,9 +434,47 @@ class Geometry:
     bearing_span: Array
 
     @property
+    def rod_diameter(self) -> Array:
+        """Diameter of the rod through the head."""
+        return self.rods[0].diameter
+
+    @property
+    def rod_inner_diameter(self) -> Array:
+        """Bore of the rod through the head."""
+        return self.rods[0].inner_diameter
+
+    @property
+    def rod_extension(self) -> Array:
+        """Length of the rod outside the head in the retracted actuator."""
+        return self.rods[0].outside
+
+    @property
+    def rod_length(self) -> Array:
+        """Length of the rod through the head, from the piston to its tip."""
+        return self.rods[0].length
+
+    @property
+    def rod_grooves(self) -> tuple[Groove, ...]:
+        """Grooves of the head around its rod."""
+        return self.rods[0].grooves
+
+    @property
+    def rod_radii(self) -> dict[str, Array]:
+        """Radius of each rod by the end that it passes, "head" or "cap"."""
+        return {rod.end: rod.diameter / 2 for rod in self.rods}
+
+    @property
+    def cap_eye(self) -> Array:
+        """Length of the cap's eye with neck and components; 0 with a rod through the cap."""
+        return 0.0 if len(self.rods) > 1 else self.eye_offset + self.neck + self.cap_stack
+
+    @property
     def cap_face(self) -> Array:
-        """Distance from the pin of the cap's eye to the outer face of the cap's plate."""
-        return self.eye_offset + self.neck + self.cap_stack
+        """Distance from the first end of the actuator to the outer face of the cap's plate.
+
+        The first end is the pin of the cap's eye, or the tip of a second rod.
+        """
+        return self.rods[1].outside if len(self.rods) > 1 else self.cap_eye
 
     @property
     def wall_length(self) -> Array:
@@ -416,7 +490,25 @@ class Geometry:
     @property
     def plug_radius(self) -> Array:
         """Outer radius of the head's plug in the barrel."""
-        return self.inner_radius - self.head_fit.inset
+        return self.plug_radius_at("head")
+
+    def plug_radius_at(self, end: Literal["head", "cap"]) -> Array:
+        """Outer radius of the plug of an end in the barrel."""
+        return self.inner_radius - (self.head_fit if end == "head" else self.cap_fit).inset
+
+    def placed(self, rod: RodThrough, place: str) -> str:
+        """A location at the end of a rod, with the rod's name if it is the second one."""
+        return place if rod.end == "head" else f"{rod.name}, {place}"
+
+    def by_rod(self, value: Callable[[RodThrough], Array]) -> Array | dict[str, Array]:
+        """A value of the only rod; or those of both rods, by name."""
+        if len(self.rods) == 1:
+            return value(self.rods[0])
+        return {rod.name: value(rod) for rod in self.rods}
+
+    def static_place(self, end: Literal["head", "cap"]) -> StaticPlace:
+        """Place of the static seal at an end, empty without one."""
+        return self.static_places[1 if end == "head" else 0]
 
     @property
     def head_fit(self) -> EndDimensions:
@@ -479,16 +571,47 @@ def _fits(v: Values, design: Design, **sizes: Any) -> tuple[EndDimensions, ...]:
     ) or (EndDimensions(plate_radius=outer, radius=outer),)
 
 
+def _second_rod(v: Values, first: RodThrough) -> RodThrough:
+    """The rod through the cap; numbers that its block does not state are those of the first rod.
+
+    From its piston face it passes gland and plate, and in the retracted actuator it extends over
+    the stroke and its extension.
+    """
+    outside = v["cylinder.stroke"] + v.get("second_rod.extension", first.outside)
+    return RodThrough(
+        end="cap",
+        path="second_rod",
+        diameter=v.get("second_rod.outer_diameter", first.diameter),
+        inner_diameter=v.get("second_rod.inner_diameter", first.inner_diameter),
+        outside=outside,
+        length=v["head.length"] + v["caps.thickness"] + outside,
+        grooves=tuple(replace(x, place=f"second {x.place}") for x in first.grooves),
+    )
+
+
 def derive(v: Values, design: Design) -> Geometry:
     """All derived dimensions of a design."""
     bore, stroke = v["cylinder.bore"], v["cylinder.stroke"]
-    rod = v["rod.outer_diameter"]
+    rod, double = v["rod.outer_diameter"], design.double_rod
     thicknesses = _thicknesses(v, "barrel", design.barrel.layup)
     rod_thicknesses = _thicknesses(v, "rod", design.rod.layup)
     rod_inner = rod - 2 * sum(rod_thicknesses) if rod_thicknesses else v["rod.inner_diameter"]
     piston_length, head_length = v["piston.length"], v["head.length"]
     barrel_length = v.get("barrel.length", piston_length + stroke + head_length)
+    if double and "barrel.length" in v:
+        barrel_length = barrel_length - head_length  # the gland of the cap counts as its spigot
     plate, extension = v["caps.thickness"], v["rod.extension"]
+    cushions = _cushions(v, design)
+    first = RodThrough(
+        end="head",
+        path="rod",
+        diameter=rod,
+        inner_diameter=rod_inner,
+        outside=extension,
+        length=barrel_length - piston_length + cushions["head_bush"] + plate + extension,
+        grooves=grooves(v, design, "rod"),
+    )
+    rods: tuple[RodThrough, ...] = (first, _second_rod(v, first)) if double else (first,)
     forms = tuple(end.joint.form for end in joints_of(design))
     sizes: dict[str, Any] = {
         "inner_radius": bore / 2,
@@ -501,22 +624,24 @@ def derive(v: Values, design: Design) -> Geometry:
         "rings": _rings(v, design),
     }
     static, places = static_grooves(v, design), static_places(design)
-    fits = _fits(v, design, **sizes, rod_radius=rod / 2, static=static)
+    radii = {rod.end: rod.diameter / 2 for rod in rods}
+    fits = _fits(v, design, **sizes, rod_radii=radii, static=static)
     spigot = spigot_length(place=places[0], section=static[0].section) if static else 0.0
-    spigot = spigot + fits[0].inner_length
-    eyes, cushions = _eyes(v, design), _cushions(v, design)
-    bushes = cushions["cap_bush"] + cushions["head_bush"]
+    spigot = head_length if double else spigot + fits[0].inner_length
+    eyes = _eyes(v, design)
+    further = cushions["cap_bush"] + cushions["head_bush"] + eyes["neck"] + eyes["cap_stack"]
+    if double:
+        further = further + rods[1].outside
     return Geometry(
         bore=bore,
         **sizes,
         stroke=stroke,
-        area_a=forces.piston_area(bore=bore),
+        area_a=forces.annulus_area(bore=bore, rod_diameter=rods[1].diameter)
+        if double
+        else forces.piston_area(bore=bore),
         area_b=forces.annulus_area(bore=bore, rod_diameter=rod),
-        rod_diameter=rod,
-        rod_inner_diameter=rod_inner,
+        rods=rods,
         rod_thicknesses=rod_thicknesses,
-        rod_extension=extension,
-        rod_length=barrel_length - piston_length + cushions["head_bush"] + plate + extension,
         piston_length=piston_length,
         piston_clearance=v["piston.clearance"],
         nut=0.0 if design.piston.nut is None else v["piston.nut.diameter"],
@@ -528,12 +653,11 @@ def derive(v: Values, design: Design) -> Geometry:
             barrel_length=barrel_length,
             plate=plate,
             spigot=spigot,
-            further=bushes + eyes["neck"] + eyes["cap_stack"] + eyes["rod_stack"],
+            further=further + eyes["rod_stack"],
             extension=extension,
-            eye=eyes["eye_offset"],
+            eyes=(1 if double else 2) * eyes["eye_offset"],
         ),
         piston_grooves=grooves(v, design, "piston"),
-        rod_grooves=grooves(v, design, "rod"),
         static_grooves=static,
         static_places=places,
         spigot=spigot,
@@ -554,7 +678,7 @@ def end_at(design: Design, end_joint: EndJoint, sizes: JointSizes, g: Geometry) 
         angles=g.angles,
         barrel_length=g.barrel_length,
         plate=g.plate,
-        rod_radius=g.rod_diameter / 2,
+        rod_radii=g.rod_radii,
         head_length=g.head_length,
         rings=g.rings,
         static=g.static_grooves,
@@ -579,33 +703,40 @@ def lands(geometry: Geometry, thread_radius: Array, *, eyes: bool) -> dict[str, 
     skirts = {"geometry_skirts": g.wall_length - skirted} if "skirts" in g.forms else {}
     static_width = g.static_grooves[0].width if g.static_grooves else STATIC_SEAL
     lips = {"cap": g.cap_face - g.eye_radius - g.cap_fit.lip} if eyes else {}
+    if "cap" in g.rod_radii:
+        lips["cap"] = g.rods[1].outside - g.stroke - g.cap_fit.lip
     lips["head"] = g.rod_extension - g.head_fit.lip
     beside: Array | dict[str, Array] = (g.plate - static_width) / 2
-    if g.static_places[1] == "rim" and g.static_grooves:
-        rest = g.inner_radius - g.rod_diameter / 2 - g.head_clearance
-        rest = rest - g.static_grooves[0].gland_depth
-        beside = {"axial": beside, "radial": rest}
+    radial: dict[str, Array] = {}
+    sealed: dict[str, Array] = {}
+    for rod in g.rods:
+        place, word = g.static_place(rod.end), g.placed(rod, "radial")
+        if place == "rim" and g.static_grooves:
+            rest = g.inner_radius - rod.diameter / 2 - g.head_clearance
+            radial[word] = rest - g.static_grooves[0].gland_depth
+        if place == "bore":
+            depth = g.static_grooves[0].gland_depth
+            sealed[word] = g.inner_radius - rod.diameter / 2 - head_depth - depth
+    if radial:
+        beside = {"axial": beside, **radial}
     plugs = {"geometry_lip": lips, "geometry_plug": beside}
-    sealed: dict[str, Any] = {}
-    if g.static_places[1] == "bore":
-        depth = g.static_grooves[0].gland_depth
-        sealed["geometry_static_seal"] = {
-            "radial": g.inner_radius - g.rod_diameter / 2 - head_depth - depth,
-            "axial": (g.head_length - static_width) / 2,
-        }
+    if sealed:
+        sealed["axial"] = (g.head_length - static_width) / 2
     return (
         bore
         | skirts
-        | sealed
+        | ({"geometry_static_seal": sealed} if sealed else {})
         | _sleeve_lands(g)
         | (plugs if set(ENCLOSED) & set(g.forms) else {})
         | {
-            "geometry_rod_in_bore": g.inner_radius - g.rod_diameter / 2,
-            "geometry_rod_wall": (g.rod_diameter - g.rod_inner_diameter) / 2,
+            "geometry_rod_in_bore": g.by_rod(lambda rod: g.inner_radius - rod.diameter / 2),
+            "geometry_rod_wall": g.by_rod(lambda rod: (rod.diameter - rod.inner_diameter) / 2),
             "geometry_piston_groove": (g.piston_length - piston_length) / (piston_count + 1),
             "geometry_piston_core": g.inner_radius - piston_depth - thread_radius,
             "geometry_head_groove": (g.head_length - head_length) / (head_count + 1),
-            "geometry_head_wall": g.plug_radius - g.rod_diameter / 2 - head_depth,
+            "geometry_head_wall": g.by_rod(
+                lambda rod: g.plug_radius_at(rod.end) - rod.diameter / 2 - head_depth
+            ),
         }
     )
 

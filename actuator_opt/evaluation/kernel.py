@@ -69,15 +69,19 @@ def compute_damping(
         inner_radius=g.inner_radius - g.piston_clearance,
         outer_radius=g.inner_radius,
     )
-    head = damping.annular_couette(
-        dynamic_viscosity=0.5 * (state.dynamic_viscosity_b + state.dynamic_viscosity),
-        length=g.head_length,
-        inner_radius=g.rod_diameter / 2,
-        outer_radius=g.rod_diameter / 2 + g.head_clearance,
-    )
+    gaps, total = piston, friction.slope + pipe + piston
+    for rod in g.rods:
+        inside = state.dynamic_viscosity_b if rod.end == "head" else state.dynamic_viscosity_a
+        gland = damping.annular_couette(
+            dynamic_viscosity=0.5 * (inside + state.dynamic_viscosity),
+            length=g.head_length,
+            inner_radius=rod.diameter / 2,
+            outer_radius=rod.diameter / 2 + g.head_clearance,
+        )
+        gaps, total = gaps + gland, total + gland
     out.put("damping_pipe", pipe)
-    out.put("damping_annular", piston + head)
-    return friction.slope + pipe + piston + head
+    out.put("damping_annular", gaps)
+    return total
 
 
 def compute_leakage(
@@ -261,9 +265,11 @@ class ModelRun:
     state: LoadState
     wall: Wall
     rings: tuple[Ring, ...]
-    rod: RodSection
+    rods: tuple[RodSection, ...]
+    """Sections of the rods, in the order of `Geometry.rods`."""
     joints: tuple[strength.LoadedJoint, ...]
-    beam: Beam
+    beams: tuple[Beam, ...]
+    """Critical load and bending moment of the rods, in that order."""
     springs: springs.Springs
     motion: motion.Motion
     weakest: Array
@@ -271,6 +277,16 @@ class ModelRun:
     places: dict[str, Array]
     """Stroke positions at which dynamic results are computed, by name."""
     mass_parts: dict[str, Array]
+
+    @property
+    def rod(self) -> RodSection:
+        """Section of the rod through the head."""
+        return self.rods[0]
+
+    @property
+    def beam(self) -> Beam:
+        """Critical load and bending moment of the rod through the head."""
+        return self.beams[0]
 
 
 @dataclass(frozen=True, slots=True)
@@ -317,7 +333,7 @@ class Statics:
     """All results that do not depend on the position of least stiffness."""
 
     base: Base
-    rod: RodSection
+    rods: tuple[RodSection, ...]
     joints: tuple[strength.LoadedJoint, ...]
     mass_parts: dict[str, Array]
     breakaway: Array
@@ -325,7 +341,7 @@ class Statics:
     springs: springs.Springs
     moving: Array
     """Mass that moves with the rod, including the load."""
-    beam: Beam
+    beams: tuple[Beam, ...]
     damping: Array
     """Damping of oil and seals: increase of their force with speed."""
     leakage: Array
@@ -349,8 +365,9 @@ def statics(
     sealing.compute_film(g, case_state, drive_films, return_films, out)
     net = _forces(g, case_state, friction, out)
     joint.compute(design, case_state.joint, case_state.positions, net, out)
-    rod = rods.derive(v, design, stock, g)
-    parts = weight.parts(v, design, stock, g, rod)
+    sections = rods.derive(v, design, stock, g)
+    rod = sections[0]
+    parts = weight.parts(v, design, stock, g, sections)
     out.put("mass", sum(parts.values()))
     out.put("mass_oil", weight.oil(v, design, g))
     branches = circuit.branches(v, design, case_state)
@@ -361,14 +378,14 @@ def statics(
     film = drive_films.get("piston seal")
     leakage = compute_leakage(v, design, g, case_state, barrel, film, out)
     compute_flow(v, design, g, case_state, out)
-    beam = beam_module.derive(
-        v, design, g, case_state, barrel, rod, parts, critical_load=implicit.critical_load
+    beams = beam_module.derive(
+        v, design, g, case_state, barrel, sections, parts, critical_load=implicit.critical_load
     )
     loaded_joints = strength.joints_under_load(v, design, stock, g, barrel)
-    strength.compute(v, design, stock, g, case_state, barrel, rod, beam, loaded_joints, out)
+    strength.compute(v, design, stock, g, case_state, barrel, sections, beams, loaded_joints, out)
     stop = joint.at_stop(case_state.demands, case_state.push)
     stop = replace(stop, mass=weight.moving(parts, stop.mass))
-    duty.compute(v, design, stock, g, case_state, barrel, rod, loaded_joints, stop, net, out)
+    duty.compute(v, design, stock, g, case_state, barrel, sections, loaded_joints, stop, net, out)
     _lands(v, design, g, rod, out)
     strength.joint_metrics(loaded_joints, out)
     _manufacture(v, subject, g, out)
@@ -376,14 +393,14 @@ def statics(
     out.put("closed_length", g.closed_length)
     return Statics(
         base=basis,
-        rod=rod,
+        rods=sections,
         joints=loaded_joints,
         mass_parts=parts,
         breakaway=friction.breakaway,
         branches=branches,
         springs=budget,
         moving=weight.moving(parts, case_state.demands[joint.WORST].mass),
-        beam=beam,
+        beams=beams,
         damping=damping,
         leakage=leakage,
     )
@@ -394,8 +411,10 @@ def _lands(v: Values, design: Design, g: Geometry, rod: RodSection, out: MetricA
     hole = v["rod.thread.diameter"] / 2 if design.rod.thread is not None else g.rod_diameter / 2
     if design.piston.nut is not None:
         hole = piston_nut.recess(g)[1]
+    elif design.double_rod:
+        hole = maximum(hole, g.rods[1].diameter / 2)
     lands = geometry_module.lands(g, hole, eyes=design.clevis is not None)
-    lands |= piston_nut.lands(design, g) | ports.lands(v, design, g) | cushion.lands(design, g)
+    lands |= piston_nut.lands(v, design, g) | ports.lands(v, design, g) | cushion.lands(design, g)
     for name, value in (lands | sensor.lands(v, design, g, rod)).items():
         out.put(name, value)
     if design.piston.nut is None:
@@ -408,7 +427,7 @@ def _lands(v: Values, design: Design, g: Geometry, rod: RodSection, out: MetricA
         out.skip("geometry_cushion", cushion.NO_CUSHION)
     if not g.rod_thicknesses:
         out.skip("geometry_rod_bore", "the rod has no layers")
-    if g.static_places[1] != "bore":
+    if all(g.static_place(through.end) != "bore" for through in g.rods):
         out.skip("geometry_static_seal", "no static seal on the outside of the head")
     if "skirts" not in g.forms:
         out.skip("geometry_skirts", "cap and head have no skirts over the barrel")
@@ -430,7 +449,7 @@ def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = 
         s = statics(subject, v, out)
         case_state = s.base.state
         weakest = springs.compute(s.springs, s.moving, out)
-        _at_stops(v, design, s.base, s.rod, s.breakaway, s.mass_parts, out)
+        _at_stops(v, design, s.base, s.rods[0], s.breakaway, s.mass_parts, out)
         linear = motion.derive(
             v, design, case_state, s.springs, s.branches, s.moving, s.damping, s.leakage
         )
@@ -446,9 +465,9 @@ def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = 
         state=case_state,
         wall=s.base.wall,
         rings=s.base.rings,
-        rod=s.rod,
+        rods=s.rods,
         joints=s.joints,
-        beam=s.beam,
+        beams=s.beams,
         springs=s.springs,
         motion=linear,
         weakest=weakest,

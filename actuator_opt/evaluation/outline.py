@@ -38,6 +38,7 @@ from .geometry import (
     Geometry,
     Groove,
     RetentionNumbers,
+    RodThrough,
     bearing_of,
     end_at,
     end_of,
@@ -47,9 +48,9 @@ from .geometry import (
 )
 from .kernel import PreparedDesign
 from .piston_nut import recess
-from .ports import boss_axis, cushioned, gallery, places, rim_bosses, seat_radius
+from .ports import ENDS, boss_axis, cushioned, gallery, places, rim_bosses, seat_radius
 from .result import Outline
-from .rods import end_material
+from .rods import end_material, material_of
 
 _Part: TypeAlias = tuple[str, str, list[Polygon], int, bool]
 """Name of a part, material, polygons, number of round bars (0 for a turned part), and whether these
@@ -152,6 +153,13 @@ class _Stations:
     bore: float
     hole: float
 
+    def gland(self, g: Geometry, rod: RodThrough) -> tuple[float, float]:
+        """Start and end of the gland around a rod."""
+        length = float(g.head_length)
+        if rod.end == "head":
+            return self.end - length, self.end
+        return self.plate, self.plate + length
+
 
 def _stations(g: Geometry) -> _Stations:
     face = float(g.cap_face)
@@ -232,8 +240,9 @@ def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     """Cap and head plate with the shapes that their joint adds, and separate parts of the joint."""
     plate = float(g.plate)
     rims = [place == "rim" for place in g.static_places]
+    hole = float(g.rods[1].diameter / 2 + g.head_clearance) if design.double_rod else 0.0
     caps = [
-        _plate(g, (at.face, at.plate), 0.0, g.cap_fit, rims[0]),
+        _plate(g, (at.face, at.plate), hole, g.cap_fit, rims[0]),
         _plate(g, (at.end, at.end + plate), at.hole, g.head_fit, rims[1]),
         *_spigot(g, at),
         *_cap_bush(g, at),
@@ -268,7 +277,7 @@ def _plate(
 
 def _spigot(g: Geometry, at: _Stations) -> Iterator[Polygon]:
     """The spigot of the cap, with the groove of its static seal."""
-    if g.static_places[0] == "bore":
+    if g.static_places[0] == "bore" and len(g.rods) == 1:
         depth = float(g.static_grooves[0].gland_depth)
         inner = at.bore - depth - LEAST_METAL
         end = at.start - float(g.cap_bush)
@@ -296,19 +305,7 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     radius = at.bore - float(g.piston_clearance)
     piston = _grooved(at.start, at.piston_end, 0.0, radius, g.piston_grooves, at.bore, outside=True)
     cap_place, head_place = g.static_places
-    length = float(g.head_length)
-    face = at.end - length
-    outer = _edge(
-        face,
-        at.end,
-        float(g.plug_radius),
-        g.static_grooves if head_place == "bore" else (),
-        at.bore,
-        outside=True,
-    )
-    inner = _edge(face, at.end, at.hole, g.rod_grooves, at.rod, outside=False)
-    plug = (*inner, *reversed(outer))
-    plugs, bush = [plug], float(g.head_bush)
+    plugs, bush = [_plug(g, at, rod) for rod in g.rods], float(g.head_bush)
     if bush > 0:
         plugs.append(rectangle(at.head, at.head + bush, float(g.cushion) / 2, at.bore))
     if float(g.nut) > 0:
@@ -325,13 +322,15 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     yield from _cushion(design, g, at)
     yield from _rod(design, g, at)
     yield from _rings(at.start, float(g.piston_length), g.piston_grooves, at.bore, -1)
-    yield from _rings(face, length, g.rod_grooves, at.rod, 1)
+    for rod in g.rods:
+        start, end = at.gland(g, rod)
+        yield from _rings(start, end - start, _along(rod), float(rod.diameter) / 2, 1)
     beyond = at.end + float(g.plate)
     spans = {
         "cap": {"rim": (at.face, at.plate), "bore": (at.plate, at.start - float(g.cap_bush))}.get(
             cap_place
         ),
-        "head": {"rim": (at.end, beyond), "bore": (face, at.end)}.get(head_place),
+        "head": {"rim": (at.end, beyond), "bore": at.gland(g, g.rods[0])}.get(head_place),
     }
     shapes = [
         shape
@@ -342,6 +341,31 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     ]
     for groove in g.static_grooves:
         yield groove.place, groove.material, shapes, 0, False
+
+
+def _along(rod: RodThrough) -> Sequence[Groove]:
+    """Grooves of a gland in the direction of the axis; they are listed from the chamber outwards.
+
+    The gland of a second rod is thus a mirror image of the head.
+    """
+    return rod.grooves if rod.end == "head" else rod.grooves[::-1]
+
+
+def _plug(g: Geometry, at: _Stations, rod: RodThrough) -> Polygon:
+    """The gland around a rod, with its grooves and that of its static seal."""
+    start, end = at.gland(g, rod)
+    sealed = g.static_place(rod.end) == "bore"
+    outer = _edge(
+        start,
+        end,
+        float(g.plug_radius_at(rod.end)),
+        g.static_grooves if sealed else (),
+        at.bore,
+        outside=True,
+    )
+    radius = float(rod.diameter) / 2
+    inner = _edge(start, end, radius + float(g.head_clearance), _along(rod), radius, outside=False)
+    return (*inner, *reversed(outer))
 
 
 def _sensor_hole(design: Design, g: Geometry) -> float:
@@ -361,6 +385,10 @@ def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
             nut = rectangle(at.start, at.start + height, radius, FLATS * radius)
             yield "piston nut", design.rod.material, [nut], 0, False
         yield "rod", design.rod.material, bars, 0, False
+        for rod in g.rods[1:]:
+            start, radius = at.start - float(rod.length), float(rod.diameter) / 2
+            bar = rectangle(start, at.start, float(rod.inner_diameter) / 2, radius)
+            yield rod.name, material_of(design, rod), [bar], 0, False
         return
     radius = bore
     for i, (ply, thickness) in enumerate(zip(design.rod.layup, g.rod_thicknesses, strict=True)):
@@ -403,6 +431,8 @@ def _eyes(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     pin, bearing, name = float(g.pin_diameter), bearing_of(design), design.clevis.material
     hole = pin if bearing is None else bearing.outer_diameter
     centres = {"cap": (0.0, 1), "rod": (at.tip + float(g.rod_stack + g.eye_offset), -1)}
+    if design.double_rod:
+        del centres["cap"]
     for end, (centre, side) in centres.items():
         shapes = _eye(centre, pin, float(g.eye_radius), hole, side)
         if end == "cap" and float(g.neck) > 0:
@@ -423,16 +453,17 @@ def _ports(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     plate = float(g.plate) / 2
     holes, bosses = [], []
     cap, head = float(g.cap_bush), float(g.head_bush)
-    near = [float(boss_axis(design, g, name, found.bore)) for name in ("cap", "head")]
+    near = [float(boss_axis(design, g, name, found.bore)) for name in ENDS]
     ends = (
         (g.cap_fit, at.start - cap + near[0], at.plate - plate, at.start - cap),
         (g.head_fit, at.head + head - near[1], at.end + plate, at.head + head),
     )
     rims = rim_bosses(size, g)
-    for (fit, above, middle, chamber), boss, rim, bush in zip(
-        ends, found.on_barrel, rims, bushes, strict=True
+    for name, (fit, above, middle, chamber), boss, rim, bush in zip(
+        ENDS, ends, found.on_barrel, rims, bushes, strict=True
     ):
-        axis, drilled, _ = (float(size) for size in gallery(g, bore=found.bore, bush=bush))
+        drillings = gallery(g, name, bore=found.bore, bush=bush)
+        axis, drilled, _ = (float(size) for size in drillings)
         middle = above if boss else middle
         base = float(seat_radius(g, fit) if boss else fit.plate_radius)
         top = base + (size.drilled if boss else float(rim))
@@ -540,6 +571,8 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
         "eye_hole": g.pin_diameter if bearing is None else bearing.outer_diameter,
         "extension": g.rod_extension,
     }
+    for rod in g.rods[1:]:
+        values |= {"second_rod": rod.diameter, "second_rod_inner": rod.inner_diameter}
     return {name: float(value) for name, value in values.items()}
 
 
@@ -551,6 +584,9 @@ def numbered(design: Design) -> list[str]:
 def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
     """Details of the joints that the drawn section does not show, and the order of assembly."""
     sentences = []
+    radii = {"head": lengths["rod"] / 2}
+    if "second_rod" in lengths:
+        radii["cap"] = lengths["second_rod"] / 2
     for end_joint in joints_of(design):
         end = end_of(
             design,
@@ -562,7 +598,7 @@ def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
             angles=[ply.angle for ply in design.barrel.layup],
             barrel_length=lengths["barrel_length"],
             plate=lengths["plate"],
-            rod_radius=lengths["rod"] / 2,
+            rod_radii=radii,
             head_length=lengths["head_length"],
             rings=ring_height(
                 EnteringRing(*(getattr(seal, key) for key in EnteringRing._fields))
@@ -590,6 +626,7 @@ LENGTHS = ("bore", "rod", "stroke", "closed_length")
 
 
 _GROOVE = ("section", "gland_depth", "width", "ring_width", "count")
+_ROD = ("diameter", "inner_diameter", "outside", "length")
 
 
 _Change: TypeAlias = Callable[[Array], Array]
@@ -768,11 +805,17 @@ def _changed_fit(fit: EndDimensions, change: _Change) -> EndDimensions:
     )
 
 
+def _changed_groove(groove: Groove, change: _Change) -> Groove:
+    return replace(groove, **{name: change(getattr(groove, name)) for name in _GROOVE})
+
+
 def _changed_entry(
-    value: Groove | EndDimensions | Array, change: _Change
-) -> Groove | EndDimensions | Array:
+    value: Groove | EndDimensions | RodThrough | Array, change: _Change
+) -> Groove | EndDimensions | RodThrough | Array:
     if isinstance(value, EndDimensions):
         return _changed_fit(value, change)
-    if not isinstance(value, Groove):
-        return change(value)
-    return replace(value, **{name: change(getattr(value, name)) for name in _GROOVE})
+    if isinstance(value, RodThrough):
+        sizes = {name: change(getattr(value, name)) for name in _ROD}
+        grooves = tuple(_changed_groove(groove, change) for groove in value.grooves)
+        return replace(value, **sizes, grooves=grooves)
+    return _changed_groove(value, change) if isinstance(value, Groove) else change(value)

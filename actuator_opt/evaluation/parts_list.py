@@ -13,7 +13,7 @@ from ..joints.joint import ENCLOSED
 from .geometry import bearing_of, joints_of, static_places
 from .result import Evaluation
 from .rods import end_material
-from .weight import STATED, STATED_MOVING
+from .weight import SECOND, STATED, STATED_MOVING
 
 
 class ListedPart(NamedTuple):
@@ -53,10 +53,10 @@ def _entries(design: Design) -> dict[str, tuple[int | None, str]]:
         "rod": (1, _joined(layers or [rod.material])),
         "piston": (1, design.piston.material),
         "caps": (2, _joined([design.caps.material, *joints[True]])),
-        "glands": (1, design.head.material),
+        "glands": (2 if design.double_rod else 1, design.head.material),
         "seals": (_rings(design), _joined(_compounds(design))),
         "fastening": (None, _joined([*held, None if fitting is None else fitting.adhesive])),
-        "clevises": (0 if clevis is None else 2, eyes),
+        "clevises": (0 if clevis is None else 1 if design.double_rod else 2, eyes),
     }
 
 
@@ -76,6 +76,9 @@ def _fastened(design: Design) -> bool:
 def _optional(design: Design) -> dict[str, tuple[int | None, str]]:
     """Pieces and materials of the parts that only some designs have."""
     entries: dict[str, tuple[int | None, str]] = {}
+    if design.double_rod:
+        second = None if design.second_rod is None else design.second_rod.material
+        entries[SECOND] = (1, second or design.rod.material)
     if design.cylinder.port_thread is not None:
         size = port(design.cylinder.port_thread)
         joints = joints_of(design)
@@ -97,10 +100,12 @@ def _optional(design: Design) -> dict[str, tuple[int | None, str]]:
 def _rings(design: Design) -> int:
     """Number of seals, back-up rings, wipers and guide rings."""
     total = float(sum(place != "" for place in static_places(design)))
-    for seal in (design.seals.piston, design.seals.rod):
+    rods = 2 if design.double_rod else 1
+    for seal, places in ((design.seals.piston, 1), (design.seals.rod, rods)):
         for element in seal.elements().values():
-            total += element.count * (1 + BACK_UPS[element.back_up])
-        total += (seal.wiper is not None) + (0.0 if seal.guide is None else seal.guide.count)
+            total += places * element.count * (1 + BACK_UPS[element.back_up])
+        guides = 0.0 if seal.guide is None else seal.guide.count
+        total += places * ((seal.wiper is not None) + guides)
     return round(total)
 
 

@@ -16,7 +16,9 @@ from ..base.numeric import Array, maximum, minimum
 from ..design.model import Design
 from ..joints.joint import Life
 from ..models import endurance, piston_nut
+from ..models.forces import piston_area
 from ..models.rod import thread_stress
+from ..models.thread import minor_diameter
 from .geometry import Geometry
 from .limits import MaterialValues
 from .plies import warmings
@@ -152,6 +154,8 @@ def yields(
         height, corner = recess(g)
         shoulder, flats = g.rod_diameter / 2, piston_nut.FLATS * g.nut / 2
         around = 1 - g.rod_diameter * g.rod_diameter / (g.bore * g.bore)
+        if design.double_rod:  # the pressure acts beside the second rod
+            around = around * piston_area(bore=g.bore) / g.area_a
         stress = maximum(
             *(
                 piston_nut.web_stress(
@@ -202,8 +206,13 @@ def recess(g: Geometry) -> tuple[Array, Array]:
     return piston_nut.HEIGHT * g.nut, piston_nut.corner_radius(diameter=g.nut)
 
 
-def lands(design: Design, g: Geometry) -> dict[str, Any]:
-    """Metal of the piston under the nut, which the optimiser keeps."""
+def lands(v: Values, design: Design, g: Geometry) -> dict[str, Any]:
+    """Metal of the piston under the nut, and clearance over a second rod, kept by the optimiser."""
     if design.piston.nut is None:
         return {}
-    return {"geometry_piston_web": g.piston_length - recess(g)[0]}
+    web = g.piston_length - recess(g)[0]
+    if not design.double_rod:
+        return {"geometry_piston_web": web}
+    hole = minor_diameter(diameter=g.nut, pitch=v["piston.nut.pitch"])
+    over = (hole - g.rods[1].diameter) / 2
+    return {"geometry_piston_web": {"web": web, "nut over the second rod": over}}

@@ -9,7 +9,7 @@ piston before its first groove then passes the port's bore, so that no seal does
 from __future__ import annotations
 
 from math import pi
-from typing import Any
+from typing import Any, Literal
 
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, maximum, minimum
@@ -76,20 +76,26 @@ def seat_radius(g: Geometry, fit: EndDimensions) -> Array:
     return g.outer_radius + (0.0 if fit.sleeve is None else fit.sleeve.lift)
 
 
+ENDS: tuple[Literal["cap", "head"], ...] = ("cap", "head")
+
 DRILL = 1e-3
 """Smallest drill of the drillings from a port to the chamber [m]. Our choice."""
 
 
-def gallery(g: Geometry, *, bore: Array, bush: bool) -> tuple[Array, Array, Array]:
+def gallery(
+    g: Geometry, end: Literal["cap", "head"], *, bore: Array, bush: bool
+) -> tuple[Array, Array, Array]:
     """Radius of the axial drillings, their diameter, and the width of the metal around them.
 
     Drillings with the area of the bore together are spread over half the circumference: in a ring
     of radius R they need the radial width d^2/(4 R). They lie between the grooves of the rod seals
-    and the groove of a static seal on the head. With a cushion's `bush`, they end in its bore.
+    and the groove of a static seal on the head. With a cushion's `bush`, they end in its bore. A
+    cap without rod has them where the head has them.
     """
-    inner = g.rod_diameter / 2 + groove_totals(g.rod_grooves)[2]
-    sealed = g.static_places[1] == "bore"
-    outer = g.plug_radius - (g.static_grooves[0].gland_depth if sealed else 0.0)
+    rod = g.rods[-1] if end == "cap" else g.rods[0]
+    inner = rod.diameter / 2 + groove_totals(rod.grooves)[2]
+    sealed = g.static_place(rod.end) == "bore"
+    outer = g.plug_radius_at(rod.end) - (g.static_grooves[0].gland_depth if sealed else 0.0)
     if bush:
         outer = minimum(outer, g.cushion / 2)
     radius = (inner + outer) / 2
@@ -98,9 +104,12 @@ def gallery(g: Geometry, *, bore: Array, bush: bool) -> tuple[Array, Array, Arra
 
 def rim_bosses(size: PortSize, g: Geometry) -> tuple[Array, Array]:
     """Heights of the bosses on the rims of cap and head that the drill of a port needs, or 0."""
+    cap = g.cap_fit.plate_radius
+    for rod in g.rods[1:]:
+        cap = cap - (rod.diameter / 2 + g.head_clearance + LEAST_METAL)
     under = g.rod_diameter / 2 + g.head_clearance + LEAST_METAL
     return (
-        maximum(size.drilled - g.cap_fit.plate_radius, 0.0),
+        maximum(size.drilled - cap, 0.0),
         maximum(size.drilled - (g.head_fit.plate_radius - under), 0.0),
     )
 
@@ -122,10 +131,11 @@ def lands(v: Values, design: Design, g: Geometry) -> dict[str, Any]:
         rows["barrel beside the boss"] = g.outer_radius - size.boss / 2
     if all(ports.on_barrel):
         inside = g.cap_bush + g.barrel_length - g.head_length + g.head_bush
-        axes = sum(boss_axis(design, g, name, bore) for name in ("cap", "head"))
+        axes = sum(boss_axis(design, g, name, bore) for name in ENDS)
         rows["between the bosses"] = inside - axes - size.boss
     fits = (g.cap_fit, g.head_fit)
-    for name, boss, fit in zip(("cap", "head"), ports.on_barrel, fits, strict=True):
+    glands = {rod.end: rod.gland for rod in g.rods}
+    for name, boss, fit in zip(ENDS, ports.on_barrel, fits, strict=True):
         if boss:
             outside = fit.beyond + (g.spigot if name == "cap" else g.head_length)
             end = outside + boss_axis(design, g, name, bore) - size.boss / 2
@@ -133,9 +143,9 @@ def lands(v: Values, design: Design, g: Geometry) -> dict[str, Any]:
             rows[f"barrel's end beside the boss, {name}"] = end - bare
             continue
         rows[f"{name} plate beside the port"] = (g.plate - size.seat) / 2
-        if name == "head":
-            _, drilled, width = gallery(g, bore=bore, bush=cushioned(design)[1])
-            rows["head beside the drillings"] = (width - drilled) / 2
+        if name in glands:
+            _, drilled, width = gallery(g, name, bore=bore, bush=cushioned(design)[1])
+            rows[f"{glands[name]} beside the drillings"] = (width - drilled) / 2
     return {"geometry_port": rows}
 
 
@@ -157,9 +167,7 @@ def masses(v: Values, design: Design, g: Geometry) -> dict[str, Array]:
     rims = rim_bosses(size, g)
     parts: dict[str, Array] = {}
     fits, bushes = (g.cap_fit, g.head_fit), cushioned(design)
-    for name, boss, fit, rim, bush in zip(
-        ("cap", "head"), ports.on_barrel, fits, rims, bushes, strict=True
-    ):
+    for name, boss, fit, rim, bush in zip(ENDS, ports.on_barrel, fits, rims, bushes, strict=True):
         if boss:
             solid = boss_volume(
                 boss_diameter=size.boss, height=size.drilled, tube_radius=seat_radius(g, fit)
@@ -167,10 +175,10 @@ def masses(v: Values, design: Design, g: Geometry) -> dict[str, Array]:
             parts["ports"] = parts.get("ports", 0.0) + caps * solid - cut
             parts["barrel"] = parts.get("barrel", 0.0) - wall * area
         else:
-            axis = gallery(g, bore=ports.bore, bush=bush)[0]
+            axis = gallery(g, name, bore=ports.bore, bush=bush)[0]
             further = maximum(fit.plate_radius + rim - size.drilled - axis, 0.0)
             solid = caps * pi / 4 * size.boss * size.boss * rim
             parts[name] = solid - cut - caps * area * (further + g.plate / 2)
-            if name == "head":
-                parts["glands"] = -head * area * g.head_length
+            if name in g.rod_radii:
+                parts["glands"] = parts.get("glands", 0.0) - head * area * g.head_length
     return parts

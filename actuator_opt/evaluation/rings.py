@@ -29,7 +29,10 @@ from .state import LoadState, pressure_law
 from .values import Values
 
 Place = Literal["piston", "rod"]
-RingPlace = Place | Literal["static"]
+SlidingPlace = Place | Literal["second_rod"]
+RingPlace = SlidingPlace | Literal["static"]
+BLOCKS: dict[SlidingPlace, Place] = {"piston": "piston", "rod": "rod", "second_rod": "rod"}
+"""Block of `seals` that describes the seals of each place: both rods have the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +60,8 @@ class Ring:
     def sizes(self) -> SealSizes:
         """Numbers and laws of the ring, as inputs of the models of seal types and friction."""
         element = self.element
-        return SealSizes(self.numbers, element.law, element.hardness_model, self.name == "rod")
+        around_rod = self.name in ("rod", "second_rod")
+        return SealSizes(self.numbers, element.law, element.hardness_model, around_rod)
 
     @property
     def label(self) -> str:
@@ -69,9 +73,10 @@ class Ring:
         return replace(self, numbers={**self.numbers, **numbers})
 
 
-def places(g: Geometry) -> tuple[tuple[Place, tuple[Groove, ...], Array], ...]:
-    """Name, grooves and counterface diameter of the piston seals and of the rod seals."""
-    return ("piston", g.piston_grooves, g.bore), ("rod", g.rod_grooves, g.rod_diameter)
+def places(g: Geometry) -> tuple[tuple[SlidingPlace, tuple[Groove, ...], Array], ...]:
+    """Name, grooves and counterface diameter of the piston seals and of the seals of each rod."""
+    rods = ((rod.path, rod.grooves, rod.diameter) for rod in g.rods)
+    return ("piston", g.piston_grooves, g.bore), *rods
 
 
 HARDNESS_TEMPERATURE = 296.15
@@ -112,7 +117,8 @@ def rings(
     """All sealing rings; on piston and rod, the first ring seals the pressure.
 
     The piston seal seals the pressure difference between the chambers, the rod seal the pressure of
-    chamber B. `growth` is the radial growth of the bore far from the seal.
+    chamber B, and that of a second rod the pressure of chamber A. `growth` is the radial growth of
+    the bore far from the seal.
     """
     across: dict[str, tuple[Array, Array]] = {
         "piston": (
@@ -120,6 +126,7 @@ def rings(
             state.moving_a + state.moving_b,
         ),
         "rod": (maximum(state.moving_b, 0.0), maximum(state.moving_b, 0.0)),
+        "second_rod": (maximum(state.moving_a, 0.0), maximum(state.moving_a, 0.0)),
     }
     law, coefficient = pressure_law(design.fluid, stock, state.temperature)
     drain = v["supply.return_pressure"]
@@ -130,10 +137,11 @@ def rings(
     }
     sealing_rings = []
     for name, grooves, diameter in places(geometry):
-        elements = getattr(design.seals, name).elements()
+        block = BLOCKS[name]
+        elements = getattr(design.seals, block).elements()
         pressure, total = across[name]
         for groove in grooves:
-            key = groove.path.removeprefix(f"seals.{name}.")
+            key = groove.path.removeprefix(f"seals.{block}.")
             if groove.role != "element" or elements[key].count == 0:
                 continue
             numbers = _numbers(v, elements[key], groove, diameter, state.temperature)
@@ -150,7 +158,7 @@ def rings(
                 growth=ring_growth,
                 tolerance=0.0,
             )
-            roughness = {"counterface_roughness": v[f"seals.{name}.counterface_roughness"]}
+            roughness = {"counterface_roughness": v[f"seals.{block}.counterface_roughness"]}
             sealing_rings.append(Ring(name, elements[key], groove, numbers | roughness, law))
     return tuple(sealing_rings)
 
@@ -328,8 +336,10 @@ def volume_ratio(
     It is 1 if the thermal expansion is unknown.
     """
     expansion = stock.get(ring.element.compound, "volume_expansion")
-    parts = {"piston": design.piston.material, "rod": design.head.material}
-    housing = stock.get(parts.get(ring.name, design.caps.material), "thermal_expansion")
+    part = design.piston.material if ring.name == "piston" else design.head.material
+    housing = stock.get(
+        design.caps.material if ring.name == "static" else part, "thermal_expansion"
+    )
     if expansion is None or housing is None:
         return 1.0
     assembly = v["environment.assembly_temperature"] if design.environment is not None else ROOM

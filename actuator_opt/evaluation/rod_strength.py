@@ -7,9 +7,9 @@ the critical load (`Beam.under`). In a pull, the chamber pressure acts on the ro
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import TypeAlias
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from . import plies, weight
 from .barrel import Cycle, Wall
 from .geometry import Geometry
 from .limits import MaterialValues, MetricArrays
-from .rods import FORCE, OUTSIDE, WARMTH, RodSection
+from .rods import FORCE, OUTSIDE, WARMTH, RodSection, material_of
 from .state import LoadState, overhang
 from .values import Values
 
@@ -39,6 +39,17 @@ buckling check rejects."""
 
 LEAST = 1e-6
 """Smallest rod length outside the head in calculations [m]; avoids a division by zero."""
+
+
+class Seat(NamedTuple):
+    """How a rod is carried: by a flange (`fixed`) or free to swing, directly or by the `cylinder`.
+
+    A mount at the end that the rod passes carries the rod directly; one at the other end carries
+    it by the cylinder, which bends with it.
+    """
+
+    fixed: bool
+    cylinder: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,15 +75,35 @@ class Beam:
         return amplified + self.moment * (share - near) / (1 - NEAR) ** 2
 
 
-def lengths(g: Geometry, state: LoadState) -> tuple[Array, Array]:
-    """Lengths of the cylinder and of the rod outside it; their sum is the eye-to-eye distance."""
-    cylinder = g.cap_face + 2 * g.plate + g.spigot + g.cap_bush + g.barrel_length + g.head_bush
-    return cylinder, maximum(state.reach + g.rod_extension + g.rod_stack + g.eye_offset, LEAST)
+def lengths(
+    g: Geometry, state: LoadState, end: Literal["head", "cap"] = "head"
+) -> tuple[Array, Array]:
+    """Lengths of the cylinder and of the rod outside an end of it.
+
+    Of the rod through the head, their sum is the eye-to-eye distance. A second rod is longest
+    outside the cap in the retracted actuator.
+    """
+    cylinder = g.cap_eye + 2 * g.plate + g.spigot + g.cap_bush + g.barrel_length + g.head_bush
+    if end == "head":
+        return cylinder, maximum(state.reach + g.rod_extension + g.rod_stack + g.eye_offset, LEAST)
+    return cylinder, maximum(g.rods[1].outside - state.withdrawn, LEAST)
 
 
-CriticalLoad: TypeAlias = Callable[[Design, Wall, RodSection, tuple[Array, Array]], Array]
-"""Function that returns a design's critical load, from its wall, its rod, and the lengths of the
-cylinder and the exposed rod."""
+CriticalLoad: TypeAlias = Callable[[Seat, Wall, RodSection, tuple[Array, Array]], Array]
+"""Function that returns the critical load of a rod, from its seat, the wall, the section of the
+rod, and the lengths of the cylinder and of the exposed rod."""
+
+
+def seat(design: Design, end: Literal["head", "cap"]) -> Seat:
+    """How the cylinder carries the rod that passes an end.
+
+    >>> from types import SimpleNamespace as Stub
+    >>> design = Stub(cylinder=Stub(mount="head_trunnion"))
+    >>> seat(design, "head"), seat(design, "cap")
+    (Seat(fixed=False, cylinder=False), Seat(fixed=False, cylinder=True))
+    """
+    mount = design.cylinder.mount
+    return Seat(fixed=mount.endswith("flange"), cylinder=not mount.startswith(end))
 
 
 def derive(
@@ -81,30 +112,36 @@ def derive(
     g: Geometry,
     state: LoadState,
     wall: Wall,
-    rod: RodSection,
+    sections: Sequence[RodSection],
     parts: Mapping[str, Array],
     *,
     critical_load: CriticalLoad,
-) -> Beam:
-    """Critical load and bending moment in every load case; the actuator is taken as horizontal."""
-    segments = lengths(g, state)
-    weight_moment = _weight(v, design, g, state, rod, parts, segments)
-    return Beam(
-        critical=critical_load(design, wall, rod, segments),
-        moment=weight_moment + state.side_load * overhang(g, state),
-    )
+) -> tuple[Beam, ...]:
+    """Critical load and bending moment of every rod in every load case.
+
+    The actuator is taken as horizontal. The side load acts on the rod through the head. The tip of
+    a second rod may be free, so its weight bends it as a cantilever from the cap, w L^2/2.
+    """
+    beams = []
+    for through, section in zip(g.rods, sections, strict=True):
+        segments = lengths(g, state, through.end)
+        if through.end == "head":
+            moment = _weight(v, design, g, state, sections, parts, segments)
+            moment = moment + state.side_load * overhang(g, state)
+        else:
+            moment = GRAVITY * section.mass_per_length * segments[1] * segments[1] / 2
+        critical = critical_load(seat(design, through.end), wall, section, segments)
+        beams.append(Beam(critical=critical, moment=moment))
+    return tuple(beams)
 
 
-def critical_load(
-    design: Design, wall: Wall, rod: RodSection, lengths: tuple[Array, Array]
-) -> Array:
-    """Critical load of barrel and rod, or, if mounted at the head, of the rod alone.
+def critical_load(seat: Seat, wall: Wall, rod: RodSection, lengths: tuple[Array, Array]) -> Array:
+    """Critical load of barrel and rod, or, if the mount carries the rod directly, of it alone.
 
     Shear deformation is included.
     """
-    mount = design.cylinder.mount
-    if mount.startswith("head"):
-        factor = FIXED_PINNED if mount == "head_flange" else 1.0
+    if not seat.cylinder:
+        factor = FIXED_PINNED if seat.fixed else 1.0
         return column.engesser_load(
             critical_load=column.euler_load(
                 bending_stiffness=rod.bending_stiffness, effective_length=factor * lengths[1]
@@ -117,7 +154,7 @@ def critical_load(
         "bending_stiffness_2": rod.bending_stiffness,
         "length_2": lengths[1],
     }
-    ends: stepped.Ends = ("fixed" if mount == "cap_flange" else "pinned", "pinned")
+    ends: stepped.Ends = ("fixed" if seat.fixed else "pinned", "pinned")
     load = stepped.stepped_column_load(**segments, ends=ends)
     shear = stepped.mode_shear_stiffness(
         critical_load=load,
@@ -134,18 +171,21 @@ def _weight(
     design: Design,
     g: Geometry,
     state: LoadState,
-    rod: RodSection,
+    sections: Sequence[RodSection],
     parts: Mapping[str, Array],
     lengths: tuple[Array, Array],
 ) -> Array:
-    """Largest bending moment in the rod by the actuator's own weight.
+    """Largest bending moment in the rod through the head by the actuator's own weight.
 
     With a cap mount, the actuator is calculated as pinned at both eyes; a fixed cap would be
     stronger. With a head mount, the rod spans from the head to its eye. Its moment is w L^2/8, with
     weight per length w and span L, whether the rod is pinned or fixed at the head. On trunnions,
     the barrel behind the head is a cantilever.
     """
+    rod = sections[0]
     outside = rod.mass_per_length * (state.reach + g.rod_extension)
+    for through, section in zip(g.rods[1:], sections[1:], strict=True):
+        outside = outside + section.mass_per_length * (through.outside - state.withdrawn)
     inside = sum(parts.values()) - parts["clevises"] - outside
     inside = inside + weight.oil(v, design, g, position=state.reach)
     heavy = GRAVITY * inside / lengths[0]
@@ -170,46 +210,75 @@ def yields(
     design: Design,
     g: Geometry,
     state: LoadState,
-    section: RodSection,
-    beam: Beam,
+    sections: Sequence[RodSection],
+    beams: Sequence[Beam],
 ) -> dict[str, Array]:
-    """Yield strength divided by stress of a rod of one metal, at the pressure of each load case."""
-    if section.layers:
-        return {}
-    strength = stock.allowable(design.rod.material, "yield_strength", "strength_1_compression")
-    if strength is None:
-        return {}
+    """Yield strength divided by stress of rods of one metal, at the pressure of each load case.
+
+    Each rod may carry the whole load. What pulls the rod through the head pushes a second rod.
+    """
     force = state.driven_pressure * where(state.push, g.area_a, g.area_b)
-    size = {"outer_diameter": section.outer_diameter, "inner_diameter": section.inner_diameter}
-    axial = rod.rod_stress(force=force, **size)
-    moment = beam.under(where(state.push, force, 0.0))
-    return {"rod": strength / (axial + rod.bending_stress(bending_moment=moment, **size))}
+    factors = {}
+    for through, section, beam in zip(g.rods, sections, beams, strict=True):
+        name = material_of(design, through)
+        strength = stock.allowable(name, "yield_strength", "strength_1_compression")
+        if section.layers or strength is None:
+            continue
+        size = {"outer_diameter": section.outer_diameter, "inner_diameter": section.inner_diameter}
+        axial = rod.rod_stress(force=force, **size)
+        pushed = (force, 0.0) if through.end == "head" else (0.0, force)
+        moment = beam.under(where(state.push, *pushed))
+        bending = rod.bending_stress(bending_moment=moment, **size)
+        factors[through.name] = strength / (axial + bending)
+    return factors
+
+
+def pushes(g: Geometry, push: Array, pull: Array) -> list[Array]:
+    """Compressive force of every rod: the push, and for a second rod the pull of the first."""
+    return [push if through.end == "head" else pull for through in g.rods]
+
+
+def buckling(g: Geometry, beams: Sequence[Beam], push: Array, pull: Array) -> dict[str, Array]:
+    """Critical load of every rod divided by its push; the only rod has no name."""
+    factors = [
+        beam.critical / force for beam, force in zip(beams, pushes(g, push, pull), strict=True)
+    ]
+    names = [through.name for through in g.rods] if len(g.rods) > 1 else [""]
+    return dict(zip(names, factors, strict=True))
 
 
 def compute(
     design: Design,
-    section: RodSection,
-    beam: Beam,
+    g: Geometry,
+    sections: Sequence[RodSection],
+    beams: Sequence[Beam],
     supply: Array,
     push: Array,
     pull: Array,
     out: MetricArrays,
 ) -> None:
-    """Compute the strength of a rod's layers, and of its wall against local buckling."""
-    push_moment = beam.under(push)
-    _layers(design, section, (push_moment, beam.moment), supply, push, pull, out)
-    if not section.hollow:
+    """Compute the strength of a rod's layers, and of hollow rods against local buckling."""
+    section, beam = sections[0], beams[0]
+    _layers(design, section, (beam.under(push), beam.moment), supply, push, pull, out)
+    factors: dict[str, Array] = {}
+    for through, tube, bent, force in zip(
+        g.rods, sections, beams, pushes(g, push, pull), strict=True
+    ):
+        if not tube.hollow:
+            continue
+        shell = {
+            "youngs_modulus": tube.shell_modulus,
+            "poissons_ratio": tube.shell_ratio,
+            "thickness": tube.wall,
+            "radius": tube.middle,
+        }
+        utilisation = force / shell_buckling.local_shell_force(**shell)
+        utilisation = utilisation + bent.under(force) / shell_buckling.local_shell_moment(**shell)
+        factors[through.name if len(g.rods) > 1 else ""] = 1 / utilisation
+    if factors:
+        out.put("local_buckling_factor", factors)
+    else:
         out.skip("local_buckling_factor", "the rod is solid")
-        return
-    shell = {
-        "youngs_modulus": section.shell_modulus,
-        "poissons_ratio": section.shell_ratio,
-        "thickness": section.wall,
-        "radius": section.middle,
-    }
-    utilisation = push / shell_buckling.local_shell_force(**shell)
-    utilisation = utilisation + push_moment / shell_buckling.local_shell_moment(**shell)
-    out.put("local_buckling_factor", 1 / utilisation)
 
 
 def _layers(
@@ -303,17 +372,32 @@ def _rows(section: RodSection, label: str, utilisation: Array) -> dict[str, Arra
 
 
 def cycles(
-    design: Design, section: RodSection, supply: Array, push: Array, pull: Array
+    design: Design,
+    g: Geometry,
+    sections: Sequence[RodSection],
+    supply: Array,
+    push: Array,
+    pull: Array,
 ) -> dict[str, Cycle]:
-    """Stresses of the rod's metals while push and pull alternate: range and mean.
+    """Stresses of the rods' metals while push and pull alternate: range and mean.
 
     A compressive mean counts as zero. The stress of a metal layer includes its cure stress and, in
     a pull, the effect of the pressure of chamber B. Its mean is the equivalent stress in the pull
     minus half the range.
     """
+    section = sections[0]
     if not section.layers:
-        size = {"outer_diameter": section.outer_diameter, "inner_diameter": section.inner_diameter}
-        return {"rod": Cycle(design.rod.material, (push + pull) / rod.section_area(**size), 0.0)}
+        return {
+            through.name: Cycle(
+                material_of(design, through),
+                (push + pull)
+                / rod.section_area(
+                    outer_diameter=bar.outer_diameter, inner_diameter=bar.inner_diameter
+                ),
+                0.0,
+            )
+            for through, bar in zip(g.rods, sections, strict=True)
+        }
     metal_cycles = {}
     for i, layer in enumerate(section.layers):
         if not layer.isotropic:

@@ -28,7 +28,7 @@ from ..models.rod import section_area
 from ..models.shell_buckling import shell_modulus
 from ..models.strength_modes import Stress
 from . import plies
-from .geometry import Geometry
+from .geometry import Geometry, RodThrough
 from .limits import MaterialValues, MetricArrays
 from .plies import Climate, Layer
 from .values import Values
@@ -93,34 +93,52 @@ def end_material(design: Design) -> str:
     return (fitting.material if fitting is not None else None) or design.rod.material
 
 
-def derive(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> RodSection:
-    """Derive the section of a design's rod."""
-    return _tube(v, design, stock, g) if design.rod.layup else _bar(v, design, stock, g)
+def derive(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> tuple[RodSection, ...]:
+    """Derive the sections of a design's rods, in the order of `Geometry.rods`."""
+    if design.rod.layup:  # refused with a second rod
+        return (_tube(v, design, stock, g),)
+    return tuple(_bar(v, design, stock, through) for through in g.rods)
 
 
-def _bar(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> RodSection:
+def material_of(design: Design, through: RodThrough) -> str:
+    """The material of a rod of one metal; that of the second rod is by default the rod's."""
+    second = design.second_rod
+    own = None if second is None or through.end == "head" else second.material
+    return own or design.rod.material
+
+
+def _hollow(v: Values, design: Design, through: RodThrough) -> bool:
+    """Whether a rod of one metal has a bore, or may have one after an optimisation."""
+    path, bore = f"{through.path}.inner_diameter", design.rod.inner_diameter
+    if through.end == "cap" and path not in v:
+        path = "rod.inner_diameter"
+    elif through.end == "cap" and design.second_rod is not None:
+        bore = design.second_rod.inner_diameter or 0.0
+    return bore > 0 or path in design.variables or path in v.varied
+
+
+def _bar(v: Values, design: Design, stock: MaterialValues, through: RodThrough) -> RodSection:
     """Section of a bar or tube of a single material."""
-    name = design.rod.material
+    name = material_of(design, through)
     modulus = stock.get(name, "youngs_modulus", "youngs_modulus_1")
     ratio = stock.get(name, "poissons_ratio", "poissons_ratio_12")
-    size = {"outer_diameter": g.rod_diameter, "inner_diameter": g.rod_inner_diameter}
+    size = {"outer_diameter": through.diameter, "inner_diameter": through.inner_diameter}
     area = rod.section_area(**size)
     shear = stock.get(name, "shear_modulus", default=modulus / (2 * (1 + ratio))) * area
-    path = "rod.inner_diameter"
     return RodSection(
         **size,
-        hollow=design.rod.inner_diameter > 0 or path in design.variables or path in v.varied,
+        hollow=_hollow(v, design, through),
         axial_stiffness=modulus * area,
         bending_stiffness=modulus * rod.second_moment(**size),
         shear_stiffness=shear
         * column.cowper_tube(
-            poissons_ratio=ratio, radius_ratio=g.rod_inner_diameter / g.rod_diameter
+            poissons_ratio=ratio, radius_ratio=through.inner_diameter / through.diameter
         ),
         mass_per_length=mass.tube_mass(density=v[f"materials.{name}.density"], length=1.0, **size),
         shell_modulus=modulus,
         shell_ratio=ratio,
         expansion=stock.get(name, "thermal_expansion"),
-        end_material=end_material(design),
+        end_material=end_material(design) if through.end == "head" else name,
     )
 
 

@@ -23,6 +23,7 @@ from .film_tables import FilmTable, Key, Running, running as films_running
 from .geometry import Geometry, Groove
 from .limits import MaterialValues, MetricArrays
 from .rings import (
+    BLOCKS,
     INCOMPRESSIBLE,
     Place,
     Ring,
@@ -208,7 +209,7 @@ def wipers(
     """Friction of all wipers, each modelled as the lip of a U-cup without pressure."""
     all_wipers = []
     for name, grooves, diameter in places(geometry):
-        wiper = getattr(design.seals, name).wiper
+        wiper = getattr(design.seals, BLOCKS[name]).wiper
         for groove in grooves:
             if groove.role == "wiper" and wiper is not None:
                 all_wipers.append(_wiper(v, wiper, groove, diameter, state.temperature))

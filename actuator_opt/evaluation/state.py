@@ -202,6 +202,8 @@ class LoadState:
     """Piston position of every load case; None: the worst position."""
     reach: Array
     """Piston position for buckling and side load: as stated, else the full stroke (worst)."""
+    withdrawn: Array
+    """Piston position for a second rod: as stated, else 0, where it is longest outside the cap."""
     demands: dict[str, Demand]
     """Force, speed and mass that the load demands, by position (keys: see `linkage.demands`)."""
     force: Array
@@ -235,11 +237,15 @@ def overhang(g: Geometry, state: LoadState) -> Array:
 
 
 def side_reactions(g: Geometry, state: LoadState) -> dict[str, Array]:
-    """Side forces on the guides of rod and piston."""
+    """Side forces on the guides of rod and piston.
+
+    Piston and head carry the side load. The gland of a second rod would relieve them; that is left
+    out, so their forces are too large rather than too small.
+    """
     head, piston = retention.guide_forces(
         side_force=state.side_load, overhang=overhang(g, state), span=g.bearing_span
     )
-    return {"rod": head, "piston": piston}
+    return {"rod": head, "piston": piston, "second_rod": 0.0 * head}
 
 
 def _positions(
@@ -260,14 +266,14 @@ def _positions(
     return tuple(rows)
 
 
-def _reach(geometry: Geometry, positions: Sequence[Array | None]) -> Array:
-    """Position of every load case; ``worst`` is full extension.
+def _at(positions: Sequence[Array | None], worst: Array) -> Array:
+    """Position of every load case, `worst` where none is stated.
 
     If all positions are ``worst``, it is a single number.
     """
     if all(position is None for position in positions):
-        return geometry.stroke
-    return stacked([geometry.stroke if x is None else x for x in positions])
+        return worst
+    return stacked([worst if x is None else x for x in positions])
 
 
 def _stated(v: Values, design: Design, field: str, otherwise: Array) -> Array:
@@ -331,7 +337,8 @@ def derive(v: Values, design: Design, stock: MaterialValues, geometry: Geometry)
         push=push,
         joint=joint,
         positions=positions,
-        reach=_reach(geometry, positions),
+        reach=_at(positions, geometry.stroke),
+        withdrawn=_at(positions, 0.0 * geometry.stroke),
         demands=demands,
         force=force,
         speed=demands[WORST].speed,

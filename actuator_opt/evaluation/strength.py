@@ -12,7 +12,7 @@ from math import sqrt
 from typing import TypeVar
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, namespace, real, where
+from ..base.numeric import Array, maximum, namespace, real, where
 from ..design.model import Design, Ply
 from ..joints.joint import Joint, Loaded, Thermal
 from ..joints.kinds import JOINTS
@@ -137,13 +137,13 @@ def compute(
     g: Geometry,
     state: LoadState,
     wall: Wall,
-    section: RodSection,
-    beam: Beam,
+    sections: Sequence[RodSection],
+    beams: Sequence[Beam],
     loaded_joints: Sequence[LoadedJoint],
     out: MetricArrays,
 ) -> None:
     """Compute all metrics of static strength."""
-    supply = v["supply.pressure"]
+    section, supply = sections[0], v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
     yields, bursts = wall.yield_pressure, wall.burst_pressure
     first_ply = dict(wall.first_ply_pressure)
@@ -154,14 +154,14 @@ def compute(
         bursts = {**bursts, **end.placed(joint_walls.bursts)}
     _pressure_factors(v, wall, supply, yields, first_ply, bursts, out)
     parts = {place: p / supply for place, p in yields.items()}
-    parts |= rod_strength.yields(stock, design, g, state, section, beam)
+    parts |= rod_strength.yields(stock, design, g, state, sections, beams)
     for end in loaded_joints:
         parts |= end.placed(end.joint.yields(end.loaded))
     parts |= _fitting_yield(v, stock, design, section, push)
     parts |= piston_nut.yields(v, design, stock, g, push, pull)
     out.put("yield_factor", parts)
-    out.put("buckling_factor", beam.critical / push)
-    rod_strength.compute(design, section, beam, supply, push, pull, out)
+    out.put("buckling_factor", rod_strength.buckling(g, beams, push, pull))
+    rod_strength.compute(design, g, sections, beams, supply, push, pull, out)
     _threads(v, stock, design, g, section, pull, out)
     thermal = _retention(v, design, loaded_joints, out)
     fittings = rods.fittings(v, stock, design, section)
@@ -169,7 +169,7 @@ def compute(
     thermal["rod fittings"] = fittings if isinstance(fittings, str) else fittings.thermal(stock)
     rods.thermal(v, design, thermal, out)
     _caps(stock, design, g, supply, out)
-    _pins(stock, design, g, push, out)
+    _pins(stock, design, g, maximum(push, pull) if design.double_rod else push, out)
     _guides(stock, design, g, state, out)
 
 
@@ -330,7 +330,8 @@ def _caps(
 ) -> None:
     """Compute the bending of the end plates; plate and plug of the head are one turned part.
 
-    A skirt in the bore stands clear of the plug, which then does not thicken the plate.
+    A skirt in the bore stands clear of the plug, which then does not thicken the plate. With a
+    second rod, the cap is like the head.
 
     While the piston is at the head end, the joint supports the cap plate against the pressure. On a
     clevis, the neck of the eye carries the push, and the pressure bends the plate around the neck.
@@ -344,7 +345,9 @@ def _caps(
         return
     support = (g.cap_fit.plate_radius + g.cap_fit.radius) / 2
     stresses: dict[str, Array] = {}
-    if design.cylinder.end_stop == "internal" or clamped(design) or design.clevis is None:
+    if design.double_rod:  # both end plates have the plug of a gland
+        pass
+    elif design.cylinder.end_stop == "internal" or clamped(design) or design.clevis is None:
         stresses["cap, supported at its edge"] = end_plate.hung_plate_stress(
             pressure=supply,
             loaded_radius=g.inner_radius,
@@ -360,14 +363,17 @@ def _caps(
         stresses["cap, pull on its neck"] = end_plate.hub_plate_stress(
             pressure=0.0, edge_force=supply * g.area_b, edge_radius=support, **hub
         )
-    slotted = any(end.joint.inner_skirt for end in joints_of(design)[-1:])
-    head = end_plate.end_plate_stress(
-        pressure=supply,
-        radius=g.inner_radius,
-        thickness=g.plate if slotted else g.plate + g.head_length,
-        poissons_ratio=ratio,
-    )
-    stresses["head"] = HOLE * head
+    ends = joints_of(design)
+    joints = {"head": ends[-1:], "cap": ends[:1]}
+    for through in g.rods:
+        slotted = any(end.joint.inner_skirt for end in joints[through.end])
+        stress = end_plate.end_plate_stress(
+            pressure=supply,
+            radius=g.inner_radius,
+            thickness=g.plate if slotted else g.plate + g.head_length,
+            poissons_ratio=ratio,
+        )
+        stresses[through.gland] = HOLE * stress
     out.put("cap_factor", {place: strength / stress for place, stress in stresses.items()})
 
 

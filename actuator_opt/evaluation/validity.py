@@ -421,8 +421,8 @@ def _rod_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str,
         yield "rod_factor", f"stresses in the rod's layers exclude cooling stresses: {why}"
     if rod.missing:
         yield "rod_factor", f"rod: {rod.missing[0]}"
-    factors = run.computed.metrics["buckling_factor"][""]
-    if float(np.min(np.real(factors))) < 1 / NEAR:
+    factors = run.computed.metrics["buckling_factor"].values()
+    if min(float(np.min(np.real(factor))) for factor in factors) < 1 / NEAR:
         for metric in ("yield_factor", "rod_factor", "local_buckling_factor"):
             yield (
                 metric,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from ..base.numeric import Array
 from ..design.choices import COMPONENTS
@@ -18,11 +18,13 @@ from .values import Values
 
 PARTS = ("barrel", "rod", "piston", "caps", "glands", "seals", "fastening", "clevises")
 """Parts of the mass breakdown, in assembly order."""
-OPTIONAL = ("ports", "sensor")
-"""Parts that follow them, in a design that states them: bosses of the ports, position sensor."""
+SECOND = "second rod"
+OPTIONAL = (SECOND, "ports", "sensor")
+"""Parts that follow them, in a design that has them: second rod, bosses of the ports, position
+sensor."""
 STATED, STATED_MOVING = "components", "moving components"
 """Last parts of the breakdown: components with a stated mass, fixed or moving with the rod."""
-MOVING = ("rod", "piston", "fastening", STATED_MOVING)
+MOVING = ("rod", SECOND, "piston", "fastening", STATED_MOVING)
 """Parts that move with the rod."""
 
 
@@ -57,26 +59,32 @@ def _plate(density: Array, g: Geometry, fit: EndDimensions, hole: Array) -> Arra
     )
 
 
-def _gland(v: Values, design: Design, g: Geometry) -> Array:
-    density = v[f"materials.{design.head.material}.density"]
-    hole = g.rod_diameter + 2 * g.head_clearance
-    groove_volume = sum(
-        groove.count
-        * mass.rod_groove_volume(
-            diameter=hole, depth=groove.gland_depth - g.head_clearance, width=groove.width
+def _glands(v: Values, design: Design, g: Geometry) -> Array:
+    """Mass of the gland around every rod."""
+    density, glands = v[f"materials.{design.head.material}.density"], []
+    for rod in g.rods:
+        hole = rod.diameter + 2 * g.head_clearance
+        groove_volume = sum(
+            groove.count
+            * mass.rod_groove_volume(
+                diameter=hole, depth=groove.gland_depth - g.head_clearance, width=groove.width
+            )
+            for groove in rod.grooves
         )
-        for groove in g.rod_grooves
-    )
-    plug = mass.tube_mass(
-        density=density, inner_diameter=hole, outer_diameter=2 * g.plug_radius, length=g.head_length
-    )
-    return plug - density * groove_volume
+        plug = mass.tube_mass(
+            density=density,
+            inner_diameter=hole,
+            outer_diameter=2 * g.plug_radius_at(rod.end),
+            length=g.head_length,
+        )
+        glands.append(plug - density * groove_volume)
+    return sum(glands[1:], start=glands[0])
 
 
 def _seals(v: Values, g: Geometry) -> Array:
     rings: Array = 0.0
     placed_grooves = [(groove, g.bore, -1) for groove in g.piston_grooves]
-    placed_grooves += [(groove, g.rod_diameter, 1) for groove in g.rod_grooves]
+    placed_grooves += [(groove, rod.diameter, 1) for rod in g.rods for groove in rod.grooves]
     for place in g.static_places:
         placed_grooves += [(groove, g.bore, -1) for groove in g.static_grooves if place]
     for groove, counterface, side in placed_grooves:
@@ -101,11 +109,15 @@ def _static_grooves(caps: Array, head: Array, g: Geometry) -> dict[str, Array]:
     cut = mass.piston_groove_volume(diameter=g.bore, depth=groove.gland_depth, width=groove.width)
     wall = groove.gland_depth + LEAST_METAL
     spigot = mass.layer_area(inner_radius=g.inner_radius - wall, thickness=wall) * g.spigot
-    cap, head_place = g.static_places
-    additions = {"cap": caps * (spigot - cut) if cap else 0.0}
-    if head_place:
-        part, density = ("head", caps) if head_place == "rim" else ("glands", head)
-        additions[part] = -density * cut
+    cap, _ = g.static_places
+    additions: dict[str, Array] = {}
+    if "cap" not in g.rod_radii:
+        additions["cap"] = caps * (spigot - cut) if cap else 0.0
+    for rod in g.rods:
+        place = g.static_place(rod.end)
+        if place:
+            part, density = (rod.end, caps) if place == "rim" else ("glands", head)
+            additions[part] = additions.get(part, 0.0) - density * cut
     return additions
 
 
@@ -135,24 +147,32 @@ def _rod_ends(v: Values, design: Design, rod: RodSection) -> Array:
 
 
 def _eyes(v: Values, design: Design, g: Geometry) -> Array:
-    """Mass of both eyes with their spherical bearings, and of the additional neck of the cap's."""
+    """Mass of the eyes with their spherical bearings, and of the additional neck of the cap's.
+
+    With a second rod there is no eye at the cap.
+    """
     if design.clevis is None:
         return 0.0
     density, bearing = v[f"materials.{design.clevis.material}.density"], bearing_of(design)
     neck = mass.disc_mass(density=density, diameter=g.pin_diameter, thickness=g.neck)
+    count = 1 if design.double_rod else 2
     if bearing is None:
-        return 2 * density * mass.eye_volume(pin_diameter=g.pin_diameter) + neck
+        return count * density * mass.eye_volume(pin_diameter=g.pin_diameter) + neck
     volume = bearing_eye_volume(
         pin_diameter=bearing.bore, outer_diameter=bearing.outer_diameter, width=bearing.width
     )
-    return 2 * (density * volume + bearing.mass) + neck
+    return count * (density * volume + bearing.mass) + neck
 
 
 def parts(
-    v: Values, design: Design, stock: MaterialValues, geometry: Geometry, rod: RodSection
+    v: Values,
+    design: Design,
+    stock: MaterialValues,
+    geometry: Geometry,
+    sections: Sequence[RodSection],
 ) -> dict[str, Array]:
     """Mass of every part [kg]; the oil is not included."""
-    g = geometry
+    g, rod = geometry, sections[0]
     caps = v[f"materials.{design.caps.material}.density"]
     masses = {
         "barrel": _barrel(v, design, g),
@@ -160,11 +180,14 @@ def parts(
         "piston": _piston(v, design, g),
         "cap": _plate(caps, g, g.cap_fit, 0.0),
         "head": _plate(caps, g, g.head_fit, g.rod_diameter + 2 * g.head_clearance),
-        "glands": _gland(v, design, g),
+        "glands": _glands(v, design, g),
         "seals": _seals(v, g),
         "fastening": _rod_ends(v, design, rod),
         "clevises": _eyes(v, design, g),
     }
+    for through, section in zip(g.rods[1:], sections[1:], strict=True):
+        masses["cap"] = _plate(caps, g, g.cap_fit, through.diameter + 2 * g.head_clearance)
+        masses[SECOND] = section.mass_per_length * through.length
     head = v[f"materials.{design.head.material}.density"]
     for additions in (
         _static_grooves(caps, head, g),

@@ -16,7 +16,7 @@ from ..evaluation.barrel import SEAL_STEP
 from ..evaluation.film import floats
 from ..evaluation.kernel import PreparedDesign, compute
 from ..evaluation.limits import MaterialValues
-from ..evaluation.rings import Ring, seal_contact
+from ..evaluation.rings import BLOCKS, Ring, seal_contact
 from ..evaluation.sealing import WiperFriction, wipers
 from ..evaluation.springs import Springs
 from ..evaluation.weight import moving
@@ -44,6 +44,8 @@ class Bench:
     design: Design
     bore: float
     rod_diameter: float
+    second_diameter: float
+    """Diameter of a second rod, 0 without one."""
     stroke: float
     growth: float
     mass: float
@@ -59,12 +61,14 @@ class Bench:
     @property
     def plunger(self) -> bool:
         """Whether no piston seal separates the chambers."""
-        return all(ring.name != "piston" for ring in self.rings)
+        sealed = any(ring.name == "piston" for ring in self.rings)
+        return not sealed and not self.second_diameter
 
     def areas(self, highest_pressure: Array) -> tuple[Array, Array]:
         """Return cap and rod-end piston areas, with the bore grown by the higher chamber pressure.
 
-        A_1 = pi (D/2 + u)^2 and A_2 = A_1 - pi d^2/4, with bore D and rod diameter d. The radial
+        A_1 = pi (D/2 + u)^2 and A_2 = A_1 - pi d^2/4, with bore D and rod diameter d; the area of a
+        second rod is taken off A_1 likewise. The radial
         growth u is that at the piston seal, because the pressure acts on the area inside the seal.
         Without a piston seal the rod is a plunger, and the areas are pi d^2/4 and zero. Gauge
         pressure [Pa]; areas [m^2].
@@ -74,7 +78,9 @@ class Bench:
             return area + 0.0 * highest_pressure, 0.0 * highest_pressure
         bore = self.bore + 2 * self.growth * highest_pressure
         return (
-            forces.piston_area(bore=bore),
+            forces.annulus_area(bore=bore, rod_diameter=self.second_diameter)
+            if self.second_diameter
+            else forces.piston_area(bore=bore),
             forces.annulus_area(bore=bore, rod_diameter=self.rod_diameter),
         )
 
@@ -103,7 +109,8 @@ class Bench:
         """Return the normal force of all rings of piston and rod at chamber pressures [N]."""
         total = {"piston": 0.0 * pressure_1, "rod": 0.0 * pressure_1}
         for ring, force in self.normal_forces(pressure_1, pressure_2):
-            total[ring.name] = total[ring.name] + force
+            block = _block(ring)
+            total[block] = total[block] + force
         return total
 
     def coulomb(self, pressure_1: Array, pressure_2: Array) -> Array:
@@ -157,8 +164,8 @@ class Bench:
         p1, p2 = (
             np.maximum(pressure, 0.0) for pressure in np.broadcast_arrays(pressure_1, pressure_2)
         )
-        sealed = {"piston": np.abs(p1 - p2), "rod": p1 if self.plunger else p2}
-        outer = {"piston": np.minimum(p1, p2), "rod": 0.0 * p2}
+        sealed = {"piston": np.abs(p1 - p2), "rod": p1 if self.plunger else p2, "second_rod": p1}
+        outer = {"piston": np.minimum(p1, p2), "rod": 0.0 * p2, "second_rod": 0.0 * p1}
         rings = []
         for ring in self.rings:
             grown = self.growth * np.maximum(p1, p2) if ring.name == "piston" else 0.0
@@ -200,9 +207,15 @@ class Bench:
         return 1 / total[0]
 
 
+def _block(ring: Ring) -> str:
+    """Block of `seals` that describes a sliding ring."""
+    assert ring.name != "static"
+    return BLOCKS[ring.name]
+
+
 def _leads(ring: Ring) -> bool:
     """Whether a ring is the first of its seal, which seals the pressure."""
-    return ring.groove.path == f"seals.{ring.name}."
+    return ring.groove.path == f"seals.{_block(ring)}."
 
 
 def _first(parts: dict[str, Array]) -> list[Array]:
@@ -231,6 +244,7 @@ def bench(subject: PreparedDesign) -> Bench:
         design=subject.design,
         bore=float(np.squeeze(g.bore)),
         rod_diameter=float(np.squeeze(g.rod_diameter)),
+        second_diameter=float(np.squeeze(g.rods[1].diameter)) if len(g.rods) > 1 else 0.0,
         stroke=float(np.squeeze(g.stroke)),
         growth=growth,
         mass=float(np.squeeze(moving(done.mass_parts))),

@@ -302,8 +302,8 @@ def test_cycles_of_the_metals_by_hand():
     bar, layered = (knee(rod, set=PLAIN) for rod in (INNER, layers(("steel_42crmo4", 0, 3.5))))
     found = {}
     for actuator in (bar, layered):
-        rod = passed(actuator).rod
-        found |= rod_strength.cycles(actuator.design, rod, SUPPLY, PUSH, pull)
+        run = passed(actuator)
+        found |= rod_strength.cycles(actuator.design, run.geometry, run.rods, SUPPLY, PUSH, pull)
     assert found["rod"].material == "steel_42crmo4"
     assert found["rod"].span == pytest.approx((PUSH + pull) / area, rel=1e-12)
     assert found["rod"].mean == 0

@@ -90,7 +90,7 @@ class LoadPath:
 def largest_area(design: Design, g: Geometry) -> Array:
     """Largest area on which supply pressure separates the ends; depends on end stop and mount."""
     if design.cylinder.end_stop == "internal":
-        return g.area_a
+        return maximum(g.area_a, g.area_b) if design.double_rod else g.area_a
     return g.area_b if design.cylinder.mount.startswith("cap") else g.area_a
 
 

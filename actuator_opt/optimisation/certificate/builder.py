@@ -503,10 +503,10 @@ class Envelopes:
         """
 
         def critical(
-            design: Design, wall: Wall, rod: RodSection, lengths: tuple[Array, Array]
+            seat: rod_strength.Seat, wall: Wall, rod: RodSection, lengths: tuple[Array, Array]
         ) -> Array:
             if mode is None:
-                return rod_strength.critical_load(design, wall, rod, lengths)
+                return rod_strength.critical_load(seat, wall, rod, lengths)
             load = trial_mode_load(
                 mode=mode,
                 bending_stiffness_1=wall.bending_stiffness,
@@ -698,6 +698,7 @@ def refuse(design: Design) -> None:
     elements = [*design.seals.piston.elements().values(), *design.seals.rod.elements().values()]
     for present, model in (
         (bool(design.rod.layup), "a rod of layers"),
+        (design.double_rod, "a second rod"),
         (design.linkage is not None, "a linkage"),
         (any(element.friction_law.film for element in elements), "a seal with an oil film"),
     ):
