@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from ..base.errors import Fault
 from ..base.quantities import length_text
 from ..joints.joint import ROUNDING, BarrelOpening, ring_height, stated_rings
+from .double_rod import has_second_rod
 from .model import Design
 from .structure import FileView, Loc
 from .wall_faults import ends
@@ -125,6 +126,7 @@ def order(design: Design) -> list[str]:
     last, first = ("cap", "head") if head_fixed else ("head", "cap")
     through, other = openings[last][1], openings[first][1]
     lines = [*_rod_and_piston(view, head_fixed=head_fixed)]
+    double = has_second_rod(view)
     clamped = any(end.joint is not None and end.joint.clamping is not None for end in ends(view))
     if clamped:
         lines += ["Insert them into the barrel.", through.closing.format(end="cap and the head")]
@@ -133,12 +135,16 @@ def order(design: Design) -> list[str]:
             lines.append(f"The {first} is made with the barrel.")
         else:
             lines.append(other.closing.format(end=first))
-        what = "piston and rod" if head_fixed else "piston, rod and head"
+        rods = "rods" if double else "rod"
+        what = f"piston and {rods}" if head_fixed else f"piston, {rods} and head"
         bore = view.number("cylinder", "bore") or 0.0
         width = length_text(bore if through.diameter is None else through.diameter)
         lines.append(f"Insert {what} through the opening of {width} at the {last}.")
         if through.crossed is not None:
             lines.append(f"Its {through.crossed[0]}, which the seals pass, needs a chamfer.")
+        if double:
+            rod = "rod" if head_fixed else "second rod"
+            lines.append(f"The {rod} passes the gland of the {first}: guard its seals.")
         lines.append(through.closing.format(end=last))
     if view.has("clevis") and view.has("rod", "thread"):
         lines.append("Screw the eye onto the rod.")

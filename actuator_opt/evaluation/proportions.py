@@ -196,6 +196,10 @@ TABLE: tuple[Proportion, ...] = (
         lambda v, design, g: g.rod_diameter / g.bore,
     ),
     Proportion(
+        "second_rod.outer_diameter", _BORE, 0.15, 0.98, "our choice, as for the rod",
+        _stated("second_rod.outer_diameter", lambda g: g.bore),
+    ),
+    Proportion(
         "clevis.pin_diameter", _BORE, 0.1, 1.5, "our choice; 0.4 to 0.6 is common", _pin,
     ),
     Proportion(

@@ -232,11 +232,15 @@ def _stations(lengths: Mapping[str, float]) -> dict[str, tuple[float, float]]:
         "barrel": (plate - mm["beyond_cap"], end + mm["beyond_head"]),
         "closed length": (mm["pin_cap"], mm["pin_rod"]),
     }
+    if "second_rod" in mm:  # the spigot is then the gland of the cap
+        spans["second gland"] = (plate, plate + mm["spigot"])
+        spans["second extension"] = (0.0, face)
+        spans["total length"] = spans.pop("closed length")
     return {name: span for name, span in spans.items() if span[1] - span[0] > _SMALLEST}
 
 
 def _dimension_words(name: str, span: tuple[float, float]) -> str:
-    prefix = {"stroke": "stroke ", "closed length": "closed length "}.get(name, "")
+    prefix = f"{name} " if name in ("stroke", "closed length", "total length") else ""
     return prefix + number(span[1] - span[0])
 
 
@@ -310,8 +314,13 @@ def _diameters(evaluated: Mapping[str, float]) -> list[_Diameter]:
     ]
     if "plate" in spans:
         diameters.append(_Diameter(sum(spans["plate"]) / 2, 1000 * evaluated["plate_outer"], "cap"))
+    second = evaluated.get("second_rod")
+    if second is not None:
+        middle = 500 * evaluated["face"]
+        diameters.append(_Diameter(middle, 1000 * second, "second rod"))
     if evaluated["pin"] > 0:
-        diameters.append(_Diameter(0.0, 1000 * evaluated["pin"], "pin"))
+        pin = 0.0 if second is None else 1000 * evaluated["pin_rod"]
+        diameters.append(_Diameter(pin, 1000 * evaluated["pin"], "pin"))
     return sorted(diameters, key=lambda diameter: diameter.x)
 
 
@@ -434,7 +443,8 @@ def _cut(evaluation: Evaluation, outline: Outline) -> list[list[_Corner]]:
         shaft = ((near, pin / 2), (near, -pin / 2), (face, -pin / 2), (face, pin / 2))
         return [*_eye(1000 * lengths[at], pin, radius, hole, side, 0.0), _straight(shaft)]
     if outline.part == BEARINGS:
-        ends = (1000 * lengths[at] for at in ("pin_cap", "pin_rod"))
+        pins = ("pin_rod",) if evaluation.design.double_rod else ("pin_cap", "pin_rod")
+        ends = [1000 * lengths[at] for at in pins]
         return [_circle(end, size) for end in ends for size in (hole, pin)]
     lines = [half for profile in _profiles(outline) for half in _halves(profile)]
     return lines if -1 in outline.sides else [line for line in lines if line[0][1] > 0]

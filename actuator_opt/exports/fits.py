@@ -63,7 +63,10 @@ def notes(evaluation: Evaluation) -> Iterator[str]:
     design, lengths = evaluation.design, evaluation.lengths
     yield "Dimensions without tolerance: ISO 2768-m. Fits: ISO 286-2."
     yield from _fit("Bore", "piston and head", lengths["bore"], _clearances(design, "piston"))
-    yield from _fit("Hole of the head", "rod", lengths["rod"], _clearances(design, "head"))
+    for key, gland in (("rod", "head"), ("second_rod", "second gland")):
+        if key in lengths:
+            rod, clearance = key.replace("_", " "), _clearances(design, "head")
+            yield from _fit(f"Hole of the {gland}", rod, lengths[key], clearance)
     for name, part in (("bore", "piston"), ("rod", "rod")):
         roughness = getattr(design.seals, part).counterface_roughness
         yield f"Surface of the {name}: RMS roughness at most {1e6 * roughness:.3g} um."

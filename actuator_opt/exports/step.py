@@ -24,13 +24,14 @@ _DIGITS = 9
 """Number of decimals of a length in mm, in files: the last is a thousandth of a nanometre."""
 _NAMES = {
     "caps": ("cap, cap end", "cap, rod end"),
+    "glands": ("head, cap end", "head, rod end"),
     "rod.fitting": ("rod.fitting, piston end", "rod.fitting, rod end"),
 }
 """For parts that consist of two bodies, the names of these bodies, starting at the cap end. All
 other bodies have the name of their part."""
 _RINGS = tuple(
     f"{place} {ring}"
-    for place in ("piston", "rod")
+    for place in ("piston", "rod", "second rod")
     for ring in ("seal", "secondary seal", "guide", "wiper")
 )
 EYES = ("cap eye", "rod eye")
@@ -64,7 +65,8 @@ def title(part: str) -> str:
     >>> title("layup[1]"), title("glands"), title("rod.layup[0]")
     ('barrel.layup[1]', 'head', 'rod.layup[0]')
     """
-    return f"barrel.{part}" if part.startswith("layup") else {"glands": "head"}.get(part, part)
+    paths = {"glands": "head", "second rod": "second_rod"}
+    return f"barrel.{part}" if part.startswith("layup") else paths.get(part, part)
 
 
 def millimetres(polygon: Iterable[Point]) -> Profile:
@@ -250,7 +252,7 @@ def _bodies(outline: Outline) -> Iterator[SolidBody]:
     part = outline.part
     label = title(part)
     loops = joined(millimetres(polygon) for polygon in outline.polygons)
-    names = _NAMES.get(part, (label,))
+    names = _NAMES.get(part, (label,)) if len(loops) > 1 else (label,)
     for index, loop in enumerate(loops):
         if not bounds_solid(loop):
             raise _fault(label)

@@ -461,7 +461,7 @@ def _candidate_choices(
     for end in ends:
         if matters(f"{end}."):
             yield from ((f"{end}.type", joint, {}) for joint in JOINTS.names)
-    parts = ["rod", "piston", "head", "caps", *ends, "clevis"]
+    parts = ["rod", "second_rod", "piston", "head", "caps", *ends, "clevis"]
     parts += [f"barrel.layup[{i}]" for i in range(len(design.barrel.layup))]
     parts += [f"rod.layup[{i}]" for i in range(len(design.rod.layup))]
     for part in parts:

@@ -296,6 +296,7 @@ def _diameters(
 ) -> list[tuple[float, str]]:
     """Draw the dimensions of rod, bore and barrel diameter, across the free part of the chamber.
 
+    That of a second rod with another diameter is drawn outside the cap.
     Returns the labels with their positions on `row`; they are written after the other lines.
     """
     labels = []
@@ -308,14 +309,22 @@ def _diameters(
         )
         if lengths_key in evaluation.lengths
     ]
+    second = evaluation.lengths.get("second_rod")
+    apart = second is not None and second != evaluation.lengths["rod"]
+    if apart:
+        wanted.insert(0, ("second_rod", "second rod", True))
     start, end = _chamber(frame, outlines, evaluation.lengths)
     texts = [f"⌀{trimmed(1000 * evaluation.lengths[k])} {label}" for k, label, _ in wanted]
     widths = [text_width(text, 7.0) for text in texts]
     count = len(wanted)
+    if apart:
+        count -= 1
     lines = [start + (end - start) * (2 * k + 1) / (2 * count) for k in range(count)]
+    if apart:
+        lines.insert(0, frame.x(evaluation.lengths["face"] / 2))
     gaps = [(a + b) / 2 + 3.0 for a, b in pairwise(widths)]
     ends = (widths[0] / 2 + 1.5, widths[-1] / 2 + 1.5) if widths else (0.0, 0.0)
-    if end - start < sum(gaps) + sum(ends):
+    if apart or end - start < sum(gaps) + sum(ends):
         places = spread_within(lines, gaps, ends[0], ink.width - ends[1])
     else:
         places = spread_within(lines, gaps, start + ends[0], end - ends[1])
@@ -360,7 +369,8 @@ def _lengths(
         else:
             spare = (ends[1] - ends[0] - closed) / 2
             first, last = ends[0] + spare, ends[1] - spare
-        text = f"closed length {trimmed(1000 * closed)}"
+        words = "total length" if "second_rod" in lengths else "closed length"
+        text = f"{words} {trimmed(1000 * closed)}"
         for x in (first, last):
             ink.line(
                 (frame.x(x), frame.axis - 2.5),

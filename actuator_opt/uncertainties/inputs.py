@@ -230,6 +230,8 @@ def _practice(subject: PreparedDesign) -> Iterator[Input]:
         "cylinder.bore": table["bore"],
         "rod.outer_diameter": table["rod"],
         "rod.inner_diameter": table["rod_bore"],
+        "second_rod.outer_diameter": table["rod"],
+        "second_rod.inner_diameter": table["rod_bore"],
     }
     spreads: dict[str, tuple[str, dict[str, Any]]] = {
         "fluid.air_content": ("lognormal", {"factor": float(table["air_content_factor"])})
