@@ -140,12 +140,11 @@ def _sizes(view: FileView) -> Iterator[Fault]:
 def _nut(view: FileView) -> Iterator[Fault]:
     """Check that the nut of the piston passes over the second rod."""
     diameter, pitch = (view.number("piston", "nut", key) for key in ("diameter", "pitch"))
-    rod = rod_size(view, "cap")[1]
+    loc, rod = rod_size(view, "cap")
     if diameter is None or pitch is None or rod is None:
         return
     hole = float(minor_diameter(diameter=diameter, pitch=pitch))
-    paths = ("second_rod.outer_diameter", "rod.outer_diameter")
-    if rod > hole and not any(view.has("variables", path) for path in paths):
+    if rod > hole and not view.has("variables", ".".join(map(str, loc))):
         yield Fault(
             ("piston", "nut"),
             f"its hole of {length_text(hole)} does not pass the second rod ({length_text(rod)}), "
