@@ -111,6 +111,12 @@ designs/steel_baseline.yaml, carbon alone that of designs/aerospace.yaml. In car
 hardly expands, an aluminium piston takes (24e-6/K)(60 K)/2 of the bore and 5 um. The ratio for
 the others is our choice."""
 
+TYPES: Mapping[str, str] = {
+    "differential": "mount: cap_clevis",
+    "double_rod": "type: double_rod, mount: head_trunnion",
+}
+"""The types of cylinder, with their keys in the file. A second rod leaves no eye at the cap."""
+
 BURST, BUCKLING = 4.0, 3.5
 """Safety factors, as in the check list and in the template."""
 
@@ -167,7 +173,7 @@ _HOLLOW = 0.8
 
 @dataclass(frozen=True, slots=True)
 class Duty:
-    """Forces, stroke and supply pressure of an actuator (SI), its goal and its wall.
+    """Forces, stroke and supply pressure of an actuator (SI), its goal, wall and type.
 
     With a lever arm, the file states torques. Without `stiffness` there is no such limit.
     """
@@ -181,6 +187,7 @@ class Duty:
     lever_arm: float | None = None
     speed: float = SPEED
     stiffness: float | None = None
+    type: str = "differential"
 
     @property
     def return_pressure(self) -> float:
@@ -230,6 +237,7 @@ def start(
     lever_arm: float | str | None = None,
     speed: float | str = SPEED,
     stiffness: float | str | None = None,
+    type: str = "differential",
     name: str = "my actuator",
 ) -> Actuator:
     """A complete design for a duty, solved, and with round numbers.
@@ -248,6 +256,7 @@ def start(
     lever_arm : lever arm of the joint, m; None: the file states forces
     speed : piston speed in both directions, m/s
     stiffness : least stiffness over the stroke, N/m; None: no limit
+    type : "differential" or "double_rod", a cylinder with a rod through both ends
     name : title of the design
 
     Raises
@@ -263,6 +272,7 @@ def start(
         wall=duty_word("wall", wall),
         lever_arm=arm,
         stiffness=None if stiffness is None else duty_value("stiffness", stiffness),
+        type=duty_word("type", type),
     )
     return solved_start(duty, name).actuator
 
@@ -300,12 +310,13 @@ def _is_torque(text: str) -> bool:
 
 
 def duty_word(key: str, value: str, prefix: str = "") -> str:
-    """The `goal` or `wall` of a duty; a fault names it as ``prefix + key``.
+    """The `goal`, `wall` or `type` of a duty; a fault names it as ``prefix + key``.
 
     >>> duty_word("wall", "lined carbon")
     'lined_carbon'
     """
-    words = GOALS if key == "goal" else WALLS
+    tables: Mapping[str, Mapping[str, object]] = {"goal": GOALS, "wall": WALLS, "type": TYPES}
+    words = tables[key]
     word = value.strip().casefold().replace("-", "_").replace(" ", "_")
     if word not in words:
         message = f'{prefix}{key}: "{shown(value)}" is not a {key}'
@@ -470,12 +481,13 @@ def _first_sizes(duty: Duty) -> _Sizes:
     push, for pull beside the rod, and for the stiffness of the oil at mid-stroke; it has room
     for the rings of piston and rod. The wall is a thin tube at burst pressure. Stops in the
     cylinder suddenly meet all force that the load leaves over, so oil at the stop reaches twice
-    this force by its area; above proof pressure the stops must be outside.
+    this force by its area; above proof pressure the stops must be outside. A second rod takes as
+    much from the area for the push as the rod from that for the pull.
     """
     pressure, back = duty.pressure, duty.return_pressure
     bore = rod = 6e-3
     for _ in range(80):  # converges: rod area grows with the root of the bore's area
-        area = pi / 4 * bore**2
+        area = _pushed(duty, bore, rod)
         inertia = 0.9 * BUCKLING * pressure * area * (2 * duty.stroke + 0.05) ** 2
         inertia /= pi**2 * _ROD_MODULUS
         column = (64 * inertia / (pi * (1 - _HOLLOW**4))) ** 0.25
@@ -483,7 +495,8 @@ def _first_sizes(duty: Duty) -> _Sizes:
         rod = max(6e-3, column, tension)
         needed = max(duty.push / pressure, duty.pull / (pressure - back)) * 1.06
         needed = max(needed, (duty.stiffness or 0.0) * duty.stroke / _OIL)
-        pulled = 1.06 * duty.pull / (pressure - back) + pi / 4 * rod**2
+        beside = duty.pull if duty.type == "differential" else max(duty.pull, duty.push)
+        pulled = 1.06 * beside / (pressure - back) + pi / 4 * rod**2
         bore += 0.5 * (max(sqrt(4 / pi * max(needed, pulled)), rod + 8e-3) - bore)
     if bore > LARGEST:
         raise UsageError(
@@ -493,7 +506,7 @@ def _first_sizes(duty: Duty) -> _Sizes:
                 "raise the pressure, or lower force or stroke",
             )
         )
-    area, ring = pi / 4 * bore**2, pi / 4 * (bore**2 - rod**2)
+    area, ring = _pushed(duty, bore, rod), pi / 4 * (bore**2 - rod**2)
     peak = max(
         2 * (pressure * area - back * ring - duty.push) / ring,
         2 * (pressure * ring - back * area - duty.pull) / area,
@@ -515,6 +528,11 @@ def _first_sizes(duty: Duty) -> _Sizes:
         thread,
         pressure * area,
     )
+
+
+def _pushed(duty: Duty, bore: float, rod: float) -> float:
+    """Area of the chamber that pushes: the piston's, or the annulus around a second rod."""
+    return pi / 4 * (bore**2 - (rod**2 if duty.type == "double_rod" else 0.0))
 
 
 def _thread(sizes: Sequence[tuple[float, float]], square: float) -> tuple[float, float]:
@@ -624,7 +642,7 @@ supply: {pressure: @pressure@, return_pressure: @return_pressure@}
 fluid: {material: iso_vg_32, temperature: 40 degC}
 environment: {temperature_min: 0 degC, temperature_max: 80 degC@cure@}
 
-cylinder: {bore: @bore@, stroke: @stroke@, mount: cap_clevis, end_stop: @stop@,
+cylinder: {bore: @bore@, stroke: @stroke@, @type@, end_stop: @stop@,
   port_diameter: @port@, stop_travel: 1 mm}
 barrel:
   layup:                        # from the bore outwards
@@ -690,6 +708,7 @@ def _text(duty: Duty, sizes: _Sizes, title: str, stop: str, mass: float | None) 
         "cure": ", cure_temperature: 120 degC" if len(wall.layers) > 1 else "",
         "bore": _mm(bore),
         "stroke": stated["stroke"],
+        "type": TYPES[duty.type],
         "stop": stop,
         "port": f"{ceil(max(3.0, 1e3 * bore * sqrt(duty.speed / PORT_SPEED)))} mm",
         "layers": "\n".join(layers),

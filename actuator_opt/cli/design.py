@@ -117,6 +117,12 @@ def init(
         str | None,
         typer.Option("--stiffness", metavar="STIFFNESS", help='Least stiffness, e.g. "10 kN/mm".'),
     ] = None,
+    type_: Annotated[
+        str | None,
+        typer.Option(
+            "--type", metavar="TYPE", help="Cylinder: differential, or double_rod (two rods)."
+        ),
+    ] = None,
     yes: Annotated[
         bool, typer.Option("--yes", help="Use the defaults instead of asking questions.")
     ] = False,
@@ -134,6 +140,7 @@ def init(
     options = {
         "lever_arm": lever_arm, "push": push, "pull": pull, "stroke": stroke,
         "pressure": pressure, "goal": goal, "wall": wall, "speed": speed, "stiffness": stiffness,
+        "type": type_,
     }  # fmt: skip
     answers = {key: text for key, text in options.items() if text is not None}
     _only_one(

@@ -45,8 +45,8 @@ CylinderType: TypeAlias = Annotated[
     Literal["differential", "double_rod", "plunger", "telescopic"],
     Choice(
         "build of the cylinder; differential: one rod, through the head; double_rod: a rod through "
-        "each end, the cap end with a gland like that of the head; plunger, telescopic: not "
-        "modelled, refused"
+        "each end, the cap end with a gland like that of the head; plunger: the rod is the piston "
+        "(no model, refused); telescopic: stages that slide in each other (no model, refused)"
     ),
 ]
 Mount: TypeAlias = Annotated[

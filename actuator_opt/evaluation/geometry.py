@@ -571,47 +571,59 @@ def _fits(v: Values, design: Design, **sizes: Any) -> tuple[EndDimensions, ...]:
     ) or (EndDimensions(plate_radius=outer, radius=outer),)
 
 
-def _second_rod(v: Values, first: RodThrough) -> RodThrough:
-    """The rod through the cap; numbers that its block does not state are those of the first rod.
+def _rods(
+    v: Values, design: Design, *, barrel_length: Array, head_bush: Array
+) -> tuple[RodThrough, ...]:
+    """The rod through the head, and the second rod, if any.
 
-    From its piston face it passes gland and plate, and in the retracted actuator it extends over
-    the stroke and its extension.
+    Numbers that the block of the second rod does not state are those of the first. From its piston
+    face it passes gland and plate; retracted, it extends over the stroke and its extension.
     """
-    outside = v["cylinder.stroke"] + v.get("second_rod.extension", first.outside)
-    return RodThrough(
+    rod, extension = v["rod.outer_diameter"], v["rod.extension"]
+    layers = _thicknesses(v, "rod", design.rod.layup)
+    plate = v["caps.thickness"]
+    first = RodThrough(
+        end="head",
+        path="rod",
+        diameter=rod,
+        inner_diameter=rod - 2 * sum(layers) if layers else v["rod.inner_diameter"],
+        outside=extension,
+        length=barrel_length - v["piston.length"] + head_bush + plate + extension,
+        grooves=grooves(v, design, "rod"),
+    )
+    if not design.double_rod:
+        return (first,)
+    outside = v["cylinder.stroke"] + v.get("second_rod.extension", extension)
+    second = RodThrough(
         end="cap",
         path="second_rod",
-        diameter=v.get("second_rod.outer_diameter", first.diameter),
+        diameter=v.get("second_rod.outer_diameter", rod),
         inner_diameter=v.get("second_rod.inner_diameter", first.inner_diameter),
         outside=outside,
-        length=v["head.length"] + v["caps.thickness"] + outside,
+        length=v["head.length"] + plate + outside,
         grooves=tuple(replace(x, place=f"second {x.place}") for x in first.grooves),
     )
+    return first, second
+
+
+def _area_a(bore: Array, rods: Sequence[RodThrough]) -> Array:
+    """Area of chamber A: that of the piston, or its annulus around a second rod."""
+    if len(rods) == 1:
+        return forces.piston_area(bore=bore)
+    return forces.annulus_area(bore=bore, rod_diameter=rods[1].diameter)
 
 
 def derive(v: Values, design: Design) -> Geometry:
     """All derived dimensions of a design."""
     bore, stroke = v["cylinder.bore"], v["cylinder.stroke"]
-    rod, double = v["rod.outer_diameter"], design.double_rod
+    double, cushions = design.double_rod, _cushions(v, design)
     thicknesses = _thicknesses(v, "barrel", design.barrel.layup)
-    rod_thicknesses = _thicknesses(v, "rod", design.rod.layup)
-    rod_inner = rod - 2 * sum(rod_thicknesses) if rod_thicknesses else v["rod.inner_diameter"]
     piston_length, head_length = v["piston.length"], v["head.length"]
     barrel_length = v.get("barrel.length", piston_length + stroke + head_length)
     if double and "barrel.length" in v:
         barrel_length = barrel_length - head_length  # the gland of the cap counts as its spigot
-    plate, extension = v["caps.thickness"], v["rod.extension"]
-    cushions = _cushions(v, design)
-    first = RodThrough(
-        end="head",
-        path="rod",
-        diameter=rod,
-        inner_diameter=rod_inner,
-        outside=extension,
-        length=barrel_length - piston_length + cushions["head_bush"] + plate + extension,
-        grooves=grooves(v, design, "rod"),
-    )
-    rods: tuple[RodThrough, ...] = (first, _second_rod(v, first)) if double else (first,)
+    plate = v["caps.thickness"]
+    rods = _rods(v, design, barrel_length=barrel_length, head_bush=cushions["head_bush"])
     forms = tuple(end.joint.form for end in joints_of(design))
     sizes: dict[str, Any] = {
         "inner_radius": bore / 2,
@@ -636,12 +648,10 @@ def derive(v: Values, design: Design) -> Geometry:
         bore=bore,
         **sizes,
         stroke=stroke,
-        area_a=forces.annulus_area(bore=bore, rod_diameter=rods[1].diameter)
-        if double
-        else forces.piston_area(bore=bore),
-        area_b=forces.annulus_area(bore=bore, rod_diameter=rod),
+        area_a=_area_a(bore, rods),
+        area_b=forces.annulus_area(bore=bore, rod_diameter=rods[0].diameter),
         rods=rods,
-        rod_thicknesses=rod_thicknesses,
+        rod_thicknesses=_thicknesses(v, "rod", design.rod.layup),
         piston_length=piston_length,
         piston_clearance=v["piston.clearance"],
         nut=0.0 if design.piston.nut is None else v["piston.nut.diameter"],
@@ -654,7 +664,7 @@ def derive(v: Values, design: Design) -> Geometry:
             plate=plate,
             spigot=spigot,
             further=further + eyes["rod_stack"],
-            extension=extension,
+            extension=rods[0].outside,
             eyes=(1 if double else 2) * eyes["eye_offset"],
         ),
         piston_grooves=grooves(v, design, "piston"),

@@ -42,9 +42,9 @@ LEAST = 1e-6
 
 
 class Seat(NamedTuple):
-    """How a rod is carried: by a flange (`fixed`) or free to swing, directly or by the `cylinder`.
+    """Support of a rod: by a flange (`fixed`) or free to swing, and directly or by the `cylinder`.
 
-    A mount at the end that the rod passes carries the rod directly; one at the other end carries
+    A mount at the end that the rod passes supports the rod directly; one at the other end supports
     it by the cylinder, which bends with it.
     """
 
@@ -95,7 +95,7 @@ rod, and the lengths of the cylinder and of the exposed rod."""
 
 
 def seat(design: Design, end: Literal["head", "cap"]) -> Seat:
-    """How the cylinder carries the rod that passes an end.
+    """Support of the rod that passes an end of the cylinder.
 
     >>> from types import SimpleNamespace as Stub
     >>> design = Stub(cylinder=Stub(mount="head_trunnion"))
@@ -136,7 +136,7 @@ def derive(
 
 
 def critical_load(seat: Seat, wall: Wall, rod: RodSection, lengths: tuple[Array, Array]) -> Array:
-    """Critical load of barrel and rod, or, if the mount carries the rod directly, of it alone.
+    """Critical load of barrel and rod, or, if the mount supports the rod directly, of it alone.
 
     Shear deformation is included.
     """

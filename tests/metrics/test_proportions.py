@@ -36,6 +36,10 @@ FIRES = {
         "lines[0].outer_diameter": "40 mm",
     },
     ("rod.outer_diameter", "bore"): {"cylinder.bore": "500 mm"},
+    ("second_rod.outer_diameter", "bore"): {
+        "cylinder.type": "double_rod", "cylinder.mount": "cap_flange",
+        "second_rod.outer_diameter": "2 mm", "second_rod.inner_diameter": "0 mm",
+    },
     ("clevis.pin_diameter", "bore"): {"cylinder.bore": "500 mm"},
     ("rod.thread.diameter", "bore"): {"cylinder.bore": "500 mm"},
     ("cylinder.port_diameter", "bore"): {"cylinder.port_diameter": "22 mm"},
