@@ -21,7 +21,7 @@ from ..base.numeric import Array, array_of
 from ..base.surrogate import Interpolation, Surrogate, SurrogateAxis, surrogate
 from ..design.model import Design
 from .film import FilmRow, Solved, Stroke, floats, of_place, on_stroke, ring_films, slopes, solve
-from .rings import Place, Ring, RingPlace
+from .rings import BLOCKS, Ring, RingPlace, SlidingPlace
 from .values import Values, of_case
 
 SAMPLES = 64
@@ -241,14 +241,17 @@ def _errors(
     return errors
 
 
-def _outward(place: Place, push: bool) -> dict[Stroke, bool]:
+def _outward(place: SlidingPlace, push: bool) -> dict[Stroke, bool]:
     """For each stroke that needs a film, whether the counterface moves outwards.
 
     The piston always moves away from the pressurised chamber. Relative to the piston seal, the bore
     therefore always moves inwards, towards the sealed oil. The rod seal also needs a film for the
-    return stroke, which draws oil back.
+    return stroke, which draws oil back. A second rod moves outwards where the first moves inwards.
     """
-    return {"drive": False} if place == "piston" else {"drive": push, "return": not push}
+    if place == "piston":
+        return {"drive": False}
+    outwards = push if place == "rod" else not push
+    return {"drive": outwards, "return": not outwards}
 
 
 def tables(
@@ -301,8 +304,7 @@ def unsolved(design: Design, rings: tuple[Ring, ...]) -> dict[Key, FilmTable]:
 
 def _rows(design: Design, rings: tuple[Ring, ...]) -> Iterator[tuple[Key, FilmRow]]:
     """Yield the key of each film table of a design, and the row of rings it describes."""
-    places: tuple[Place, ...] = ("piston", "rod")
-    for place in places:
+    for place in BLOCKS:
         place_rings = of_place(rings, place)
         for case, load_case in enumerate(design.load_cases):
             if not place_rings or of_case(place_rings[0]["speed"], case) == 0:

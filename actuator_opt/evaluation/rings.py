@@ -42,8 +42,8 @@ class Ring:
     `numbers` contains the values of the design file and in addition `diameter`, `youngs_modulus` of
     the squeezed part, `pressure` (the sealed pressure difference), `outer_pressure` (gauge) and
     `squeeze_left` (nominal squeeze minus the loss by bore growth). For an oil film it also contains
-    `speed`, `viscosity`, `return_pressure` (in chamber B on the return stroke) and the ring's
-    roughness.
+    `speed`, `viscosity`, `return_pressure` (in chamber B, or at a second rod in chamber A, on the
+    return stroke) and the ring's roughness.
     """
 
     name: RingPlace
@@ -151,7 +151,9 @@ def rings(
             numbers["outer_pressure"] = (total - pressure) / 2
             if elements[key].friction_law.film:
                 numbers |= oil_numbers
-                numbers["return_pressure"] = where(state.push, state.driven_pressure, drain)
+                back = (state.driven_pressure, drain)
+                back = back[::-1] if name == "second_rod" else back
+                numbers["return_pressure"] = where(state.push, *back)
             numbers["squeeze_left"] = gland.squeeze_after(
                 squeeze=numbers["squeeze"],
                 section=groove.section,

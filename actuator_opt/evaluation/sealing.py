@@ -25,7 +25,6 @@ from .limits import MaterialValues, MetricArrays
 from .rings import (
     BLOCKS,
     INCOMPRESSIBLE,
-    Place,
     Ring,
     face_modulus,
     gland_metrics,
@@ -116,9 +115,8 @@ def films_of(
     tables: Mapping[Key, FilmTable], rings: tuple[Ring, ...], stroke: Stroke, cases: int
 ) -> dict[str, Running]:
     """Oil films of all rings on a stroke."""
-    places: tuple[Place, ...] = ("piston", "rod")
     films: dict[str, Running] = {}
-    for place in places:
+    for place in BLOCKS:
         place_rings = of_place(rings, place)
         running = films_running(tables, place_rings, stroke, cases)
         films |= dict(zip((ring.label for ring in place_rings), running, strict=False))
@@ -133,10 +131,15 @@ def compute_film(
     The leakage per double stroke is the oil dragged out minus the oil drawn back.
     """
     moving = real(state.speed) > 0
-    if "rod seal" in drive and "rod seal" in return_:
-        time = geometry.stroke / where(moving, state.speed, 1.0)
-        leakage = maximum((drive["rod seal"].flow + return_["rod seal"].flow) * time, 0.0)
-        out.put("rod_leakage", leakage, cases=moving[:, 0])
+    leakages = {}
+    for rod in geometry.rods:
+        label = f"{rod.name} seal"
+        if label in drive and label in return_:
+            time = geometry.stroke / where(moving, state.speed, 1.0)
+            flow = drive[label].flow + return_[label].flow
+            leakages[label if len(geometry.rods) > 1 else ""] = maximum(flow * time, 0.0)
+    if leakages:
+        out.put("rod_leakage", leakages, cases=moving[:, 0])
     pairs = {
         label.removesuffix(" secondary seal"): film.between - ATMOSPHERIC_PRESSURE
         for label, film in drive.items()

@@ -105,7 +105,7 @@ def _contact(subject: PreparedDesign, ring: Ring) -> Iterable[tuple[str, str]]:
 def _leak_at_rest(subject: PreparedDesign) -> Iterable[tuple[str, str]]:
     """Warn of a rod seal whose film would leak even at rest."""
     if any(
-        place == "rod" and not table.row.outward and table.flow > 0
+        place != "piston" and not table.row.outward and table.flow > 0
         for (place, _, _), table in subject.films.items()
     ):
         yield (
