@@ -388,9 +388,11 @@ class Geometry:
     stroke: Array
     area_a: Array
     area_b: Array
-    rods: tuple[RodThrough, ...]
-    """The rod through the head; then the second rod, through the cap, if there is one."""
+    rod_diameter: Array
+    rod_inner_diameter: Array
     rod_thicknesses: tuple[Array, ...]
+    rod_extension: Array
+    rod_length: Array
     piston_length: Array
     piston_clearance: Array
     nut: Array
@@ -412,6 +414,7 @@ class Geometry:
     pin_diameter: Array
     closed_length: Array
     piston_grooves: tuple[Groove, ...]
+    rod_grooves: tuple[Groove, ...]
     rings: Array
     """Largest height above the bore of a ring that enters the barrel."""
     static_grooves: tuple[Groove, ...]
@@ -432,31 +435,22 @@ class Geometry:
     rod_stack: Array
     """Length of the components between rod and eye."""
     bearing_span: Array
+    second_rod: tuple[RodThrough, ...]
+    """The rod through the cap; empty without one."""
 
     @property
-    def rod_diameter(self) -> Array:
-        """Diameter of the rod through the head."""
-        return self.rods[0].diameter
-
-    @property
-    def rod_inner_diameter(self) -> Array:
-        """Bore of the rod through the head."""
-        return self.rods[0].inner_diameter
-
-    @property
-    def rod_extension(self) -> Array:
-        """Length of the rod outside the head in the retracted actuator."""
-        return self.rods[0].outside
-
-    @property
-    def rod_length(self) -> Array:
-        """Length of the rod through the head, from the piston to its tip."""
-        return self.rods[0].length
-
-    @property
-    def rod_grooves(self) -> tuple[Groove, ...]:
-        """Grooves of the head around its rod."""
-        return self.rods[0].grooves
+    def rods(self) -> tuple[RodThrough, ...]:
+        """The rod through the head; then the second rod, through the cap, if there is one."""
+        first = RodThrough(
+            end="head",
+            path="rod",
+            diameter=self.rod_diameter,
+            inner_diameter=self.rod_inner_diameter,
+            outside=self.rod_extension,
+            length=self.rod_length,
+            grooves=self.rod_grooves,
+        )
+        return first, *self.second_rod
 
     @property
     def rod_radii(self) -> dict[str, Array]:
@@ -466,7 +460,7 @@ class Geometry:
     @property
     def cap_eye(self) -> Array:
         """Length of the cap's eye with neck and components; 0 with a rod through the cap."""
-        return 0.0 if len(self.rods) > 1 else self.eye_offset + self.neck + self.cap_stack
+        return 0.0 if self.second_rod else self.eye_offset + self.neck + self.cap_stack
 
     @property
     def cap_face(self) -> Array:
@@ -474,7 +468,7 @@ class Geometry:
 
         The first end is the pin of the cap's eye, or the tip of a second rod.
         """
-        return self.rods[1].outside if len(self.rods) > 1 else self.cap_eye
+        return self.second_rod[0].outside if self.second_rod else self.cap_eye
 
     @property
     def wall_length(self) -> Array:
@@ -502,7 +496,7 @@ class Geometry:
 
     def by_rod(self, value: Callable[[RodThrough], Array]) -> Array | dict[str, Array]:
         """A value of the only rod; or those of both rods, by name."""
-        if len(self.rods) == 1:
+        if not self.second_rod:
             return value(self.rods[0])
         return {rod.name: value(rod) for rod in self.rods}
 
@@ -606,6 +600,19 @@ def _rods(
     return first, second
 
 
+def _of_rods(rods: tuple[RodThrough, ...]) -> dict[str, Any]:
+    """Fields of `Geometry` for the rod through the head and the second rod."""
+    first = rods[0]
+    return {
+        "rod_diameter": first.diameter,
+        "rod_inner_diameter": first.inner_diameter,
+        "rod_extension": first.outside,
+        "rod_length": first.length,
+        "rod_grooves": first.grooves,
+        "second_rod": rods[1:],
+    }
+
+
 def _area_a(bore: Array, rods: Sequence[RodThrough]) -> Array:
     """Area of chamber A: that of the piston, or its annulus around a second rod."""
     if len(rods) == 1:
@@ -650,7 +657,7 @@ def derive(v: Values, design: Design) -> Geometry:
         stroke=stroke,
         area_a=_area_a(bore, rods),
         area_b=forces.annulus_area(bore=bore, rod_diameter=rods[0].diameter),
-        rods=rods,
+        **_of_rods(rods),
         rod_thicknesses=_thicknesses(v, "rod", design.rod.layup),
         piston_length=piston_length,
         piston_clearance=v["piston.clearance"],

@@ -98,6 +98,18 @@ def test_what_does_not_fit_says_why():
     assert missed_checks(ao.evaluate(start.actuator)) == {"piston speed"}
 
 
+@pytest.mark.parametrize("wall", ["steel", "linerless"])
+def test_a_double_rod_start_pushes_as_it_pulls(wall):
+    """With a rod through both ends the forces are equal, and every limit is met."""
+    design = ao.start(type="double_rod", push="8 kN", pull="8 kN", wall=wall).design
+    evaluation = ao.evaluate(design)
+    assert design.double_rod
+    assert design.cylinder.mount == "head_trunnion"
+    assert evaluation.met
+    push, pull = (evaluation.metrics[f"{key}_force"].value for key in ("push", "pull"))
+    assert push == pytest.approx(pull, rel=1e-4)  # the barrel grows a little differently
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -109,6 +121,7 @@ def test_what_does_not_fit_says_why():
         ({"pull": -1.0}, "pull: -1"),
         ({"pressure": "40 mm"}, "pressure"),
         ({"wall": "double_rod"}, "use one of steel, aluminium, lined_carbon, linerless"),
+        ({"type": "plunger"}, "use one of differential, double_rod"),
         ({"goal": "mas"}, 'did you mean "mass"?'),
         ({"push": 0.0, "pull": 0.0}, "state a force"),
         ({"push": "900 kN", "pressure": "10 bar"}, "raise the pressure"),
