@@ -30,6 +30,7 @@ from . import (
     film_tables,
     geometry as geometry_module,
     linkage as joint,
+    manufacture,
     motion,
     piston_nut,
     ports,
@@ -537,14 +538,14 @@ def _films(subject: PreparedDesign) -> dict[Key, FilmTable]:
 
 def _manufacture(v: Values, subject: PreparedDesign, g: Geometry, out: MetricArrays) -> None:
     """Compute the margins to the manufacturing limits of plies, and the turns of windings."""
-    turns = geometry_module.turn_lengths(v, subject.design, subject.materials, g)
+    turns = manufacture.turn_lengths(v, subject.design, subject.materials, g)
     if subject.design.barrel.turn == "pins":
         turns = {place: x for place, x in turns.items() if not place.startswith("barrel")}
     if turns:
         out.put("turn_length", turns)
     else:
         out.skip("turn_length", "no layer is wound")
-    angles, spare = geometry_module.manufacture_margins(v, subject.design, subject.materials)
+    angles, spare = manufacture.manufacture_margins(v, subject.design, subject.materials)
     for name, values, limit in (
         ("winding_margin", angles, "smallest angle"),
         ("ply_thickness_margin", spare, "smallest thickness"),
