@@ -323,8 +323,8 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     yield from _rod(design, g, at)
     yield from _rings(at.start, float(g.piston_length), g.piston_grooves, at.bore, -1)
     for rod in g.rods:
-        start, end = at.gland(g, rod)
-        yield from _rings(start, end - start, _along(rod), float(rod.diameter) / 2, 1)
+        start, radius = at.gland(g, rod)[0], float(rod.diameter) / 2
+        yield from _rings(start, float(g.head_length), _along(rod), radius, 1)
     beyond = at.end + float(g.plate)
     spans = {
         "cap": {"rim": (at.face, at.plate), "bore": (at.plate, at.start - float(g.cap_bush))}.get(

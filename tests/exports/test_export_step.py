@@ -80,6 +80,16 @@ def test_shipped_designs_weigh_what_the_mass_model_says(path):
     check_masses(evaluation, densities, read)
 
 
+def test_a_second_rod_and_its_gland_are_bodies():
+    """The double-rod rig has both rods and both glands, and the second rod starts at x = 0."""
+    evaluation, densities, read = exported(DESIGNS / "servo_test_rig.yaml")
+    places = dict(read.occurrences())
+    assert {"rod", "second_rod", "head, cap end", "head, rod end", "cap, cap end"} <= set(places)
+    assert places["second_rod"][0] == pytest.approx(0.0, abs=1e-9)
+    found = masses(evaluation, densities, read)
+    assert found["second rod"] == pytest.approx(evaluation.mass_parts["second rod"], rel=1e-9)
+
+
 def test_places_are_those_of_the_section():
     """Each solid, put where the assembly says, covers what the outline covers."""
     evaluation, _, read = exported(DESIGNS / "knee_bonded.yaml")

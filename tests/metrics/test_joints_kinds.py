@@ -145,6 +145,34 @@ def test_words(joint):
         read_design(text_of("type: weld\n  length: 10 mm\n"))
 
 
+def _turned(polygon):
+    """Volume of a polygon of (axial position, radius) turned about the axis (Pappus)."""
+    moment = 0.0
+    for (x, r), (far, high) in zip(polygon, (*polygon[1:], polygon[0]), strict=True):
+        moment += (x * high - far * r) * (r + high) / 6
+    return 2 * np.pi * abs(moment)
+
+
+@each
+def test_it_holds_a_cap_with_a_rod(joint):
+    """In a double-rod cylinder both ends have a gland; caps and glands weigh as they are drawn."""
+    text = text_of(BLOCKS[joint.name])
+    start = text.index("  nut:")  # its hole would have to pass over the second rod
+    text = text[:start] + text[text.index("\nhead:\n") :]
+    changes = {"cylinder.type": "double_rod", "cylinder.mount": "cap_flange"}
+    changes |= {"second_rod.outer_diameter": "10 mm", "second_rod.inner_diameter": "0 mm"}
+    evaluation = ao.evaluate(ao.read(text, set=changes))
+    library = ao.load_library()
+    for part in ("caps", "glands", "second rod"):
+        drawn = sum(
+            library.get(outline.material).numbers["density"] * sum(map(_turned, outline.polygons))
+            for outline in evaluation.outlines
+            if outline.part == part
+        )
+        assert drawn == pytest.approx(evaluation.mass_parts[part], rel=1e-6), part
+    assert evaluation.metrics["retention_factor"].value > 0
+
+
 @each
 def test_what_it_needs(joint):
     """Without a key that it needs a file is refused at that key, with a remedy."""
