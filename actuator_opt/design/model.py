@@ -43,6 +43,7 @@ class Line(Section):
     inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
     outer_diameter: Annotated[float, Of("diameter", "outer diameter")]
     material: Annotated[str, MaterialName("isotropic")]
+    loss_coefficient: Annotated[float, Of("loss_coefficient", "sum for bends, fittings")] = 0.0
     rigid: Annotated[
         bool, Boolean("whether the wall counts as rigid, so that only the oil is compliant")
     ] = False

@@ -169,14 +169,14 @@ def _compute_lines(
         at, place = f"lines[{i}].", f"line {line.chamber} [{i}]"
         inner = v[at + "inner_diameter"]
         velocity[place] = lines.line_velocity(flow=flow[line.chamber], inner_diameter=inner)
-        drop[place] = lines.line_pressure_drop(
-            flow=flow[line.chamber],
-            inner_diameter=inner,
-            length=v[at + "length"],
-            density=state.density,
-            dynamic_viscosity=viscosity[line.chamber],
-        )
         size = {"inner_diameter": inner, "length": v[at + "length"]}
+        stream = {"flow": flow[line.chamber], "density": state.density}
+        drop[place] = lines.line_pressure_drop(
+            **size, **stream, dynamic_viscosity=viscosity[line.chamber]
+        )
+        drop[place] = drop[place] + lines.fitting_pressure_drop(
+            **stream, inner_diameter=inner, loss_coefficient=v[at + "loss_coefficient"]
+        )
         speed = transmission_line.wave_speed(
             bulk_modulus=modulus[line.chamber],
             density=state.density,

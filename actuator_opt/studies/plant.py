@@ -85,6 +85,28 @@ class ValveData:
 
 
 @dataclass(frozen=True, slots=True)
+class LinePiece:
+    """Size, fittings and oil of a pipe or hose, for its pressure drop beyond the laminar drop."""
+
+    inner_diameter: float
+    length: float
+    loss_coefficient: float
+    density: float
+    dynamic_viscosity: float
+
+    def excess(self, flow: Array) -> Array:
+        """Return the pressure drop beyond the laminar one, with that of fittings [Pa]."""
+        stream = {"flow": flow, "inner_diameter": self.inner_diameter, "density": self.density}
+        turbulent = lines.turbulent_excess(
+            **stream, length=self.length, dynamic_viscosity=self.dynamic_viscosity
+        )
+        if not self.loss_coefficient:
+            return turbulent
+        fittings = lines.fitting_pressure_drop(**stream, loss_coefficient=self.loss_coefficient)
+        return turbulent + fittings
+
+
+@dataclass(frozen=True, slots=True)
 class LineData:
     """The lines of one chamber, in two parts: near the chamber and far from it.
 
@@ -96,7 +118,16 @@ class LineData:
     far_volume: float = 0.0
     far_wall: float = 0.0
     resistance: float = 0.0
+    """Laminar resistance of all lines [Pa s/m^3]."""
     inertance: float = 0.0
+    pieces: tuple[LinePiece, ...] = ()
+
+    def drop(self, flow: Array) -> Array:
+        """Return the pressure drop of all lines at a flow [Pa]."""
+        total = self.resistance * flow
+        for piece in self.pieces:
+            total = total + piece.excess(flow)
+        return total
 
 
 @dataclass(frozen=True, slots=True)
@@ -304,13 +335,23 @@ def _valve(v: Values, design: Design, done: ModelRun) -> ValveData | None:
 def _lines(v: Values, design: Design, done: ModelRun, chamber: Chamber) -> LineData:
     branch = circuit.branches(v, design, done.state)[chamber]
     throttled = design.ports.throttle is not None
-    volumes, walls = [0.0, 0.0], [0.0, 0.0]
+    volumes, walls, pieces = [0.0, 0.0], [0.0, 0.0], []
+    viscosity = getattr(done.state, f"dynamic_viscosity_{chamber}")
     for i, line in enumerate(design.lines):
         if line.chamber != chamber:
             continue
         at = f"lines[{i}]."
         size = {"inner_diameter": v[at + "inner_diameter"], "length": v[at + "length"]}
         volume, wall = lines.line_volume(**size), circuit.wall_compliance(v, line, at)
+        pieces.append(
+            LinePiece(
+                float(v[at + "inner_diameter"]),
+                float(v[at + "length"]),
+                float(v[at + "loss_coefficient"]),
+                first_case(done.state.density),
+                first_case(viscosity),
+            )
+        )
         far = float(line.beyond_throttle) if throttled else 0.5
         for k, share in ((0, 1 - far), (1, far)):
             volumes[k] += share * first_case(volume)
@@ -322,6 +363,7 @@ def _lines(v: Values, design: Design, done: ModelRun, chamber: Chamber) -> LineD
         far_wall=walls[1],
         resistance=first_case(branch.resistance),
         inertance=first_case(branch.inertance),
+        pieces=tuple(pieces),
     )
 
 
