@@ -80,6 +80,7 @@ def _table(rows: str) -> dict[str, Quantity]:
 
 INPUTS = _table("""
  bore                 | D      | length      | mm   | 2     | 1000  | bore diameter
+ piston_area          | A      | area        | cm^2 | 0.001 | 100000| area of the piston
  stroke               | s      | length      | mm   | 1     | 10000 | stroke
  wall_thickness       | t      | length      | mm   | 0.01  | 200   | thickness
  thickness_ratio      | t/t_0  | ratio       | -    | 0.01  | 1     | thickness, as a share of another

@@ -15,6 +15,7 @@ import numpy as np
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, maximum, minimum, real, where
 from ..base.quantities import Quantity, Sense
+from ..design.ideal import require_parts
 from ..design.material import Material
 from ..design.model import Design
 from ..friction.law import Friction
@@ -304,6 +305,7 @@ IMPLICIT = Implicit()
 def base(subject: PreparedDesign, v: Values, implicit: Implicit = IMPLICIT) -> Base:
     """Compute dimensions, state of the load cases, wall and seals of the designs in `v`."""
     design = subject.design
+    require_parts(design)
     stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
     g = geometry_module.derive(v, design)
     case_state = state.derive(v, design, stock, g)

@@ -6,13 +6,14 @@ taken at the temperature of the first load case.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, maximum
-from ..design.model import Design
+from ..design.model import Design, Ideal
 from ..evaluation import circuit, state
 from ..evaluation.circuit import CHAMBERS, Chamber
 from ..evaluation.kernel import ModelRun, PreparedDesign, compute
@@ -240,7 +241,12 @@ def plant(subject: PreparedDesign) -> Plant:
     """Return the plant of a design, at the temperature of its first load case.
 
     Seals that run on an oil film in the design are simulated dry, with their friction coefficient.
+    A block `ideal` states numbers of the cylinder instead.
     """
+    stated = subject.design.ideal
+    if stated is not None:  # the parts that complete the file are never shown
+        design = subject.design.model_copy(update={"ideal": None})
+        return _idealised(plant(replace(subject, design=design)), subject.design, stated)
     v = subject.values()
     done = compute(subject, v)
     design, g = subject.design, done.geometry
@@ -281,6 +287,37 @@ def plant(subject: PreparedDesign) -> Plant:
             )
         ),
         closed_length=first_case(done.computed.metrics["closed_length"][""]),
+    )
+
+
+NO_SEALS = SealData(Plane(0.0), Plane(0.0), 1e-3, 0.0, 1e-4)
+"""Seals without friction; speed and travel are of no effect."""
+
+
+def _idealised(whole: Plant, design: Design, stated: Ideal) -> Plant:
+    """Return a plant with the cylinder of the block `ideal`: rigid walls, no friction of seals."""
+    return replace(
+        whole,
+        design=design,
+        area_a=stated.area_a,
+        area_b=stated.area_b,
+        stroke=stated.stroke,
+        dead_a=stated.dead_volume_a,
+        dead_b=stated.dead_volume_b,
+        walls=Give(),
+        flexibility=0.0 if stated.stiffness is None else 1 / stated.stiffness,
+        mass=stated.mass + design.load.mass,
+        leakage=stated.leakage,
+        seals=NO_SEALS,
+        films=dict.fromkeys(whole.films, False),
+        oil_damping=0.0,
+        stop_stiffness=float(
+            end_stop.stop_stiffness(
+                area=stated.area_a,
+                pressure=whole.supply_pressure,
+                travel=design.cylinder.stop_travel,
+            )
+        ),
     )
 
 
