@@ -57,6 +57,11 @@ def completed(tree: dict[str, Any]) -> tuple[dict[str, Any], list[Fault]]:
     return parts | {key: value for key, value in tree.items() if key not in _UNUSED}, faults
 
 
+def has_effect(path: str, design: Design) -> bool:
+    """Whether the number at a PATH can have an effect: not that of a part beside `ideal`."""
+    return design.ideal is None or path.partition(".")[0].partition("[")[0] not in _UNUSED
+
+
 def require_parts(design: Design) -> None:
     """Refuse a design that only states a cylinder where its parts are needed.
 
