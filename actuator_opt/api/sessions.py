@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.arguments import guarded
+from ..base.arguments import SetValues, guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, Unsolvable, UsageError, remedy
 from ..base.numeric import Array
@@ -601,7 +601,7 @@ def _require_continuous(actuator: Actuator, sizes: object) -> None:
 def session(
     design: Actuator | Design | Result | str | Path,
     *,
-    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    set: SetValues = (),
     plugins: Plugins = (),
     seed: int = 0,
 ) -> Session:

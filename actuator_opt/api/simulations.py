@@ -8,12 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
-from ..base.arguments import guarded
+from ..base.arguments import SetValues, guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.numeric import Array
 from ..base.tables import Displayed, OneLine
-from ..design import Design
+from ..design import Design, pairs
 from ..studies.plant import plant
 from .actuator import Actuator, Result, as_actuator
 from .records import Units
@@ -60,7 +60,7 @@ class Trial(OneLine):
 def read_scenario(
     source: str | Path,
     *,
-    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    set: SetValues = (),
     units: Units = None,
 ) -> Trial:
     """Read a scenario file (a path, ``"-"`` for standard input, or the text itself).
@@ -69,7 +69,7 @@ def read_scenario(
     ----------
     source : path or text
     set : values to replace, by PATH in the scenario, or else in its design; a number without a unit
-        is SI
+        is SI, and None removes the key
     units : units of the recorded inputs' columns whose header states no unit, as for `read_record`
 
     Raises
@@ -79,8 +79,7 @@ def read_scenario(
     """
     from ..design.scenario import read_design_of, read_scenario as read
 
-    pairs = set.items() if isinstance(set, Mapping) else set
-    loaded = read(source, overrides=[(path, str(value)) for path, value in pairs])
+    loaded = read(source, overrides=pairs(set))
     design = read_design_of(loaded)
     actuator = Actuator(design.design, design.source)
     return Trial(loaded.scenario, actuator, _records(loaded, units), loaded)
@@ -123,7 +122,7 @@ def _where(fault: Diagnostic, path: str, loaded: LoadedScenario) -> Diagnostic:
 def simulate(
     scenario: Trial | str | Path,
     *,
-    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    set: SetValues = (),
     verify: bool = False,
     method: Method = "lsoda",
 ) -> Simulation:
@@ -133,7 +132,7 @@ def simulate(
     ----------
     scenario : the scenario as read, or the path of its file
     set : values to replace, by PATH in the scenario, or else in its design; a number without a unit
-        is SI
+        is SI, and None removes the key
     verify : whether to integrate again by another method and compare the results
     method : integration method: "lsoda", "cvodes" (faster; extra ``fast``) or "radau"
 
@@ -182,7 +181,7 @@ def placed(trial: Trial) -> Iterator[None]:
 
 def as_trial(
     scenario: Trial | str | Path,
-    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    set: SetValues = (),
 ) -> Trial:
     """Turn a scenario in any form into a scenario as read."""
     if not isinstance(scenario, Trial):

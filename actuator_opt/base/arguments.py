@@ -9,16 +9,22 @@ from __future__ import annotations
 
 import inspect
 import types
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import wraps
 from importlib import import_module
 from pathlib import Path
-from typing import Any, Literal, ParamSpec, TypeVar, Union, get_args, get_origin
+from typing import Any, Literal, ParamSpec, TypeAlias, TypeVar, Union, get_args, get_origin
 
 from .errors import ActuatorError, Diagnostic, UsageError, shown
 
 SEEDS = 2**32
 """Number of seeds that every random generator takes."""
+
+Change: TypeAlias = tuple[str, str | None]
+"""A PATH and the text of its new value; None removes the key."""
+
+SetValues: TypeAlias = Mapping[str, str | float | None] | Sequence[Change]
+"""Type of every argument `set`: new values by PATH, numbers in SI; None removes the key."""
 
 P = ParamSpec("P")
 R = TypeVar("R")

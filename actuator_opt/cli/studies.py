@@ -26,6 +26,7 @@ from .options import (
     Seed,
     Set,
     Units,
+    Unset,
     UnusedSeed,
     file_of_units,
     named_columns,
@@ -84,6 +85,7 @@ def uncertainty(
         ),
     ] = None,
     sets: Set = None,
+    unset: Unset = None,
     plugin: PluginFile = None,
     report: Report = False,
     out: Out = REPORTS,
@@ -98,7 +100,7 @@ def uncertainty(
     from .. import api as verbs
 
     job = Job(
-        design, sets=sets, plugins=plugin, csv=csv, report=report, out=out, date=date,
+        design, sets=sets, unset=unset, plugins=plugin, csv=csv, report=report, out=out, date=date,
         all_pages=all_pages, format=format,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
@@ -166,6 +168,7 @@ def seal(
     finite_elements: FiniteElements = False,
     write: ContactDesign = None,
     sets: Set = None,
+    unset: Unset = None,
     plugin: PluginFile = None,
     report: Report = False,
     out: Out = REPORTS,
@@ -182,8 +185,8 @@ def seal(
     if place not in ("piston", "rod"):
         raise UsageError(Diagnostic(f'--seal "{place}"', "write piston or rod"))
     job = Job(
-        design, sets=sets, plugins=plugin, write=write, report=report or mapped, out=out,
-        date=date, all_pages=all_pages, format=format,
+        design, sets=sets, unset=unset, plugins=plugin, write=write,
+        report=report or mapped, out=out, date=date, all_pages=all_pages, format=format,
         as_json=as_json, quiet=quiet, paper={"sheet": report},
     )  # fmt: skip
     study = job.run(
@@ -249,6 +252,7 @@ Sensitivity = Annotated[
 def simulate(
     scenario: ScenarioFile,
     sets: Set = None,
+    unset: Unset = None,
     csv: SignalsFile = None,
     verify: Verify = False,
     fast: Fast = False,
@@ -273,8 +277,8 @@ def simulate(
         if values and measured is None:
             raise UsageError(Diagnostic(f"{name}: only with --measured", "name the record"))
     job = Job(
-        scenario, [*filter(None, [measured]), *file_of_units(units)], sets=sets, csv=csv,
-        report=report, out=out, date=date, all_pages=all_pages, format=format,
+        scenario, [*filter(None, [measured]), *file_of_units(units)], sets=sets, unset=unset,
+        csv=csv, report=report, out=out, date=date, all_pages=all_pages, format=format,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
     trial = verbs.read_scenario(scenario, set=job.set, units=units)
