@@ -113,6 +113,7 @@ class Job:
         files: Files = (),
         saved: Iterable[Path | None] = (),
         faults: Sequence[Diagnostic] = (),
+        details: Sequence[object] = (),
         **also: Any,
     ) -> ExitCode:
         """Write, print and record a result; return the exit code.
@@ -123,6 +124,7 @@ class Job:
         files : files already written, listed in the answer
         saved : further files already written, but not listed in JSON
         faults : failed outputs
+        details : parts of the result that the terminal shows only here, below all others
         also : further results by their key in JSON, printed below the first; None if a result is
             missing
         """
@@ -130,7 +132,7 @@ class Job:
 
         also = {name: further for name, further in also.items() if further is not None}
         written = [*files, *self.written(result, **also)]
-        shown = (result, *also.values())
+        shown = (result, *also.values(), *details)
 
         def data() -> dict[str, Any]:
             entries = results.data(result)

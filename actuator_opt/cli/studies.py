@@ -243,6 +243,14 @@ RecordColumns = Annotated[
         'n_shaft, phi), e.g. "p1=Channel 3 [bar]". Repeatable.',
     ),
 ]
+Explain = Annotated[
+    bool,
+    typer.Option(
+        "--explain",
+        help="Print the values of the equations too, each with its origin (report and JSON "
+        "contain them).",
+    ),
+]
 Sensitivity = Annotated[
     bool,
     typer.Option("--sensitivity", help="Rank the parameters by their effect on the results."),
@@ -261,6 +269,7 @@ def simulate(
     columns: RecordColumns = None,
     units: Units = None,
     sensitivity: Sensitivity = False,
+    explain: Explain = False,
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
@@ -295,4 +304,5 @@ def simulate(
         compared = job.run(verbs.compare_measured, trial, measured, **options)
         simulation = compared.simulation
     sensitivities = job.run(verbs.servo_sensitivities, trial) if sensitivity else None
-    return job.deliver(simulation, measured=compared, sensitivities=sensitivities)
+    details = [simulation.basis] if explain else []
+    return job.deliver(simulation, details=details, measured=compared, sensitivities=sensitivities)

@@ -47,6 +47,7 @@ from ..rendering.text import (
 from ..simulation.assemble import ends_of
 from ..simulation.components.circuit import LOOPS, loop_of
 from ..simulation.result import EXPECTED, RequirementResult, Simulation
+from .simulation_basis import blocks as basis_blocks
 from .simulation_energy import doubts, table_rows
 from .simulation_figures import LEAST, MOST, Measured, Static, simulation_figure, window
 
@@ -608,6 +609,7 @@ def _blocks(simulation: Simulation, more: Sequence[str]) -> Iterator[Block]:
         yield Table("Energy of the run", columns, energies, headless=True, on="terminal")
     if not beside:
         yield notes
+    yield from basis_blocks(simulation.basis, on="paper")
     if simulation.seconds:
         seconds = f"Computing time {number(simulation.seconds, 2)} s."
         yield Notes("", [seconds], headless=True, style="dim", on="terminal")

@@ -17,6 +17,7 @@ from ..design.scenario.model import Scenario, SignalSegment
 from ..evaluation.result import State, without_reserve
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..studies.plant import Plant
+from .basis import Basis
 from .components.circuit import Circuit, Loop, acts_after, frequencies, loop_of
 from .harmonic import dynamic_stiffness_of_record, windows
 from .integrate import LAST, Event, Stuck, Trajectory
@@ -148,6 +149,8 @@ class Simulation(Displayed):
     shaken: HarmonicLoad | None
     events: tuple[Event, ...]
     notes: tuple[str, ...]
+    basis: Basis
+    """Values of the equations, each with its origin."""
     second: Second | None = None
     evaluations: int = 0
     seconds: float = 0.0
@@ -218,6 +221,7 @@ class Simulation(Displayed):
             ],
             "second_integrator": self._second(),
             "notes": list(self.notes),
+            "basis": self.basis.to_dict(),
             "evaluations": self.evaluations,
             "seconds": self.seconds,
         }

@@ -22,6 +22,7 @@ from ..models.supply import relief_flow
 from ..studies.plant import Plant, plant
 from . import result as results
 from .assemble import assemble
+from .basis import basis
 from .components.circuit import Circuit
 from .integrate import Method, Stuck, Trajectory, integrate
 from .linear import CAUSES, UNHELD, Tuned, tune
@@ -133,6 +134,7 @@ def run(
         shaken=dynamic,
         events=trajectory.events,
         notes=_notes(circuit, tuned, signals, step),
+        basis=basis(circuit),
         evaluations=trajectory.evaluations,
         seconds=perf_counter() - begin,
     )
