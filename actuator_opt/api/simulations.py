@@ -124,6 +124,7 @@ def simulate(
     *,
     set: SetValues = (),
     verify: bool = False,
+    margins: bool = False,
     method: Method = "lsoda",
 ) -> Simulation:
     """Simulate a scenario with its design.
@@ -134,6 +135,8 @@ def simulate(
     set : values to replace, by PATH in the scenario, or else in its design; a number without a unit
         is SI, and None removes the key
     verify : whether to integrate again by another method and compare the results
+    margins : whether to compute the margins of the control loop even if its gain is stated; they
+        are always computed for a gain that is tuned by them
     method : integration method: "lsoda", "cvodes" (faster; extra ``fast``) or "radau"
 
     Returns
@@ -159,6 +162,7 @@ def simulate(
             trial.actuator.subject(),
             records=trial.records,
             verify=verify,
+            margins=margins,
             method=method,
         )
 
@@ -248,6 +252,7 @@ def compare_measured(
     columns: Mapping[str, str] | None = None,
     units: Units = None,
     verify: bool = False,
+    margins: bool = False,
     method: Method = "lsoda",
     simulation: Simulation | None = None,
 ) -> Compared:
@@ -261,7 +266,7 @@ def compare_measured(
         `simulation.measured.parameters`
     columns : header of every channel whose header is not a known name
     units : units of columns without a unit in their header, as for `read_record`
-    verify, method : as for `simulate`; if parameters are fitted, for the run with the fitted values
+    verify, margins, method : as for `simulate`; if parameters are fitted, for the run with the fitted values
     simulation : result of the scenario, if it has been run already
 
     Raises
@@ -271,6 +276,7 @@ def compare_measured(
     """
     from ..base.files import read_bytes
     from ..identification import column_units, decode_record
+    from ..simulation.linear import tune
     from ..simulation.measured import overlay, parse_measured
     from ..simulation.measured.fit import fit as fitted
     from ..simulation.run import spec_of
@@ -282,12 +288,15 @@ def compare_measured(
     measured = parse_measured(text, name=name, columns=columns, units=column_units(units))
     with placed(trial):
         if not fit:
-            simulation = simulation or simulate(trial, verify=verify, method=method)
+            simulation = simulation or simulate(
+                trial, verify=verify, margins=margins, method=method
+            )
             return Compared(overlay(simulation, measured))
         subject = trial.actuator.subject()
+        actuator = plant(subject)
         result = fitted(
-            trial.scenario, plant(subject), trial.records, measured, fit,
-            verify=verify, method=method, spec=spec_of(subject, trial.scenario),
+            trial.scenario, actuator, trial.records, measured, fit,
+            tuned=tune(trial.scenario, actuator, trial.records, margins=margins), verify=verify, method=method, spec=spec_of(subject, trial.scenario),
         )  # fmt: skip
     return Compared(result.after, result)
 

@@ -243,6 +243,13 @@ RecordColumns = Annotated[
         'n_shaft, phi), e.g. "p1=Channel 3 [bar]". Repeatable.',
     ),
 ]
+Margins = Annotated[
+    bool,
+    typer.Option(
+        "--margins",
+        help="Compute gain and phase margin even if the gain is stated (a report does so too).",
+    ),
+]
 Explain = Annotated[
     bool,
     typer.Option(
@@ -263,6 +270,7 @@ def simulate(
     unset: Unset = None,
     csv: SignalsFile = None,
     verify: Verify = False,
+    margins: Margins = False,
     fast: Fast = False,
     measured: MeasuredFile = None,
     fit: Fitted = None,
@@ -296,7 +304,8 @@ def simulate(
     if csv is not None:
         require_apart(csv, *map(str, trial.files))
     job.paper["scenario"] = trial
-    options: dict[str, Any] = {"verify": verify, "method": "cvodes" if fast else "lsoda"}
+    options: dict[str, Any] = {"verify": verify, "margins": margins or report}
+    options |= {"method": "cvodes" if fast else "lsoda"}
     if measured is None:
         compared, simulation = None, job.run(verbs.simulate, trial, **options)
     else:

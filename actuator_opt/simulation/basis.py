@@ -194,7 +194,7 @@ def _losses(circuit: Circuit) -> Iterator[BasisValue]:
         path = _stated(stated.bristle_damping, "friction.bristle_damping", "moving_mass")
         yield BasisValue("bristle_damping", curve.bristle_damping, path, model)
         if curve.taper_speed is not None:
-            share = "friction and its damping, halved (our choice)"
+            share = f"friction and its damping, times {motion.TAPER:g} (our choice)"
             yield BasisValue("taper_speed", curve.taper_speed, share, "lugre.lugre_passive_speed")
 
 

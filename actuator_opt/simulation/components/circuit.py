@@ -201,6 +201,8 @@ class FrictionCurve:
     viscous: float
     bristle_stiffness: float
     bristle_damping: float
+    passive_speed: float
+    """Speed up to which the bristles cannot add energy with their damping at rest [m/s]."""
     taper_speed: float | None
     """Speed at which the bristle damping has fallen to 1/e of its value at rest; None: it stays."""
 

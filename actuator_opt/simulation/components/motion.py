@@ -168,6 +168,15 @@ SMOOTHING = 0.05
 """Width of the smooth change of sign at zero speed, relative to the Stribeck speed (our choice)."""
 
 
+TAPER = 0.5
+"""Speed at which the bristle damping has fallen to 1/e, divided by the passive speed (our choice:
+the largest that keeps `lugre_tapered_damping` passive)."""
+
+
+TAPERED = 0.05
+"""Largest relative fall of the bristle damping that no note reports (our choice)."""
+
+
 LONE_SPEED = 1e-3
 """Stribeck speed assumed if the scenario states friction, but no Stribeck speed [m/s]."""
 
@@ -203,6 +212,9 @@ def law(plant: Plant, stated: Stated, start: InitialState) -> FrictionCurve:
     passive = lugre.lugre_passive_speed(
         level=level, bristle_damping=max(damping, 1e-9), viscous=viscous
     )
+    tapered = stated.bristle_taper
+    if tapered is None:
+        tapered = stated.bristle_damping is None
     return FrictionCurve(
         coulomb,
         static,
@@ -211,7 +223,8 @@ def law(plant: Plant, stated: Stated, start: InitialState) -> FrictionCurve:
         viscous,
         stiffness,
         damping,
-        0.5 * float(passive),
+        float(passive),
+        TAPER * float(passive) if tapered else None,
     )
 
 
@@ -300,9 +313,11 @@ def _lugre(
     )
     system.rate(bristle, rate)
     system.signal("bristles", "deflection of the bristles", SCENARIOS["position_value"], bristle)
-    damping = lugre.lugre_tapered_damping(
-        bristle_damping=curve.bristle_damping, speed=speed, taper_speed=curve.taper_speed
-    )
+    damping: Expression = curve.bristle_damping
+    if curve.taper_speed is not None:
+        damping = lugre.lugre_tapered_damping(
+            bristle_damping=damping, speed=speed, taper_speed=curve.taper_speed
+        )
     return lugre.lugre_force(
         deflection=bristle,
         rate=rate,
