@@ -266,7 +266,8 @@ def compare_measured(
         `simulation.measured.parameters`
     columns : header of every channel whose header is not a known name
     units : units of columns without a unit in their header, as for `read_record`
-    verify, margins, method : as for `simulate`; if parameters are fitted, for the run with the fitted values
+    verify, margins, method : as for `simulate`; if parameters are fitted, for the run with the
+        fitted values
     simulation : result of the scenario, if it has been run already
 
     Raises
@@ -296,7 +297,8 @@ def compare_measured(
         actuator = plant(subject)
         result = fitted(
             trial.scenario, actuator, trial.records, measured, fit,
-            tuned=tune(trial.scenario, actuator, trial.records, margins=margins), verify=verify, method=method, spec=spec_of(subject, trial.scenario),
+            tuned=tune(trial.scenario, actuator, trial.records, margins=margins),
+            verify=verify, method=method, spec=spec_of(subject, trial.scenario),
         )  # fmt: skip
     return Compared(result.after, result)
 
