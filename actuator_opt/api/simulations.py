@@ -297,7 +297,7 @@ def compare_measured(
         actuator = plant(subject)
         result = fitted(
             trial.scenario, actuator, trial.records, measured, fit,
-            tuned=tune(trial.scenario, actuator, trial.records, margins=margins),
+            tuned=tune(trial.scenario, actuator, trial.records, with_margins=margins),
             verify=verify, method=method, spec=spec_of(subject, trial.scenario),
         )  # fmt: skip
     return Compared(result.after, result)

@@ -123,7 +123,11 @@ def page(
             simulation, min(room, MOST), measured=measured, static=static
         ),
         least=LEAST,
-        blocks=[*_blocks(simulation, notes), *extra],
+        blocks=[
+            *_blocks(simulation, notes),
+            *extra,
+            *basis_blocks(simulation.basis, on="paper"),
+        ],
     )
 
 
@@ -611,7 +615,6 @@ def _blocks(simulation: Simulation, more: Sequence[str]) -> Iterator[Block]:
         yield Table("Energy of the run", columns, energies, headless=True, on="terminal")
     if not beside:
         yield notes
-    yield from basis_blocks(simulation.basis, on="paper")
     if simulation.seconds:
         seconds = f"Computing time {number(simulation.seconds, 2)} s."
         yield Notes("", [seconds], headless=True, style="dim", on="terminal")

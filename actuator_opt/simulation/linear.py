@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import field, replace
 from math import copysign, inf, isfinite, pi, radians
 from typing import NamedTuple
 
@@ -62,6 +62,8 @@ class OpenLoop:
     """Vector b of the transfer function."""
     output_gains: Array
     """Vector c of the transfer function."""
+    kept: dict[str, Array] = field(default_factory=dict, compare=False, repr=False)
+    """Frequencies and the response there, once computed: a search for gains reads them often."""
 
     @classmethod
     def of(cls, a: Array, b: Array, c: Array) -> OpenLoop:
@@ -90,6 +92,18 @@ class OpenLoop:
     @property
     def frequencies(self) -> Array:
         """Angular frequencies, dense enough to show every resonance [rad/s]."""
+        if "frequencies" not in self.kept:
+            self.kept["frequencies"] = self._frequencies()
+        return self.kept["frequencies"]
+
+    @property
+    def response(self) -> Array:
+        """Frequency response at the `frequencies`."""
+        if "response" not in self.kept:
+            self.kept["response"] = self.at(self.frequencies)
+        return self.kept["response"]
+
+    def _frequencies(self) -> Array:
         size = np.abs(self.poles)
         size = size[size > STILL]
         grid = np.geomspace(size.min() / 100, size.max() * 10, POINTS)
@@ -265,17 +279,21 @@ class Ultimate:
 
 def ultimate(loop: OpenLoop) -> Ultimate:
     """Smallest gain K with K L(i omega) = -1; infinite if no gain makes the loop oscillate."""
-    oscillations = [(-1 / value.real, omega) for omega, value in _crossings(loop, loop.at)]
+    crossings = _crossings(loop.frequencies, loop.response, loop.at)
+    oscillations = [(-1 / value.real, omega) for omega, value in crossings]
     gain, omega = min(oscillations, default=(inf, 0.0))
     return Ultimate(gain, 2 * pi / omega if omega > 0 else inf)
 
 
-def _crossings(loop: OpenLoop, response: Callable[[Array], Array]) -> list[tuple[float, complex]]:
-    """Frequencies at which a response is real and negative, with the response there."""
+def _crossings(
+    omega: Array, value: Array, response: Callable[[Array], Array]
+) -> list[tuple[float, complex]]:
+    """Frequencies at which a response is real and negative, with the response there.
+
+    `value` is the response at the frequencies `omega`.
+    """
     from scipy.optimize import brentq
 
-    omega = loop.frequencies
-    value = response(omega)
     crossings = []
     for k in np.flatnonzero(np.diff(np.sign(value.imag)) != 0):
         if min(value[k].real, value[k + 1].real) >= 0:
@@ -350,7 +368,7 @@ def _grow(poles: Array) -> bool:
     return bool(np.any(poles.real > limit))
 
 
-def margins_of(loop: OpenLoop, law: ControllerLaw) -> LoopMargins:
+def margins(loop: OpenLoop, law: ControllerLaw) -> LoopMargins:
     """Gain and phase margin of L(i omega) C(i omega).
 
     The closed-loop poles decide whether the loop is stable.
@@ -360,21 +378,27 @@ def margins_of(loop: OpenLoop, law: ControllerLaw) -> LoopMargins:
         return loop.at(omega) * law.at(omega)
 
     stable = not _grow(law.closed(loop))
-    factors = [-1 / value.real for _, value in _crossings(loop, response)]
+    omega = loop.frequencies
+    value = loop.response * law.at(omega)
+    factors = [-1 / crossing.real for _, crossing in _crossings(omega, value, response)]
     if stable:
         gain = min((factor for factor in factors if factor > 1), default=inf)
     else:
         gain = max((factor for factor in factors if factor <= 1), default=0.0)
+    return LoopMargins(gain, phase_margin(loop, law), stable)
+
+
+def phase_margin(loop: OpenLoop, law: ControllerLaw) -> float | None:
+    """Phase margin of L(i omega) C(i omega) [rad]; None if the loop gain never exceeds one."""
     omega = loop.frequencies
-    value = response(omega)
-    size = np.abs(value)
+    size = np.abs(loop.response * law.at(omega))
     phase = None
     for k in np.flatnonzero((size[:-1] >= 1) & (size[1:] < 1)):
         share = np.log(size[k]) / np.log(size[k] / size[k + 1])
-        value_at_crossover = response(omega[k : k + 1] * (omega[k + 1] / omega[k]) ** share)[0]
-        phase_here = float(np.angle(-value_at_crossover))
-        phase = phase_here if phase is None or abs(phase_here) < abs(phase) else phase
-    return LoopMargins(gain, phase, stable)
+        crossover = omega[k : k + 1] * (omega[k + 1] / omega[k]) ** share
+        here = float(np.angle(-(loop.at(crossover) * law.at(crossover))[0]))
+        phase = here if phase is None or abs(here) < abs(phase) else phase
+    return phase
 
 
 def least(loops: Sequence[OpenLoop]) -> tuple[Ultimate, OpenLoop]:
@@ -426,7 +450,7 @@ def tune(
     records: Records,
     *,
     previous: Tuned | None = None,
-    margins: bool = False,
+    with_margins: bool = False,
 ) -> Tuned | None:
     """Gains of a scenario's controller, with the margins of the control loop.
 
@@ -440,7 +464,7 @@ def tune(
     ----------
     scenario, plant, records : as for `assemble`
     previous : gains that are kept
-    margins : whether margins are computed although no gain is tuned by them
+    with_margins : whether margins are computed although no gain is tuned by them
 
     Raises
     ------
@@ -452,7 +476,7 @@ def tune(
     if control is None or loop is None:
         return None
     tuned = previous or _given(control, loop, plant)
-    if tuned is not None and not margins:
+    if tuned is not None and not with_margins:
         return replace(tuned, ultimate=None, margins=None, unheld="")
     circuit = assemble(_with_held_load(scenario), plant, records, None, linear=True)
     loops = _loops(Linear.of(circuit), scenario, plant, control, loop)
@@ -468,7 +492,7 @@ def tune(
     law = _shaped(control, tuned.gains)
     notes = (*tuned.notes, *_other_side(loops, used, law)) if previous is None else tuned.notes
     return replace(
-        tuned, ultimate=limit, margins=margins_of(worst, law), notes=notes, unheld=loops.unheld
+        tuned, ultimate=limit, margins=margins(worst, law), notes=notes, unheld=loops.unheld
     )
 
 
@@ -510,7 +534,7 @@ def _other_side(loops: _Loops, used: list[OpenLoop], law: ControllerLaw) -> Iter
         return
     limit, worst = least(loops.all)
     if limit.gain < least(used)[0].gain:
-        gain = margins_of(worst, law).gain
+        gain = margins(worst, law).gain
         yield (
             "gain and margins are those of the side on which the spool rests: on the other side of "
             f"its centre, which a drifting load passes, the gain margin is {gain:.3g}"
@@ -608,17 +632,16 @@ def _gains_by_rule(
 
 def _integral_time(loop: OpenLoop, law: ControllerLaw, shortest: float, period: float) -> float:
     """Smallest integral time, at least `shortest`, that keeps `MARGIN_SHARE` of the margins."""
-    proportional = margins_of(loop, law)
+    proportional = margins(loop, law)
     phase = PHASE if proportional.phase is None else min(MARGIN_SHARE * proportional.phase, PHASE)
     longest = 1e4 * period
     for time in np.geomspace(shortest, max(longest, shortest), 140):
-        with_integral = margins_of(loop, replace(law, integral_time=float(time)))
-        phase_kept = with_integral.phase is None or with_integral.phase >= phase
-        if (
-            with_integral.stable
-            and with_integral.gain >= MARGIN_SHARE * proportional.gain
-            and phase_kept
-        ):
+        candidate = replace(law, integral_time=float(time))
+        kept = phase_margin(loop, candidate)
+        if kept is not None and kept < phase:
+            continue  # the phase takes a small part of the time that the other margins take
+        with_integral = margins(loop, candidate)
+        if with_integral.stable and with_integral.gain >= MARGIN_SHARE * proportional.gain:
             return float(time)
     return longest
 

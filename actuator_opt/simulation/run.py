@@ -82,7 +82,7 @@ def simulate(
     begin = perf_counter()
     files = {} if records is None else records
     actuator = plant(subject)
-    tuned = tune(scenario, actuator, files, margins=margins)
+    tuned = tune(scenario, actuator, files, with_margins=margins)
     return run(
         scenario, actuator, files, tuned, verify=verify, method=method,
         spec=spec_of(subject, scenario), begin=begin,
