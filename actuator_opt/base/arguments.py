@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, Literal, ParamSpec, TypeAlias, TypeVar, Union, get_args, get_origin
 
 from .errors import ActuatorError, Diagnostic, UsageError, shown
+from .threads import one_thread
 
 SEEDS = 2**32
 """Number of seeds that every random generator takes."""
@@ -42,6 +43,8 @@ class WrongArgument(UsageError):
 def guarded(function: Callable[P, R]) -> Callable[P, R]:
     """A public function that raises `UsageError` for an argument of another type.
 
+    While it runs, linear algebra has one thread (see `threads`).
+
     Examples
     --------
     >>> @guarded
@@ -59,7 +62,8 @@ def guarded(function: Callable[P, R]) -> Callable[P, R]:
             if isinstance(value, int):
                 _require_usual(f"{function.__name__}: {name}", name, value)
         try:
-            return function(*args, **kwargs)
+            with one_thread():
+                return function(*args, **kwargs)
         except Exception as error:
             if isinstance(error, ActuatorError) and not isinstance(error, WrongArgument):
                 raise

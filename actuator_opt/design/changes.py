@@ -125,8 +125,7 @@ def _bare_is_si(value: str, quantity: Quantity | None) -> str:
 
 
 def meaningless(
-    tree: dict[str, Any],
-    choices: Sequence[Override],
+    new: Changed,
     faults: Sequence[Fault],
     faults_of: Callable[[dict[str, Any]], Sequence[Fault]],
     without: Callable[[Override], dict[str, Any]],
@@ -134,13 +133,13 @@ def meaningless(
     """One line for every changed choice that leaves other stated keys without meaning.
 
     Such a key has a fault that appears only with this choice, and that its removal cures without
-    another fault. This holds for every check, so none of them needs to know of `--unset`.
+    another fault. This holds for every check, so none of them needs to know of `--unset`. A key
+    that is itself among the changes keeps its own fault.
 
     Parameters
     ----------
-    tree : values of the file with all changes
-    choices : changes of words, and removed keys
-    faults : faults of the tree
+    new : the file with all changes
+    faults : faults of its tree
     faults_of : function that checks a tree
     without : function that gives the tree without one change
 
@@ -148,12 +147,13 @@ def meaningless(
     -------
     the lines, and all faults that they do not include
     """
-    lines, rest = [], list(faults)
-    for choice in choices:
+    lines, rest, tree = [], list(faults), new.tree
+    for choice in new.choices:
         usual = _marks(faults_of(without(choice)))
         keys: list[str] = []
         for fault in [x for x in rest if x.at_key and _mark(x) not in usual]:
-            if child_at(tree, fault.loc) is None or isinstance(fault.loc[-1], int):
+            stays = fault.loc in new.places or isinstance(fault.loc[-1], int)
+            if stays or child_at(tree, fault.loc) is None:
                 continue
             fewer = copy_tree(tree)
             remove(fewer, fault.loc)

@@ -189,7 +189,7 @@ def load(
     section, section_faults = build_section(new.tree)
     if section_faults and new.choices:
         advice, section_faults = meaningless(
-            new.tree, new.choices, section_faults, lambda tree: build_section(tree)[1],
+            new, section_faults, lambda tree: build_section(tree)[1],
             lambda choice: with_changes([x for x in given if x is not choice]).tree,
         )  # fmt: skip
         faults += advice
