@@ -388,6 +388,8 @@ def write_simulation(
 ) -> list[ReportFile]:
     """Write the page of a simulation (PDF and PNG) and attach the scenario.
 
+    The page shows the margins of the control loop; they are computed if the simulation has none.
+
     Parameters
     ----------
     simulation : result of `simulate`
@@ -403,10 +405,12 @@ def write_simulation(
     from ..pages.simulation import page
     from ..pages.verification import sensitivity_blocks
     from ..rendering import paper as printed
+    from ..simulation.run import with_margins
 
     if scenario is None:
         message = "the page of a simulation needs its scenario"
         raise UsageError(Diagnostic(message, "give scenario=read_scenario(...)"))
+    simulation = with_margins(simulation, scenario.records)
     origin, place = _page(scenario, simulation, "", paper)
     blocks = [] if measured is None else measured.blocks()
     blocks += [] if sensitivities is None else sensitivity_blocks(sensitivities)
@@ -441,7 +445,9 @@ def write_comparison(
     """
     from ..pages.simulation_comparison import comparison, page
     from ..rendering import paper as printed
+    from ..simulation.run import with_margins
 
+    runs = [(name, with_margins(run, scenario.records)) for name, run in runs]
     report = page(comparison(runs, title, notes))
     origin, place = _page(scenario, runs[0][1], "-compared", paper)
     return printed.write(report, origin, **place)

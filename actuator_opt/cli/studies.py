@@ -252,7 +252,7 @@ Margins = Annotated[
     bool,
     typer.Option(
         "--margins",
-        help="Compute gain and phase margin even if the gain is stated (a report does so too).",
+        help="Compute gain and phase margin even if the gain is stated (a report contains them).",
     ),
 ]
 Explain = Annotated[
@@ -309,7 +309,7 @@ def simulate(
     if csv is not None:
         require_apart(csv, *map(str, trial.files))
     job.paper["scenario"] = trial
-    options: dict[str, Any] = {"verify": verify, "margins": margins or report}
+    options: dict[str, Any] = {"verify": verify, "margins": margins}
     options |= {"method": "cvodes" if fast else "lsoda"}
     if measured is None:
         compared, simulation = None, job.run(verbs.simulate, trial, **options)

@@ -148,6 +148,17 @@ def run(
     return replace(result, second=second)
 
 
+def with_margins(simulation: Simulation, records: Records) -> Simulation:
+    """A simulation with the margins of its control loop, if it has a loop but no margins yet."""
+    before = simulation.tuned
+    if before is None or before.margins is not None:
+        return simulation
+    scenario, actuator = simulation.scenario, simulation.plant
+    tuned = tune(scenario, actuator, records, previous=before, with_margins=True)
+    notes = (*_controller_notes(tuned), *simulation.notes)
+    return replace(simulation, tuned=tuned, notes=notes)
+
+
 def _checked_by(
     compiled: Compiled,
     scenario: Scenario,
