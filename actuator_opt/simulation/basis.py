@@ -217,10 +217,11 @@ def _valve(circuit: Circuit) -> Iterator[BasisValue]:
     data, model = circuit.plant.valve, "valve.edge_coefficient"
     if data is None or not circuit.driven:
         return
-    rated, leak = "valve.rated_flow, valve.rated_drop", "valve.leakage_flow, valve.leakage_drop"
-    yield BasisValue("edge_flow", data.rated * BAR, rated, model)
-    yield BasisValue("supply_leakage", data.leakage_supply * BAR, leak, model)
-    yield BasisValue("tank_leakage", data.leakage_tank * BAR, leak, model)
+    if data.rated > 0:  # the edges' flow coefficients of the course's law
+        rated, leak = "valve.rated_flow, valve.rated_drop", "valve.leakage_flow, valve.leakage_drop"
+        yield BasisValue("edge_flow", data.rated * BAR, rated, model)
+        yield BasisValue("supply_leakage", data.leakage_supply * BAR, leak, model)
+        yield BasisValue("tank_leakage", data.leakage_tank * BAR, leak, model)
     yield BasisValue("full_signal", data.signal, "valve.signal")
     yield BasisValue("spool_offset", data.offset, "valve.offset")
     yield BasisValue("spool_frequency", data.natural_frequency, "valve.natural_frequency")
