@@ -20,7 +20,7 @@ from .yaml_source import Document
 SET: Final = "--set"
 UNSET: Final = "--unset"
 MOST: Final = 20
-"""Largest number of keys that one line advises to unset (our choice: a joint has fewer)."""
+"""Largest number of faults examined for one choice (our choice: a joint has fewer keys)."""
 
 
 class Override(NamedTuple):
@@ -151,13 +151,13 @@ def meaningless(
     for choice in new.choices:
         usual = _marks(faults_of(without(choice)))
         keys: list[str] = []
-        for fault in [x for x in rest if x.at_key and _mark(x) not in usual]:
+        for fault in [x for x in rest if x.at_key and _mark(x) not in usual][:MOST]:
             stays = fault.loc in new.places or isinstance(fault.loc[-1], int)
             if stays or child_at(tree, fault.loc) is None:
                 continue
             fewer = copy_tree(tree)
             remove(fewer, fault.loc)
-            if len(keys) < MOST and _marks(faults_of(fewer)) < _marks(rest):
+            if _marks(faults_of(fewer)) < _marks(rest):
                 keys.append(spell(fault.loc, tree))
                 tree = fewer
                 rest.remove(fault)
