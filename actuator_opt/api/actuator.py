@@ -13,7 +13,6 @@ from contextlib import contextmanager
 from dataclasses import replace
 from numbers import Real
 from pathlib import Path
-from types import NoneType
 from typing import TYPE_CHECKING, TypeAlias
 
 from ..base.arguments import Change, SetValues, guarded
@@ -62,15 +61,15 @@ class Actuator(OneLine):
         UsageError : `values` is not a mapping
         InputError : a PATH is unknown, or a value does not suit it
         """
-        require_changes(values)
+        require_changes(values, unset=True)
         quantities = with_own(self.plugins)
         changes = {k: float(x) if isinstance(x, Real) else x for k, x in values.items()}
         design = with_values(self.design, changes, metrics=quantities)
         return Actuator(design, self.source, self.plugins)
 
 
-def require_changes(changes: object) -> None:
-    """Refuse anything but a mapping from PATH to numbers and texts.
+def require_changes(changes: object, *, unset: bool = False) -> None:
+    """Refuse anything but a mapping from PATH to numbers and texts or, with `unset`, to None.
 
     Raises
     ------
@@ -84,7 +83,8 @@ def require_changes(changes: object) -> None:
         if not isinstance(path, str):
             message = f"must be a PATH, not {type(path).__name__}"
             raise InputError(Diagnostic(message, "write a text"))
-        if isinstance(value, bool) or not isinstance(value, (Real, str, Fraction, NoneType)):
+        removed = unset and value is None
+        if isinstance(value, bool) or not (removed or isinstance(value, (Real, str, Fraction))):
             message = f"must be a number, not {type(value).__name__}"
             advice = 'write SI, or a text with a unit such as "112 mm"'
             raise InputError(Diagnostic(message, advice, path=path))

@@ -20,6 +20,7 @@ from ..base.errors import Diagnostic, InputError, Unsolvable, UsageError, remedy
 from ..base.numeric import Array
 from ..base.quantities import INPUTS, Quantity
 from ..base.tables import OneLine, aligned
+from ..base.threads import one_thread
 from ..design import Design, canonical, get, quantity_of
 from ..evaluation import PreparedDesign
 from .actuator import (
@@ -486,6 +487,7 @@ class Session(OneLine):
                 ) from None
         return name
 
+    @one_thread()
     def _solved(
         self, changes: Changes, stop: Callable[[], bool] | None = None
     ) -> tuple[Actuator, PreparedDesign, ActuatorProblem, Solution]:
