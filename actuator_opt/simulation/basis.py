@@ -89,11 +89,17 @@ def _stated(value: object, path: str, default: str) -> str:
     return default if value is None else path
 
 
+def _of(circuit: Circuit, key: str, usual: str) -> str:
+    """The PATH of a number in the block `ideal` of the design; without this block, other words."""
+    return usual if circuit.plant.design.ideal is None else f"ideal.{key}"
+
+
 def _masses(circuit: Circuit) -> Iterator[BasisValue]:
     plant, start = circuit.plant, circuit.start
     load = plant.design.load.mass
     yield BasisValue("load_mass", load, "load.mass")
-    yield BasisValue("part_mass", plant.mass - load, "dimensions and materials of these parts")
+    own = _of(circuit, "mass", "dimensions and materials of these parts")
+    yield BasisValue("part_mass", plant.mass - load, own)
     moving, sum_of = plant.moving_mass(start.position), "load_mass + part_mass"
     if plant.design.linkage is not None:
         inertia, model = moving - plant.mass, "linkage.reflected_inertia"
@@ -106,11 +112,12 @@ def _chambers(circuit: Circuit) -> Iterator[BasisValue]:
     plant, start = circuit.plant, circuit.start
     volumes = circuit.volumes
     initial, mid = circuit.scenario.initial, "mid-stroke (initial.position)"
-    yield BasisValue("stroke", plant.stroke, "cylinder.stroke")
+    yield BasisValue("stroke", plant.stroke, _of(circuit, "stroke", "cylinder.stroke"))
     place = _stated(initial.position, "initial.position", mid)
     yield BasisValue("start_position", start.position, place)
-    yield BasisValue("area_a", plant.area_a, "cylinder.bore")
-    yield BasisValue("area_b", plant.area_b, "cylinder.bore, rod.outer_diameter")
+    yield BasisValue("area_a", plant.area_a, _of(circuit, "area_a", "cylinder.bore"))
+    annulus = _of(circuit, "area_b", "cylinder.bore, rod.outer_diameter")
+    yield BasisValue("area_b", plant.area_b, annulus)
     if volumes is None:
         return
     walls, ends = volumes.walls, (start.position, plant.stroke - start.position)
@@ -118,16 +125,19 @@ def _chambers(circuit: Circuit) -> Iterator[BasisValue]:
         ("a", volumes.dead_a, plant.area_a, ends[0]),
         ("b", volumes.dead_b, plant.area_b, ends[1]),
     ):
-        yield BasisValue(f"dead_volume_{name}", dead, f"cylinder.dead_volume_{name}, lines")
+        own = _of(circuit, f"dead_volume_{name}", f"cylinder.dead_volume_{name}")
+        yield BasisValue(f"dead_volume_{name}", dead, f"{own}, lines")
         swept = f"dead_volume_{name} + area x travel to the end"
         yield BasisValue(f"volume_{name}", dead + area * column, swept)
-    at = "barrel, caps and lumped lines; stiffness"
+    rigid = plant.design.ideal is not None
+    at = "lumped lines; walls are rigid (ideal)" if rigid else "barrel, caps, lines; stiffness"
     yield BasisValue("wall_compliance_a", walls.a0 + walls.a1 * ends[0], at)
     yield BasisValue("wall_compliance_b", walls.b0 + walls.b1 * ends[1], at)
     if walls.c0 or walls.c1:
         yield BasisValue("wall_coupling", walls.c0 + walls.c1 * ends[0], at)
     if plant.flexibility > 0:
-        yield BasisValue("rod_stiffness", 1 / plant.flexibility, "rod, mount; stiffness")
+        rod = _of(circuit, "stiffness", "rod, mount; stiffness")
+        yield BasisValue("rod_stiffness", 1 / plant.flexibility, rod)
 
 
 def _supply(circuit: Circuit) -> Iterator[BasisValue]:
@@ -164,13 +174,15 @@ def _pressures(circuit: Circuit) -> Iterator[BasisValue]:
 def _losses(circuit: Circuit) -> Iterator[BasisValue]:
     """Leakage across the piston, shear of the oil, and friction of the seals."""
     plant, stated, curve = circuit.plant, circuit.scenario.friction, circuit.friction
+    ideal = plant.design.ideal is not None
     leak = "piston.leakage_conductance, or gap and film of the piston seal"
-    yield BasisValue("piston_leakage", plant.leakage, leak)
-    yield BasisValue("oil_damping", plant.oil_damping, "metrics damping_pipe + damping_annular")
+    yield BasisValue("piston_leakage", plant.leakage, _of(circuit, "leakage", leak))
+    shear = "none (ideal)" if ideal else "metrics damping_pipe + damping_annular"
+    yield BasisValue("oil_damping", plant.oil_damping, shear)
     if curve is None:
         return
     if stated.model != "none":
-        own = "friction of seals and wipers in the design"
+        own = "no seals (ideal)" if ideal else "friction of seals and wipers in the design"
         levels = motion.levels_at(curve, circuit.start)
         given = _stated(stated.coulomb, "friction.coulomb", own)
         yield BasisValue("coulomb_friction", levels[0], given)
@@ -181,6 +193,7 @@ def _losses(circuit: Circuit) -> Iterator[BasisValue]:
         path = _stated(stated.stribeck_speed, "friction.stribeck_speed", speed)
         yield BasisValue("stribeck_speed", curve.stribeck_speed, path)
     viscous = "seals.piston.viscous_friction, seals.rod.viscous_friction"
+    viscous = "no seals (ideal)" if ideal else viscous
     viscous = viscous if stated.coulomb is None else "0, as friction.viscous is not stated"
     path = _stated(stated.viscous, "friction.viscous", viscous)
     yield BasisValue("viscous_friction", curve.viscous, path)
