@@ -144,3 +144,28 @@ def test_every_circuit_has_them(name):
     assert all(x.origin and np.isfinite(x.value) for x in told)
     assert ("displacement" in names) == ("motor" in name)
     assert ("area_a" in names) == ("aalto" in name)
+
+
+def test_a_stated_cylinder_names_its_block(tmp_path):
+    """With `ideal`, the numbers come from this block; walls and seals have none."""
+    text = DESIGN.read_text(encoding="utf-8")
+    valve = text[text.index("\nvalve:") : text.index("\nload:")]
+    ideal = (
+        "name: stated\nfluid:\n  material: iso_vg_32\n  temperature: 40 degC\nsupply:\n"
+        "  pressure: 140 bar\nideal:\n  area_a: 12 cm^2\n  area_b: 8 cm^2\n  stroke: 0.3 m\n"
+        f"  mass: 5 kg\n  dead_volume_a: 10 ml\n  dead_volume_b: 20 ml\n{valve}"
+    )
+    (tmp_path / "stated.yaml").write_text(ideal, encoding="utf-8")
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(
+        "name: stated\ndesign: stated.yaml\nduration: 10 ms\nfriction: {model: none}\n"
+        "signal:\n  - {shape: constant, value: 1 V}\n",
+        encoding="utf-8",
+    )
+    data = ao.simulate(scene).basis.to_dict()
+    for name, number in (("area_a", 12e-4), ("area_b", 8e-4), ("dead_volume_b", 20e-6)):
+        assert data[name]["value"] == pytest.approx(number, rel=1e-12)
+        assert data[name]["origin"].startswith(f"ideal.{name}")
+    assert data["part_mass"]["origin"] == "ideal.mass"
+    assert data["wall_compliance_a"]["value"] == pytest.approx(0.0, abs=1e-30)
+    assert "coulomb_friction" not in data
