@@ -31,7 +31,7 @@ _PARTS: Mapping[str, Any] = {
 """The cylinder that completes the file; its sizes are of no effect."""
 
 _UNUSED = (
-    *_PARTS, "head", "retention", "clevis", "sensor", "cushion", "extra_masses", "stiffness",
+    *_PARTS, "second_rod", "head", "retention", "clevis", "sensor", "cushion", "extra_masses", "stiffness",
     "linkage", "variables", "choices", "requirements", "waivers", "measured", "uncertainty",
     "objective",
 )  # fmt: skip

@@ -115,7 +115,9 @@ def _chambers(circuit: Circuit) -> Iterator[BasisValue]:
     yield BasisValue("stroke", plant.stroke, _of(circuit, "stroke", "cylinder.stroke"))
     place = _stated(initial.position, "initial.position", mid)
     yield BasisValue("start_position", start.position, place)
-    yield BasisValue("area_a", plant.area_a, _of(circuit, "area_a", "cylinder.bore"))
+    second = ", second_rod.outer_diameter" if plant.design.double_rod else ""
+    whole = _of(circuit, "area_a", f"cylinder.bore{second}")
+    yield BasisValue("area_a", plant.area_a, whole)
     annulus = _of(circuit, "area_b", "cylinder.bore, rod.outer_diameter")
     yield BasisValue("area_b", plant.area_b, annulus)
     if volumes is None:
