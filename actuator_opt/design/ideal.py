@@ -31,9 +31,9 @@ _PARTS: Mapping[str, Any] = {
 """The cylinder that completes the file; its sizes are of no effect."""
 
 _UNUSED = (
-    *_PARTS, "second_rod", "head", "retention", "clevis", "sensor", "cushion", "extra_masses", "stiffness",
-    "linkage", "variables", "choices", "requirements", "waivers", "measured", "uncertainty",
-    "objective",
+    *_PARTS, "second_rod", "head", "retention", "clevis", "sensor", "cushion", "extra_masses",
+    "stiffness", "linkage", "variables", "choices", "requirements", "waivers", "measured",
+    "uncertainty", "objective",
 )  # fmt: skip
 """Blocks that mean nothing beside `ideal`."""
 
