@@ -10,7 +10,8 @@ from typing import Annotated
 from pydantic import Field
 
 from ..kinds import Of, Position, Section, Text
-from ..model import Cushion, Limit, Valve
+from ..model import Cushion, Limit
+from ..valve import Valve
 from . import kinds
 from .kinds import FileName, Label, StartPosition
 
