@@ -132,7 +132,7 @@ def _lapped(view: FileView, loc: Loc) -> Iterator[Fault]:
             yield Fault(
                 (*at, "rounding"),
                 "without effect on edges without clearance",
-                f"remove it, or {how_to_add('clearance', section_at(view.root, (*spool, 'clearance'))[1])}",
+                'remove it, or add e.g. "clearance: 3 um"',
                 at_key=True,
             )
         stated = stated or bool(overlap or clearance)

@@ -10,8 +10,7 @@ from ..base.dataclass import dataclass
 from ..base.numeric import Array, maximum, where
 from ..design.model import Design, Line
 from ..models import accumulator, elements, holding_valve, line_ends, lines, one_way_valve
-from ..models.holding_valve import ValveSlopes
-from ..models.lapped_spool import LappedSpool, lapped_slopes
+from ..models.lapped_spool import BothSlopes, LappedSpool, lapped_slopes
 from ..models.line_ends import LineEnd
 from . import spool
 from .geometry import Geometry
@@ -100,12 +99,15 @@ class LinearValve(NamedTuple):
     gains: dict[Chamber, Ways]
     """Flow gains K_q into the lines [m^3/s/V], by spool direction."""
     conductances: dict[Chamber, Ways]
-    """Flow-pressure coefficients K_c [m^3/s/Pa]; empty if the valve does not leak."""
+    """Flow-pressure coefficients K_c [m^3/s/Pa] by spool direction; empty if the valve is tight."""
+    resting: dict[Chamber, Array]
+    """Flow-pressure coefficients K_c while the valve holds the load; empty if the valve is tight
+    there."""
 
     def held(self, chamber: Chamber) -> LineEnd:
         """Condition at the valve end of a chamber's line while the valve holds the load."""
-        ways = self.conductances.get(chamber)
-        return LineEnd((maximum(*ways),)) if ways else line_ends.CLOSED
+        leaks = self.resting.get(chamber)
+        return line_ends.CLOSED if leaks is None else LineEnd((leaks,))
 
     def driving(self, chamber: Chamber, extending: Array) -> LineEnd:
         """Condition at the valve end of a chamber's line while the valve moves the load."""
@@ -140,22 +142,22 @@ def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) ->
     """
     if design.valve is None:
         return None
-    outward, inward = _slopes(v, design, state, leakage)
+    outward, inward, *held = _slopes(v, design, state, leakage)
     conductances: dict[Chamber, Ways] = {
         "a": Ways(outward.conductance_a, inward.conductance_a),
         "b": Ways(outward.conductance_b, inward.conductance_b),
     }
     tight = not any(np.any(np.real(way) > 0) for ways in conductances.values() for way in ways)
+    closed = not any(np.any(np.real(leaks) > 0) for leaks in held)
     return LinearValve(
         {"a": Ways(outward.gain_a, inward.gain_a), "b": Ways(-outward.gain_b, -inward.gain_b)},
         {} if tight else conductances,
+        {} if closed else dict(zip(CHAMBERS, held, strict=True)),
     )
 
 
-def _slopes(
-    v: Values, design: Design, state: LoadState, leakage: Array
-) -> tuple[ValveSlopes, ValveSlopes]:
-    """Small-signal flows of the valve, extending and retracting."""
+def _slopes(v: Values, design: Design, state: LoadState, leakage: Array) -> BothSlopes:
+    """Small-signal flows of the valve that drives and holds the load."""
     lapped = lapped_spool(v, design, state)
     if lapped is not None:
         return lapped_slopes(
@@ -182,7 +184,12 @@ def _slopes(
         )
         for extending in (True, False)
     )
-    return outward, inward
+    return BothSlopes(
+        outward,
+        inward,
+        maximum(outward.conductance_a, inward.conductance_a),
+        maximum(outward.conductance_b, inward.conductance_b),
+    )
 
 
 def throttle_conductances(

@@ -109,7 +109,8 @@ def lapped_edge_flow(
     """Flow through an edge, q = 2 w h dp/(a + sqrt(a^2 + 2 rho |dp|/C^2)).
 
     The viscous term is a = eta (32/(pi h) + 12 L h/c^3), with opening h and gap length L of
-    `edge_gap`. Without clearance, q = C w max(y, 0) sqrt(2 |dp|/rho) sgn(dp), smoothed as `valve.edge_flow`.
+    `edge_gap`. Without clearance, q = C w max(y, 0) sqrt(2 |dp|/rho) sgn(dp), smoothed as
+    `valve.edge_flow`.
 
     Parameters
     ----------
@@ -230,7 +231,8 @@ def lapped_edge_gain(
 ) -> Array:
     """Slope of an edge's flow over its opening, dq/dy = q (h'/h - a'/S).
 
-    S^2 = a^2 + 2 rho |dp|/C^2, with the viscous term a of `lapped_edge_flow`. Without clearance, dq/dy = q/y of an open edge, and zero of a closed one.
+    S^2 = a^2 + 2 rho |dp|/C^2, with the viscous term a of `lapped_edge_flow`. Without clearance,
+    dq/dy = q/y of an open edge, and zero of a closed one.
 
     Parameters
     ----------
@@ -265,8 +267,9 @@ def lapped_edge_gain(
     """
     if clearance is None:
         open_now = real(uncovered) >= 0 if opens else real(uncovered) > 0
-        per_length = _sharp(where(open_now, 1.0, 0.0), area_gradient, density, flow_coefficient)
-        return edge_flow(coefficient=per_length, pressure_drop=pressure_drop)
+        per_length = _sharp(1.0, area_gradient, density, flow_coefficient)
+        slope = edge_flow(coefficient=per_length, pressure_drop=pressure_drop)
+        return where(open_now, slope, 0 * slope)
     gap = edge_gap(uncovered=uncovered, clearance=clearance, rounding=rounding)
     h, dh = gap.opening, gap.opening_slope
     cube = GAP_DROP / (clearance * clearance * clearance)

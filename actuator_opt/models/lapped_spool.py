@@ -20,8 +20,11 @@ ROUNDS = 40
 SETTLED = 1e-12
 """Step at which that search ends, as a share of the stroke; one more Newton step follows."""
 CLEAR = 4.0
-"""Distance beyond the overlap at which an edge with clearance counts as open, in clearances; at
-most the overlap itself. Our choice: the opening is then 3 % larger than the uncovered length."""
+"""Uncovered length at which an edge with clearance counts as open, in clearances. Our choice: the
+opening is then 3 % larger than the uncovered length."""
+NULL = 0.01
+"""Least uncovered length at which an edge with clearance counts as open, as a share of the stroke.
+Our choice: closer to the edge, viscous flow lowers the flow gain."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,13 +39,6 @@ class SpoolEdge:
     """Radial [m]; None: the edge does not leak."""
     rounding: Array = 0.0
     """Radius of the corners [m]."""
-
-    @property
-    def start(self) -> Array:
-        """Stroke at which the edge counts as open [m]."""
-        if self.clearance is None:
-            return self.overlap
-        return self.overlap + maximum(0.0, minimum(self.overlap, CLEAR * self.clearance))
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +56,12 @@ class LappedSpool:
     density: Array
     dynamic_viscosity: Array
     flow_coefficient: Array = TURBULENT_COEFFICIENT
+
+    def start(self, edge: SpoolEdge) -> Array:
+        """Stroke at which an edge counts as open [m]."""
+        if edge.clearance is None:
+            return edge.overlap
+        return edge.overlap + maximum(CLEAR * edge.clearance, NULL * self.stroke)
 
 
 def spool_stroke(*, spool: LappedSpool, signal: Array) -> Array:
@@ -261,11 +263,23 @@ def holding_stroke(
     )
 
 
+class _Ways(NamedTuple):
+    """Flow gain and conductance of a chamber that is fed and drained; conductance if it is held."""
+
+    fed: tuple[Array, Array]
+    drained: tuple[Array, Array]
+    held: Array
+
+
 class BothSlopes(NamedTuple):
-    """Small-signal flows for both directions of the spool."""
+    """Small-signal flows of a valve that drives the load either way, and of one that holds it."""
 
     extending: ValveSlopes
     retracting: ValveSlopes
+    held_a: Array
+    """Flow out of chamber A per unit of pressure in A, where the spool holds the load
+    [m^3/s/Pa]."""
+    held_b: Array
 
 
 def lapped_slopes(
@@ -279,9 +293,10 @@ def lapped_slopes(
 ) -> BothSlopes:
     """Small-signal model of a lapped spool that holds a load, for both directions.
 
-    Each chamber is taken at its `holding_stroke`. If the edge that a direction opens is lapped
-    there, the spool is taken where this edge begins to open (`SpoolEdge.start`). Gains and
-    conductances are the slopes of both edges of the chamber.
+    Each chamber is taken at its `holding_stroke`. If the edge that a direction opens is not open
+    there, that direction is taken where this edge begins to open (`LappedSpool.start`): its flow
+    gain, and so the loop, is that of the moving spool. Gains and conductances are the slopes of
+    both edges of the chamber.
 
     Parameters
     ----------
@@ -291,8 +306,8 @@ def lapped_slopes(
 
     Returns
     -------
-    for each direction: flow gains into A and out of B [m^3/s/V], conductances of A and B
-    [m^3/s/Pa]
+    for each direction: flow gains into A and out of B [m^3/s/V], conductances of A and B; and
+    the conductances where the load is held [m^3/s/Pa]
 
     Notes
     -----
@@ -319,21 +334,22 @@ def lapped_slopes(
     past = piston_leakage * (pressure_a - pressure_b)
     per_volt = spool.stroke / positive(spool.full_signal)
 
-    def both_ways(chamber: str, pressure: Array, lost: Array) -> tuple[tuple[Array, Array], ...]:
-        """Gain and conductance of a chamber that is fed, and of one that is drained."""
+    def both_ways(chamber: str, pressure: Array, lost: Array) -> _Ways:
+        """Gains and conductances of a chamber that is fed, drained and held."""
         into, out = supply_pressure - pressure, pressure - return_pressure
         port = _port(spool, chamber, into, out)
         held = holding_stroke(spool=spool, chamber=chamber, into=into, out=out, lost=lost)
-        fed, drained = maximum(held, port.supply.start), minimum(held, -port.tank.start)
-        return (
+        fed = maximum(held, spool.start(port.supply))
+        drained = minimum(held, -spool.start(port.tank))
+        return _Ways(
             (port.gain(fed, feeds=True) * per_volt, port.conductance(fed)),
             (port.gain(drained, drains=True) * per_volt, port.conductance(drained)),
+            port.conductance(held),
         )
 
-    fed_a, drained_a = both_ways("a", pressure_a, past)
-    fed_b, drained_b = both_ways("b", pressure_b, -past)
+    a, b = both_ways("a", pressure_a, past), both_ways("b", pressure_b, -past)
 
-    def slopes(a: tuple[Array, Array], b: tuple[Array, Array]) -> ValveSlopes:
-        return ValveSlopes(a[0], b[0], a[1], b[1])
+    def slopes(of_a: tuple[Array, Array], of_b: tuple[Array, Array]) -> ValveSlopes:
+        return ValveSlopes(of_a[0], of_b[0], of_a[1], of_b[1])
 
-    return BothSlopes(slopes(fed_a, drained_b), slopes(drained_a, fed_b))
+    return BothSlopes(slopes(a.fed, b.drained), slopes(a.drained, b.fed), a.held, b.held)

@@ -365,7 +365,7 @@ def spool_bandwidth(*, damping_ratio: Array) -> Array:
     Examples
     --------
     >>> print(f"{spool_bandwidth(damping_ratio=0.7):.4f}")
-    1.0098
+    1.0100
     """
     side = 1 - 2 * damping_ratio * damping_ratio
     whole = sqrt(side * side + 1)
@@ -396,7 +396,7 @@ def spool_damping(*, bandwidth: Array) -> Array:
 
     Examples
     --------
-    >>> print(f"{spool_damping(bandwidth=1.0098):.4f}")
+    >>> print(f"{spool_damping(bandwidth=1.0100):.4f}")
     0.7000
     """
     square = bandwidth * bandwidth

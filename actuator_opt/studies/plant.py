@@ -100,7 +100,7 @@ class ValveData:
             return 0.0
         spool = self.lapped
         edges = (spool.supply_a, spool.b_tank) if side > 0 else (spool.a_tank, spool.supply_b)
-        stroke = max(float(edge.start) for edge in edges)
+        stroke = max(float(spool.start(edge)) for edge in edges)
         return max(stroke, 0.0) * self.signal / float(spool.stroke)
 
 
