@@ -8,7 +8,7 @@ from .kinds import Of, Section
 
 
 class SpoolEdge(Section):
-    """What differs at one metering edge from the other edges of a lapped spool."""
+    """Values of one metering edge of a lapped spool, where they differ from the other edges."""
 
     overlap: Annotated[
         float | None, Of("spool_overlap", "overlap of this edge; default: valve.spool.overlap")
@@ -28,7 +28,7 @@ class SpoolEdge(Section):
 
 
 class Spool(Section):
-    """How the metering edges of a valve open and leak."""
+    """Law and geometry of the metering edges of a valve."""
 
     type: choices.SpoolLaw = "course"
     stroke: Annotated[

@@ -127,8 +127,9 @@ def lapped_edge_flow(
 
     Notes
     -----
-    Valid: no cavitation in the edge; spool centred in its bore (fully eccentric: 2.5 times the
-    leakage of a long lap).
+    Valid: no cavitation in the edge; spool centred in its bore.
+
+    A spool that touches its bore leaks up to 2.5 times as much through a long lap.
 
     References
     ----------
@@ -188,8 +189,9 @@ def lapped_edge_conductance(
 
     Notes
     -----
-    Valid: small changes about the stated pressure drop. At zero lap and low pressure this is
-    pi w c^2/(32 eta).
+    Valid: small changes about the stated pressure drop.
+
+    At zero lap and low pressure this is pi w c^2/(32 eta).
 
     References
     ----------

@@ -69,7 +69,7 @@ def spool_stroke(*, spool: LappedSpool, signal: Array) -> Array:
 
     Parameters
     ----------
-    spool : stroke s and signal U_max at full stroke
+    spool : stroke s [m] and signal U_max at full stroke [V]
     signal : U, either sign [V]
 
     Returns
@@ -108,7 +108,7 @@ def lapped_flows(
 
     Parameters
     ----------
-    spool : edges, stroke and oil
+    spool : edges, stroke and oil, see `LappedSpool` [SI]
     signal : from the centre of the spool, either sign [V]
     supply_pressure, return_pressure, pressure_a, pressure_b : gauge [Pa]
 
@@ -215,7 +215,7 @@ def holding_stroke(
 
     Parameters
     ----------
-    spool : edges, stroke and oil
+    spool : edges, stroke and oil, see `LappedSpool` [SI]
     chamber : "a" or "b"
     into, out : pressure drops p_S - p and p - p_T [Pa]
     lost : flow q that leaves the chamber past the piston [m^3/s]
@@ -300,7 +300,7 @@ def lapped_slopes(
 
     Parameters
     ----------
-    spool : edges, stroke and oil
+    spool : edges, stroke and oil, see `LappedSpool` [SI]
     supply_pressure, return_pressure, pressure_a, pressure_b : gauge [Pa]
     piston_leakage : conductance from A to B [m^3/s/Pa]
 

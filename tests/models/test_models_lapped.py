@@ -203,6 +203,12 @@ def test_sag_of_a_closing_edge_is_half_that_of_one_that_keeps_its_leakage():
 # ---- held loads ----
 
 
+def test_the_spool_stops_at_its_stroke():
+    """Half the signal is half the stroke; beyond full signal the spool stays at its stop."""
+    places = lapped_spool.spool_stroke(spool=spool(0.0), signal=np.array([-5.0, 10.0, 12.0]))
+    np.testing.assert_allclose(places, [-0.5e-3, 1e-3, 1e-3], rtol=1e-15)
+
+
 @given(
     st.floats(-30 * UM, 30 * UM), st.one_of(st.none(), st.floats(1 * UM, 8 * UM)),
     st.floats(10e5, 130e5), st.floats(-2e-6, 2e-6), st.sampled_from("ab"),
