@@ -28,7 +28,7 @@ from ..joints.kinds import OWN_KEYS
 from ..metrics import METRICS, MetricRow
 from ..metrics.table import CHECKS
 from ..version import VERSION
-from . import dynamics_study as dynamics, outline, validity as doubts, weight
+from . import dynamics_study as dynamics, outline, validity as doubts, valve_study, weight
 from .film import floats
 from .kernel import ModelRun, PreparedDesign, compute, governing
 from .limits import (
@@ -284,6 +284,7 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
         lengths=outline.lengths(design, run.geometry),
         wall=wall_study(subject, v, run),
         dynamics=dynamics.study(subject, v, run, metrics["stiffness_min"].case),
+        valve=valve_study.study(design, v, run.state),
         friction_parts=_friction_parts(computed, v, metrics["friction_running"].case),
     )
 

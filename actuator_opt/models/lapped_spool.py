@@ -216,7 +216,7 @@ def holding_stroke(
     Parameters
     ----------
     spool : edges, stroke and oil, see `LappedSpool` [SI]
-    chamber : "a" or "b"
+    chamber : "a" or "b" [-]
     into, out : pressure drops p_S - p and p - p_T [Pa]
     lost : flow q that leaves the chamber past the piston [m^3/s]
 
@@ -311,8 +311,10 @@ def lapped_slopes(
 
     Notes
     -----
-    Valid: small motion about the held load. With unequal edges no single position balances both
-    chambers at the stated pressures; each chamber is then taken at its own.
+    Valid: small motion about the held load.
+
+    With unequal edges no single position balances both chambers at the stated pressures; each
+    chamber is then taken at its own.
 
     References
     ----------

@@ -1,0 +1,219 @@
+"""The valve about its null: no-load flow, load pressure in blocked ports, and leakage.
+
+A lapped spool is shown beside the textbook's three centres: the same spool with open, critical and
+closed centre [Merritt1967].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..base.dataclass import dataclass
+from ..base.numeric import Array
+from ..design.model import Design
+from ..models.lapped_spool import LappedSpool, lapped_flows
+from ..models.valve import ValveFlows, valve_flows
+from . import circuit, spool
+from .state import LoadState
+from .values import Values, of_case, plain
+
+POINTS = 161
+"""Signals of each curve; an odd number, so that one of them is the null."""
+HALVINGS = 60
+"""Halvings of the supply pressure in each balance: the pressure is exact to rounding."""
+LEAST = 0.01
+"""Least lap of the textbook's open and closed centre, as a share of the stroke (our choice)."""
+SHOWN = 4.0
+"""Range of signals shown, in laps of the textbook's centres (our choice)."""
+STEP = 1e-3
+"""Half of the signal step of the null coefficients, as a share of the range shown (our choice)."""
+TIGHT = 1e-9
+"""Leakage up to which a valve counts as tight, as a share of its no-load flow at full signal."""
+
+Flows = Callable[[Array, Array], ValveFlows]
+"""Flows at signals and at a pressure in both ports."""
+
+
+@dataclass(frozen=True, slots=True)
+class ValveCurve:
+    """A valve about its null; the arrays have one entry per signal."""
+
+    name: str
+    """``this valve``, or ``open``, ``critical`` or ``closed`` for the textbook's centres."""
+    overlap: float | None
+    """Overlap of its edges [m]; None if they differ, and for the course's law."""
+    flow: Array
+    """Flow from port A to port B, joined without load [m^3/s]."""
+    load_pressure: Array
+    """Pressure in blocked port A minus that in blocked port B [Pa]."""
+    leakage: Array
+    """Flow from the supply with blocked ports [m^3/s]."""
+    flow_gain: float
+    """K_q0 at the null [m^3/s/V]."""
+    pressure_gain: float | None
+    """K_p0 at the null [Pa/V]; None for a valve that does not leak there."""
+    flow_pressure_coefficient: float
+    """K_c0 = K_q0/K_p0 at the null [m^3/s/Pa]."""
+    null_leakage: float
+    """Flow from the supply at the null [m^3/s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class ValveStudy:
+    """Curves of a valve, in the oil of the first load case."""
+
+    case: str
+    supply_pressure: float
+    return_pressure: float
+    signal: Array
+    """Signals from the centre [V]."""
+    curves: tuple[ValveCurve, ...]
+    """This valve first, then the textbook's centres."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return {name: plain(getattr(self, name)) for name in self.__dataclass_fields__}
+
+
+def study(design: Design, v: Values, state: LoadState) -> ValveStudy | None:
+    """Curves of the design's valve; None if it has none, or does not state its spool."""
+    if design.valve is None or design.valve.spool is None:
+        return None
+    oil = {
+        "density": of_case(state.density, 0),
+        "kinematic_viscosity": of_case(state.kinematic_viscosity, 0),
+    }
+    read = circuit.of_valve(v)
+    supply, tank = float(v["supply.pressure"]), float(v["supply.return_pressure"])
+    lines = {"supply_pressure": supply, "return_pressure": tank}
+    lapped = spool.lapped_spool(read, design.valve, **oil)
+    full = float(read("signal"))
+    valves: list[tuple[str, float | None, Flows]]
+    if lapped is None:
+        edges = spool.course_edges(read, viscosity=oil["kinematic_viscosity"])
+        most = full * min(1.0, max(SHOWN * LEAST, SHOWN * float(edges.supply / edges.rated)))
+        valves = [("this valve", None, _course(edges, full, lines))]
+    else:
+        lap = _lap(lapped)
+        most = full * min(1.0, SHOWN * lap / float(lapped.stroke))
+        valves = [("this valve", _common(lapped), _lapped(lapped, lines))]
+        for name, overlap in (("open", -lap), ("critical", 0.0), ("closed", lap)):
+            valves.append((name, overlap, _lapped(_with(lapped, overlap), lines)))
+    signal = np.linspace(-most, most, POINTS)
+    curves = tuple(_curve(*valve, signal, full, supply, tank) for valve in valves)
+    return ValveStudy(v.cases[0], supply, tank, signal, curves)
+
+
+def _course(edges: spool.CourseEdges, full: float, lines: dict[str, float]) -> Flows:
+    """Flows of a valve by the course's law."""
+
+    def flows(signal: Array, pressure: Array) -> ValveFlows:
+        return valve_flows(
+            signal=signal,
+            rated_coefficient=edges.rated,
+            leakage_supply=edges.supply,
+            leakage_tank=edges.tank,
+            full_signal=full,
+            pressure_a=pressure,
+            pressure_b=pressure,
+            **lines,
+        )
+
+    return flows
+
+
+def _lapped(one: LappedSpool, lines: dict[str, float]) -> Flows:
+    """Flows of a lapped spool."""
+
+    def flows(signal: Array, pressure: Array) -> ValveFlows:
+        return lapped_flows(
+            spool=one, signal=signal, pressure_a=pressure, pressure_b=pressure, **lines
+        )
+
+    return flows
+
+
+def _edges(one: LappedSpool) -> dict[str, Any]:
+    """The four edges of a spool, by name."""
+    return {name: getattr(one, name) for name in spool.EDGES}
+
+
+def _common(one: LappedSpool) -> float | None:
+    """Overlap of all edges; None if they differ."""
+    overlaps = {float(edge.overlap) for edge in _edges(one).values()}
+    return overlaps.pop() if len(overlaps) == 1 else None
+
+
+def _with(one: LappedSpool, overlap: float) -> LappedSpool:
+    """The spool with another overlap at all of its edges."""
+    edges = {name: replace(edge, overlap=overlap) for name, edge in _edges(one).items()}
+    return replace(one, **edges)
+
+
+def _lap(one: LappedSpool) -> float:
+    """Lap of the textbook's open and closed centre: at least that of the spool."""
+    laps = [LEAST * float(one.stroke)]
+    for edge in _edges(one).values():
+        laps += [abs(float(edge.overlap)), 4 * float(edge.clearance or 0.0)]
+    return max(laps)
+
+
+def _balance(net: Callable[[Array], Array], like: Array, supply: float, tank: float) -> Array:
+    """Pressure at which a net inflow, which falls with it, is zero; the middle where none flows."""
+    low, high = np.full(like.shape, tank), np.full(like.shape, supply)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        inflow = net(middle)
+        low = np.where(inflow >= 0, middle, low)
+        high = np.where(inflow <= 0, middle, high)
+    return 0.5 * (low + high)
+
+
+def _load_pressure(flows: Flows, signal: Array, supply: float, tank: float) -> tuple[Array, Array]:
+    """Load pressure and leakage with blocked ports."""
+    a = _balance(lambda p: flows(signal, p).into_a, signal, supply, tank)
+    b = _balance(lambda p: flows(signal, p).into_b, signal, supply, tank)
+    return a - b, flows(signal, a).supply_a + flows(signal, b).supply_b
+
+
+def _no_load(flows: Flows, signal: Array, supply: float, tank: float) -> Array:
+    """Flow from A to B, joined."""
+
+    def net(pressure: Array) -> Array:
+        found = flows(signal, pressure)
+        return found.into_a + found.into_b
+
+    return flows(signal, _balance(net, signal, supply, tank)).into_a
+
+
+def _curve(
+    name: str,
+    overlap: float | None,
+    flows: Flows,
+    signal: Array,
+    full: float,
+    supply: float,
+    tank: float,
+) -> ValveCurve:
+    load_pressure, leakage = _load_pressure(flows, signal, supply, tank)
+    step = STEP * float(signal[-1]) * np.array([-1.0, 1.0])
+    gain = float(np.ptp(_no_load(flows, step, supply, tank)) / np.ptp(step))
+    rise = float(np.ptp(_load_pressure(flows, step, supply, tank)[0]) / np.ptp(step))
+    largest = float(_no_load(flows, np.array([full]), supply, tank)[0])
+    null_leakage = float(leakage[len(signal) // 2])
+    tight = null_leakage <= TIGHT * largest
+    return ValveCurve(
+        name=name,
+        overlap=overlap,
+        flow=_no_load(flows, signal, supply, tank),
+        load_pressure=load_pressure,
+        leakage=leakage,
+        flow_gain=gain,
+        pressure_gain=None if tight else rise,
+        flow_pressure_coefficient=0.0 if tight else gain / rise,
+        null_leakage=null_leakage,
+    )
