@@ -220,6 +220,13 @@ def _blocks(retention: dict[str, Any] | None) -> Iterator[dict[str, Any]]:
         yield retention
 
 
+def leave_out_unset(valve: dict[str, Any] | None) -> None:
+    """Drop unset keys from the dump of a valve, so that hashes of older designs stay valid."""
+    for key in ("frequency_90deg", "frequency_3db", "slew_rate", "spool"):
+        if valve and valve[key] is None:
+            del valve[key]
+
+
 def spec_hash(subject: PreparedDesign) -> str:
     """Hash of all inputs that determine the result: design, material data and program version."""
     design = subject.design.model_dump(mode="json")
@@ -233,6 +240,7 @@ def spec_hash(subject: PreparedDesign) -> str:
     for block, key in ((design["cylinder"], "port_thread"), (design["clevis"], "bearing")):
         if block and block[key] is None:
             del block[key]
+    leave_out_unset(design["valve"])
     for block in _blocks(design["retention"]):
         for key in ("cap", "head", "sleeve", *OWN_KEYS):
             if key in block and block[key] is None:

@@ -16,7 +16,7 @@ from ..base.quantities import INPUTS
 from ..design.scenario.kinds import Records
 from ..design.scenario.model import SAMPLES, Scenario
 from ..design.scenario.reader import recorded_notes
-from ..evaluation.build import spec_hash
+from ..evaluation.build import leave_out_unset, spec_hash
 from ..evaluation.kernel import PreparedDesign
 from ..models.supply import relief_flow
 from ..studies.plant import Plant, plant
@@ -311,6 +311,8 @@ def _reference_outside_stroke(actuator: Plant, signals: Mapping[str, Array]) -> 
 
 def spec_of(subject: PreparedDesign, scenario: Scenario) -> str:
     """Hash of all inputs that affect the result."""
-    content = json.dumps(scenario.model_dump(mode="json"), sort_keys=True, default=str)
-    text = spec_hash(subject) + content
+    content = scenario.model_dump(mode="json")
+    if content["load"]["cylinder"]:
+        leave_out_unset(content["load"]["cylinder"]["valve"])
+    text = spec_hash(subject) + json.dumps(content, sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
