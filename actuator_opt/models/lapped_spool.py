@@ -17,6 +17,9 @@ from .valve import ValveFlows
 
 ROUNDS = 40
 """Most rounds of the search for the spool position that holds a load."""
+FEWEST = 10
+"""Rounds before that search may end (our choice), so that a recording of the models for one design
+also serves designs that need a few rounds more."""
 SETTLED = 1e-12
 """Step at which that search ends, as a share of the stroke; one more Newton step follows."""
 CLEAR = 4.0
@@ -59,9 +62,12 @@ class LappedSpool:
 
     def start(self, edge: SpoolEdge) -> Array:
         """Stroke at which an edge counts as open [m]."""
-        if edge.clearance is None:
-            return edge.overlap
-        return edge.overlap + maximum(CLEAR * edge.clearance, NULL * self.stroke)
+        return edge.overlap if edge.clearance is None else self.opened(edge)
+
+    def opened(self, edge: SpoolEdge) -> Array:
+        """Stroke at which an edge is open beyond its lap and clearance [m]."""
+        clear = 0.0 if edge.clearance is None else CLEAR * edge.clearance
+        return edge.overlap + maximum(clear, NULL * self.stroke)
 
 
 def spool_stroke(*, spool: LappedSpool, signal: Array) -> Array:
@@ -246,14 +252,20 @@ def holding_stroke(
     most = real(spool.stroke) + 0 * real(port.into + port.out + lost + spool.full_signal)
     low, high = -most, most
     x = clip(0.5 * real(port.supply.overlap - port.tank.overlap) + 0 * most, low, high)
-    for _ in range(ROUNDS):
+    # from an open edge, where the inflow is almost linear, Newton's steps do not overshoot
+    net = real(port.inflow(x) - lost)
+    low, high = where(net < 0, x, low), where(net > 0, x, high)
+    feeding, draining = real(spool.opened(port.supply)), -real(spool.opened(port.tank))
+    x = where(net < 0, maximum(x, minimum(feeding, high)), x)
+    x = where(net > 0, minimum(x, maximum(draining, low)), x)
+    for rounds in range(ROUNDS):
         net, slope = real(port.inflow(x) - lost), real(port.gain(x))
         low, high = where(net <= 0, x, low), where(net >= 0, x, high)
         rises = slope > 0
         tried = x - net / where(rises, slope, 1.0)
-        tried = where(rises & (tried > low) & (tried < high), tried, 0.5 * (low + high))
+        tried = where(rises & (tried >= low) & (tried <= high), tried, 0.5 * (low + high))
         active = absolute(tried - x) > SETTLED * most
-        if finished(active):
+        if rounds >= FEWEST and finished(active):
             break
         x = where(active, tried, x)
     net, slope = port.inflow(x) - lost, port.gain(x)
