@@ -250,7 +250,10 @@ def holding_stroke(
     """
     port = _port(spool, chamber, into, out)
     most = real(spool.stroke) + 0 * real(port.into + port.out + lost + spool.full_signal)
-    low, high = -most, most
+    low = where(
+        real(port.inflow(most) - lost) <= 0, most, -most
+    )  # or the full stroke is too little
+    high = where(real(port.inflow(-most) - lost) >= 0, -most, most)
     x = clip(0.5 * real(port.supply.overlap - port.tank.overlap) + 0 * most, low, high)
     # from an open edge, where the inflow is almost linear, Newton's steps do not overshoot
     net = real(port.inflow(x) - lost)
