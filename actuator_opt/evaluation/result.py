@@ -512,6 +512,24 @@ class Evaluation(Displayed):
         }
 
     @property
+    def unlimited(self) -> dict[str, float]:
+        """Factors below 1, of strength by load, for which neither file nor check has a limit.
+
+        The fatigue factor is left out: it is that of endless life, and `cycle_life` has a limit.
+        """
+        factors = {}
+        for check in self.checks:
+            name = check.metric or ""
+            metric = self.metrics.get(name)
+            if check.limit is not None or metric is None or metric.value is None:
+                continue
+            if not name.endswith("_factor") or name == "fatigue_factor":
+                continue
+            if metric.quantity.worst == "min" and metric.value < 1:
+                factors[name] = metric.value
+        return factors
+
+    @property
     def reserve_sentences(self) -> tuple[str, ...]:
         """Sentences on limits without reserve and the yield; empty if a requirement is missed."""
         if not self.met or not self.requirements:

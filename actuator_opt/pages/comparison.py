@@ -8,7 +8,7 @@ from ..base.quantities import Quantity
 from ..design.kinds import Fraction
 from ..evaluation.comparison import Change, Comparison, Question, Value
 from ..evaluation.result import count_words
-from ..metrics import METRICS, of_metric
+from ..metrics import METRICS, of_metric, term_of
 from ..rendering import text
 from ..rendering.axes import AREAS
 from ..rendering.blocks import (
@@ -130,19 +130,30 @@ def _table(
 
 
 def sentences(comparison: Comparison) -> list[str]:
-    """The answer to each question, then damping ratios, missed requirements and reservations."""
+    """The answer to each question, damping, life, missed requirements and reservations."""
     lines = [answer(comparison, question) for question in comparison.questions]
-    damping = [e.metrics["damping_ratio"].value for e in comparison.evaluations]
-    if len(set(damping)) > 1:
-        values = ", ".join(
-            f"{x} {number(v, 3)}" for x, v in zip(comparison.labels, damping, strict=True)
-        )
-        lines.append(f"damping ratio: {values}")
+    for name in ("damping_ratio", "cycle_life"):
+        known = [e.metrics[name].value for e in comparison.evaluations]
+        texts = [DASH if value is None else number(value, 3) for value in known]
+        if len(set(texts)) > 1:
+            pairs = zip(comparison.labels, texts, strict=True)
+            lines.append(f"{term_of(name)}: {', '.join(map(' '.join, pairs))}")
     for label, evaluation in zip(comparison.labels, comparison.evaluations, strict=True):
         missed = [row.name for row in evaluation.requirements if not row.met]
         if missed:
             lines.append(f"{label} misses {len(missed)} of its requirements: {', '.join(missed)}")
+    lines += unlimited(comparison)
     return [*lines, *optimality(comparison, remedy=True), *unlike(comparison), *duties(comparison)]
+
+
+def unlimited(comparison: Comparison) -> list[str]:
+    """Sentence on factors below 1, of strength by load, for which the design has no limit."""
+    below: dict[str, list[str]] = {}
+    for label, evaluation in zip(comparison.labels, comparison.evaluations, strict=True):
+        for name, value in evaluation.unlimited.items():
+            below.setdefault(name, []).append(f"{label} {number(value, 3)}")
+    words = "; ".join(f"{name} {', '.join(values)}" for name, values in below.items())
+    return [f"below 1, but without a limit: {words}"] if words else []
 
 
 def unlike(comparison: Comparison) -> list[str]:
