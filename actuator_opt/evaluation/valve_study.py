@@ -72,7 +72,7 @@ class ValveStudy:
     signal: Array
     """Signals from the centre [V]."""
     curves: tuple[ValveCurve, ...]
-    """This valve first, then the textbook's centres."""
+    """Curve of the design's valve, then those of the textbook's centres."""
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
