@@ -2,6 +2,8 @@
 
 from typing import Annotated
 
+from pydantic import Field
+
 from ..models.orifice import TURBULENT_COEFFICIENT
 from . import choices
 from .kinds import Of, Section
@@ -25,6 +27,13 @@ class SpoolEdge(Section):
         float,
         Of("flow_share", "width of this edge, as a share of the width that the valve states"),
     ] = 1.0
+
+
+class CurvePoint(Section):
+    """A point of the curve of flow over signal, both as shares of their full values."""
+
+    signal: Annotated[float, Of("opening", "share of the full signal")]
+    flow: Annotated[float, Of("opening", "share of the rated flow at this signal")]
 
 
 class Spool(Section):
@@ -53,6 +62,7 @@ class Spool(Section):
     flow_coefficient: Annotated[
         float, Of("coefficient", "discharge coefficient of the turbulent flow through an edge")
     ] = TURBULENT_COEFFICIENT
+    curve: Annotated[tuple[CurvePoint, ...], Field(max_length=30)] = ()
     pa: SpoolEdge | None = None
     pb: SpoolEdge | None = None
     at: SpoolEdge | None = None

@@ -11,7 +11,10 @@ from .structure import FileView, Loc, how_to_add, section_at, without_effect
 
 EDGES = ("pa", "pb", "at", "bt")
 """Metering edges of a spool: from supply p to the ports a and b, and from these to the tank t."""
-LAPS = ("stroke", "overlap", "clearance", "rounding", "area_gradient", "flow_coefficient", *EDGES)
+LAPS = (
+    "stroke", "overlap", "clearance", "rounding", "area_gradient", "flow_coefficient", "curve",
+    *EDGES,
+)  # fmt: skip
 """Keys of a lapped spool."""
 COURSE = ("leakage_flow", "leakage_drop", "tank_leakage_drop")
 """Keys of the leakage that the course's law keeps at any opening."""
@@ -25,6 +28,7 @@ def valve(view: FileView, loc: Loc = ("valve",)) -> Iterator[Fault]:
     if view.text(*loc, "spool", "type") == "lapped":
         yield from _size(view, loc)
         yield from _lapped(view, loc)
+        yield from _curve(view, loc)
     else:
         remedy = 'write "type: lapped", or remove it'
         yield from without_effect(view, (*loc, "spool"), LAPS, "with type: course", remedy)
@@ -116,6 +120,44 @@ def _size(view: FileView, loc: Loc) -> Iterator[Fault]:
         "with a lapped spool, which leaks through its clearance",
         "remove it, and state spool.clearance",
     )
+
+
+def _curve(view: FileView, loc: Loc) -> Iterator[Fault]:
+    """Check that the curve of flow over signal rises, and that no edge states an overlap too."""
+    spool = (*loc, "spool")
+    points = [
+        tuple(view.number(*spool, "curve", i, name) for name in ("signal", "flow"))
+        for i in range(len(view.items(*spool, "curve")))
+    ]
+    text = INPUTS["opening"].text
+    for i, (signal, flow) in enumerate(points):
+        before, low = points[i - 1] if i else (0.0, 0.0)
+        if None in (signal, flow, before, low):
+            continue
+        assert signal is not None
+        assert flow is not None
+        assert before is not None
+        assert low is not None
+        if not before < signal < 1.0:
+            yield Fault(
+                (*spool, "curve", i, "signal"),
+                f"{text(signal)}: not between the signal before it ({text(before)}) and 100 %",
+                "write rising signals; the curve begins at 0 % and ends at 100 %",
+            )
+        if flow < low:
+            yield Fault(
+                (*spool, "curve", i, "flow"),
+                f"{text(flow)}: less than the flow at a smaller signal ({text(low)})",
+                f"write at least {text(low)}",
+            )
+    for edge in ((), *((name,) for name in EDGES)):
+        if points and view.number(*spool, *edge, "overlap"):
+            yield Fault(
+                (*spool, *edge, "overlap"),
+                "states the dead band a second time, beside the curve",
+                "remove it, or the curve",
+                at_key=True,
+            )
 
 
 def _lapped(view: FileView, loc: Loc) -> Iterator[Fault]:

@@ -324,12 +324,14 @@ def _laps(v: Values, spool: Spool) -> Iterable[tuple[str, str]]:
         float(np.max(np.real(v.get(f"valve.spool.{key}.overlap", v["valve.spool.overlap"]))))
         for key in EDGES.values()
     ]
+    lost = max((point.signal for point in spool.curve if point.flow == 0), default=0.0)
     if max(overlaps) > 0:
         lost = max(overlaps) / float(np.min(np.real(v["valve.spool.stroke"])))
+    if lost > 0:
         yield (
             "bandwidth",
-            f"the spool's overlap is {lost:.2g} of its stroke; within it the valve hardly moves "
-            "the load. Gains and margins apply beyond the overlap, where the edges begin to open",
+            f"the valve's dead band is {lost:.2g} of its full signal; within it the valve hardly "
+            "moves the load. Gains and margins apply beyond it, where the edges begin to open",
         )
 
 

@@ -90,7 +90,11 @@ def lapped_spool(
         name: _edge(read, key, spool["stroke"], oil, kinematic_viscosity)
         for name, key in EDGES.items()
     }
-    return LappedSpool(**edges, **spool)
+    points = tuple(
+        tuple(read(f"spool.curve[{i}].{name}") for name in ("signal", "flow"))
+        for i in range(len(stated.spool.curve))
+    )
+    return LappedSpool(**edges, **spool, curve=points)
 
 
 def _edge(

@@ -56,8 +56,8 @@ class ValveCurve:
     """K_q0 at the null [m^3/s/V]."""
     pressure_gain: float | None
     """K_p0 at the null [Pa/V]; None for a valve that does not leak there."""
-    flow_pressure_coefficient: float
-    """K_c0 = K_q0/K_p0 at the null [m^3/s/Pa]."""
+    flow_pressure_coefficient: float | None
+    """K_c0 = K_q0/K_p0 at the null [m^3/s/Pa]; None within a dead band, where both are zero."""
     null_leakage: float
     """Flow from the supply at the null [m^3/s]."""
 
@@ -99,9 +99,10 @@ def study(design: Design, v: Values, state: LoadState) -> ValveStudy | None:
         valves = [("this valve", None, _course(edges, full, lines))]
     else:
         lap = _lap(lapped)
-        most = full * min(1.0, SHOWN * lap / float(lapped.stroke))
+        most = full * min(1.0, SHOWN * lapped.signal_share(lap))
         valves = [("this valve", _common(lapped), _lapped(lapped, lines))]
-        for name, overlap in (("open", -lap), ("critical", 0.0), ("closed", lap)):
+        centres = (("open", -lap), ("critical", 0.0), ("closed", lap))
+        for name, overlap in () if lapped.curve else centres:  # a curve has its own dead band
             valves.append((name, overlap, _lapped(_with(lapped, overlap), lines)))
     signal = np.linspace(-most, most, POINTS)
     curves = tuple(_curve(*valve, signal, full, supply, tank) for valve in valves)
@@ -214,6 +215,6 @@ def _curve(
         leakage=leakage,
         flow_gain=gain,
         pressure_gain=None if tight else rise,
-        flow_pressure_coefficient=0.0 if tight else gain / rise,
+        flow_pressure_coefficient=0.0 if tight else gain / rise if rise > 0 else None,
         null_leakage=null_leakage,
     )

@@ -6,6 +6,7 @@ and B-T by x - o and the edges A-T and P-B by -x - o, where o is the overlap of 
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import NamedTuple
 
 from ..base.dataclass import dataclass
@@ -59,10 +60,20 @@ class LappedSpool:
     density: Array
     dynamic_viscosity: Array
     flow_coefficient: Array = TURBULENT_COEFFICIENT
+    curve: tuple[tuple[Array, Array], ...] = ()
+    """Points between 0 and 1: share of the full signal, and share of the stroke there."""
 
     def start(self, edge: SpoolEdge) -> Array:
         """Stroke at which an edge counts as open [m]."""
         return edge.overlap if edge.clearance is None else self.opened(edge)
+
+    def signal_share(self, stroke: float) -> float:
+        """Largest share of the full signal at which the spool is no farther than a stroke [m]."""
+        share = min(stroke / float(self.stroke), 1.0)
+        for start, x, _, slope in reversed(_segments(self)):
+            if float(slope) > 0 and float(x) <= share:
+                return float(start) + (share - float(x)) / float(slope)
+        return 0.0
 
     def opened(self, edge: SpoolEdge) -> Array:
         """Stroke at which an edge is open beyond its lap and clearance [m]."""
@@ -71,7 +82,10 @@ class LappedSpool:
 
 
 def spool_stroke(*, spool: LappedSpool, signal: Array) -> Array:
-    """Position of the spool at a signal, x = s U/U_max, at most s from its centre.
+    """Position of the spool at a signal, x = s f(U/U_max), at most s from its centre.
+
+    Without curve f(u) = u; else the points of the curve are joined by straight lines, and the other
+    direction is its mirror image.
 
     Parameters
     ----------
@@ -84,11 +98,11 @@ def spool_stroke(*, spool: LappedSpool, signal: Array) -> Array:
 
     Notes
     -----
-    Valid: a spool that follows its signal linearly.
+    Valid: a spool that follows its signal without delay.
 
     References
     ----------
-    [derived] proportional spool with mechanical stops
+    [derived] spool with mechanical stops
 
     Examples
     --------
@@ -97,8 +111,58 @@ def spool_stroke(*, spool: LappedSpool, signal: Array) -> Array:
     >>> [float(spool_stroke(spool=spool, signal=u)) for u in (-2.5, 12.0)]
     [-0.00025, 0.001]
     """
-    x = spool.stroke * signal / positive(spool.full_signal)
-    return clip(x, -spool.stroke, spool.stroke)
+    if not spool.curve:
+        x = spool.stroke * signal / positive(spool.full_signal)
+        return clip(x, -spool.stroke, spool.stroke)
+    share = signal / positive(spool.full_signal)
+    size, travel = absolute(share), 0.0
+    for start, _, end, slope in _segments(spool):
+        travel = travel + slope * (clip(size, start, end) - start)
+    x = spool.stroke * travel
+    return where(real(share) >= 0, x, -x)
+
+
+def _segments(spool: LappedSpool) -> list[tuple[Array, Array, Array, Array]]:
+    """Straight parts of the curve: signal and stroke at the start, signal at the end, slope."""
+    points = [(0.0, 0.0), *spool.curve, (1.0, 1.0)]
+    return [
+        (u, x, u_next, (x_next - x) / (u_next - u)) for (u, x), (u_next, x_next) in pairwise(points)
+    ]
+
+
+def stroke_slope(*, spool: LappedSpool, place: Array) -> Array:
+    """Slope of the spool's position over its signal at a position, dx/dU.
+
+    Parameters
+    ----------
+    spool : stroke s [m], signal U_max at full stroke [V] and curve
+    place : position x of the spool, either sign [m]
+
+    Returns
+    -------
+    slope [m/V]; at a point of the curve, that of the part beyond it
+
+    Notes
+    -----
+    Valid: within the stroke.
+
+    References
+    ----------
+    [derived] slope of `spool_stroke`
+
+    Examples
+    --------
+    >>> edge = SpoolEdge(overlap=0.0, area_gradient=20e-3)
+    >>> spool = LappedSpool(edge, edge, edge, edge, 1e-3, 10.0, 870.0, 0.03, curve=((0.5, 0.2),))
+    >>> [round(float(stroke_slope(spool=spool, place=x)) * 1e6) for x in (1e-4, -5e-4)]
+    [40, 160]
+    """
+    per_volt = spool.stroke / positive(spool.full_signal)
+    slope: Array = 1.0
+    for i, (_, x, _, steepness) in enumerate(_segments(spool) if spool.curve else ()):
+        beyond = real(absolute(place)) >= real(x * spool.stroke)
+        slope = where(beyond, steepness, slope) if i else steepness
+    return slope * per_volt + 0 * place
 
 
 def lapped_flows(
@@ -349,7 +413,6 @@ def lapped_slopes(
     18.602 l/min/V, 4.429e-12
     """
     past = piston_leakage * (pressure_a - pressure_b)
-    per_volt = spool.stroke / positive(spool.full_signal)
 
     def both_ways(chamber: str, pressure: Array, lost: Array) -> _Ways:
         """Gains and conductances of a chamber that is fed, drained and held."""
@@ -359,8 +422,14 @@ def lapped_slopes(
         fed = maximum(held, spool.start(port.supply))
         drained = minimum(held, -spool.start(port.tank))
         return _Ways(
-            (port.gain(fed, feeds=True) * per_volt, port.conductance(fed)),
-            (port.gain(drained, drains=True) * per_volt, port.conductance(drained)),
+            (
+                port.gain(fed, feeds=True) * stroke_slope(spool=spool, place=fed),
+                port.conductance(fed),
+            ),
+            (
+                port.gain(drained, drains=True) * stroke_slope(spool=spool, place=drained),
+                port.conductance(drained),
+            ),
             port.conductance(held),
         )
 

@@ -77,14 +77,14 @@ def _shown(study: ValveStudy) -> list[ValveCurve]:
 
 def _table(study: ValveStudy) -> Block:
     def row(curve: ValveCurve) -> list[Cell]:
-        gain = curve.pressure_gain
+        gain, leaks = curve.pressure_gain, curve.flow_pressure_coefficient
         overlap = DASH if curve.overlap is None else OVERLAP.text(curve.overlap)
         return [
             curve.name,
             overlap,
             text.number(FLOW.to_display(curve.flow_gain)),
             DASH if gain is None else text.number(PRESSURE.to_display(gain)),
-            text.number(CONDUCTANCE.to_display(curve.flow_pressure_coefficient)),
+            DASH if leaks is None else text.number(CONDUCTANCE.to_display(leaks)),
             text.number(FLOW.to_display(curve.null_leakage)),
         ]
 

@@ -101,7 +101,7 @@ class ValveData:
         spool = self.lapped
         edges = (spool.supply_a, spool.b_tank) if side > 0 else (spool.a_tank, spool.supply_b)
         stroke = max(float(spool.start(edge)) for edge in edges)
-        return max(stroke, 0.0) * self.signal / float(spool.stroke)
+        return self.signal * spool.signal_share(max(stroke, 0.0))
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from actuator_opt.models.lapped_spool import LappedSpool, SpoolEdge
 
 GAP = {"clearance": 3e-6, "rounding": 1e-6}
@@ -28,6 +30,7 @@ def spool(overlap, clearance=3e-6):
 PRESSURES = {
     "supply_pressure": 14e6, "return_pressure": 4e5, "pressure_a": 8e6, "pressure_b": 6.2e6,
 }  # fmt: skip
+CURVED = replace(spool(0.0), curve=((0.1, 0.02), (0.6, 0.4)))
 SPOOLS = [spool(OPEN), spool(CLOSED), spool(0.0), spool(OPEN, None), spool(CLOSED, None)]
 LAG = {
     "command": 3.0, "opening": 2.0, "rate": 900.0, "natural_frequency": 250.0,
@@ -40,7 +43,11 @@ SAMPLES = {
     "lapped_edge.lapped_edge_conductance": EDGES,
     "lapped_edge.lapped_edge_gain": [*EDGES, {**EDGES[3], "opens": True}],
     "lapped_spool.spool_stroke": [
-        {"spool": SPOOLS[0], "signal": signal} for signal in (-3.0, 13.0)
+        *({"spool": SPOOLS[0], "signal": signal} for signal in (-3.0, 13.0)),
+        *({"spool": CURVED, "signal": signal} for signal in (-3.0, 0.5, 9.0)),
+    ],
+    "lapped_spool.stroke_slope": [
+        {"spool": one, "place": x} for one in (SPOOLS[0], CURVED) for x in (-1e-5, 2e-4)
     ],
     "lapped_spool.lapped_flows": [
         {"spool": one, "signal": signal, **PRESSURES} for one in SPOOLS for signal in (-0.1, 4.0)
@@ -51,7 +58,7 @@ SAMPLES = {
         for chamber, lost in (("a", 1e-7), ("b", -1e-7))
     ],
     "lapped_spool.lapped_slopes": [
-        {"spool": one, "piston_leakage": 1e-13, **PRESSURES} for one in SPOOLS
+        {"spool": one, "piston_leakage": 1e-13, **PRESSURES} for one in (*SPOOLS, CURVED)
     ],
     "valve.limited_spool_acceleration": [{**LAG, "fastest": r} for r in (4e2, 4e3)],
     "valve.spool_bandwidth": [{"damping_ratio": ratio} for ratio in (0.4, 0.9)],

@@ -86,6 +86,21 @@ REFUSED = {
         "valve.frequency_3db: 200 Hz: no spool of second order lags by 90 degrees at 120 Hz and "
         "falls to -3 dB only there; write less than 186.5 Hz",
     ),
+    "falling curve": (
+        [SIZE, SPEED],
+        ["type: lapped", "curve: [{signal: 20 %, flow: 8 %}, {signal: 30 %, flow: 5 %}]"],
+        "valve.spool.curve[1].flow: 5 %: less than the flow at a smaller signal (8 %); write at",
+    ),
+    "curve back and forth": (
+        [SIZE, SPEED],
+        ["type: lapped", "curve: [{signal: 20 %, flow: 8 %}, {signal: 15 %, flow: 9 %}]"],
+        "valve.spool.curve[1].signal: 15 %: not between the signal before it (20 %) and 100 %",
+    ),
+    "curve and lap": (
+        [SIZE, SPEED],
+        ["type: lapped", "stroke: 1 mm", "overlap: 9 um", "curve: [{signal: 20 %, flow: 8 %}]"],
+        "valve.spool.overlap: states the dead band a second time, beside the curve",
+    ),
     "unknown law": ([SIZE, SPEED], ["type: laped"], "valve.spool.type"),
 }  # fmt: skip
 
@@ -128,6 +143,25 @@ def test_every_edge_passes_the_rated_flow(clearance, overlap, tmp_path):
         half = 1.0 if signal > 0 else 0.5
         assert shares[0] == pytest.approx(20 * LITRE, rel=1e-9)
         assert shares[1] == pytest.approx(half * 20 * LITRE, rel=1e-9)
+
+
+def test_flow_follows_a_stated_curve(tmp_path):
+    """Points of the data sheet: 40 % of the signal gives 15 % of the rated flow, either way."""
+    lines = ["type: lapped", "curve: [{signal: 5 %, flow: 0 %}, {signal: 40 %, flow: 15 %}]"]
+    made = design(tmp_path, SIZE, SPEED, spool_lines=lines)
+    own = plant(made.subject()).valve
+    from actuator_opt.models.lapped_spool import lapped_flows
+
+    for signal, share in ((4.0, 0.15), (-4.0, -0.15), (0.4, 0.0), (7.0, 0.575), (10.0, 1.0)):
+        found = lapped_flows(
+            spool=own.lapped, signal=signal, supply_pressure=70e5, return_pressure=0.0,
+            pressure_a=35e5, pressure_b=35e5,
+        )  # fmt: skip
+        assert found.into_a == pytest.approx(share * 20 * LITRE, rel=1e-9, abs=1e-15)
+    assert own.start(1.0) == pytest.approx(0.5)
+    notes = [text for text in ao.evaluate(made).warnings if "dead band" in text]
+    assert len(notes) == 1
+    assert "0.05 of its full signal" in notes[0]
 
 
 def test_stated_width_is_the_area_gradient(tmp_path):

@@ -275,6 +275,28 @@ def test_a_covered_edge_is_taken_where_it_opens():
         assert both.held_a < 0.2 * way.conductance_a
 
 
+def test_a_curve_gives_the_stroke_and_its_slope():
+    """Straight lines through the points, mirrored; the slope is that of the part beyond a point."""
+    points = ((0.05, 0.0), (0.5, 0.2), (0.8, 0.7))
+    one = replace(spool(0.0), curve=points)
+    signals = np.linspace(-12.0, 12.0, 97)
+    table = np.array([(0.0, 0.0), *points, (1.0, 1.0)])
+    expected = np.sign(signals) * 1e-3 * np.interp(abs(signals) / 10.0, *table.T)
+    found = lapped_spool.spool_stroke(spool=one, signal=signals)
+    np.testing.assert_allclose(found, expected, atol=1e-18)
+    for place, slope in ((0.0, 0.2 / 0.45), (-1e-4, 0.2 / 0.45), (3e-4, 0.5 / 0.3), (8e-4, 1.5)):
+        value = lapped_spool.stroke_slope(spool=one, place=place)
+        assert value == pytest.approx(slope * 1e-3 / 10.0)
+    assert one.signal_share(0.0) == pytest.approx(0.05)
+    assert one.signal_share(0.45e-3) == pytest.approx(0.65)
+    both = lapped_spool.lapped_slopes(
+        spool=one, supply_pressure=SUPPLY, return_pressure=0.0, pressure_a=SUPPLY / 2,
+        pressure_b=SUPPLY / 2,
+    )  # fmt: skip
+    ideal = C * W * math.sqrt(SUPPLY / RHO) * 1e-3 / 10.0
+    assert both.extending.gain_a == pytest.approx(0.2 / 0.45 * ideal, rel=1e-5)
+
+
 # ---- motion of the spool ----
 
 

@@ -218,6 +218,22 @@ def test_overlap_is_passed_before_the_loop_is_linearised():
     np.testing.assert_allclose(*rates, rtol=1e-2)
 
 
+def test_a_curve_with_a_dead_band_is_linearised_beyond_it():
+    """The loop has the slope of the curve where its flow begins, in both directions."""
+    rates = []
+    for points in ((), ((0.04, 0.0), (0.5, 0.23))):
+        valve = lapped(0.0)
+        own = plant(valve=replace(valve, lapped=replace(valve.lapped, curve=points)))
+        scene = scenario(
+            control={"position": [{"shape": "constant", "value": 0.0}]},
+            load={"force": [{"shape": "constant", "value": 70 * BAR * (AREA_A - AREA_B)}]},
+            initial={"position": 0.08},
+        )
+        loops = Linear.of(assemble(scene, own, {}, None, linear=True)).about(position=0.08).loops
+        rates.append([loop.steady_rate for loop in loops])
+    np.testing.assert_allclose(rates[1], 0.5 * np.array(rates[0]), rtol=1e-2)
+
+
 def test_a_slow_spool_moves_at_its_limit():
     """A step of 8 V at 200 V/s takes 40 ms; after 20 ms the spool is at 4 V."""
     scene = scenario(

@@ -7,6 +7,7 @@ Wilson model; and a load cylinder with its own valve, which loads the rod on a t
 
 from __future__ import annotations
 
+import re
 from typing import NamedTuple
 
 from ...base.kinds import per_kind
@@ -293,7 +294,9 @@ def _data(load_cylinder: LoadCylinder, oil: Oil) -> ValveData:
     """Data of the load cylinder's valve, with the oil of the design."""
 
     def read(name: str) -> float | None:
-        return number_of(child_at(load_cylinder.valve, tuple(name.split("."))))
+        keys = re.findall(r"\w+", name)
+        loc = tuple(int(key) if key.isdigit() else key for key in keys)
+        return number_of(child_at(load_cylinder.valve, loc))
 
     return valve_data(
         read,
