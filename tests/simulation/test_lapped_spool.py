@@ -234,6 +234,26 @@ def test_a_curve_with_a_dead_band_is_linearised_beyond_it():
     np.testing.assert_allclose(rates[1], 0.5 * np.array(rates[0]), rtol=1e-2)
 
 
+def test_a_jump_passes_the_dead_band():
+    """Without load, P control stops at the lap: error o U/(s K_p); the jump removes almost all."""
+    overlap, gain = 15e-6, 60.0
+    edge = overlap / STROKE * 10.0
+    errors = []
+    for jump in (None, edge):
+        control = {"position_gain": gain, "position": [
+            {"shape": "step", "start": 0.05, "value": 0.02}]}  # fmt: skip
+        scene = scenario(
+            duration=1.0, control=control | ({} if jump is None else {"dead_band_jump": jump}),
+            load={"force": [{"shape": "constant", "value": 70 * BAR * (AREA_A - AREA_B)}]},
+            initial={"position": 0.06, "pressure_a": 70 * BAR, "pressure_b": 70 * BAR},
+        )  # fmt: skip
+        found = run(scene, plant(valve=lapped(overlap)), ControllerGains(gain, math.inf, 0.0))
+        errors.append(0.08 - float(found.signals["position"][-1]))
+    assert errors[0] == pytest.approx(edge / gain, rel=0.05)
+    # u (1 + jump/band) = lap, with the band of 0.1 V
+    assert errors[1] == pytest.approx(edge / gain / (1 + edge / 0.1), rel=0.1)
+
+
 def test_a_slow_spool_moves_at_its_limit():
     """A step of 8 V at 200 V/s takes 40 ms; after 20 ms the spool is at 4 V."""
     scene = scenario(

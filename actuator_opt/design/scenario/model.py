@@ -341,6 +341,14 @@ class Controller(Section):
         float, Of("time_constant", "time constant of the high-pass filter for pressure changes")
     ] = 0.05
     rate_limit: Annotated[float | None, Of("signal_rate", "rate limit of the signal")] = None
+    dead_band_jump: Annotated[
+        float | None,
+        Of(
+            "signal",
+            "signal that is added in the direction of the signal, to pass the valve's dead band; fades "
+            "to zero within 1 % of the full signal, and is left out of tuning and margins",
+        ),
+    ] = None
 
 
 class Analysis(Section):

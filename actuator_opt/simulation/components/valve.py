@@ -120,6 +120,11 @@ integration fades out (our choice). Integration stops while the signal is at its
 would drive it further."""
 
 
+JUMP_BAND = 0.01
+"""Signal over which the jump across the dead band rises, as a share of the full signal (our
+choice). The narrower it is, the more the valve swings about its null."""
+
+
 RATE_TIME = 1e-4
 """Time lag of a rate-limited signal [s] (our choice)."""
 
@@ -183,6 +188,9 @@ def command(
         factor = control.integral_factor * gains.proportional_gain
         rate = factor / gains.integral_time * error
         system.rate(integral, where(rate > 0, rate * up, rate * down))
+    if control.dead_band_jump is not None:
+        share = clip(valve_signal / (JUMP_BAND * full_signal), -1.0, 1.0)
+        valve_signal = valve_signal + control.dead_band_jump * share
     valve_signal = clip(valve_signal, -full_signal, full_signal)
     if control.rate_limit is None:
         return valve_signal
