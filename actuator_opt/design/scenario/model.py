@@ -345,8 +345,8 @@ class Controller(Section):
         float | None,
         Of(
             "signal",
-            "signal that is added in the direction of the signal, to pass the valve's dead band; fades "
-            "to zero within 1 % of the full signal, and is left out of tuning and margins",
+            "signal that is added in its own direction, to pass the dead band of the valve; fades to "
+            "zero within 1 % of the full signal, and is left out of tuning and margins",
         ),
     ] = None
 
