@@ -6,7 +6,7 @@ closed centre [Merritt1967].
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -23,8 +23,8 @@ from .values import Values, of_case, plain
 
 POINTS = 161
 """Signals of each curve; an odd number, so that one of them is the null."""
-HALVINGS = 60
-"""Halvings of the supply pressure in each balance: the pressure is exact to rounding."""
+HALVINGS = 48
+"""Halvings of the supply pressure in each balance: rounding remains."""
 LEAST = 0.01
 """Least lap of the textbook's open and closed centre, as a share of the stroke (our choice)."""
 SHOWN = 4.0
@@ -92,20 +92,20 @@ def study(design: Design, v: Values, state: LoadState) -> ValveStudy | None:
     lines = {"supply_pressure": supply, "return_pressure": tank}
     lapped = spool.lapped_spool(read, design.valve, **oil)
     full = float(read("signal"))
-    valves: list[tuple[str, float | None, Flows]]
     if lapped is None:
         edges = spool.course_edges(read, viscosity=oil["kinematic_viscosity"])
         most = full * min(1.0, max(SHOWN * LEAST, SHOWN * float(edges.supply / edges.rated)))
-        valves = [("this valve", None, _course(edges, full, lines))]
+        names: dict[str, float | None] = {"this valve": None}
+        flows = _course(edges, full, lines)
     else:
         lap = _lap(lapped)
         most = full * min(1.0, SHOWN * lapped.signal_share(lap))
-        valves = [("this valve", _common(lapped), _lapped(lapped, lines))]
-        centres = (("open", -lap), ("critical", 0.0), ("closed", lap))
-        for name, overlap in () if lapped.curve else centres:  # a curve has its own dead band
-            valves.append((name, overlap, _lapped(_with(lapped, overlap), lines)))
+        names = {"this valve": _common(lapped)}
+        if not lapped.curve:  # a curve has its own dead band
+            names |= {"open": -lap, "critical": 0.0, "closed": lap}
+        flows = _lapped(_beside(lapped, list(names.values())[1:]), lines)
     signal = np.linspace(-most, most, POINTS)
-    curves = tuple(_curve(*valve, signal, full, supply, tank) for valve in valves)
+    curves = _curves(names, flows, signal, full, supply, tank)
     return ValveStudy(v.cases[0], supply, tank, signal, curves)
 
 
@@ -149,9 +149,12 @@ def _common(one: LappedSpool) -> float | None:
     return overlaps.pop() if len(overlaps) == 1 else None
 
 
-def _with(one: LappedSpool, overlap: float) -> LappedSpool:
-    """The spool with another overlap at all of its edges."""
-    edges = {name: replace(edge, overlap=overlap) for name, edge in _edges(one).items()}
+def _beside(one: LappedSpool, overlaps: Sequence[float | None]) -> LappedSpool:
+    """The spool and others with these overlaps at all edges, as rows of its overlaps."""
+    edges = {
+        name: replace(edge, overlap=np.array([[edge.overlap], *([lap] for lap in overlaps)], float))
+        for name, edge in _edges(one).items()
+    }
     return replace(one, **edges)
 
 
@@ -191,30 +194,36 @@ def _no_load(flows: Flows, signal: Array, supply: float, tank: float) -> Array:
     return flows(signal, _balance(net, signal, supply, tank)).into_a
 
 
-def _curve(
-    name: str,
-    overlap: float | None,
+def _curves(
+    names: dict[str, float | None],
     flows: Flows,
     signal: Array,
     full: float,
     supply: float,
     tank: float,
-) -> ValveCurve:
-    load_pressure, leakage = _load_pressure(flows, signal, supply, tank)
-    step = STEP * float(signal[-1]) * np.array([-1.0, 1.0])
-    gain = float(np.ptp(_no_load(flows, step, supply, tank)) / np.ptp(step))
-    rise = float(np.ptp(_load_pressure(flows, step, supply, tank)[0]) / np.ptp(step))
-    largest = float(_no_load(flows, np.array([full]), supply, tank)[0])
-    null_leakage = float(leakage[len(signal) // 2])
-    tight = null_leakage <= TIGHT * largest
-    return ValveCurve(
-        name=name,
-        overlap=overlap,
-        flow=_no_load(flows, signal, supply, tank),
-        load_pressure=load_pressure,
-        leakage=leakage,
-        flow_gain=gain,
-        pressure_gain=None if tight else rise,
-        flow_pressure_coefficient=0.0 if tight else gain / rise if rise > 0 else None,
-        null_leakage=null_leakage,
-    )
+) -> tuple[ValveCurve, ...]:
+    """Curves of the valves in the rows of the flows."""
+    step = STEP * float(signal[-1])
+    every = np.concatenate([signal, [-step, step, full]])
+    every = np.broadcast_to(every, (len(names), len(every)))
+    flow = _no_load(flows, every, supply, tank)
+    load_pressure, leakage = _load_pressure(flows, every, supply, tank)
+    curves = []
+    for i, (name, overlap) in enumerate(names.items()):
+        gain, rise = (float(row[-2] - row[-3]) / (2 * step) for row in (flow[i], load_pressure[i]))
+        null_leakage = float(leakage[i, len(signal) // 2])
+        tight = null_leakage <= TIGHT * float(flow[i, -1])
+        curves.append(
+            ValveCurve(
+                name=name,
+                overlap=overlap,
+                flow=flow[i, :POINTS],
+                load_pressure=load_pressure[i, :POINTS],
+                leakage=leakage[i, :POINTS],
+                flow_gain=gain,
+                pressure_gain=None if tight else rise,
+                flow_pressure_coefficient=0.0 if tight else gain / rise if rise > 0 else None,
+                null_leakage=null_leakage,
+            )
+        )
+    return tuple(curves)

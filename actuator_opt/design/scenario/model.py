@@ -345,8 +345,8 @@ class Controller(Section):
         float | None,
         Of(
             "signal",
-            "signal that is added in its own direction, to pass the dead band of the valve; fades to "
-            "zero within 1 % of the full signal, and is left out of tuning and margins",
+            "signal that is added in its own direction, to pass the dead band of the valve; it "
+            "fades to zero within 1 % of the full signal; tuning and margins leave it out",
         ),
     ] = None
 
