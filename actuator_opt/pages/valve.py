@@ -36,8 +36,8 @@ def _figure(study: ValveStudy) -> Block:
     )
     if lap:
         note += (
-            f" For comparison, the same spool with open ({OVERLAP.text(-lap)}), critical, and "
-            f"closed ({OVERLAP.text(lap)}) centre."
+            f" For comparison, the same spool with open ({text.value_text(OVERLAP, -lap)}), "
+            f"critical, and closed ({text.value_text(OVERLAP, lap)}) centre."
         )
     return Chart("Valve about its null", panels(study), note, height=HEIGHT)
 
@@ -78,7 +78,7 @@ def _shown(study: ValveStudy) -> list[ValveCurve]:
 def _table(study: ValveStudy) -> Block:
     def row(curve: ValveCurve) -> list[Cell]:
         gain, leaks = curve.pressure_gain, curve.flow_pressure_coefficient
-        overlap = DASH if curve.overlap is None else OVERLAP.text(curve.overlap)
+        overlap = DASH if curve.overlap is None else text.value_text(OVERLAP, curve.overlap)
         return [
             curve.name,
             overlap,
