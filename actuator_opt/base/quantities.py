@@ -360,6 +360,11 @@ BASIS = _table("""
  tank_leakage         | q_lt   | flow        | l/min     | | | leakage of a tank edge at 1 bar, spool centred
  full_signal          | U      | voltage     | V         | | | signal at full opening
  spool_offset         | U_0    | voltage     | mV        | | | signal that centres the spool
+ edge_width           | w      | length      | mm        | | | width of the valve edge P to A
+ edge_overlap         | o      | length      | um        | | | overlap of the valve edge P to A
+ edge_clearance       | c      | length      | um        | | | radial clearance of the valve edge P to A
+ edge_stroke          | x_s    | length      | mm        | | | stroke of the spool at full signal
+ spool_slew_rate      | dU/dt  | signal_rate | V/s       | | | largest speed of the spool
  spool_frequency      | f_v    | frequency   | Hz        | | | natural frequency of the spool
  spool_damping        | zeta   | ratio       | -         | | | damping ratio of the spool
  stop_stiffness       | k_e    | stiffness   | kN/mm     | | | stiffness of a stop
