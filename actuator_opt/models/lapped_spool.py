@@ -297,8 +297,9 @@ def holding_stroke(
 
     Notes
     -----
-    Valid: a load held still by the valve. With matched edges, one position balances both chambers
-    at p_A + p_B = p_S + p_T.
+    Valid: a load held still by the valve.
+
+    With matched edges, one position balances both chambers at p_A + p_B = p_S + p_T.
 
     References
     ----------
