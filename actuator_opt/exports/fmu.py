@@ -182,15 +182,14 @@ def unit(
 
 def _equations(scenario: Scenario, subject: PreparedDesign, records: Records) -> _Equations:
     """The circuit with free inputs and parameters, and the programs of its equations."""
-    circuit = circuit_of(
-        scenario, subject, records, free={*INPUTS, *PARAMETERS, "reference"}
-    )  # fmt: skip
+    circuit = circuit_of(scenario, subject, records, free={*INPUTS, *PARAMETERS, "reference"})
     system = circuit.system
     states = [state for state in system.states if not state.integral]
     symbols, rates = [s.symbol for s in states], [s.rate for s in states]
     starts = [s.initial for s in states]
     guards = [switch.guard for switch in system.switches]
-    used = {node.index for node in needed([*starts, *rates])}
+    shown = [signal.value for signal in system.signals]
+    used = {node.index for node in needed([*starts, *rates, *guards, *shown])}
     free = {name: x for name, x in circuit.freed.items() if x.symbol.index in used}
     replaced = {id(x.value) for x in free.values()}
     signals = [x for x in system.signals if id(x.value) not in replaced]
@@ -275,7 +274,8 @@ def _variables(equations: _Equations) -> list[UnitVariable]:
         quantity, label = PARAMETERS[name]
         variability = "fixed" if name in FIXED else "tunable"
         variables.append(UnitVariable(name, label, quantity, "parameter", variability, start))
-    clock = UnitVariable("time", "time", SCENARIOS["time_constant"], "independent", "continuous")
+    seconds = Quantity("time", "t", "time", "s", "time")
+    clock = UnitVariable("time", seconds.label, seconds, "independent", "continuous")
     return [*variables, *equations.signals, clock]
 
 
@@ -350,6 +350,8 @@ def _library(name: str, source: str) -> tuple[dict[str, bytes], str]:
                 env={**os.environ, "SOURCE_DATE_EPOCH": "0"},
             )  # fmt: skip
             return {f"binaries/{known[0]}/{file}": Path(folder, file).read_bytes()}, ""
+        except subprocess.CalledProcessError as error:
+            reason = plain((error.stderr.decode("utf-8", "replace").strip() or str(error)))
         except (OSError, subprocess.SubprocessError) as error:
             reason = plain(str(error))
     return {}, f"sources only: the C compiler failed ({reason})"

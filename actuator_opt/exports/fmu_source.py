@@ -117,7 +117,7 @@ typedef struct {
     int pivots[STATES];
 } Instance;
 
-static const double FIRST = 1e-6;     /* step after a jump [s] (our choice) */
+static const double RESTART = 1e-6;   /* step after a jump [s] (our choice) */
 static const double LONGEST = 1e-2;   /* longest step [s] (our choice: no course is skipped) */
 static const double SHORTEST = 1e-14; /* shortest step, also relative to the time (our choice) */
 static const double APART = 1e-9;     /* times that differ less are equal [s], as in simulate */
@@ -231,7 +231,7 @@ static void begin(Instance *f) {
         computed(&GUARDS, f, f->before);
         for (int k = 0; k < SWITCHES; k++) point[AT_SWITCHES + k] = f->before[k] > 0;
     }
-    f->core.step = FIRST;
+    f->core.step = RESTART;
 }
 
 static void refresh(Instance *f) {
@@ -384,7 +384,7 @@ static fmi2Status switched(Instance *f, double h) {
         double *flag = &f->core.point[AT_SWITCHES + k];
         if (f->after[k] < 0) *flag = *flag == 0;
     }
-    f->core.step = FIRST;
+    f->core.step = RESTART;
     return fmi2OK;
 }
 
@@ -431,7 +431,7 @@ static fmi2Status one_step(Instance *f, double stop, long *tries, long *changes)
 static fmi2Status advanced(Instance *f, double end) {
     Core *core = &f->core;
     long tries = 0, changes = 0;
-    if (instants_passed(core)) core->step = FIRST;
+    if (instants_passed(core)) core->step = RESTART;
     while (core->point[0] < end) {
         double stop = end;
         int low = 0, high = STOPS;
@@ -447,7 +447,7 @@ static fmi2Status advanced(Instance *f, double end) {
         }
         const fmi2Status status = one_step(f, stop, &tries, &changes);
         if (status != fmi2OK) return status;
-        if (instants_passed(core)) core->step = FIRST;
+        if (instants_passed(core)) core->step = RESTART;
     }
     return fmi2OK;
 }
@@ -468,7 +468,7 @@ static void defaults(Instance *f) {
     memset(&f->core, 0, sizeof f->core);
     memcpy(f->core.point + AT_FREE, STARTS, sizeof(double) * FREE);
     f->core.tolerance = RELATIVE;
-    f->core.step = FIRST;
+    f->core.step = RESTART;
     f->fresh = 0;
 }
 

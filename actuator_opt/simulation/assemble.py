@@ -10,7 +10,7 @@ from ..base.errors import Diagnostic, InputError
 from ..base.quantities import INPUTS, SCENARIOS
 from ..base.symbolic import Expression, Symbol
 from ..design.kinds import position_at
-from ..design.scenario.kinds import Records
+from ..design.scenario.kinds import ENDS, Records
 from ..design.scenario.model import HeldPorts, Scenario
 from ..models import linkage
 from ..models.loop import ControllerGains
@@ -177,10 +177,10 @@ def _pressures(system: System, a: Expression, b: Expression, where: str = "chamb
 
 
 def _cylinder(circuit: Circuit) -> None:
-    system, plant, start = circuit.system, circuit.plant, circuit.begin
-    scenario = circuit.scenario
+    system, plant, scenario = circuit.system, circuit.plant, circuit.scenario
     ends = ends_of(scenario, plant)
-    position = system.state("position", start.position, tolerance=motion.POSITION)
+    position = system.state("position", circuit.begin.position, tolerance=motion.POSITION)
+    start = circuit.start if ENDS[ends].holds else circuit.begin  # held pressures are no states
     initial_speed = circuit.value("initial.speed", scenario.initial.speed)
     speed = system.state("speed", initial_speed, tolerance=motion.SPEED)
     a = chambers.side(circuit, "a", ends, start.pressure_a)
