@@ -34,7 +34,7 @@ class ExportFile:
     path: Path
     sha256: str
     note: str = ""
-    """What the file lacks, and why."""
+    """Missing part of the file, with the reason."""
 
     def to_dict(self) -> dict[str, object]:
         """The JSON form."""
@@ -156,16 +156,19 @@ def scenario_exports(
     """
     contents: dict[str, bytes] = {}
     notes: dict[str, str] = {}
-    origin = {"stem": stem, "program": program, "date": date}
     for name in require_formats(formats, scenario=True):
         if name == "c":
             from .c_scenario import scenario_files
 
-            contents |= scenario_files(scenario, subject, records, **origin)
+            contents |= scenario_files(
+                scenario, subject, records, stem=stem, program=program, date=date
+            )
         else:
             from .fmu import unit
 
-            file, content, note = unit(scenario, subject, records, **origin)
+            file, content, note = unit(
+                scenario, subject, records, stem=stem, program=program, date=date
+            )
             contents[file], notes[file] = content, note
     return written(folder, contents, notes)
 

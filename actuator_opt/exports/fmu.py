@@ -48,7 +48,7 @@ from ..simulation.components.circuit import (
     SampledSlope,
 )
 from ..simulation.system import SystemState, guard_rates
-from .c import filled, file_word, machine, number, program_tables, quoted, remark, table
+from .c import file_word, filled, machine, number, program_tables, quoted, remark, table
 from .c_scenario import circuit_of, programs_of
 from .dxf import plain
 from .fmu_source import SOURCE
@@ -351,7 +351,7 @@ def _library(name: str, source: str) -> tuple[dict[str, bytes], str]:
             )  # fmt: skip
             return {f"binaries/{known[0]}/{file}": Path(folder, file).read_bytes()}, ""
         except subprocess.CalledProcessError as error:
-            reason = plain((error.stderr.decode("utf-8", "replace").strip() or str(error)))
+            reason = plain(error.stderr.decode("utf-8", "replace").strip() or str(error))
         except (OSError, subprocess.SubprocessError) as error:
             reason = plain(str(error))
     return {}, f"sources only: the C compiler failed ({reason})"
@@ -478,7 +478,9 @@ def _page(title: str, origin: str, variables: Sequence[UnitVariable]) -> str:
         start = "" if x.start is None else f"{x.start:.6g}"
         cells = (x.name, x.causality, x.variability, x.quantity.si_unit, start, plain(x.label))
         rows.append("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>")
-    return filled(PAGE, title=escape(plain(title)), origin=escape(plain(origin)), rows="\n".join(rows))
+    return filled(
+        PAGE, title=escape(plain(title)), origin=escape(plain(origin)), rows="\n".join(rows)
+    )
 
 
 def _archive(files: Mapping[str, bytes]) -> bytes:

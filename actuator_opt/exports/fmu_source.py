@@ -687,8 +687,9 @@ EXPORT fmi2Status FMI(DoStep)(fmi2Component c, fmi2Real time, fmi2Real step, fmi
     if (f->core.phase != STEPPING) return failed(f, "fmi2DoStep: not after the initialisation");
     if (!(step >= 0 && step < INFINITY))
         return failed(f, "fmi2DoStep: the step size is negative or not finite");
-    if (!(fabs(time - f->core.point[0]) <= APART * fmax(1, fabs(time))))
-        return failed(f, "fmi2DoStep: at %.9g s, but the unit is at %.9g s", time, f->core.point[0]);
+    const double now = f->core.point[0];
+    if (!(fabs(time - now) <= APART * fmax(1, fabs(time))))
+        return failed(f, "fmi2DoStep: at %.9g s, but the unit is at %.9g s", time, now);
     f->fresh = 0;
     return advanced(f, time + step);
 }

@@ -55,9 +55,7 @@ class SupplyBuilder:
         `demand` is the flow to the valve, `tank` the return flow.
         """
         circuit = self.circuit
-        circuit.energy_port(
-            "return line", circuit.return_pressure * tank, state="return work"
-        )
+        circuit.energy_port("return line", circuit.return_pressure * tank, state="return work")
         circuit.system.signal(
             "pressure_supply", "supply pressure", INPUTS["pressure"], self.pressure
         )
