@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import ctypes
+import tempfile
 import zipfile
+from itertools import pairwise
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
@@ -31,6 +34,7 @@ class Unit:
     """A unit, opened from its archive; messages of its logger are in `said`."""
 
     def __init__(self, file, folder, *, guid=None, kind=1, memory=True):
+        folder = Path(tempfile.mkdtemp(dir=folder))  # a library in use must not be overwritten
         with zipfile.ZipFile(file) as archive:
             archive.extractall(folder)
         self.xml = ElementTree.parse(folder / "modelDescription.xml").getroot()
@@ -105,7 +109,7 @@ class Unit:
     def run(self, times, *names):
         """Values at times, of which the first is the present one: an array (times, names)."""
         rows = [self.get(*names)]
-        for begin, end in zip(times[:-1], times[1:], strict=True):
+        for begin, end in pairwise(times):
             assert self.step(begin, end - begin) == OK, self.said
             rows.append(self.get(*names))
         return np.array(rows)
