@@ -158,6 +158,9 @@ RODS = 6
 """Number of tie rods, as in designs/aerospace.yaml."""
 _ROD_YIELD, _BOLT_YIELD, _ROD_MODULUS = 650e6, 1080e6, 205e9
 """Yield strengths of rod and tie rods, Young's modulus of the rod [Pa], for first sizes only."""
+STIFFER = 1.7
+"""Factor of the stiffness for second sizes: in a short cylinder, threads and walls give way more
+than the oil. Our choice."""
 _OIL = 4e9
 """Stiffness at mid-stroke times stroke, divided by the bore's area [Pa], for first sizes only:
 two oil columns of 1.4 GPa in parallel give 4 x 1.4 GPa, less the rod's area and other parts."""
@@ -323,6 +326,9 @@ def solved_start(duty: Duty, name: str = "my actuator") -> Start:
         raise UsageError(Diagnostic("push and pull: both are 0", "state a force"))
     sizes = _first_sizes(duty)
     light = _solved(replace(duty, goal="mass"), sizes, title)
+    if not light.met and duty.stiffness is not None:
+        sizes = _first_sizes(replace(duty, stiffness=STIFFER * duty.stiffness))
+        light = _solved(replace(duty, goal="mass"), sizes, title)
     if duty.goal == "mass" or not light.met:
         return light
     return _solved(duty, sizes, title, light.actuator.design)

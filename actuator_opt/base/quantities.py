@@ -80,6 +80,7 @@ def _table(rows: str) -> dict[str, Quantity]:
 
 INPUTS = _table("""
  bore                 | D      | length      | mm   | 2     | 1000  | bore diameter
+ piston_area          | A      | area        | cm^2 | 0.001 | 100000| area of the piston
  stroke               | s      | length      | mm   | 1     | 10000 | stroke
  wall_thickness       | t      | length      | mm   | 0.01  | 200   | thickness
  thickness_ratio      | t/t_0  | ratio       | -    | 0.01  | 1     | thickness, as a share of another
@@ -106,6 +107,7 @@ INPUTS = _table("""
  relaxation           | c      | ratio       | -    | 0.05  | 1     | share that remains in service
  tightening_factor    | alpha_A| ratio      | -    | 1     | 4     | greatest divided by least preload after tightening
  piece_count          | n      | count       | -    | 1     | 100   | number of equal components
+ loss_coefficient     | zeta   | ratio       | -    | 0     | 1000  | sum of the loss coefficients of bends and fittings
  thread_diameter      | d_t    | length      | mm   | 1     | 500   | nominal thread diameter
  thread_pitch         | P      | length      | mm   | 0.2   | 12    | thread pitch
  diameter             | d      | length      | mm   | 0.5   | 1000  | diameter

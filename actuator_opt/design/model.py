@@ -43,6 +43,7 @@ class Line(Section):
     inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
     outer_diameter: Annotated[float, Of("diameter", "outer diameter")]
     material: Annotated[str, MaterialName("isotropic")]
+    loss_coefficient: Annotated[float, Of("loss_coefficient", "sum for bends, fittings")] = 0.0
     rigid: Annotated[
         bool, Boolean("whether the wall counts as rigid, so that only the oil is compliant")
     ] = False
@@ -745,6 +746,24 @@ def _plain_caps(stated: dict[str, Any]) -> Caps:
     return Caps(material=piston.material, thickness=PLAIN_CAP * cylinder.bore)
 
 
+class Ideal(Section):
+    """A cylinder stated by its numbers, for a simulation; it has no parts.
+
+    Walls are rigid, and seals have the friction that the scenario states.
+    """
+
+    area_a: Annotated[float, Of("piston_area", "area of the piston at side A, the cap side")]
+    area_b: Annotated[float, Of("piston_area", "area of the piston at side B, the rod side")]
+    stroke: Annotated[float, Of("stroke", "travel of the piston")]
+    mass: Annotated[float, Of("load_mass", "moving mass without load.mass")]
+    dead_volume_a: Annotated[float, Of("volume", "oil of side A at zero stroke")] = 0.0
+    dead_volume_b: Annotated[float, Of("volume", "oil of side B at full stroke")] = 0.0
+    stiffness: Annotated[
+        float | None, Of("stiffness", "of rod and mount in series; default: rigid")
+    ] = None
+    leakage: Annotated[float, Of("conductance", "flow across the piston per pressure")] = 0.0
+
+
 class Design(Section):
     """A hydraulic actuator with its load cases, variables and requirements."""
 
@@ -754,6 +773,7 @@ class Design(Section):
     fluid: FluidSection
     supply: Supply
     environment: Environment | None = None
+    ideal: Ideal | None = None
     cylinder: Cylinder
     barrel: Barrel
     rod: Rod

@@ -17,6 +17,7 @@ from ..base.files import read_bytes
 from ..base.quantities import Quantity
 from . import layup
 from .build import MOST_FAULTS, Root, build, copy_tree
+from .ideal import completed
 from .kinds import Section, ValueFault
 from .model import Design
 from .paths import put, resolve, spell
@@ -168,8 +169,9 @@ def read_document(
 
     def build_design(tree: dict[str, Any]) -> tuple[Design | None, Sequence[Fault]]:
         lookup = library() if materials is None else materials
-        built = build(tree, materials=lookup, metrics=metrics)
-        return built.design, built.faults
+        whole, unused = completed(tree)
+        built = build(whole, materials=lookup, metrics=metrics)
+        return (None if unused else built.design), [*unused, *built.faults]
 
     return LoadedDesign(*load(layup.expanded(document), Design, build_design, overrides, metrics))
 

@@ -15,6 +15,7 @@ import numpy as np
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, maximum, minimum, real, where
 from ..base.quantities import Quantity, Sense
+from ..design.ideal import require_parts
 from ..design.material import Material
 from ..design.model import Design
 from ..friction.law import Friction
@@ -169,14 +170,14 @@ def _compute_lines(
         at, place = f"lines[{i}].", f"line {line.chamber} [{i}]"
         inner = v[at + "inner_diameter"]
         velocity[place] = lines.line_velocity(flow=flow[line.chamber], inner_diameter=inner)
-        drop[place] = lines.line_pressure_drop(
-            flow=flow[line.chamber],
-            inner_diameter=inner,
-            length=v[at + "length"],
-            density=state.density,
-            dynamic_viscosity=viscosity[line.chamber],
-        )
         size = {"inner_diameter": inner, "length": v[at + "length"]}
+        stream = {"flow": flow[line.chamber], "density": state.density}
+        drop[place] = lines.line_pressure_drop(
+            **size, **stream, dynamic_viscosity=viscosity[line.chamber]
+        )
+        drop[place] = drop[place] + lines.fitting_pressure_drop(
+            **stream, inner_diameter=inner, loss_coefficient=v[at + "loss_coefficient"]
+        )
         speed = transmission_line.wave_speed(
             bulk_modulus=modulus[line.chamber],
             density=state.density,
@@ -304,6 +305,7 @@ IMPLICIT = Implicit()
 def base(subject: PreparedDesign, v: Values, implicit: Implicit = IMPLICIT) -> Base:
     """Compute dimensions, state of the load cases, wall and seals of the designs in `v`."""
     design = subject.design
+    require_parts(design)
     stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
     g = geometry_module.derive(v, design)
     case_state = state.derive(v, design, stock, g)

@@ -228,6 +228,15 @@ def line_pressure_drop(
     >>> print(f"{dp / 1e5:.3f} bar")
     0.477 bar
     """
+    line = {"inner_diameter": inner_diameter, "length": length}
+    laminar, more = _friction(flow, **line, density=density, dynamic_viscosity=dynamic_viscosity)
+    return laminar * (32 + more)
+
+
+def _friction(
+    flow: Array, inner_diameter: Array, length: Array, density: Array, dynamic_viscosity: Array
+) -> tuple[Array, Array]:
+    """Laminar pressure drop divided by 32 [Pa], and what turbulence adds to the 32."""
     signed = (4 / math.pi) * density * flow / (inner_diameter * dynamic_viscosity)
     number = absolute(signed)
     span = TURBULENT_REYNOLDS - LAMINAR_REYNOLDS
@@ -236,7 +245,86 @@ def line_pressure_drop(
     turbulent = 0.1582 * maximum(number, LAMINAR_REYNOLDS) ** 0.75
     scale = dynamic_viscosity * dynamic_viscosity * length
     scale = scale / (density * inner_diameter * inner_diameter * inner_diameter)
-    return scale * signed * (32 + share * (turbulent - 32))
+    return scale * signed, share * (turbulent - 32)
+
+
+@geometry
+def turbulent_excess(
+    *,
+    flow: Array,
+    inner_diameter: Array,
+    length: Array,
+    density: Array,
+    dynamic_viscosity: Array,
+) -> Array:
+    """Pressure drop of a line beyond the laminar drop 128 eta l q/(pi d^4).
+
+    Parameters
+    ----------
+    flow : [m^3/s], either sign
+    inner_diameter, length : [m]
+    density : [kg/m^3]
+    dynamic_viscosity : [Pa s]
+
+    Returns
+    -------
+    `line_pressure_drop` less its laminar part [Pa]; 0 below Re 2300
+
+    Notes
+    -----
+    Valid: as for `line_pressure_drop`.
+
+    References
+    ----------
+    [Blasius1913]
+
+    Examples
+    --------
+    >>> line = {"inner_diameter": 8e-3, "length": 1.2, "density": 865.0}
+    >>> turbulent_excess(flow=1e-4, dynamic_viscosity=0.04, **line)
+    0.0
+    >>> print(f"{turbulent_excess(flow=5e-4, dynamic_viscosity=0.01, **line) / 1e5:.3f} bar")
+    1.633 bar
+    """
+    line = {"inner_diameter": inner_diameter, "length": length}
+    laminar, more = _friction(flow, **line, density=density, dynamic_viscosity=dynamic_viscosity)
+    return laminar * more
+
+
+@geometry
+def fitting_pressure_drop(
+    *, flow: Array, inner_diameter: Array, loss_coefficient: Array, density: Array
+) -> Array:
+    """Pressure drop of bends and fittings, dp = zeta rho/2 v |v|, with v = 4 q/(pi d^2).
+
+    Parameters
+    ----------
+    flow : [m^3/s], either sign
+    inner_diameter : of the line [m]
+    loss_coefficient : zeta, the sum over all bends and fittings of the line [-]
+    density : [kg/m^3]
+
+    Returns
+    -------
+    pressure drop [Pa], with the sign of the flow
+
+    Notes
+    -----
+    Valid: turbulent flow, in which zeta hardly depends on the Reynolds number.
+
+    References
+    ----------
+    [derived] definition of the loss coefficient
+
+    Examples
+    --------
+    >>> dp = fitting_pressure_drop(flow=2e-4, inner_diameter=8e-3, loss_coefficient=1.5,
+    ...                            density=865.0)
+    >>> print(f"{dp / 1e5:.4f} bar")
+    0.1027 bar
+    """
+    velocity = line_velocity(flow=flow, inner_diameter=inner_diameter)
+    return 0.5 * loss_coefficient * density * velocity * absolute(velocity)
 
 
 FRICTION = ("lossless", "steady", "distributed")

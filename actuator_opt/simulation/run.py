@@ -13,6 +13,7 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..base.quantities import INPUTS
+from ..design.ideal import assumptions
 from ..design.scenario.kinds import Records
 from ..design.scenario.model import SAMPLES, Scenario
 from ..design.scenario.reader import recorded_notes
@@ -185,6 +186,7 @@ def _notes(
     """Notes on a simulation for its user."""
     scenario, actuator = circuit.scenario, circuit.plant
     return (
+        *assumptions(circuit.plant.design),
         *recorded_notes(scenario, circuit.records),
         *circuit.system.notes,
         *_controller_notes(tuned),

@@ -19,6 +19,7 @@ from ..base.quantities import RESULTS, Quantity
 from ..base.tables import Displayed
 from ..design import paths
 from ..design.build import with_values
+from ..design.ideal import has_effect
 from ..design.kinds import Fraction, ValueFault
 from ..design.scenario.kinds import Records
 from ..design.scenario.model import Scenario
@@ -43,7 +44,8 @@ DESIGN = (
     "piston.leakage_conductance", "seals.piston.friction_coefficient",
     "seals.rod.friction_coefficient", "stiffness.seal_deflection", "valve.rated_flow",
     "valve.leakage_flow", "valve.natural_frequency", "valve.damping_ratio", "control.gain",
-    "load.mass", "load.inertia",
+    "load.mass", "load.inertia", "ideal.area_a", "ideal.area_b", "ideal.mass",
+    "ideal.dead_volume_a", "ideal.dead_volume_b", "ideal.stiffness", "ideal.leakage",
 )  # fmt: skip
 """PATHs of the design values that are varied by default."""
 LEAST = {"hold_drift": 1e-7, "overshoot": 1e-5, "steady_state_ratio": 1e-5, "following_error": 1e-7}
@@ -250,8 +252,10 @@ class _Bench:
         if names is not None:
             yield from (self._target(name) for name in names)
             return
-        numbers = paths.numbers(self.subject.design)
-        yield from (self._target(name) for name in DESIGN if name in numbers)
+        design = self.subject.design
+        numbers = paths.numbers(design)
+        known = [name for name in DESIGN if name in numbers and has_effect(name, design)]
+        yield from map(self._target, known)
         for loc, _, value in leaves(self.scenario, Scenario):
             stated = _stated(self.scenario, loc)
             if number_of(value) is None or loc[0] in _APART or loc[-1] in _TIMES or not stated:

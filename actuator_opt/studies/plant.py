@@ -6,13 +6,14 @@ taken at the temperature of the first load case.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, maximum
-from ..design.model import Design
+from ..design.model import Design, Ideal
 from ..evaluation import circuit, state
 from ..evaluation.circuit import CHAMBERS, Chamber
 from ..evaluation.kernel import ModelRun, PreparedDesign, compute
@@ -85,6 +86,28 @@ class ValveData:
 
 
 @dataclass(frozen=True, slots=True)
+class LinePiece:
+    """Size, fittings and oil of a pipe or hose, for its pressure drop beyond the laminar drop."""
+
+    inner_diameter: float
+    length: float
+    loss_coefficient: float
+    density: float
+    dynamic_viscosity: float
+
+    def excess(self, flow: Array) -> Array:
+        """Return the pressure drop beyond the laminar one, with that of fittings [Pa]."""
+        stream = {"flow": flow, "inner_diameter": self.inner_diameter, "density": self.density}
+        turbulent = lines.turbulent_excess(
+            **stream, length=self.length, dynamic_viscosity=self.dynamic_viscosity
+        )
+        if not self.loss_coefficient:
+            return turbulent
+        fittings = lines.fitting_pressure_drop(**stream, loss_coefficient=self.loss_coefficient)
+        return turbulent + fittings
+
+
+@dataclass(frozen=True, slots=True)
 class LineData:
     """The lines of one chamber, in two parts: near the chamber and far from it.
 
@@ -96,7 +119,16 @@ class LineData:
     far_volume: float = 0.0
     far_wall: float = 0.0
     resistance: float = 0.0
+    """Laminar resistance of all lines [Pa s/m^3]."""
     inertance: float = 0.0
+    pieces: tuple[LinePiece, ...] = ()
+
+    def drop(self, flow: Array) -> Array:
+        """Return the pressure drop of all lines at a flow [Pa]."""
+        total = self.resistance * flow
+        for piece in self.pieces:
+            total = total + piece.excess(flow)
+        return total
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +241,12 @@ def plant(subject: PreparedDesign) -> Plant:
     """Return the plant of a design, at the temperature of its first load case.
 
     Seals that run on an oil film in the design are simulated dry, with their friction coefficient.
+    A block `ideal` states numbers of the cylinder instead.
     """
+    stated = subject.design.ideal
+    if stated is not None:  # the parts that complete the file are never shown
+        design = subject.design.model_copy(update={"ideal": None})
+        return _idealised(plant(replace(subject, design=design)), subject.design, stated)
     v = subject.values()
     done = compute(subject, v)
     design, g = subject.design, done.geometry
@@ -250,6 +287,37 @@ def plant(subject: PreparedDesign) -> Plant:
             )
         ),
         closed_length=first_case(done.computed.metrics["closed_length"][""]),
+    )
+
+
+NO_SEALS = SealData(Plane(0.0), Plane(0.0), 1e-3, 0.0, 1e-4)
+"""Seals without friction; speed and travel are of no effect."""
+
+
+def _idealised(whole: Plant, design: Design, stated: Ideal) -> Plant:
+    """Return a plant with the cylinder of the block `ideal`: rigid walls, no friction of seals."""
+    return replace(
+        whole,
+        design=design,
+        area_a=stated.area_a,
+        area_b=stated.area_b,
+        stroke=stated.stroke,
+        dead_a=stated.dead_volume_a,
+        dead_b=stated.dead_volume_b,
+        walls=Give(),
+        flexibility=0.0 if stated.stiffness is None else 1 / stated.stiffness,
+        mass=stated.mass + design.load.mass,
+        leakage=stated.leakage,
+        seals=NO_SEALS,
+        films=dict.fromkeys(whole.films, False),
+        oil_damping=0.0,
+        stop_stiffness=float(
+            end_stop.stop_stiffness(
+                area=stated.area_a,
+                pressure=whole.supply_pressure,
+                travel=design.cylinder.stop_travel,
+            )
+        ),
     )
 
 
@@ -304,13 +372,23 @@ def _valve(v: Values, design: Design, done: ModelRun) -> ValveData | None:
 def _lines(v: Values, design: Design, done: ModelRun, chamber: Chamber) -> LineData:
     branch = circuit.branches(v, design, done.state)[chamber]
     throttled = design.ports.throttle is not None
-    volumes, walls = [0.0, 0.0], [0.0, 0.0]
+    volumes, walls, pieces = [0.0, 0.0], [0.0, 0.0], []
+    viscosity = getattr(done.state, f"dynamic_viscosity_{chamber}")
     for i, line in enumerate(design.lines):
         if line.chamber != chamber:
             continue
         at = f"lines[{i}]."
         size = {"inner_diameter": v[at + "inner_diameter"], "length": v[at + "length"]}
         volume, wall = lines.line_volume(**size), circuit.wall_compliance(v, line, at)
+        pieces.append(
+            LinePiece(
+                float(v[at + "inner_diameter"]),
+                float(v[at + "length"]),
+                float(v[at + "loss_coefficient"]),
+                first_case(done.state.density),
+                first_case(viscosity),
+            )
+        )
         far = float(line.beyond_throttle) if throttled else 0.5
         for k, share in ((0, 1 - far), (1, far)):
             volumes[k] += share * first_case(volume)
@@ -322,6 +400,7 @@ def _lines(v: Values, design: Design, done: ModelRun, chamber: Chamber) -> LineD
         far_wall=walls[1],
         resistance=first_case(branch.resistance),
         inertance=first_case(branch.inertance),
+        pieces=tuple(pieces),
     )
 
 

@@ -214,6 +214,13 @@ SAMPLES = {
         "flow": 2.5e-4, "inner_diameter": 8e-3, "length": 1.2, "density": 865.0,
         "dynamic_viscosity": 0.011,
     },
+    "lines.turbulent_excess": {
+        "flow": 3.5e-4, "inner_diameter": 8e-3, "length": 1.2, "density": 865.0,
+        "dynamic_viscosity": 0.011,
+    },
+    "lines.fitting_pressure_drop": {
+        "flow": 2e-4, "inner_diameter": 8e-3, "loss_coefficient": 1.5, "density": 865.0,
+    },
     "lugre.lugre_step": {
         "deflection": 1e-5, "speed": -0.02, "time_step": 1e-3, "level": 600.0,
         "bristle_stiffness": 1e7, "bristle_damping": 3e4, "viscous": 1e3,

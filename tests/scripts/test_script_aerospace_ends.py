@@ -64,7 +64,7 @@ def test_rows_and_sentences_of_numbers() -> None:
 
 @pytest.mark.long
 def test_the_script_as_a_person_runs_it(tmp_path) -> None:
-    """Screwed plugs are at least 15 % lighter than tie rods; their sizes give this mass again."""
+    """Screwed plugs are at least 10 % lighter than tie rods; their sizes give this mass again."""
     out, report = ran("aerospace_ends", tmp_path)
     assert report.exists()
     assert "Lightest: screwed plugs" in out
@@ -76,4 +76,4 @@ def test_the_script_as_a_person_runs_it(tmp_path) -> None:
         found = ao.evaluate(fixed.changed(row["values"]))
         assert found.metrics["mass"].value == pytest.approx(row["mass"], rel=1e-5)
         assert all(one.margin > -1e-4 for one in found.requirements)
-    assert numbers["plug_thread"]["mass"] < 0.85 * numbers["tie_rods"]["mass"]
+    assert numbers["plug_thread"]["mass"] < 0.9 * numbers["tie_rods"]["mass"]

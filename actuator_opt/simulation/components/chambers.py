@@ -469,7 +469,7 @@ def _through_line(
     """Flow from the line into the chamber."""
     data, word = circuit.plant.lines[port.name], port.name.upper()
     inner = port.pressure if port.outer is None else port.outer
-    drop = data.resistance * flow
+    drop = data.drop(flow)
     circuit.system.rate(flow, (port.end - inner - drop) / data.inertance)
     circuit.energy_port(f"line {word}", drop * flow, state=f"line loss {port.name}")
     motion = 0.5 * data.inertance * flow * flow

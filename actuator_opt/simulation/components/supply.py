@@ -75,11 +75,12 @@ class SupplyBuilder:
             return demand
         system, oil = circuit.system, circuit.plant.oil
         size = {"inner_diameter": line.inner_diameter, "length": line.length}
-        resistance = elements.resistance(**size, dynamic_viscosity=oil.dynamic_viscosity)
         inertance = elements.inertance(**size, density=oil.density)
         flow = system.state("supply pipe", 0.0, tolerance=1e-12)
-        system.rate(flow, (self.unit - self.pressure - resistance * flow) / inertance)
-        circuit.energy_port("supply pipe", resistance * flow * flow, state="supply pipe loss")
+        stream = {"density": oil.density, "dynamic_viscosity": oil.dynamic_viscosity}
+        drop = lines.line_pressure_drop(flow=flow, **size, **stream)
+        system.rate(flow, (self.unit - self.pressure - drop) / inertance)
+        circuit.energy_port("supply pipe", drop * flow, state="supply pipe loss")
         motion = 0.5 * inertance * flow * flow
         circuit.audit.stored.append(("oil in motion in the supply pipe", motion))
         system.signal("pressure_unit", "pressure at the pump", INPUTS["pressure"], self.unit)

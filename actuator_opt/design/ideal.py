@@ -1,0 +1,87 @@
+"""A cylinder stated by its numbers instead of designed: a file of ten lines, for simulations.
+
+The block `ideal` takes the place of all blocks that describe parts. The models need such blocks, so
+`completed` adds a plain steel cylinder that no result shows: the plant of the simulation takes its
+areas, volumes, mass, stiffness and leakage from `ideal`.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from ..base.errors import Diagnostic, Fault, InputError
+
+if TYPE_CHECKING:
+    from .model import Design
+
+_PARTS: Mapping[str, Any] = {
+    "cylinder": {"bore": "40 mm", "stroke": "100 mm"},
+    "barrel": {"layup": [{"material": "steel_e355", "thickness": "5 mm"}]},
+    "rod": {"material": "steel_42crmo4", "outer_diameter": "22 mm"},
+    "piston": {"material": "steel_42crmo4", "length": "30 mm", "clearance": "50 um"},
+    "caps": {"material": "steel_42crmo4", "thickness": "10 mm"},
+    "seals": {
+        place: {"type": "o_ring", "compound": "nbr_90", "section": "3.53 mm", "squeeze": "12 %"}
+        for place in ("piston", "rod")
+    },
+    "load_cases": [{"name": "none", "direction": "push", "force": "1 N", "speed": "0.1 m/s"}],
+}
+"""The cylinder that completes the file; its sizes are of no effect."""
+
+_UNUSED = (
+    *_PARTS, "head", "retention", "clevis", "sensor", "cushion", "extra_masses", "stiffness",
+    "linkage", "variables", "choices", "requirements", "waivers", "measured", "uncertainty",
+    "objective",
+)  # fmt: skip
+"""Blocks that mean nothing beside `ideal`."""
+
+
+def completed(tree: dict[str, Any]) -> tuple[dict[str, Any], list[Fault]]:
+    """The tree of a file with the parts that it needs, and its blocks that mean nothing.
+
+    Without a block `ideal`, the tree itself.
+    """
+    if not isinstance(tree.get("ideal"), dict):
+        return tree, []
+    faults = [
+        Fault((name,), "has no effect: ideal states the cylinder", "remove it, or remove ideal",
+              at_key=True)
+        for name in _UNUSED
+        if name in tree
+    ]  # fmt: skip
+    parts = copy.deepcopy(dict(_PARTS))
+    if (stroke := tree["ideal"].get("stroke")) is not None:  # positions are checked against it
+        parts["cylinder"]["stroke"] = stroke
+    return parts | {key: value for key, value in tree.items() if key not in _UNUSED}, faults
+
+
+def has_effect(path: str, design: Design) -> bool:
+    """Whether the number at a PATH can have an effect: not that of a part beside `ideal`."""
+    return design.ideal is None or path.partition(".")[0].partition("[")[0] not in _UNUSED
+
+
+def require_parts(design: Design) -> None:
+    """Refuse a design that only states a cylinder where its parts are needed.
+
+    Raises
+    ------
+    InputError : the design has a block `ideal`
+    """
+    if design.ideal is not None:
+        message = "the cylinder is stated, not designed: it has no parts to evaluate"
+        remedy = "use simulate, or describe cylinder, barrel, rod, piston and seals"
+        raise InputError(Diagnostic(message, remedy, path="ideal"))
+
+
+def assumptions(design: Design) -> list[str]:
+    """A sentence on what a stated cylinder leaves out; empty for a designed one."""
+    stated = design.ideal
+    if stated is None:
+        return []
+    words = ["rigid walls", "seals without friction of their own"]
+    words += ["a rigid rod"] if stated.stiffness is None else []
+    words += [] if stated.leakage else ["no leakage across the piston"]
+    words += [] if stated.dead_volume_a and stated.dead_volume_b else ["no dead volume"]
+    return [f"The cylinder is stated by its numbers: it has {', '.join(words)}."]
