@@ -15,12 +15,12 @@ from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from ..base.arguments import guarded
+from ..base.arguments import Change, SetValues, guarded
 from ..base.cluster import Cluster, connected
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.tables import OneLine
-from ..design import Design, FileSource, Fraction, LoadedDesign, read_design, with_values
+from ..design import Design, FileSource, Fraction, LoadedDesign, pairs, read_design, with_values
 from ..design.reader import TEXT
 from ..evaluation import Evaluation, PreparedDesign, compute, prepare
 from ..evaluation.plugin import Plugin, View, collect, load, with_own
@@ -51,25 +51,25 @@ class Actuator(OneLine):
         """The design with the properties of its materials, in the form that the models take."""
         return prepare(self.design, plugins=self.plugins)
 
-    def changed(self, values: Mapping[str, float | str]) -> Actuator:
+    def changed(self, values: Mapping[str, float | str | None]) -> Actuator:
         """Copy the actuator with new values, keyed by PATH (such as ``cylinder.stroke``).
 
-        A value is a number in SI, or text with a unit.
+        A value is a number in SI, or text with a unit; None removes the key.
 
         Raises
         ------
         UsageError : `values` is not a mapping
         InputError : a PATH is unknown, or a value does not suit it
         """
-        require_changes(values)
+        require_changes(values, unset=True)
         quantities = with_own(self.plugins)
         changes = {k: float(x) if isinstance(x, Real) else x for k, x in values.items()}
         design = with_values(self.design, changes, metrics=quantities)
         return Actuator(design, self.source, self.plugins)
 
 
-def require_changes(changes: object) -> None:
-    """Refuse anything but a mapping from PATH to numbers and texts.
+def require_changes(changes: object, *, unset: bool = False) -> None:
+    """Refuse anything but a mapping from PATH to numbers and texts or, with `unset`, to None.
 
     Raises
     ------
@@ -83,7 +83,8 @@ def require_changes(changes: object) -> None:
         if not isinstance(path, str):
             message = f"must be a PATH, not {type(path).__name__}"
             raise InputError(Diagnostic(message, "write a text"))
-        if isinstance(value, bool) or not isinstance(value, (Real, str, Fraction)):
+        removed = unset and value is None
+        if isinstance(value, bool) or not (removed or isinstance(value, (Real, str, Fraction))):
             message = f"must be a number, not {type(value).__name__}"
             advice = 'write SI, or a text with a unit such as "112 mm"'
             raise InputError(Diagnostic(message, advice, path=path))
@@ -110,7 +111,7 @@ def plugins_of(sources: Plugins) -> tuple[Plugin, ...]:
 def read(
     source: str | Path,
     *,
-    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    set: SetValues = (),
     plugins: Plugins = (),
 ) -> Actuator:
     """Read a design file (a path, ``"-"`` for standard input, or the text itself).
@@ -119,7 +120,7 @@ def read(
     ----------
     source : path or text
     set : new values by PATH, such as ``{"cylinder.stroke": "112 mm"}``; a number without a unit is
-        SI
+        SI, and None removes the key, as ``--unset`` does
     plugins : the user's metrics and constraints: decorated functions or Python files
 
     Raises
@@ -134,10 +135,9 @@ def read(
             remedy = "for new values, save it, and read the file with set"
         raise UsageError(Diagnostic(message, remedy))
     loaded_plugins = plugins_of(plugins)
-    pairs = set.items() if isinstance(set, Mapping) else set
     loaded: LoadedDesign = read_design(
         source,
-        overrides=[(path, str(value)) for path, value in pairs],
+        overrides=pairs(set),
         metrics=with_own(loaded_plugins),
     )
     return Actuator(loaded.design, loaded.source, loaded_plugins)
@@ -147,7 +147,7 @@ def read_as(
     text: str,
     name: str,
     *,
-    set: Sequence[tuple[str, str]] = (),
+    set: Sequence[Change] = (),
     plugins: Plugins = (),
 ) -> Actuator:
     """The design in a text, as if read from a file with that name; parameters as for `read`."""

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from ..base.arguments import guarded
+from ..base.arguments import SetValues, guarded
 from ..base.errors import ActuatorError, Diagnostic, InputError
 from ..design import Design, is_scenario
 from ..design.reader import TEXT, opened
@@ -27,7 +26,7 @@ class Examined(NamedTuple):
 def check(
     source: Actuator | Design | Result | str | Path,
     *,
-    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    set: SetValues = (),
     plugins: Plugins = (),
 ) -> list[Diagnostic]:
     """Find all faults of a design or scenario; empty if there are none. Parameters as for `read`.
@@ -41,7 +40,7 @@ def check(
 def examine(
     source: Actuator | Design | Result | str | Path,
     *,
-    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    set: SetValues = (),
     plugins: Plugins = (),
 ) -> Examined:
     """Find all faults as `check` does; if there are none, warn of every implausible value."""

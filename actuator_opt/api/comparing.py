@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..base import runs as run_store
-from ..base.arguments import guarded
+from ..base.arguments import SetValues, guarded
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..design import Design
 from ..evaluation import Evaluation, comparison
@@ -29,7 +29,7 @@ MOST = 12
 @guarded
 def compare(
     *designs: Actuator | Design | Evaluation | Optimisation | Run | str | Path,
-    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    set: SetValues = (),
     plugins: Plugins = (),
     optimise: bool = False,
     seed: int = 0,

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
-from ..base.arguments import guarded
+from ..base.arguments import SetValues, guarded
 from ..base.dataclass import dataclass
 from ..base.quantities import INFINITY, MATERIAL_PROPERTIES, Quantity, short
 from ..base.tables import Displayed
@@ -95,7 +95,7 @@ def explain(
     word: str,
     design: Actuator | Design | Result | str | Path | None = None,
     *,
-    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    set: SetValues = (),
     plugins: Plugins = (),
 ) -> Explanation:
     """Explain a name: what it is, how to ask for it, what moves it, and where it comes from.

@@ -29,6 +29,7 @@ from .actuator import Actuator
 from .reports import date_from_environment, file_name, verification_tables
 
 if TYPE_CHECKING:
+    from ..design import FileSource
     from ..optimisation.pareto import ParetoFront
     from ..optimisation.result import Optimisation
     from ..pages import Table
@@ -70,6 +71,7 @@ _BODY: Form = {
         "name": str,
         "text": str,
         "set": [[str]],
+        "unset?": [str],
         "plugins": [{"file": str, "sha256": str}],
     },
     "versions": {"*": str},
@@ -317,7 +319,7 @@ def record_run(
         "input": {
             "name": file_name(actuator.design, source),
             "text": to_yaml(actuator.design) if source is None else source.text,
-            "set": [] if source is None else [[x.path, x.value] for x in source.overrides.values()],
+            **_changes(source),
             "plugins": _plugins(actuator.plugins),
         },
         "versions": _versions(),
@@ -325,6 +327,14 @@ def record_run(
     head, body = common_head | dict(head), common_body | dict(body)
     path = run_store.write(place, f"{started:%Y%m%d-%H%M%S}", head, body)
     return Run(path.stem, path, head, body)
+
+
+def _changes(source: FileSource | None) -> dict[str, Any]:
+    """Values of the design that the command line set, and keys that it removed, if any."""
+    changes = () if source is None else source.overrides.values()
+    unset = [x.path for x in changes if x.value is None]
+    values = [[x.path, x.value] for x in changes if x.value is not None]
+    return {"set": values} | ({"unset": unset} if unset else {})
 
 
 def _folder(folder: str | Path | None) -> Path | None:

@@ -13,7 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
-from ..base.arguments import guarded
+from ..base.arguments import SetValues, guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, UsageError, remedy, shown
 from ..base.quantities import MATERIAL_PROPERTIES, Quantity, short
@@ -316,7 +316,7 @@ def catalogue(
     design: Actuator | Design | Result | str | Path | None = None,
     word: str = "",
     *,
-    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    set: SetValues = (),
     plugins: Plugins = (),
 ) -> Catalogue:
     """List what a design file or a result can name, with values of a design.
@@ -377,7 +377,7 @@ def _near(word: str, entries: Sequence[Entry], kind: str) -> list[Entry]:
 
 def actuator_of(
     design: Actuator | Design | Result | str | Path,
-    changes: Mapping[str, str | float] | Sequence[tuple[str, str]],
+    changes: SetValues,
     plugins: Plugins,
 ) -> Actuator:
     """A design in any form, with changed values and user metrics."""

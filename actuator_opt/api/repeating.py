@@ -131,7 +131,7 @@ def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
                 "if you name it"
             )
             raise InputError(Diagnostic(message, "name it with --plugin to run it"))
-        pairs = [_pair(text) for text in options.set]
+        pairs = [*((path, None) for path in options.unset), *map(_pair, options.set)]
     except InputError as error:
         raise InputError(
             [replace(x, file=x.file or str(path)) for x in error.diagnostics]
@@ -196,6 +196,7 @@ def parser() -> argparse.ArgumentParser:
     options = _Parser(prog="actuator-opt", add_help=False, allow_abbrev=False)
     options.add_argument("design")
     options.add_argument("--set", action="append", default=[])
+    options.add_argument("--unset", action="append", default=[])
     options.add_argument("--plugin", action="append", default=[])
     options.add_argument("--starts", type=_within(STARTS), default=6)
     options.add_argument("--seed", type=_within(SEED), default=0)

@@ -80,7 +80,10 @@ def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
         with damage_reported(run):
             source = run.body["input"]
             loaded_plugins = named_plugins(run, plugins)
-            sets = [(path, value) for path, value in source["set"]]
+            sets = [
+                *((path, None) for path in source.get("unset", ())),
+                *((path, value) for path, value in source["set"]),
+            ]
             actuator = read_as(source["text"], source["name"], set=sets, plugins=loaded_plugins)
             if kind == "sweep":
                 doubts = tuple(changed_plugins(run, loaded_plugins))

@@ -166,6 +166,10 @@ KINDS = kinds(
         report="api:write_simulation", csv="api:write_signals", record=None,
     ),
     ResultKind(
+        "simulation.basis:Basis", _always, blocks="pages.simulation_basis:blocks",
+        report=None, csv=None, record=None,
+    ),
+    ResultKind(
         "api.simulations:Compared", lambda compared: _met(compared.simulation), blocks="blocks",
         report="report", csv=None, record=None,
     ),

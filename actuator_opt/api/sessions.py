@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.arguments import guarded
+from ..base.arguments import SetValues, guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, Unsolvable, UsageError, remedy
 from ..base.numeric import Array
 from ..base.quantities import INPUTS, Quantity
 from ..base.tables import OneLine, aligned
+from ..base.threads import one_thread
 from ..design import Design, canonical, get, quantity_of
 from ..evaluation import PreparedDesign
 from .actuator import (
@@ -486,6 +487,7 @@ class Session(OneLine):
                 ) from None
         return name
 
+    @one_thread()
     def _solved(
         self, changes: Changes, stop: Callable[[], bool] | None = None
     ) -> tuple[Actuator, PreparedDesign, ActuatorProblem, Solution]:
@@ -601,7 +603,7 @@ def _require_continuous(actuator: Actuator, sizes: object) -> None:
 def session(
     design: Actuator | Design | Result | str | Path,
     *,
-    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    set: SetValues = (),
     plugins: Plugins = (),
     seed: int = 0,
 ) -> Session:

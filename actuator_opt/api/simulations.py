@@ -8,12 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
-from ..base.arguments import guarded
+from ..base.arguments import SetValues, guarded
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.numeric import Array
 from ..base.tables import Displayed, OneLine
-from ..design import Design
+from ..design import Design, pairs
 from ..studies.plant import plant
 from .actuator import Actuator, Result, as_actuator
 from .records import Units
@@ -60,7 +60,7 @@ class Trial(OneLine):
 def read_scenario(
     source: str | Path,
     *,
-    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    set: SetValues = (),
     units: Units = None,
 ) -> Trial:
     """Read a scenario file (a path, ``"-"`` for standard input, or the text itself).
@@ -69,7 +69,7 @@ def read_scenario(
     ----------
     source : path or text
     set : values to replace, by PATH in the scenario, or else in its design; a number without a unit
-        is SI
+        is SI, and None removes the key
     units : units of the recorded inputs' columns whose header states no unit, as for `read_record`
 
     Raises
@@ -79,8 +79,7 @@ def read_scenario(
     """
     from ..design.scenario import read_design_of, read_scenario as read
 
-    pairs = set.items() if isinstance(set, Mapping) else set
-    loaded = read(source, overrides=[(path, str(value)) for path, value in pairs])
+    loaded = read(source, overrides=pairs(set))
     design = read_design_of(loaded)
     actuator = Actuator(design.design, design.source)
     return Trial(loaded.scenario, actuator, _records(loaded, units), loaded)
@@ -123,8 +122,9 @@ def _where(fault: Diagnostic, path: str, loaded: LoadedScenario) -> Diagnostic:
 def simulate(
     scenario: Trial | str | Path,
     *,
-    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    set: SetValues = (),
     verify: bool = False,
+    margins: bool = False,
     method: Method = "lsoda",
 ) -> Simulation:
     """Simulate a scenario with its design.
@@ -133,9 +133,11 @@ def simulate(
     ----------
     scenario : the scenario as read, or the path of its file
     set : values to replace, by PATH in the scenario, or else in its design; a number without a unit
-        is SI
+        is SI, and None removes the key
     verify : whether to integrate again by another method and compare the results
-    method : integration method: "lsoda", "cvodes" (faster; extra ``fast``) or "radau"
+    margins : whether to compute the margins of the control loop even if its gain is stated; they
+        are always computed for a gain that is tuned by them
+    method : integration method: "lsoda" (the fastest), "cvodes" (extra ``fast``) or "radau"
 
     Returns
     -------
@@ -160,6 +162,7 @@ def simulate(
             trial.actuator.subject(),
             records=trial.records,
             verify=verify,
+            margins=margins,
             method=method,
         )
 
@@ -182,7 +185,7 @@ def placed(trial: Trial) -> Iterator[None]:
 
 def as_trial(
     scenario: Trial | str | Path,
-    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    set: SetValues = (),
 ) -> Trial:
     """Turn a scenario in any form into a scenario as read."""
     if not isinstance(scenario, Trial):
@@ -249,6 +252,7 @@ def compare_measured(
     columns: Mapping[str, str] | None = None,
     units: Units = None,
     verify: bool = False,
+    margins: bool = False,
     method: Method = "lsoda",
     simulation: Simulation | None = None,
 ) -> Compared:
@@ -262,7 +266,8 @@ def compare_measured(
         `simulation.measured.parameters`
     columns : header of every channel whose header is not a known name
     units : units of columns without a unit in their header, as for `read_record`
-    verify, method : as for `simulate`; if parameters are fitted, for the run with the fitted values
+    verify, margins, method : as for `simulate`; if parameters are fitted, for the run with the
+        fitted values
     simulation : result of the scenario, if it has been run already
 
     Raises
@@ -272,6 +277,7 @@ def compare_measured(
     """
     from ..base.files import read_bytes
     from ..identification import column_units, decode_record
+    from ..simulation.linear import tune
     from ..simulation.measured import overlay, parse_measured
     from ..simulation.measured.fit import fit as fitted
     from ..simulation.run import spec_of
@@ -283,11 +289,15 @@ def compare_measured(
     measured = parse_measured(text, name=name, columns=columns, units=column_units(units))
     with placed(trial):
         if not fit:
-            simulation = simulation or simulate(trial, verify=verify, method=method)
+            simulation = simulation or simulate(
+                trial, verify=verify, margins=margins, method=method
+            )
             return Compared(overlay(simulation, measured))
         subject = trial.actuator.subject()
+        actuator = plant(subject)
         result = fitted(
-            trial.scenario, plant(subject), trial.records, measured, fit,
+            trial.scenario, actuator, trial.records, measured, fit,
+            tuned=tune(trial.scenario, actuator, trial.records, with_margins=margins),
             verify=verify, method=method, spec=spec_of(subject, trial.scenario),
         )  # fmt: skip
     return Compared(result.after, result)
@@ -378,6 +388,8 @@ def write_simulation(
 ) -> list[ReportFile]:
     """Write the page of a simulation (PDF and PNG) and attach the scenario.
 
+    The page shows the margins of the control loop; they are computed if the simulation has none.
+
     Parameters
     ----------
     simulation : result of `simulate`
@@ -393,10 +405,12 @@ def write_simulation(
     from ..pages.simulation import page
     from ..pages.verification import sensitivity_blocks
     from ..rendering import paper as printed
+    from ..simulation.run import with_margins
 
     if scenario is None:
         message = "the page of a simulation needs its scenario"
         raise UsageError(Diagnostic(message, "give scenario=read_scenario(...)"))
+    simulation = with_margins(simulation, scenario.records)
     origin, place = _page(scenario, simulation, "", paper)
     blocks = [] if measured is None else measured.blocks()
     blocks += [] if sensitivities is None else sensitivity_blocks(sensitivities)
@@ -431,7 +445,9 @@ def write_comparison(
     """
     from ..pages.simulation_comparison import comparison, page
     from ..rendering import paper as printed
+    from ..simulation.run import with_margins
 
+    runs = [(name, with_margins(run, scenario.records)) for name, run in runs]
     report = page(comparison(runs, title, notes))
     origin, place = _page(scenario, runs[0][1], "-compared", paper)
     return printed.write(report, origin, **place)

@@ -9,16 +9,23 @@ from __future__ import annotations
 
 import inspect
 import types
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import wraps
 from importlib import import_module
 from pathlib import Path
-from typing import Any, Literal, ParamSpec, TypeVar, Union, get_args, get_origin
+from typing import Any, Literal, ParamSpec, TypeAlias, TypeVar, Union, get_args, get_origin
 
 from .errors import ActuatorError, Diagnostic, UsageError, shown
+from .threads import one_thread
 
 SEEDS = 2**32
 """Number of seeds that every random generator takes."""
+
+Change: TypeAlias = tuple[str, str | None]
+"""A PATH and the text of its new value; None removes the key."""
+
+SetValues: TypeAlias = Mapping[str, str | float | None] | Sequence[Change]
+"""Type of every argument `set`: new values by PATH, numbers in SI; None removes the key."""
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -35,6 +42,8 @@ class WrongArgument(UsageError):
 
 def guarded(function: Callable[P, R]) -> Callable[P, R]:
     """A public function that raises `UsageError` for an argument of another type.
+
+    While it runs, linear algebra has one thread (see `threads`).
 
     Examples
     --------
@@ -53,7 +62,8 @@ def guarded(function: Callable[P, R]) -> Callable[P, R]:
             if isinstance(value, int):
                 _require_usual(f"{function.__name__}: {name}", name, value)
         try:
-            return function(*args, **kwargs)
+            with one_thread():
+                return function(*args, **kwargs)
         except Exception as error:
             if isinstance(error, ActuatorError) and not isinstance(error, WrongArgument):
                 raise

@@ -310,6 +310,60 @@ RESULTS = _table("""
 """)
 """Results of a simulation, which the requirements of a scenario can name."""
 
+BASIS = _table("""
+ load_mass            | m_L    | mass        | kg        | | | mass of the load
+ part_mass            | m_p    | mass        | kg        | | | mass of rod, piston and fastening
+ joint_mass           | m_J    | mass        | kg        | | | inertia of the joint, reflected to the rod at the start
+ moving_mass          | m      | mass        | kg        | | | moving mass at the start
+ stroke               | s      | length      | mm        | | | stroke
+ start_position       | x_0    | length      | mm        | | | position at the start
+ area_a               | A_A    | area        | mm^2      | | | area of chamber A
+ area_b               | A_B    | area        | mm^2      | | | area of chamber B
+ dead_volume_a        | V_0A   | volume      | ml        | | | dead volume of chamber A, with the line lumped into it
+ dead_volume_b        | V_0B   | volume      | ml        | | | dead volume of chamber B, with the line lumped into it
+ volume_a             | V_A    | volume      | ml        | | | oil volume of chamber A at the start
+ volume_b             | V_B    | volume      | ml        | | | oil volume of chamber B at the start
+ wall_compliance_a    | C_A    | compliance  | mm^3/MPa  | | | expansion of the walls of chamber A at the start
+ wall_compliance_b    | C_B    | compliance  | mm^3/MPa  | | | expansion of the walls of chamber B at the start
+ wall_coupling        | C_AB   | compliance  | mm^3/MPa  | | | expansion of the walls of one chamber by the pressure in the other
+ rod_stiffness        | k_r    | stiffness   | kN/mm     | | | stiffness of rod and mount in series
+ start_pressure_a     | p_A    | pressure    | bar       | | | pressure in chamber A at the start, gauge
+ start_pressure_b     | p_B    | pressure    | bar       | | | pressure in chamber B at the start, gauge
+ supply_pressure      | p_S    | pressure    | bar       | | | supply pressure, gauge
+ return_pressure      | p_T    | pressure    | bar       | | | return pressure, gauge
+ oil_temperature      | T      | temperature | degC      | | | temperature of the oil
+ oil_modulus          | K_0    | pressure    | MPa       | | | bulk modulus of the oil without air at zero gauge pressure
+ modulus_a            | K_A    | pressure    | MPa       | | | bulk modulus of oil with air at the start pressure of A
+ modulus_b            | K_B    | pressure    | MPa       | | | bulk modulus of oil with air at the start pressure of B
+ air_content          | alpha  | ratio       | %         | | | free air, as a share of the oil at zero gauge pressure
+ air_share_a          | phi_A  | ratio       | %         | | | air at the start pressure of A, as a share of the volume
+ air_share_b          | phi_B  | ratio       | %         | | | air at the start pressure of B, as a share of the volume
+ oil_density          | rho    | density     | kg/m^3    | | | density of the oil
+ oil_viscosity        | nu     | kinematic_viscosity | mm^2/s | | | kinematic viscosity of the oil
+ piston_leakage       | G_l    | conductance | ml/min/bar| | | leakage across the piston
+ oil_damping          | b_o    | damping     | N*s/m     | | | damping by shear of the oil
+ coulomb_friction     | F_C    | force       | N         | | | Coulomb friction at the start pressures
+ static_friction      | F_S    | force       | N         | | | breakaway friction at the start pressures
+ stribeck_speed       | v_s    | speed       | mm/s      | | | Stribeck speed
+ viscous_friction     | sigma_2| damping     | N*s/m     | | | viscous friction of the seals
+ bristle_stiffness    | sigma_0| stiffness   | kN/mm     | | | stiffness of the bristles
+ bristle_damping      | sigma_1| damping     | N*s/m     | | | damping of the bristles at rest
+ taper_speed          | v_d    | speed       | mm/s      | | | speed at which the damping of the bristles has fallen to 37 %
+ edge_flow            | q_e    | flow        | l/min     | | | flow through an open edge of the valve at 1 bar
+ supply_leakage       | q_ls   | flow        | l/min     | | | leakage of a supply edge at 1 bar, spool centred
+ tank_leakage         | q_lt   | flow        | l/min     | | | leakage of a tank edge at 1 bar, spool centred
+ full_signal          | U      | voltage     | V         | | | signal at full opening
+ spool_offset         | U_0    | voltage     | mV        | | | signal that centres the spool
+ spool_frequency      | f_v    | frequency   | Hz        | | | natural frequency of the spool
+ spool_damping        | zeta   | ratio       | -         | | | damping ratio of the spool
+ stop_stiffness       | k_e    | stiffness   | kN/mm     | | | stiffness of a stop
+ stop_damping         | b_e    | damping     | N*s/m     | | | damping of a stop
+ displacement         | V_g    | volume      | ml        | | | displacement of the motor per revolution
+ motor_inertia        | I      | inertia     | kg*m^2    | | | inertia of motor and load
+ pipe_volume          | V_p    | volume      | ml        | | | oil volume of each pipe of the motor
+""")
+"""Values on which a simulation is based, computed from the design and the scenario."""
+
 
 def length_text(value: float) -> str:
     """A length for display."""

@@ -6,11 +6,15 @@ A fault in the design gives no words and no message.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..base.errors import ActuatorError
+
+if TYPE_CHECKING:
+    from ..design.kinds import Section
 
 _REQUEST = "_ACTUATOR_OPT_COMPLETE"
 """Environment variable by which a shell asks for words instead of a command."""
@@ -35,6 +39,16 @@ def typed() -> tuple[str, ...]:
 def stated(incomplete: str) -> list[str]:
     """``PATH=VALUE`` for every value that the design of the line states."""
     words = (f"{path}={value}" for path, value in _values() if len(value) <= _LONGEST)
+    return [word for word in words if word.startswith(incomplete)]
+
+
+def unset(incomplete: str) -> list[str]:
+    """Every PATH, of a value or of a block, that the file of the line states."""
+    words: dict[str, None] = {}
+    for path, _ in _values():
+        ends = [k for k, mark in enumerate(path) if mark == "."]
+        words |= dict.fromkeys(path[:end] for end in ends if path[end - 1] != "]")
+        words[path] = None
     return [word for word in words if word.startswith(incomplete)]
 
 
@@ -68,13 +82,25 @@ def _values() -> Iterator[tuple[str, str]]:
         tree = parse(*opened(file)).data
     except ActuatorError:
         return
-    for loc, _, value in leaves(tree):
+    root = _root(tree)
+    for loc, _, value in leaves(tree, root):
         yield spell(loc, tree), _joined(value)
     limits = tree.get("requirements")
     for metric, entry in limits.items() if isinstance(limits, dict) else ():
         for end in ("min", "max"):
             if isinstance(entry, dict) and entry.get(end) is not None:
                 yield f"requirements.{metric}.{end}", _joined(entry[end])
+
+
+def _root(tree: Mapping[str, object]) -> type[Section]:
+    """Class of the file of the line: a scenario names a design, and describes no cylinder."""
+    if "design" in tree and "cylinder" not in tree:
+        from ..design.scenario.model import Scenario
+
+        return Scenario
+    from ..design.model import Design
+
+    return Design
 
 
 def _joined(value: object) -> str:

@@ -29,6 +29,7 @@ from .options import (
     Report,
     Seed,
     Set,
+    Unset,
     UnusedOut,
     UnusedSeed,
     Verbose,
@@ -275,6 +276,7 @@ def check(
         typer.Argument(metavar="FILE", help="Design or scenario files; - for stdin."),
     ],
     sets: Set = None,
+    unset: Unset = None,
     plugin: PluginFile = None,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -284,7 +286,7 @@ def check(
     """List all faults of design and scenario files."""
     from .. import api as verbs
 
-    job = Job(sets=sets, as_json=as_json, quiet=quiet)
+    job = Job(sets=sets, unset=unset, as_json=as_json, quiet=quiet)
     pairs, faults, remarks = job.set, list[Diagnostic](), list[str]()
     warnings: list[dict[str, str]] = []
     for design in designs:
@@ -302,6 +304,7 @@ def check(
 def evaluate(
     design: DesignFile,
     sets: Set = None,
+    unset: Unset = None,
     plugin: PluginFile = None,
     report: Report = False,
     out: Out = REPORTS,
@@ -317,7 +320,7 @@ def evaluate(
     from .. import api as verbs
 
     job = Job(
-        design, sets=sets, plugins=plugin, report=report, out=out, date=date,
+        design, sets=sets, unset=unset, plugins=plugin, report=report, out=out, date=date,
         all_pages=all_pages, format=format,
         as_json=as_json, quiet=quiet, verbose=verbose,
     )  # fmt: skip
@@ -330,6 +333,7 @@ def report(
         typer.Argument(metavar="DESIGN", help="Design file, - for stdin, or a run (id or last)."),
     ],
     sets: Set = None,
+    unset: Unset = None,
     out: Out = REPORTS,
     date: Date = None,
     all_pages: AllPages = False,
@@ -343,7 +347,7 @@ def report(
     from .. import api as verbs
 
     job = Job(
-        design, sets=sets, plugins=plugin, report=True, out=out, date=date,
+        design, sets=sets, unset=unset, plugins=plugin, report=True, out=out, date=date,
         all_pages=all_pages, format=format,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
@@ -360,8 +364,9 @@ def _restored(job: Job) -> Restored:
     """Restore a recorded run; print where the present models give other results."""
     from .. import api as verbs
 
-    if job.sets:
-        raise UsageError(Diagnostic("--set: not allowed with a run", "name a design instead"))
+    if job.changing:
+        fault = f"{job.changing}: not allowed with a run"
+        raise UsageError(Diagnostic(fault, "name a design instead"))
     restored = verbs.restore(job.design, plugins=job.plugins or [])
     for doubt in restored.doubts:
         streams.err(doubt)
@@ -374,6 +379,7 @@ def compare(
         typer.Argument(metavar="DESIGN", help="Two or more design files or runs (id or last)."),
     ],
     sets: Set = None,
+    unset: Unset = None,
     plugin: PluginFile = None,
     out: Annotated[
         Path | None,
@@ -396,7 +402,7 @@ def compare(
 
     if out is not None:
         store.require_folder(out)
-    job = Job(sets=sets, as_json=as_json, quiet=quiet)
+    job = Job(sets=sets, unset=unset, as_json=as_json, quiet=quiet)
     options = {"set": job.set, "plugins": plugin or [], "optimise": optimise, "seed": seed}
     comparison = job.run(verbs.compare, *designs, **options)
     paths = [] if out is None else verbs.draw_comparison(comparison, out)
@@ -418,6 +424,7 @@ def export(
         ),
     ] = None,
     sets: Set = None,
+    unset: Unset = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Output folder.")] = REPORTS,
     date: Annotated[
         str | None,
@@ -438,7 +445,7 @@ def export(
 
     known = require_formats(formats or [], scenario=scenario is not None)
     job = Job(
-        design, sets=sets, plugins=plugin, report=True, out=out, date=date,
+        design, sets=sets, unset=unset, plugins=plugin, report=True, out=out, date=date,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
     options: dict[str, Any] = {"formats": known, "folder": out, "date": date}

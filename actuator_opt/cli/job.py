@@ -36,7 +36,8 @@ class Job:
     ----------
     design : file of the design
     others : further input files
-    sets, plugins : changed values (``--set``) and plug-ins of the design
+    sets, unset, plugins : changed values (``--set``), removed keys (``--unset``) and plug-ins of
+        the design
     csv, write : files to write; neither may be an input file, except that `write` may be the design
     report : whether to write the report to the folder `out`, with `date` and in `format`;
         `all_pages` adds images of all pages
@@ -48,6 +49,7 @@ class Job:
     design: str = ""
     others: Sequence[str] = ()
     sets: Sequence[str] | None = None
+    unset: Sequence[str] | None = None
     plugins: Sequence[Path] | None = None
     csv: Path | None = None
     write: Path | None = None
@@ -80,15 +82,21 @@ class Job:
             store.require_apart(self.write, *self.others)
 
     @property
-    def set(self) -> list[tuple[str, str]]:
-        """The ``--set`` options, as pairs of PATH and value."""
+    def set(self) -> list[tuple[str, str | None]]:
+        """The ``--unset`` and ``--set`` options, as pairs of PATH and value, None for unset."""
         from ..design import split_assignment
 
-        return [split_assignment(text) for text in self.sets or ()]
+        removed = [(path, None) for path in self.unset or ()]
+        return [*removed, *(split_assignment(text) for text in self.sets or ())]
+
+    @property
+    def changing(self) -> str:
+        """The first of ``--set`` and ``--unset`` that is given; empty if none is."""
+        return "--set" if self.sets else "--unset" if self.unset else ""
 
     @cached_property
     def actuator(self) -> Actuator:
-        """Read the design, with ``--set`` and ``--plugin``."""
+        """Read the design, with ``--set``, ``--unset`` and ``--plugin``."""
         from ..api import read
 
         return read(self.design, set=self.set, plugins=self.plugins or ())
@@ -105,6 +113,7 @@ class Job:
         files: Files = (),
         saved: Iterable[Path | None] = (),
         faults: Sequence[Diagnostic] = (),
+        details: Sequence[object] = (),
         **also: Any,
     ) -> ExitCode:
         """Write, print and record a result; return the exit code.
@@ -115,6 +124,7 @@ class Job:
         files : files already written, listed in the answer
         saved : further files already written, but not listed in JSON
         faults : failed outputs
+        details : parts of the result that the terminal shows only here, below all others
         also : further results by their key in JSON, printed below the first; None if a result is
             missing
         """
@@ -122,7 +132,7 @@ class Job:
 
         also = {name: further for name, further in also.items() if further is not None}
         written = [*files, *self.written(result, **also)]
-        shown = (result, *also.values())
+        shown = (result, *also.values(), *details)
 
         def data() -> dict[str, Any]:
             entries = results.data(result)
@@ -176,6 +186,7 @@ class Job:
         """The words of the command line that name the design, its changes and plug-ins."""
         words = ["DESIGN.yaml" if self.design == "-" else self.design]
         words += [word for change in self.sets or () for word in ("--set", change)]
+        words += [word for path in self.unset or () for word in ("--unset", path)]
         words += [word for file in self.plugins or () for word in ("--plugin", str(file))]
         return shlex.join(words)
 

@@ -32,6 +32,7 @@ from .options import (
     Shop,
     StandardSizes,
     Starts,
+    Unset,
     Verbose,
     VerifyDynamics,
     WholePlies,
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
 def optimise(
     design: DesignFile,
     sets: Set = None,
+    unset: Unset = None,
     algorithm: Algorithm = "auto",
     starts: Starts = 6,
     whole_plies: WholePlies = False,
@@ -87,8 +89,8 @@ def optimise(
     from .. import api as verbs
 
     job = Job(
-        design, sets=sets, plugins=plugin, write=write, report=report or not as_json, out=out,
-        date=date, all_pages=all_pages, format=format,
+        design, sets=sets, unset=unset, plugins=plugin, write=write,
+        report=report or not as_json, out=out, date=date, all_pages=all_pages, format=format,
         as_json=as_json, quiet=quiet, verbose=verbose, record=not no_record,
         card={"relax_safety": relax_safety},
     )  # fmt: skip
@@ -148,6 +150,7 @@ def _unsaved(result: Optimisation, write: Path) -> Diagnostic | None:
 def sensitivity(
     design: DesignFile,
     sets: Set = None,
+    unset: Unset = None,
     plugin: PluginFile = None,
     report: Report = False,
     out: Out = REPORTS,
@@ -162,7 +165,7 @@ def sensitivity(
     from .. import api as verbs
 
     job = Job(
-        design, sets=sets, plugins=plugin, report=report, out=out, date=date,
+        design, sets=sets, unset=unset, plugins=plugin, report=report, out=out, date=date,
         all_pages=all_pages, format=format,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
@@ -196,6 +199,7 @@ def pareto(
         Path | None, typer.Option("--csv", metavar="FILE", help="Save the designs of the front.")
     ] = None,
     sets: Set = None,
+    unset: Unset = None,
     plugin: PluginFile = None,
     report: Report = False,
     out: Out = REPORTS,
@@ -211,7 +215,7 @@ def pareto(
     from .. import api as verbs
 
     job = Job(
-        design, sets=sets, plugins=plugin, csv=csv, report=report, out=out, date=date,
+        design, sets=sets, unset=unset, plugins=plugin, csv=csv, report=report, out=out, date=date,
         all_pages=all_pages, format=format,
         as_json=as_json, quiet=quiet, record=not no_record,
     )  # fmt: skip

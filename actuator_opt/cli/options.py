@@ -24,6 +24,15 @@ Set = Annotated[
         help='Replace a value, e.g. "cylinder.bore=30 mm"; a bare number is SI. Repeatable.',
     ),
 ]
+Unset = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--unset",
+        metavar="PATH",
+        autocompletion=completion.unset,
+        help="Remove a key or block of the file, before --set. Repeatable.",
+    ),
+]
 Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for reports.")]
 Seed = Annotated[
     int,

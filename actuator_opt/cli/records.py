@@ -24,6 +24,7 @@ from .options import (
     Seed,
     Set,
     Units,
+    Unset,
     file_of_units,
     named_columns,
     quantity_of,
@@ -151,6 +152,7 @@ def identify(
     span: Span = None,
     part: BentPart = None,
     sets: Set = None,
+    unset: Unset = None,
     plugin: PluginFile = None,
     report: Report = False,
     out: Out = REPORTS,
@@ -165,7 +167,7 @@ def identify(
     from .. import api as verbs
 
     job = Job(
-        design, [record, *file_of_units(units)], sets=sets, plugins=plugin, csv=csv,
+        design, [record, *file_of_units(units)], sets=sets, unset=unset, plugins=plugin, csv=csv,
         report=report, out=out, date=date, all_pages=all_pages, format=format,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
@@ -201,6 +203,7 @@ def calibrate(
     bootstrap: Bootstrap = 0,
     search: Search = True,
     sets: Set = None,
+    unset: Unset = None,
     plugin: PluginFile = None,
     report: Report = False,
     out: Out = REPORTS,
@@ -215,8 +218,8 @@ def calibrate(
     from .. import api as verbs
 
     job = Job(
-        design, [record, *file_of_units(units)], sets=sets, plugins=plugin, write=write,
-        report=report, out=out, date=date, all_pages=all_pages, format=format,
+        design, [record, *file_of_units(units)], sets=sets, unset=unset, plugins=plugin,
+        write=write, report=report, out=out, date=date, all_pages=all_pages, format=format,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
     _check_bootstrap(bootstrap)

@@ -11,7 +11,7 @@ import typer
 from ..base.errors import Diagnostic, ExitCode, UsageError
 from . import streams
 from .job import Job
-from .options import REPORTS, Json, PluginFile, Quiet, Set, UnusedOut, UnusedSeed
+from .options import REPORTS, Json, PluginFile, Quiet, Set, Unset, UnusedOut, UnusedSeed
 
 Words = Annotated[
     list[str],
@@ -40,13 +40,13 @@ def _is_design(word: str) -> bool:
 def _parted(words: Sequence[str], job: Job) -> tuple[str | None, list[str]]:
     """The design among the words after the first, and all other words.
 
-    Two designs, or ``--set`` without a design, are refused.
+    Two designs, or ``--set`` or ``--unset`` without a design, are refused.
     """
     files = [word for word in words[1:] if _is_design(word)]
     if len(files) > 1:
         raise UsageError(Diagnostic(f"{files[1]}: a second design", "name one design"))
-    if job.sets and not files:
-        raise UsageError(Diagnostic("--set: there is no design", "name a design file"))
+    if job.changing and not files:
+        raise UsageError(Diagnostic(f"{job.changing}: there is no design", "name a design file"))
     others = [word for k, word in enumerate(words) if k == 0 or word not in files]
     return (files[0] if files else None), others
 
@@ -54,6 +54,7 @@ def _parted(words: Sequence[str], job: Job) -> tuple[str | None, list[str]]:
 def explain(
     words: Words,
     sets: Set = None,
+    unset: Unset = None,
     plugin: PluginFile = None,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -63,7 +64,7 @@ def explain(
     """Explain a name: meaning, value, influences, source."""
     from .. import api as verbs
 
-    job = Job(sets=sets, as_json=as_json, quiet=quiet)
+    job = Job(sets=sets, unset=unset, as_json=as_json, quiet=quiet)
     design, others = _parted(words, job)
     options = {"set": job.set, "plugins": plugin or []}
     explanation = job.run(verbs.explain, " ".join(others), design, **options)
@@ -74,6 +75,7 @@ def explain(
 def list_names(
     words: Listed,
     sets: Set = None,
+    unset: Unset = None,
     plugin: PluginFile = None,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -86,7 +88,7 @@ def list_names(
     """
     from .. import api as verbs
 
-    job = Job(sets=sets, as_json=as_json, quiet=quiet)
+    job = Job(sets=sets, unset=unset, as_json=as_json, quiet=quiet)
     design, others = _parted(words, job)
     options = {"set": job.set, "plugins": plugin or []}
     listed = job.run(verbs.catalogue, others[0], design, " ".join(others[1:]), **options)

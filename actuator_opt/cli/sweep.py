@@ -24,6 +24,7 @@ from .options import (
     Scheduler,
     Seed,
     Set,
+    Unset,
     UnusedSeed,
 )
 
@@ -115,6 +116,7 @@ def sweep(
     engine: Screening = "numpy",
     yes: Yes = False,
     sets: Set = None,
+    unset: Unset = None,
     plugin: PluginFile = None,
     seed: Seed = 0,
     no_record: NoRecord = False,
@@ -129,7 +131,7 @@ def sweep(
     if show and not figures:
         raise UsageError(Diagnostic("--show without --figure", "add e.g. --figure parallel"))
     job = Job(
-        design, sets=sets, plugins=plugin, report=bool(figures), out=out,
+        design, sets=sets, unset=unset, plugins=plugin, report=bool(figures), out=out,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
     figures, show = figures or [], show or []

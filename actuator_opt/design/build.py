@@ -17,7 +17,7 @@ from . import choice_list, requirements
 from .faults import cross_field, material_faults
 from .kinds import Fraction, Section, ValueFault, shape_in_words
 from .model import Design, Ply
-from .paths import put, remove, resolve, spell
+from .paths import put, remove, resolve, spell, stated
 from .structure import (
     NONE,
     Loc,
@@ -241,7 +241,7 @@ def to_tree(section: Section) -> dict[str, Any]:
 
 def with_values(
     design: Design,
-    values: Mapping[str, float | str | Fraction],
+    values: Mapping[str, float | str | Fraction | None],
     *,
     materials: MaterialLookup | None = None,
     metrics: Mapping[str, Quantity] | None = None,
@@ -249,8 +249,9 @@ def with_values(
 ) -> Design:
     """Copy a design with changed values by PATH (SI numbers, or texts with units); check it.
 
-    The value `none` removes an optional block, with its variables (see `is_removed_by_none`). If an
-    optimisation variable started at the old value, it now starts at the new value. Without
+    The value None removes a key or block, and the word `none` the optional block that requires the
+    key (see `is_removed_by_none`), both with their variables. If an optimisation variable started
+    at the old value, it now starts at the new value. Without
     `contradictions` values may contradict each other; this is needed where a search found no
     feasible design.
 
@@ -260,9 +261,12 @@ def with_values(
         if a PATH has no value, a value is unsuitable, or the new values contradict each other
     """
     tree = to_tree(design)
-    diagnostics, removed = [], []
+    diagnostics, removed = [], list[Loc]()
     for path, value in values.items():
         try:
+            if value is None:
+                removed.append(stated(path, tree, metrics))
+                continue
             target = resolve(path, tree, metrics)
         except ValueFault as fault:
             message = fault.message.removeprefix(f"{path}: ")

@@ -20,7 +20,7 @@ from ..base.quantities import Quantity
 from ..metrics import METRICS, of_metric, term_of
 from .kinds import Fraction, Section, ValueFault
 from .model import Design
-from .structure import KeyEntry, Loc, child, child_at, entries, leaves, number_of
+from .structure import KeyEntry, Loc, blocks, child, child_at, entries, leaves, number_of
 from .uncertain import NUMBERS, quantity_of_entry
 
 _PATH = re.compile(r"[^.\[\]=]+(\[[^\[\]=]+\])?(\.[^.\[\]=]+(\[[^\[\]=]+\])?)*")
@@ -361,10 +361,65 @@ def put(tree: dict[str, Any], target: Target, value: object) -> None:
     node[key] = value
 
 
-def remove(tree: dict[str, Any], block: Loc) -> None:
-    """Remove a block from a tree, with the entries of other tables for its values."""
-    (child_at(tree, block[:-1]) or {}).pop(block[-1], None)
-    for table in _ENDS:
-        paths = tree.get(table, {})
-        for path in [path for path in paths if path.startswith(f"{spell(block)}.")]:
-            del paths[path]
+def remove(tree: dict[str, Any], loc: Loc) -> None:
+    """Remove a key or block from a tree, with the entries of other tables for its values."""
+    name = spell(loc, tree)
+    node = child_at(tree, loc[:-1]) or {}
+    node.pop(loc[-1], None)
+    needed = _LIMITS if loc[0] == "requirements" else tuple(node)
+    if len(loc) > 2 and loc[0] in _TABLES and not any(key in node for key in needed):
+        tree[loc[0]].pop(loc[1], None)  # an entry of a table that states no limit or value any more
+    for table in filter(None, map(tree.get, _ENDS)):
+        for path in list(table):
+            if path == name or path.startswith((f"{name}.", f"{name}[")):
+                del table[path]
+
+
+def stated(
+    path: str,
+    tree: dict[str, Any],
+    metrics: Mapping[str, Quantity] | None = None,
+    root: type[Section] = Design,
+) -> Loc:
+    """Location of a key or block that a tree states, such as ``cushion`` or ``rod.fitting.wall``.
+
+    Parameters
+    ----------
+    path : PATH of a value, of a block, or of an entry of a table with free names
+    tree : dicts and lists
+    metrics, root : as for `resolve`, which finds similar names for an unknown PATH
+
+    Raises
+    ------
+    ValueFault
+        if the PATH is unknown, names an entry of a list, or the tree does not state it
+
+    >>> stated("variables.cylinder.bore", {"variables": {"cylinder.bore": {"lower": "9 mm"}}})
+    ('variables', 'cylinder.bore')
+    """
+    loc = _stated(path, path.strip(), tree, ())
+    if not loc:
+        if path.strip() not in blocks(root):
+            resolve(path, tree, metrics, root)
+        raise ValueFault(f"{path}: is not stated, so it cannot be unset", "leave out this option")
+    if isinstance(loc[-1], int):
+        raise ValueFault(f"{path}: an entry of a list cannot be unset", "change it in the file")
+    return loc
+
+
+def _stated(path: str, rest: str, node: Any, loc: Loc) -> Loc | None:
+    """Location of the value below a node that the rest of a PATH names; None if there is none."""
+    if not rest:
+        return loc
+    if isinstance(node, list):
+        index = _TOKEN.match(rest)
+        if index is None or index[1] is None:
+            return None
+        key = _index(path, index[1], node, loc)
+        return _stated(path, rest[index.end() :].removeprefix("."), node[key], (*loc, key))
+    for key, below in node.items() if isinstance(node, dict) else ():
+        if rest == key or rest.startswith((f"{key}.", f"{key}[")):
+            deeper = _stated(path, rest[len(key) :].removeprefix("."), below, (*loc, key))
+            if deeper is not None:
+                return deeper
+    return None

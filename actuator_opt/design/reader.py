@@ -8,47 +8,26 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any
 
-from ..base import errors, units
+from ..base import errors
+from ..base.arguments import Change
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, Fault, InputError
 from ..base.files import read_bytes
 from ..base.quantities import Quantity
 from . import layup
-from .build import MOST_FAULTS, Root, build, copy_tree
+from .build import MOST_FAULTS, Root, build
+from .changes import Changed, Override, changed, meaningless
 from .ideal import completed
 from .kinds import Section, ValueFault
 from .model import Design
-from .paths import put, resolve, spell
+from .paths import resolve, spell
 from .structure import Loc, MaterialLookup
 from .yaml_source import MAX_BYTES, Document, NodeSpan, decode, parse
 
 TEXT = "<text>"
 STDIN = "<stdin>"
-SET: Final = "--set"
-
-
-class Override(NamedTuple):
-    """A value that replaces a value of the file.
-
-    If the new value comes from another file, `file` and `loc` are its location there; `file` is
-    None for the command line.
-    """
-
-    path: str
-    value: str
-    file: Document | None = None
-    loc: Loc = ()
-
-    def diagnostic(
-        self, message: str, remedy: str, path: str | None, *, at_key: bool = False
-    ) -> Diagnostic:
-        """A fault caused by this value."""
-        if self.file is None:
-            return Diagnostic(message, remedy, SET, path=path)
-        spans = self.file.keys if at_key else self.file.values
-        return self.file.diagnostic(spans.get(self.loc), message, remedy, path)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +72,8 @@ class FileSource:
             path = errors.shown(path, 120)
         place = self._find(fault)
         if isinstance(place, Override):
+            if place.value is None and fault.message.startswith("missing"):
+                return place.diagnostic("cannot be unset: it is required", "set it instead", path)
             return place.diagnostic(fault.message, fault.remedy, path)
         return self.document.diagnostic(place, fault.message, fault.remedy, path)
 
@@ -133,7 +114,7 @@ class LoadedDesign:
 def read_design(
     source: str | Path,
     *,
-    overrides: Iterable[Override | tuple[str, str]] = (),
+    overrides: Iterable[Override | Change] = (),
     materials: MaterialLookup | None = None,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> LoadedDesign:
@@ -143,7 +124,7 @@ def read_design(
     ----------
     source : path, ``"-"`` for standard input, or a text of several lines
     overrides : (PATH, value) pairs that replace values before all checks; a bare number is
-        in SI, but a value that comes from another file needs its unit
+        in SI, but a value that comes from another file needs its unit; None removes the key
     materials : names and kinds of materials; default: the library
     metrics : metrics that may be named; default: `metrics.METRICS`
 
@@ -161,7 +142,7 @@ def read_design(
 def read_document(
     document: Document,
     *,
-    overrides: Iterable[Override | tuple[str, str]] = (),
+    overrides: Iterable[Override | Change] = (),
     materials: MaterialLookup | None = None,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> LoadedDesign:
@@ -180,7 +161,7 @@ def load(
     document: Document,
     root: type[Root],
     build_section: Callable[[dict[str, Any]], tuple[Root | None, Sequence[Fault]]],
-    overrides: Iterable[Override | tuple[str, str]] = (),
+    overrides: Iterable[Override | Change] = (),
     metrics: Mapping[str, Quantity] | None = None,
 ) -> tuple[Root, FileSource]:
     """Build the object that a document describes, and record the locations of its values.
@@ -199,22 +180,21 @@ def load(
         with all faults, in line order
     """
     _require_kind(document)
-    tree = copy_tree(document.data)
-    faults = list(document.faults)
-    places: dict[Loc, Override] = {}
-    for override in (Override(*given) for given in overrides):
-        path, value, file, _ = override
-        try:
-            target = resolve(path, tree, metrics, root)
-            if file is not None and target.loc in places:
-                raise ValueFault(f"is also set as {places[target.loc].path}", "keep one of them")
-            put(tree, target, value if file is not None else _bare_is_si(value, target.quantity))
-            places[target.loc] = override
-        except ValueFault as fault:
-            message, shown = fault.message.removeprefix(f"{path}: "), errors.shown(path, 120)
-            faults.append(override.diagnostic(message, fault.remedy, shown, at_key=True))
-    source = FileSource(document, places, root, metrics)
-    section, section_faults = build_section(tree)
+    given = [Override(*change) for change in overrides]
+
+    def with_changes(used: Sequence[Override]) -> Changed:
+        return changed(document, root, metrics, used)
+
+    new = with_changes(given)
+    faults = [*document.faults, *new.faults]
+    source = FileSource(document, new.places, root, metrics)
+    section, section_faults = build_section(new.tree)
+    if section_faults and new.choices:
+        advice, section_faults = meaningless(
+            new, section_faults, lambda tree: build_section(tree)[1],
+            lambda choice: with_changes([x for x in given if x is not choice]).tree,
+        )  # fmt: skip
+        faults += advice
     reported = _once([f for f in section_faults if not _unusable(f, document)], document)
     if section is None or faults or reported:
         raise InputError(_in_order(source, faults, reported))
@@ -275,19 +255,6 @@ def _in_order(
         more = Diagnostic(f"and {omitted} more faults", "correct these first", source.file)
         ordered = [*ordered[:MOST_FAULTS], more]
     return ordered
-
-
-def _bare_is_si(value: str, quantity: Quantity | None) -> str:
-    """Add the SI unit to `value` if it is a bare number."""
-    if quantity is None:
-        return value
-    try:
-        number, unit = units.split(value)
-    except units.UnitError:
-        return value
-    if unit:
-        return value
-    return f"{number * 100!r} %" if quantity.name == "fraction" else f"{value} {quantity.si_unit}"
 
 
 def opened(source: str | Path, kind: str = "design") -> tuple[str, str]:

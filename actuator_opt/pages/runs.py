@@ -109,6 +109,7 @@ def _facts(head: Mapping[str, Any], body: Mapping[str, Any]) -> list[Fact]:
         ("seed", str(head["seed"])),
         ("versions", ", ".join(f"{key} {value}" for key, value in body["versions"].items())),
         *(("set", f"{path} = {value}") for path, value in given["set"]),
+        *(("unset", path) for path in given.get("unset", ())),
         *(("plugin", x["file"] or "a function of a script") for x in given["plugins"]),
         *request,
         ("outcome", pretty(str(head.get("outcome") or outcome(head)))),

@@ -47,6 +47,7 @@ from ..rendering.text import (
 from ..simulation.assemble import ends_of
 from ..simulation.components.circuit import LOOPS, loop_of
 from ..simulation.result import EXPECTED, RequirementResult, Simulation
+from .simulation_basis import blocks as basis_blocks
 from .simulation_energy import doubts, table_rows
 from .simulation_figures import LEAST, MOST, Measured, Static, simulation_figure, window
 
@@ -122,7 +123,11 @@ def page(
             simulation, min(room, MOST), measured=measured, static=static
         ),
         least=LEAST,
-        blocks=[*_blocks(simulation, notes), *extra],
+        blocks=[
+            *_blocks(simulation, notes),
+            *extra,
+            *basis_blocks(simulation.basis, on="paper"),
+        ],
     )
 
 
@@ -358,6 +363,8 @@ def controller(simulation: Simulation) -> list[tuple[str, str]]:
         if value:
             rows.append((words, value_text(SCENARIOS[name], value)))
     ultimate = tuned.ultimate
+    if ultimate is None or tuned.margins is None:
+        return rows
     swings = math.isfinite(ultimate.gain)
     rows.append(("ultimate gain", with_unit(number(ultimate.gain), unit) if swings else "none"))
     if swings:
@@ -647,11 +654,15 @@ def _controller(simulation: Simulation) -> Block | None:
     rows = controller(simulation)
     if not rows:
         return None
-    note = (
-        "The margins are those of the linear loop without sticking friction, at its worst "
-        "position and spool direction."
-    )
     columns = [Column("controller"), Column("", width=1.0, breaks=14, wraps=True)]
+    tuned, control = simulation.tuned, simulation.scenario.control
+    if tuned is None or tuned.margins is None:
+        return Table("Controller", columns, rows)
+    resting = control is not None and control.tuning_side == "rest"
+    note = (
+        "The margins are those of the linear loop without sticking friction, at its worst position "
+        + ("on the side where the spool rests." if resting else "and spool direction.")
+    )
     return Table("Controller and its margins", columns, rows, note=note)
 
 

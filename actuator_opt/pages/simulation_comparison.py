@@ -415,7 +415,7 @@ def _gain(tuned: Tuned, simulation: Simulation) -> float:
 
 
 def _phase(tuned: Tuned, _: Simulation) -> float | None:
-    phase = tuned.margins.phase
+    phase = None if tuned.margins is None else tuned.margins.phase
     return None if phase is None else math.degrees(phase)
 
 
@@ -427,11 +427,17 @@ COLUMNS: dict[str, Number] = {name: _result(name) for name in RESULTS} | {
     "derivative_time": _of_gains(
         "derivative time", "ms", lambda tuned, _: 1e3 * float(tuned.gains.derivative_time)
     ),
-    "ultimate_gain": _of_gains("ultimate gain", "", lambda tuned, _: tuned.ultimate.gain),
-    "ultimate_period": _of_gains(
-        "ultimate period", "ms", lambda tuned, _: 1e3 * tuned.ultimate.period
+    "ultimate_gain": _of_gains(
+        "ultimate gain", "", lambda tuned, _: tuned.ultimate.gain if tuned.ultimate else None
     ),
-    "gain_margin": _of_gains("gain margin", "", lambda tuned, _: tuned.margins.gain),
+    "ultimate_period": _of_gains(
+        "ultimate period",
+        "ms",
+        lambda tuned, _: 1e3 * tuned.ultimate.period if tuned.ultimate else None,
+    ),
+    "gain_margin": _of_gains(
+        "gain margin", "", lambda tuned, _: tuned.margins.gain if tuned.margins else None
+    ),
     "phase_margin": _of_gains("phase margin", "°", _phase),
 }
 """Columns that the table may have."""

@@ -17,7 +17,7 @@ from ..models.loop import ControllerGains
 from ..models.stiffness import holding_pressures
 from ..studies.plant import Plant
 from .components import chambers, circuit, motion, valve
-from .components.circuit import LOOPS, Circuit, InitialState, loop_of
+from .components.circuit import LOOPS, Circuit, InitialState, Volumes, loop_of
 from .components.supply import SupplyBuilder
 from .components.valve import Feedback, command, inner
 from .system import System
@@ -130,7 +130,7 @@ def _driven(
         message = "the design has no valve"
         raise InputError(Diagnostic(message, 'add a block "valve" to the design', path="valve"))
     source = SupplyBuilder.of(circuit)
-    circuit.centre = data.offset
+    circuit.centre, circuit.driven = data.offset, True
     flows = valve.edges(
         circuit,
         data,
@@ -206,7 +206,7 @@ def _cylinder(circuit: Circuit) -> None:
     pressure_force = _chambers(
         circuit, (a, b), (into_a - leakage, into_b + leakage), position, speed
     )
-    curve = motion.law(plant, scenario.friction, circuit.start)
+    circuit.friction = curve = motion.law(plant, scenario.friction, circuit.start)
     curve = replace(curve, viscous=circuit.value("friction.viscous", curve.viscous))
     friction = motion.resist(
         circuit, curve, speed=speed, pressure_a=a.pressure, pressure_b=b.pressure
@@ -237,6 +237,11 @@ def _chambers(
     Return the pressure force.
     """
     plant, (a, b) = circuit.plant, sides
+    circuit.volumes = volumes = Volumes(
+        chambers.dead_volume(circuit, plant.dead_a + a.lumped, plant.area_a, "chamber A"),
+        chambers.dead_volume(circuit, plant.dead_b + b.lumped, plant.area_b, "chamber B"),
+        plant.walls._replace(a0=plant.walls.a0 + a.lumped_wall, b0=plant.walls.b0 + b.lumped_wall),
+    )
     return chambers.cylinder(
         circuit,
         pressure_a=a.pressure,
@@ -248,10 +253,6 @@ def _chambers(
         area_a=plant.area_a,
         area_b=plant.area_b,
         stroke=plant.stroke,
-        dead_a=chambers.dead_volume(circuit, plant.dead_a + a.lumped, plant.area_a, "chamber A"),
-        dead_b=chambers.dead_volume(circuit, plant.dead_b + b.lumped, plant.area_b, "chamber B"),
-        walls=plant.walls._replace(
-            a0=plant.walls.a0 + a.lumped_wall, b0=plant.walls.b0 + b.lumped_wall
-        ),
+        **volumes._asdict(),
         flexibility=plant.flexibility,
     )

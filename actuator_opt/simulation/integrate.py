@@ -7,8 +7,8 @@ Radau serves as an independent check.
 CVODES of SUNDIALS is called through CasADi (extra `fast`) and runs without Python code. The
 expressions of a system are translated to CasADi, with each shared operation only once; CasADi
 derives the exact Jacobian. No compiler is needed. If CVODES fails, another integrator takes over
-that section or reports why it cannot. For a servo drive, CVODES takes about half the time of LSODA
-at the same error.
+that section or reports why it cannot. LSODA calls the compiled program of the equations, so it is
+the faster method: for the shipped servo drives, CVODES takes 1.8 to 3.1 times as long.
 """
 
 from __future__ import annotations

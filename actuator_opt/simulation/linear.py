@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import field, replace
 from math import copysign, inf, isfinite, pi, radians
 from typing import NamedTuple
 
@@ -62,6 +62,8 @@ class OpenLoop:
     """Vector b of the transfer function."""
     output_gains: Array
     """Vector c of the transfer function."""
+    kept: dict[str, Array] = field(default_factory=dict, compare=False, repr=False)
+    """Frequencies and the response there, once computed: a search for gains reads them often."""
 
     @classmethod
     def of(cls, a: Array, b: Array, c: Array) -> OpenLoop:
@@ -90,6 +92,18 @@ class OpenLoop:
     @property
     def frequencies(self) -> Array:
         """Angular frequencies, dense enough to show every resonance [rad/s]."""
+        if "frequencies" not in self.kept:
+            self.kept["frequencies"] = self._frequencies()
+        return self.kept["frequencies"]
+
+    @property
+    def response(self) -> Array:
+        """Frequency response at the `frequencies`."""
+        if "response" not in self.kept:
+            self.kept["response"] = self.at(self.frequencies)
+        return self.kept["response"]
+
+    def _frequencies(self) -> Array:
         size = np.abs(self.poles)
         size = size[size > STILL]
         grid = np.geomspace(size.min() / 100, size.max() * 10, POINTS)
@@ -115,6 +129,8 @@ class LoopsAtPoint(NamedTuple):
     loops: list[OpenLoop]
     held: bool
     """Whether the valve can hold the load at this point."""
+    rest: list[OpenLoop]
+    """Those of the loops on whose side of the centre the spool rests; both without load."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,7 +189,8 @@ class Linear:
         guesses = (self.steady(centre + volts, **(at_rest | states)) for volts in self._guesses())
         equilibrium = next((guess for guess in guesses if guess is not None), None)
         fallback = self._with(at_rest | states) if equilibrium is None else equilibrium[0]
-        loops = []
+        loops: list[OpenLoop] = []
+        rest: list[OpenLoop] = []
         for side in (1.0, -1.0):
             point: tuple[Array, float] | None = equilibrium
             if equilibrium is None or (equilibrium[1] - centre) * side < TOUCH:
@@ -186,7 +203,9 @@ class Linear:
                     )
             assert point is not None
             loops.append(self.loop(*point))
-        return LoopsAtPoint(loops, equilibrium is not None)
+            if equilibrium is not None and (equilibrium[1] - centre) * side > -TOUCH:
+                rest.append(loops[-1])
+        return LoopsAtPoint(loops, equilibrium is not None, rest)
 
     def steady(self, guess: float, **states: float) -> tuple[Array, float] | None:
         """Find all states and the valve signal in steady motion, for some given states.
@@ -260,17 +279,21 @@ class Ultimate:
 
 def ultimate(loop: OpenLoop) -> Ultimate:
     """Smallest gain K with K L(i omega) = -1; infinite if no gain makes the loop oscillate."""
-    oscillations = [(-1 / value.real, omega) for omega, value in _crossings(loop, loop.at)]
+    crossings = _crossings(loop.frequencies, loop.response, loop.at)
+    oscillations = [(-1 / value.real, omega) for omega, value in crossings]
     gain, omega = min(oscillations, default=(inf, 0.0))
     return Ultimate(gain, 2 * pi / omega if omega > 0 else inf)
 
 
-def _crossings(loop: OpenLoop, response: Callable[[Array], Array]) -> list[tuple[float, complex]]:
-    """Frequencies at which a response is real and negative, with the response there."""
+def _crossings(
+    omega: Array, value: Array, response: Callable[[Array], Array]
+) -> list[tuple[float, complex]]:
+    """Frequencies at which a response is real and negative, with the response there.
+
+    `value` is the response at the frequencies `omega`.
+    """
     from scipy.optimize import brentq
 
-    omega = loop.frequencies
-    value = response(omega)
     crossings = []
     for k in np.flatnonzero(np.diff(np.sign(value.imag)) != 0):
         if min(value[k].real, value[k + 1].real) >= 0:
@@ -355,21 +378,27 @@ def margins(loop: OpenLoop, law: ControllerLaw) -> LoopMargins:
         return loop.at(omega) * law.at(omega)
 
     stable = not _grow(law.closed(loop))
-    factors = [-1 / value.real for _, value in _crossings(loop, response)]
+    omega = loop.frequencies
+    value = loop.response * law.at(omega)
+    factors = [-1 / crossing.real for _, crossing in _crossings(omega, value, response)]
     if stable:
         gain = min((factor for factor in factors if factor > 1), default=inf)
     else:
         gain = max((factor for factor in factors if factor <= 1), default=0.0)
+    return LoopMargins(gain, phase_margin(loop, law), stable)
+
+
+def phase_margin(loop: OpenLoop, law: ControllerLaw) -> float | None:
+    """Phase margin of L(i omega) C(i omega) [rad]; None if the loop gain never exceeds one."""
     omega = loop.frequencies
-    value = response(omega)
-    size = np.abs(value)
+    size = np.abs(loop.response * law.at(omega))
     phase = None
     for k in np.flatnonzero((size[:-1] >= 1) & (size[1:] < 1)):
         share = np.log(size[k]) / np.log(size[k] / size[k + 1])
-        value_at_crossover = response(omega[k : k + 1] * (omega[k + 1] / omega[k]) ** share)[0]
-        phase_here = float(np.angle(-value_at_crossover))
-        phase = phase_here if phase is None or abs(phase_here) < abs(phase) else phase
-    return LoopMargins(gain, phase, stable)
+        crossover = omega[k : k + 1] * (omega[k + 1] / omega[k]) ** share
+        here = float(np.angle(-(loop.at(crossover) * law.at(crossover))[0]))
+        phase = here if phase is None or abs(here) < abs(phase) else phase
+    return phase
 
 
 def least(loops: Sequence[OpenLoop]) -> tuple[Ultimate, OpenLoop]:
@@ -400,14 +429,15 @@ CAUSES = "lower the load or the piston's leakage, or raise supply.pressure or th
 
 @dataclass(frozen=True, slots=True)
 class Tuned:
-    """Gains of the controller, and the way in which they were obtained."""
+    """Gains of the controller, the way in which they were obtained, and the margins."""
 
     gains: ControllerGains
     origin: str
-    ultimate: Ultimate
-    margins: LoopMargins
-    """Margins of the linear loop with these gains times the scenario's factors."""
     unit: str
+    ultimate: Ultimate | None = None
+    margins: LoopMargins | None = None
+    """Margins of the linear loop with these gains times the scenario's factors; they and `ultimate`
+    are None if the gains do not need them and nobody asked for them."""
     notes: tuple[str, ...] = ()
     unheld: str = ""
     """Text that names the point at which the valve cannot hold the load, if any; the margins are
@@ -415,16 +445,26 @@ class Tuned:
 
 
 def tune(
-    scenario: Scenario, plant: Plant, records: Records, *, previous: Tuned | None = None
+    scenario: Scenario,
+    plant: Plant,
+    records: Records,
+    *,
+    previous: Tuned | None = None,
+    with_margins: bool = False,
 ) -> Tuned | None:
     """Gains of a scenario's controller, with the margins of the control loop.
-
-    If `previous` is given, its gains are kept and only the margins are computed.
 
     The loop is linear and has no sticking friction. The valve holds the initial load, even if the
     scenario starts at other pressures. The loop is evaluated for both spool directions, at the
     start and, for a position loop, wherever the reference comes to rest. A speed loop is also
-    evaluated at steady speed. The smallest ultimate gain is used for tuning.
+    evaluated at steady speed. The smallest ultimate gain is used for tuning: of both directions or,
+    with ``tuning_side: rest``, only of that in which the spool rests.
+
+    Parameters
+    ----------
+    scenario, plant, records : as for `assemble`
+    previous : gains that are kept
+    with_margins : whether margins are computed although no gain is tuned by them
 
     Raises
     ------
@@ -435,43 +475,70 @@ def tune(
     control, loop = scenario.control, loop_of(scenario.control)
     if control is None or loop is None:
         return None
+    tuned = previous or _given(control, loop, plant)
+    if tuned is not None and not with_margins:
+        return replace(tuned, ultimate=None, margins=None, unheld="")
     circuit = assemble(_with_held_load(scenario), plant, records, None, linear=True)
-    linear = Linear.of(circuit)
-    loops, unheld = _loops(linear, scenario, plant, control, loop)
-    limit, worst = least(loops)
-    stated_gain = getattr(control, f"{loop}_gain")
-    design = plant.design.control
-    notes: tuple[str, ...] = ()
-    if previous is not None:
-        gains, origin, notes = previous.gains, previous.origin, previous.notes
-    elif stated_gain is not None:
-        gains = ControllerGains(
-            stated_gain, control.integral_time or inf, control.derivative_time or 0.0
-        )
-        origin = "stated"
-    elif (
-        control.tuning == "margins"
-        and loop == "position"
-        and control.law == "p"
-        and design is not None
-        and design.gain is not None
-        and control.margin is None
-    ):
-        gains, origin = ControllerGains(design.gain, inf, 0.0), "control.gain of the design"
-    elif unheld:
-        message = f"{UNHELD}{unheld}, so the gain cannot be tuned"
-        remedy = f"{CAUSES}; or state the gain"
-        raise InputError(Diagnostic(message, remedy, path=f"control.{loop}"))
-    else:
+    loops = _loops(Linear.of(circuit), scenario, plant, control, loop)
+    used = loops.rest if control.tuning_side == "rest" and loops.rest else loops.all
+    limit, worst = least(used)
+    if tuned is None:
+        if loops.unheld:
+            message = f"{UNHELD}{loops.unheld}, so the gain cannot be tuned"
+            remedy = f"{CAUSES}; or state the gain"
+            raise InputError(Diagnostic(message, remedy, path=f"control.{loop}"))
         gains, origin, notes = _gains_by_rule(control, loop, limit, worst)
+        tuned = Tuned(gains, origin, LOOPS[loop].unit, notes=notes)
+    law = _shaped(control, tuned.gains)
+    notes = (*tuned.notes, *_other_side(loops, used, law)) if previous is None else tuned.notes
+    return replace(
+        tuned, ultimate=limit, margins=margins(worst, law), notes=notes, unheld=loops.unheld
+    )
+
+
+def _given(control: Controller, loop: Loop, plant: Plant) -> Tuned | None:
+    """Gains that the scenario or the design states; None if they must be tuned."""
+    stated, design, unit = getattr(control, f"{loop}_gain"), plant.design.control, LOOPS[loop].unit
+    if stated is not None:
+        times = control.integral_time or inf, control.derivative_time or 0.0
+        return Tuned(ControllerGains(stated, *times), "stated", unit)
+    usual = control.tuning == "margins" and control.margin is None and control.law == "p"
+    usual = usual and control.tuning_side == "worst" and loop == "position"
+    if usual and design is not None and design.gain is not None:
+        return Tuned(ControllerGains(design.gain, inf, 0.0), "control.gain of the design", unit)
+    return None
+
+
+def _shaped(control: Controller, gains: ControllerGains) -> ControllerLaw:
+    """The controller with the scenario's factors, each of which acts on one part only."""
     factor, integral = control.gain_factor or NO_GAIN, control.integral_factor
-    shaped = ControllerLaw(  # each factor applies to one part only, as in `components.valve`
+    return ControllerLaw(  # as in `components.valve`
         factor * gains.proportional_gain,
         factor / integral * gains.integral_time if integral else inf,
         control.derivative_factor / factor * gains.derivative_time,
         control.filter_time,
     )
-    return Tuned(gains, origin, limit, margins(worst, shaped), LOOPS[loop].unit, notes, unheld)
+
+
+class _Loops(NamedTuple):
+    """Open loops at all points, those on the rest side, and where the load cannot be held."""
+
+    all: list[OpenLoop]
+    rest: list[OpenLoop]
+    unheld: str
+
+
+def _other_side(loops: _Loops, used: list[OpenLoop], law: ControllerLaw) -> Iterator[str]:
+    """A note if a loop that the tuning leaves out is nearer to its limit."""
+    if len(used) == len(loops.all) or loops.unheld:
+        return
+    limit, worst = least(loops.all)
+    if limit.gain < least(used)[0].gain:
+        gain = margins(worst, law).gain
+        yield (
+            "gain and margins are those of the side on which the spool rests: on the other side of "
+            f"its centre, which a drifting load passes, the gain margin is {gain:.3g}"
+        )
 
 
 def _with_held_load(scenario: Scenario) -> Scenario:
@@ -482,21 +549,22 @@ def _with_held_load(scenario: Scenario) -> Scenario:
 
 def _loops(
     linear: Linear, scenario: Scenario, plant: Plant, control: Controller, loop: Loop
-) -> tuple[list[OpenLoop], str]:
-    """Open loops at all relevant points, and the point (as text) where the load cannot be held."""
+) -> _Loops:
+    """Open loops at all relevant points."""
     if loop != "position":
-        loops, held = linear.about()
-        end = steady_value(getattr(control, loop))
+        loops, held, rest = linear.about()
+        moving: list[OpenLoop] = []
         if loop != "shaft_angle":
-            loops += _loop_in_motion(linear, loop, end)
-        return loops, "" if held else " at the start"
-    loops, words = [], ""
+            moving = _loop_in_motion(linear, loop, steady_value(getattr(control, loop)))
+        return _Loops([*loops, *moving], [*rest, *moving], "" if held else " at the start")
+    loops, at_rest, words = [], list[OpenLoop](), ""
     for place in _places(control.position, linear.circuit.start.position, plant.stroke):
-        more, held = linear.about(position=place)
+        more, held, rest = linear.about(position=place)
         loops += more
+        at_rest += rest
         if not held:
             words = words or f" with the piston at {INPUTS['position'].text(place)}"
-    return loops, words
+    return _Loops(loops, at_rest, words)
 
 
 def _places(parts: Sequence[SignalSegment], start: float, stroke: float) -> list[float]:
@@ -568,13 +636,12 @@ def _integral_time(loop: OpenLoop, law: ControllerLaw, shortest: float, period: 
     phase = PHASE if proportional.phase is None else min(MARGIN_SHARE * proportional.phase, PHASE)
     longest = 1e4 * period
     for time in np.geomspace(shortest, max(longest, shortest), 140):
-        with_integral = margins(loop, replace(law, integral_time=float(time)))
-        phase_kept = with_integral.phase is None or with_integral.phase >= phase
-        if (
-            with_integral.stable
-            and with_integral.gain >= MARGIN_SHARE * proportional.gain
-            and phase_kept
-        ):
+        candidate = replace(law, integral_time=float(time))
+        kept = phase_margin(loop, candidate)
+        if kept is not None and kept < phase:
+            continue  # the phase takes a small part of the time that the other margins take
+        with_integral = margins(loop, candidate)
+        if with_integral.stable and with_integral.gain >= MARGIN_SHARE * proportional.gain:
             return float(time)
     return longest
 

@@ -17,6 +17,7 @@ from ..design.scenario.model import Scenario, SignalSegment
 from ..evaluation.result import State, without_reserve
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..studies.plant import Plant
+from .basis import Basis
 from .components.circuit import Circuit, Loop, acts_after, frequencies, loop_of
 from .harmonic import dynamic_stiffness_of_record, windows
 from .integrate import LAST, Event, Stuck, Trajectory
@@ -148,6 +149,8 @@ class Simulation(Displayed):
     shaken: HarmonicLoad | None
     events: tuple[Event, ...]
     notes: tuple[str, ...]
+    basis: Basis
+    """Values of the equations, each with its origin."""
     second: Second | None = None
     evaluations: int = 0
     seconds: float = 0.0
@@ -218,6 +221,7 @@ class Simulation(Displayed):
             ],
             "second_integrator": self._second(),
             "notes": list(self.notes),
+            "basis": self.basis.to_dict(),
             "evaluations": self.evaluations,
             "seconds": self.seconds,
         }
@@ -250,17 +254,19 @@ class Simulation(Displayed):
         tuned = self.tuned
         if tuned is None:
             return None
+        ultimate, margins = tuned.ultimate, tuned.margins
         return {
             "origin": tuned.origin,
             "unit": tuned.unit,
             "proportional_gain": tuned.gains.proportional_gain,
             "integral_time": _finite(tuned.gains.integral_time),
             "derivative_time": tuned.gains.derivative_time,
-            "ultimate_gain": _finite(tuned.ultimate.gain),
-            "ultimate_period": _finite(tuned.ultimate.period),
-            "gain_margin": _finite(tuned.margins.gain),
-            "phase_margin": tuned.margins.phase,
-            "stable": tuned.margins.stable,
+            "ultimate_gain": None if ultimate is None else _finite(ultimate.gain),
+            "ultimate_period": None if ultimate is None else _finite(ultimate.period),
+            "gain_margin": None if margins is None else _finite(margins.gain),
+            "phase_margin": None if margins is None else margins.phase,
+            "stable": None if margins is None else margins.stable,
+            **({"why": NOT_ASKED} if margins is None else {}),
         }
 
     def _shaken(self) -> dict[str, Any] | None:
@@ -285,6 +291,8 @@ def _finite(value: float) -> float | None:
     return value if np.isfinite(value) else None
 
 
+NOT_ASKED = "the gain needs no margins; simulate --margins (margins=True) computes them"
+"""Reason for missing margins."""
 RISE = 4
 """Step response results are reliable if the rise lasts at least this number of sample intervals
 (our choice)."""

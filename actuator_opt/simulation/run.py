@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from time import perf_counter
@@ -12,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from ..base.numeric import Array
-from ..base.quantities import INPUTS
+from ..base.quantities import INPUTS, SCENARIOS
 from ..design.ideal import assumptions
 from ..design.scenario.kinds import Records
 from ..design.scenario.model import SAMPLES, Scenario
@@ -23,6 +24,8 @@ from ..models.supply import relief_flow
 from ..studies.plant import Plant, plant
 from . import result as results
 from .assemble import assemble
+from .basis import basis
+from .components import motion
 from .components.circuit import Circuit
 from .integrate import Method, Stuck, Trajectory, integrate
 from .linear import CAUSES, UNHELD, Tuned, tune
@@ -56,6 +59,7 @@ def simulate(
     *,
     records: Records | None = None,
     verify: bool = False,
+    margins: bool = False,
     method: Method = "lsoda",
 ) -> Simulation:
     """Simulate a scenario around a design.
@@ -66,6 +70,7 @@ def simulate(
     subject : the design, already with the values that the scenario sets
     records : columns of the files that the scenario's signals name
     verify : whether to integrate again by another method and compare the results
+    margins : whether to compute the margins of the linear loop although no gain is tuned by them
     method : integration method
 
     Raises
@@ -78,7 +83,7 @@ def simulate(
     begin = perf_counter()
     files = {} if records is None else records
     actuator = plant(subject)
-    tuned = tune(scenario, actuator, files)
+    tuned = tune(scenario, actuator, files, with_margins=margins)
     return run(
         scenario, actuator, files, tuned, verify=verify, method=method,
         spec=spec_of(subject, scenario), begin=begin,
@@ -133,7 +138,8 @@ def run(
         servo=servo,
         shaken=dynamic,
         events=trajectory.events,
-        notes=_notes(circuit, tuned, signals, step),
+        notes=_notes(circuit, tuned, trajectory.time, signals, step),
+        basis=basis(circuit),
         evaluations=trajectory.evaluations,
         seconds=perf_counter() - begin,
     )
@@ -141,6 +147,17 @@ def run(
         return result
     second = _checked_by(compiled, scenario, step, trajectory, signals, SECOND[method])
     return replace(result, second=second)
+
+
+def with_margins(simulation: Simulation, records: Records) -> Simulation:
+    """A simulation with the margins of its control loop, if it has a loop but no margins yet."""
+    before = simulation.tuned
+    if before is None or before.margins is not None:
+        return simulation
+    scenario, actuator = simulation.scenario, simulation.plant
+    tuned = tune(scenario, actuator, records, previous=before, with_margins=True)
+    notes = (*_controller_notes(tuned), *simulation.notes)
+    return replace(simulation, tuned=tuned, notes=notes)
 
 
 def _checked_by(
@@ -181,7 +198,7 @@ def _single_instants(time: Array) -> tuple[Array, Array]:
 
 
 def _notes(
-    circuit: Circuit, tuned: Tuned | None, signals: Mapping[str, Array], step: float
+    circuit: Circuit, tuned: Tuned | None, time: Array, signals: Mapping[str, Array], step: float
 ) -> tuple[str, ...]:
     """Notes on a simulation for its user."""
     scenario, actuator = circuit.scenario, circuit.plant
@@ -191,6 +208,7 @@ def _notes(
         *circuit.system.notes,
         *_controller_notes(tuned),
         *_simplifications(scenario, actuator),
+        *_bristles(circuit, time, signals),
         *_reference_outside_stroke(actuator, signals),
         *_limits(scenario, actuator, signals),
         *_coarse_samples(step, signals),
@@ -203,6 +221,8 @@ def _controller_notes(tuned: Tuned | None) -> Iterator[str]:
     if tuned is None:
         return
     yield from tuned.notes
+    if tuned.margins is None:
+        return
     if tuned.unheld:
         yield f"{UNHELD}{tuned.unheld}: the margins of the linear loop are meaningless; {CAUSES}"
     elif not tuned.margins.stable:
@@ -231,6 +251,35 @@ def _simplifications(scenario: Scenario, actuator: Plant) -> Iterator[str]:
             )
     if actuator.design.ports.accumulators:
         yield "accumulators at the ports (ports.accumulators) are left out of the simulation"
+
+
+def _bristles(circuit: Circuit, time: Array, signals: Mapping[str, Array]) -> Iterator[str]:
+    """A note on when the bristle damping falls with speed or, if it does not, may add energy."""
+    curve = circuit.friction
+    if curve is None or "bristles" not in signals:
+        return
+    speed, text = np.abs(signals["speed"]), SCENARIOS["speed_value"].text
+    fastest, limit = float(np.max(speed)), curve.taper_speed
+    if limit is None:
+        if fastest > curve.passive_speed > 0 and curve.bristle_damping > 0:
+            share = _share_above(curve.passive_speed, time, speed)
+            yield (
+                f"the bristle damping does not fall with speed: above "
+                f"{text(curve.passive_speed, 3)}, {share} of the time, friction may add energy; "
+                "friction.bristle_taper: true lets it fall"
+            )
+    elif fastest > limit * math.sqrt(-math.log(1 - motion.TAPERED)):
+        yield (
+            f"the bristle damping falls with speed so that friction adds no energy: to 37 % at "
+            f"{text(limit, 3)}, which the piston exceeds {_share_above(limit, time, speed)} of the "
+            f"time (up to {text(fastest, 3)}); friction.bristle_taper: false keeps it constant"
+        )
+
+
+def _share_above(limit: float, time: Array, speed: Array) -> str:
+    """Share of the time in which the speed exceeds a limit, as text."""
+    share = float(np.trapezoid((speed > limit).astype(float), time)) / float(time[-1] - time[0])
+    return f"{100 * share:.2g} %"
 
 
 def _limits(scenario: Scenario, actuator: Plant, signals: Mapping[str, Array]) -> Iterator[str]:

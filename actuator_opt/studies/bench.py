@@ -14,7 +14,7 @@ from ..design.model import Design
 from ..evaluation import state
 from ..evaluation.barrel import SEAL_STEP
 from ..evaluation.film import floats
-from ..evaluation.kernel import PreparedDesign, compute
+from ..evaluation.kernel import ModelRun, PreparedDesign, compute
 from ..evaluation.limits import MaterialValues
 from ..evaluation.rings import Ring, seal_contact
 from ..evaluation.sealing import WiperFriction, wipers
@@ -210,10 +210,13 @@ def _first(parts: dict[str, Array]) -> list[Array]:
     return [np.atleast_2d(np.asarray(part))[:1] for part in parts.values()]
 
 
-def bench(subject: PreparedDesign) -> Bench:
-    """Return the bench properties of a design, with oil and temperature of the first load case."""
+def bench(subject: PreparedDesign, done: ModelRun | None = None) -> Bench:
+    """Return the bench properties of a design, with oil and temperature of the first load case.
+
+    `done` is the run of all models on this design, if there is one already.
+    """
     v = subject.values()
-    done = compute(subject, v)
+    done = compute(subject, v) if done is None else done
     g = done.geometry
     stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
     temperature = first_case(done.state.temperature)

@@ -15,6 +15,7 @@ from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, maximum
 from ..design.model import Design, Ideal
 from ..evaluation import circuit, state
+from ..evaluation.build import spec_hash
 from ..evaluation.circuit import CHAMBERS, Chamber
 from ..evaluation.kernel import ModelRun, PreparedDesign, compute
 from ..evaluation.limits import MaterialValues
@@ -237,12 +238,28 @@ class Plant:
         return self.mass + (0.0 if joint is None else float(joint[1].mass))
 
 
+MOST_KEPT = 8
+"""Number of plants that are kept (our choice: the models take longer than a simulation, and a study
+of a servo changes its scenario more often than its design)."""
+_KEPT: dict[str, Plant] = {}
+"""The plants used last, by the hash of their design."""
+
+
 def plant(subject: PreparedDesign) -> Plant:
     """Return the plant of a design, at the temperature of its first load case.
 
     Seals that run on an oil film in the design are simulated dry, with their friction coefficient.
-    A block `ideal` states numbers of the cylinder instead.
+    A block `ideal` states numbers of the cylinder instead. The plants used last are kept.
     """
+    key = spec_hash(subject)
+    known = _KEPT.pop(key, None)
+    _KEPT[key] = known = _plant(subject) if known is None else known
+    while len(_KEPT) > MOST_KEPT:
+        del _KEPT[next(iter(_KEPT))]
+    return known
+
+
+def _plant(subject: PreparedDesign) -> Plant:
     stated = subject.design.ideal
     if stated is not None:  # the parts that complete the file are never shown
         design = subject.design.model_copy(update={"ideal": None})
@@ -250,7 +267,7 @@ def plant(subject: PreparedDesign) -> Plant:
     v = subject.values()
     done = compute(subject, v)
     design, g = subject.design, done.geometry
-    own = bench(subject)
+    own = bench(subject, done)
     give = done.springs.total([c for c in done.springs.chambers if c not in _NOT_WALLS])
     across = done.springs.series_compliance()
     supply = float(v["supply.pressure"])

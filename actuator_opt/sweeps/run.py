@@ -24,6 +24,7 @@ from ..base import progress
 from ..base.cluster import HERE, Cluster
 from ..base.database import Database, StoredNumbers, opened, reading, refused
 from ..base.numeric import Array
+from ..base.threads import stay_on_one_thread
 from ..version import VERSION
 from .chunk import Chunk, Study
 from .designs import CACHED
@@ -279,6 +280,7 @@ def _begin(study: Study) -> None:
     if MASKS:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     threading.Thread(target=_end_with_parent, daemon=True).start()
+    stay_on_one_thread()
     _STUDY[:] = [study]
 
 

@@ -144,7 +144,7 @@ def scenario(name: str) -> Path:
 def played(loop: Loop, law: str, **values: str) -> Simulation:
     """A loop under a law, with values of its control."""
     stated = {f"control.{name}": value for name, value in values.items()}
-    return simulate(scenario(loop.file), set={"control.law": law} | stated)
+    return simulate(scenario(loop.file), set={"control.law": law} | stated, margins=True)
 
 
 def stated(loop: Loop, law: str, gain: float, period: float) -> Simulation:
@@ -197,7 +197,7 @@ def raised(name: str, sure: float) -> Data:
     """Ultimate point of a loop as it is, by raising its P gain, beside that of the linear loop."""
     key, values = RAISED[name]
     loop = LOOPS[key]
-    at_rest = simulate(scenario(loop.file), set={"control.law": "p"} | values)
+    at_rest = simulate(scenario(loop.file), set={"control.law": "p"} | values, margins=True)
     assert at_rest.tuned is not None
     linear = at_rest.tuned.ultimate
 

@@ -245,7 +245,7 @@ def test_a_valve_between_empty_ports_runs():
 def test_a_start_away_from_rest_is_no_unstable_loop(short, pressure):
     """Margins are those where the valve holds the load, whatever pressures a run begins with."""
     rest, away = (
-        json.loads(run("simulate", str(short), "--json", *more).out)["controller"]
+        json.loads(run("simulate", str(short), "--margins", "--json", *more).out)["controller"]
         for more in ((), (f"--set=initial.pressure_a={pressure}",
                           f"--set=initial.pressure_b={pressure}"))
     )  # fmt: skip
@@ -261,7 +261,7 @@ def test_a_load_that_no_pressure_holds_is_named(short):
     assert "the valve cannot hold the load at the start" in result.err
     assert run("simulate", str(motor), "--set=motor.torque[0].value=20 N*m").code in (0, 1)
     short.write_text(SHORT + "load: {force: [{shape: constant, value: 12 kN}]}\n")
-    result = run("simulate", str(short))
+    result = run("simulate", str(short), "--margins")
     assert "margins of the linear loop are meaningless" in " ".join(result.out.split())
 
 
@@ -336,7 +336,7 @@ def test_a_precharge_above_the_supply_is_an_empty_accumulator(short):
     found = []
     for text in (PUMP, PUMP.replace(PUMP.splitlines()[-1] + "\n", "")):
         short.write_text(SHORT + text, encoding="utf-8")
-        found.append(json.loads(run("simulate", str(short), "--json").out))
+        found.append(json.loads(run("simulate", str(short), "--margins", "--json").out))
     for name in ("rise_time", "peak_pressure"):
         values = [one["results"][name]["value"] for one in found]
         assert values[0] == pytest.approx(values[1], rel=1e-3)
@@ -380,7 +380,7 @@ def test_a_load_cylinder_without_leakage_leaves_the_loop_stable(short):
         "     valve: {rated_flow: 10 l/min, natural_frequency: 80 Hz}}\n"
     )
     short.write_text(SHORT + bench, encoding="utf-8")
-    found = json.loads(run("simulate", str(short), "--json").out)["controller"]
+    found = json.loads(run("simulate", str(short), "--margins", "--json").out)["controller"]
     assert found["stable"]
     assert found["gain_margin"] > 2
 

@@ -30,6 +30,7 @@ from actuator_opt.rendering import axes, paper, series, terminal
 from actuator_opt.rendering.blocks import Chart, Column, Origin, Pair, Status, Table
 from actuator_opt.rendering.chart import Axis, Curve, Panel
 from actuator_opt.rendering.chart_ink import drawn
+from actuator_opt.simulation.basis import Basis
 from actuator_opt.simulation.integrate import Event
 from actuator_opt.simulation.result import EnergyFlow, RequirementResult, Second
 
@@ -556,11 +557,13 @@ def test_what_cannot_be_compared_says_why(runs, columns, words):
 
 @pytest.mark.parametrize("kind", case.KINDS)
 def test_a_run_makes_one_sheet(kind, tmp_path):
-    """One A4 sheet as PDF and PNG; the source inside."""
+    """One A4 sheet as PDF and PNG, and one with the values of the equations; the source inside."""
     found = case.simulated(kind)
     files = written(subject.page(found), tmp_path, scenario_hash=found.spec_hash)
     assert [file.path.name for file in files] == ["s.pdf", "s.png"]
-    assert files[0].pages == 1
+    assert files[0].pages == (1 if kind == "bench" else 2)
+    short = subject.page(replace(found, basis=Basis(())))
+    assert written(short, tmp_path / "short")[0].pages == 1
     inside = read_attachment(files[0].path)
     assert inside.source == case.SOURCE
     assert inside.run["scenario_hash"] == found.spec_hash
@@ -587,7 +590,7 @@ def test_what_the_caller_adds_goes_on_to_the_next_sheet(tmp_path):
     rows = [[f"frequency {k}", "1 Hz"] for k in range(40)]
     extra = [Table("Linear and not", [Column("what", "left", 1.0), Column("value")], rows)]
     longer = paged("step", extra=extra)
-    assert written(longer, tmp_path)[0].pages == 2
+    assert written(longer, tmp_path)[0].pages == 3
     drawn = [paper.plain(page, ORIGIN)["section"] for page in (longer, paged("step"))]
     assert drawn[0] == drawn[1]
     assert "Linear and not" in tables(longer)

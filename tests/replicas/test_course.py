@@ -36,7 +36,7 @@ QUICK = {"method": "LSODA", "rtol": 1e-8}
 def found(name: str, **values: str) -> Simulation:
     """A shipped scenario, simulated with values set; a double underscore is a dot."""
     own = {path.replace("__", "."): value for path, value in values.items()}
-    return simulate(SCENARIOS / f"course_{name}.yaml", set=own)
+    return simulate(SCENARIOS / f"course_{name}.yaml", set=own, margins=True)
 
 
 def at(one: Simulation, name: str, time: float) -> float:

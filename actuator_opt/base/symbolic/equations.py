@@ -97,8 +97,7 @@ class Equations:
         point = np.zeros(size + len(m) + len(tables))
         point[size : size + len(m)] = m
 
-        used = {node.index for node in needed(self.outputs)}
-        columns = [k for k, state in enumerate(self.states, 1) if state.index in used]
+        columns = self._columns
 
         def with_tables(of: Callable[[float, Array], Array]) -> Callable[[float, Array], Array]:
             def at(t: float, y: Array) -> Array:
@@ -113,6 +112,12 @@ class Equations:
             with_tables(program.repeated(point, size - 1, columns)),
             lambda: point[:size],
         )
+
+    @cached_property
+    def _columns(self) -> list[int]:
+        """Inputs of the program that are states on which the outputs depend."""
+        used = {node.index for node in needed(self.outputs)}
+        return [k for k, state in enumerate(self.states, 1) if state.index in used]
 
     def _interpreted(self, m: Sequence[bool]) -> PointFunctions:
         flags, point = tuple(m), np.zeros(1 + len(self.states))

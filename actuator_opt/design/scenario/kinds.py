@@ -141,7 +141,7 @@ FRICTIONS = kinds(
     SealFriction(
         "stribeck",
         "friction as a curve over speed, smooth through zero speed",
-        unread=("bristle_travel", "bristle_damping"),
+        unread=("bristle_travel", "bristle_damping", "bristle_taper"),
         words="Stribeck friction",
     ),
     SealFriction(
@@ -154,6 +154,7 @@ FRICTIONS = kinds(
             "exponent",
             "bristle_travel",
             "bristle_damping",
+            "bristle_taper",
         ),
         words="no dry friction",
     ),
@@ -526,6 +527,13 @@ Tuning: TypeAlias = Annotated[
         "the linear model divided by a gain margin, for the position and direction with the "
         "lowest limit; ziegler_nichols: by the table of Ziegler and Nichols, from the same limit; "
         "stated: the scenario states all values"
+    ),
+]
+TuningSide: TypeAlias = Annotated[
+    Literal["worst", "rest"],
+    Choice(
+        "side of the spool's centre whose loop sets gain and margins; worst: the side with the "
+        "lower limit; rest: the side on which the spool holds the load, or both without load"
     ),
 ]
 Friction: TypeAlias = Annotated[str, choice_of("friction model of the seals", FRICTIONS)]

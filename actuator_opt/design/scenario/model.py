@@ -9,7 +9,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from ..kinds import Of, Position, Section, Text
+from ..kinds import Boolean, Of, Position, Section, Text
 from ..model import Cushion, Limit, Valve
 from . import kinds
 from .kinds import FileName, Label, StartPosition
@@ -220,7 +220,14 @@ class ScenarioFriction(Section):
         Of(
             "bristle_damping",
             "bristle damping sigma_1; default: sqrt(sigma_0 m), with bristle stiffness sigma_0 and "
-            "moving mass m, reduced with speed so that friction adds no energy",
+            "moving mass m",
+        ),
+    ] = None
+    bristle_taper: Annotated[
+        bool | None,
+        Boolean(
+            "whether the bristle damping falls with speed so that friction adds no energy; "
+            "default: true, but false if bristle_damping is stated"
         ),
     ] = None
 
@@ -301,6 +308,7 @@ class Controller(Section):
     shaft_angle: Annotated[tuple[ShaftAngleSignal, ...], Field(max_length=100)] = ()
     law: kinds.Law = "p"
     tuning: kinds.Tuning = "margins"
+    tuning_side: kinds.TuningSide = "worst"
     margin: Annotated[
         float | None,
         Of("margin", 'gain margin for "tuning: margins"; default: 2 for law p, 3 for law pi'),

@@ -12,17 +12,19 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from ...base.arguments import Change
 from ...base.dataclass import dataclass
 from ...base.errors import Diagnostic, Fault, InputError
 from ...base.numeric import Array
 from ...base.quantities import RESULTS, Quantity
 from ...metrics import METRICS
 from ..build import check
+from ..changes import Override
 from ..kinds import Of, Section, Text, ValueFault
 from ..model import Design
-from ..paths import resolve
-from ..reader import STDIN, TEXT, FileSource, LoadedDesign, Override, load, opened, read_design
-from ..structure import MaterialLookup, child_at, entries
+from ..paths import resolve, stated
+from ..reader import STDIN, TEXT, FileSource, LoadedDesign, load, opened, read_design
+from ..structure import MaterialLookup, blocks, child_at, entries
 from ..writer import scalar
 from ..yaml_source import parse
 from .faults import cross_field, design_faults, part_lists
@@ -51,16 +53,15 @@ class LoadedScenario:
         return self.source.diagnostic(path, message, remedy)
 
 
-def read_scenario(
-    source: str | Path, *, overrides: Iterable[tuple[str, str]] = ()
-) -> LoadedScenario:
+def read_scenario(source: str | Path, *, overrides: Iterable[Change] = ()) -> LoadedScenario:
     """Read a scenario file, or its text; the design is not read.
 
     Parameters
     ----------
     source : path, ``"-"`` for standard input, or a text of several lines
-    overrides : (PATH, value) pairs that replace values before all checks; a bare number is SI.
-        PATHs that exist only in a design change the design, like those under ``set``
+    overrides : (PATH, value) pairs that replace values before all checks; a bare number is SI,
+        None removes the key. PATHs that exist only in a design change the design, like those under
+        ``set``
 
     Raises
     ------
@@ -69,12 +70,11 @@ def read_scenario(
     """
     text, file = opened(source, "scenario")
     document = parse(text, file, "scenario")
-    scenario_overrides: list[tuple[str, str]] = []
-    design_overrides: list[tuple[str, str]] = []
+    scenario_overrides: list[Change] = []
+    design_overrides: list[Change] = []
     for path, value in overrides:
-        (design_overrides if _of_design(path, document.data) else scenario_overrides).append(
-            (path, value)
-        )
+        of_design = (_unset_in_design if value is None else _of_design)(path, document.data)
+        (design_overrides if of_design else scenario_overrides).append((path, value))
     scenario, place = load(document, Scenario, _build_scenario, scenario_overrides, RESULTS)
     changes = []
     for path, value in scenario.set.items():
@@ -93,10 +93,26 @@ def _build_scenario(tree: dict[str, Any]) -> tuple[Scenario | None, Sequence[Fau
 
 def _of_design(path: str, tree: Any) -> bool:
     """Whether a PATH names a value of the design and not of the scenario."""
-    head = re.split(r"[.\[]", path.strip(), maxsplit=1)[0]
+    head = _head(path)
     if head not in entries(Scenario):
         return head in entries(Design)
     return not _names(path, tree, RESULTS, Scenario) and _names(path, {}, METRICS, Design)
+
+
+def _unset_in_design(path: str, tree: Any) -> bool:
+    """Whether a PATH that the scenario does not state may be stated in the design."""
+    try:
+        stated(path, tree, RESULTS, Scenario)
+    except ValueFault:
+        head = _head(path)
+        if head not in entries(Scenario):
+            return head in entries(Design)
+        return path.strip() in blocks(Design) or _names(path, {}, METRICS, Design)
+    return False
+
+
+def _head(path: str) -> str:
+    return re.split(r"[.\[]", path.strip(), maxsplit=1)[0]
 
 
 def _names(path: str, tree: Any, metrics: Mapping[str, Quantity], root: type[Section]) -> bool:

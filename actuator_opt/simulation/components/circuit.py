@@ -19,8 +19,9 @@ from ...base.symbolic import Expression, Namespace, Symbol, jacobian
 from ...design.model import Cushion
 from ...design.scenario.kinds import SHAPES, Records, height
 from ...design.scenario.model import Controller, Scenario, SignalSegment
+from ...evaluation.springs import Give
 from ...models.loop import ControllerGains
-from ...studies.plant import Plant
+from ...studies.plant import Plane, Plant
 from ..system import System
 
 
@@ -205,6 +206,31 @@ class FreeValue(NamedTuple):
     """Value in the equations: the variable or, while its flag is false, the stated value."""
 
 
+class Volumes(NamedTuple):
+    """Dead volumes [m^3] and walls of both chambers, with the lines that are lumped into them."""
+
+    dead_a: float
+    dead_b: float
+    walls: Give
+
+
+@dataclass(frozen=True, slots=True)
+class FrictionCurve:
+    """Seal friction as a function of speed and chamber pressures."""
+
+    coulomb: Plane
+    static: Plane
+    stribeck_speed: float
+    exponent: float
+    viscous: float
+    bristle_stiffness: float
+    bristle_damping: float
+    passive_speed: float
+    """Speed up to which the bristles cannot add energy with their damping at rest [m/s]."""
+    taper_speed: float | None
+    """Speed at which the bristle damping has fallen to 1/e of its value at rest; None: it stays."""
+
+
 @dataclass(slots=True)
 class Circuit:
     """A system of equations, with the data that its components, balance and results need."""
@@ -228,6 +254,11 @@ class Circuit:
     """Names of the values that stay variables of the equations (see `value`)."""
     freed: dict[str, FreeValue] = field(default_factory=dict)
     """Those of the names in `free` that the equations use."""
+    driven: bool = False
+    """Whether the valve of the design drives the circuit."""
+    volumes: Volumes | None = None
+    friction: FrictionCurve | None = None
+    """Friction of the seals, if the circuit has any."""
 
     def value(self, name: str, stated: Expression) -> Expression:
         """A stated value, or a variable that replaces it if `name` is one of `free`."""

@@ -6,7 +6,6 @@ viscous only.
 
 from __future__ import annotations
 
-from ...base.dataclass import dataclass
 from ...base.kinds import per_kind
 from ...base.numeric import maximum, where
 from ...base.quantities import INPUTS, SCENARIOS
@@ -15,7 +14,7 @@ from ...design.scenario.kinds import FRICTIONS
 from ...design.scenario.model import ScenarioFriction as Stated
 from ...models import end_stop, friction, linkage, lugre
 from ...studies.plant import Plane, Plant
-from .circuit import Circuit, InitialState, rate
+from .circuit import Circuit, FrictionCurve, InitialState, rate
 
 POSITION = 1e-10
 SPEED = 1e-9
@@ -26,17 +25,24 @@ _FORCE = SCENARIOS["force_value"]
 def stops(circuit: Circuit, position: Symbol, speed: Symbol) -> Expression:
     """Force of the end stops. It jumps at contact, so the time of contact is computed exactly."""
     system, plant = circuit.system, circuit.plant
-    damping = end_stop.stop_damping(
-        stiffness=plant.stop_stiffness,
-        mass=plant.moving_mass(circuit.start.position),
-        factor=circuit.scenario.stops.damping,
-    )
-    law = {"stiffness": plant.stop_stiffness, "damping": float(damping)}
+    stiffness, damping = stop_law(circuit)
+    law = {"stiffness": stiffness, "damping": damping}
     at_cap = system.switch("stop at the cap end", -position)
     at_rod = system.switch("stop at the rod end", position - plant.stroke)
     cap = end_stop.contact_force(compression=-position, closing_speed=-speed, **law)
     rod = end_stop.contact_force(compression=position - plant.stroke, closing_speed=speed, **law)
     return where(at_cap, cap, 0.0) - where(at_rod, rod, 0.0)
+
+
+def stop_law(circuit: Circuit) -> tuple[float, float]:
+    """Stiffness [N/m] and damping [N s/m] of a stop."""
+    plant = circuit.plant
+    damping = end_stop.stop_damping(
+        stiffness=plant.stop_stiffness,
+        mass=plant.moving_mass(circuit.start.position),
+        factor=circuit.scenario.stops.damping,
+    )
+    return plant.stop_stiffness, float(damping)
 
 
 def cushions(circuit: Circuit, position: Symbol, speed: Symbol) -> Expression:
@@ -167,22 +173,17 @@ SMOOTHING = 0.05
 """Width of the smooth change of sign at zero speed, relative to the Stribeck speed (our choice)."""
 
 
+TAPER = 0.5
+"""Speed at which the bristle damping has fallen to 1/e, divided by the passive speed (our choice:
+the largest that keeps `lugre_tapered_damping` passive)."""
+
+
+TAPERED = 0.05
+"""Largest relative fall of the bristle damping that no note reports (our choice)."""
+
+
 LONE_SPEED = 1e-3
 """Stribeck speed assumed if the scenario states friction, but no Stribeck speed [m/s]."""
-
-
-@dataclass(frozen=True, slots=True)
-class FrictionCurve:
-    """Seal friction as a function of speed and chamber pressures."""
-
-    coulomb: Plane
-    static: Plane
-    stribeck_speed: float
-    exponent: float
-    viscous: Expression
-    bristle_stiffness: float
-    bristle_damping: float
-    taper_speed: float
 
 
 def law(plant: Plant, stated: Stated, start: InitialState) -> FrictionCurve:
@@ -190,7 +191,7 @@ def law(plant: Plant, stated: Stated, start: InitialState) -> FrictionCurve:
 
     The bristle stiffness is computed at the initial pressures.
     """
-    seals, pressures = plant.seals, (start.pressure_a, start.pressure_b)
+    seals = plant.seals
     coulomb, static = seals.coulomb, seals.static
     speed = seals.stribeck_speed
     viscous = seals.viscous
@@ -203,8 +204,7 @@ def law(plant: Plant, stated: Stated, start: InitialState) -> FrictionCurve:
         viscous = 0.0
     if stated.viscous is not None:
         viscous = stated.viscous
-    level = max(float(coulomb.at(*pressures)), LEAST)
-    breakaway = max(float(static.at(*pressures)), level)
+    level, breakaway = _levels_at(coulomb, static, start)
     travel = stated.bristle_travel or seals.bristle_travel
     stiffness = float(lugre.lugre_bristle_stiffness(static=breakaway, largest_deflection=travel))
     damping = stated.bristle_damping
@@ -217,6 +217,9 @@ def law(plant: Plant, stated: Stated, start: InitialState) -> FrictionCurve:
     passive = lugre.lugre_passive_speed(
         level=level, bristle_damping=max(damping, 1e-9), viscous=viscous
     )
+    tapered = stated.bristle_taper
+    if tapered is None:
+        tapered = stated.bristle_damping is None
     return FrictionCurve(
         coulomb,
         static,
@@ -225,8 +228,19 @@ def law(plant: Plant, stated: Stated, start: InitialState) -> FrictionCurve:
         viscous,
         stiffness,
         damping,
-        0.5 * float(passive),
+        float(passive),
+        TAPER * float(passive) if tapered else None,
     )
+
+
+def levels_at(curve: FrictionCurve, start: InitialState) -> tuple[float, float]:
+    """Coulomb and breakaway friction at the initial pressures [N]."""
+    return _levels_at(curve.coulomb, curve.static, start)
+
+
+def _levels_at(coulomb: Plane, static: Plane, start: InitialState) -> tuple[float, float]:
+    level = max(float(coulomb.at(start.pressure_a, start.pressure_b)), LEAST)
+    return level, max(float(static.at(start.pressure_a, start.pressure_b)), level)
 
 
 def resist(
@@ -304,9 +318,11 @@ def _lugre(
     )
     system.rate(bristle, rate)
     system.signal("bristles", "deflection of the bristles", SCENARIOS["position_value"], bristle)
-    damping = lugre.lugre_tapered_damping(
-        bristle_damping=curve.bristle_damping, speed=speed, taper_speed=curve.taper_speed
-    )
+    damping: Expression = curve.bristle_damping
+    if curve.taper_speed is not None:
+        damping = lugre.lugre_tapered_damping(
+            bristle_damping=damping, speed=speed, taper_speed=curve.taper_speed
+        )
     return lugre.lugre_force(
         deflection=bristle,
         rate=rate,

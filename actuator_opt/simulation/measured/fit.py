@@ -653,7 +653,8 @@ def fit(
     }
     correlations = _correlations(uncertain)
     new_scenario, new_plant = problem.put(x)
-    after_gains = tune(new_scenario, new_plant, records, previous=gains)
+    asked = gains is not None and gains.margins is not None
+    after_gains = tune(new_scenario, new_plant, records, previous=gains, with_margins=asked)
     final = run(
         new_scenario.model_copy(update=dense), new_plant, records, after_gains,
         verify=verify, method=method, spec=spec,
