@@ -60,7 +60,7 @@ def export(
     date : ISO date in the files; default: that of SOURCE_DATE_EPOCH, or else none
     plugins : the user's metrics and constraints, for a design that is not an `Actuator` yet
     scenario : write the equations of this scenario instead, with the design in it, named after the
-        scenario's file: as C, or as a unit for co-simulation by FMI 2.0 ("fmu"). A unit contains a
+        scenario's file: as C, or as a unit by FMI 2.0 ("fmu"). A unit contains a
         library for this platform if there is a C compiler; else its `ExportFile.note` says so
 
     Returns

@@ -1,6 +1,6 @@
 """Files for other programs: parts as STEP, the section as DXF, results as XLSX, formulas as C.
 
-The equations of a scenario are written as C, or as a unit for co-simulation (FMU).
+The equations of a scenario are written as C, or as a unit by FMI 2.0 (FMU).
 
 If one of the files fails, none is written.
 """

@@ -1,7 +1,8 @@
-"""Write the circuit of a scenario as a unit for co-simulation by FMI 2.0 [FMI-2].
+"""Write the circuit of a scenario as a unit by FMI 2.0 [FMI-2].
 
-The unit contains C that integrates the equations by itself (`fmu_source`), and a library for this
-platform if there is a C compiler. Its inputs are the signal of the valve or, with a controller, the
+The unit contains C that integrates the equations by itself (co-simulation, `fmu_source`) or lets
+the host do so (model exchange, `fmu_exchange`), and a library for this platform if there is a C
+compiler. Its inputs are the signal of the valve or, with a controller, the
 reference of the loop; force or torque of the load; and, for a supply of constant pressure, supply
 and return pressure. An input that the host never sets follows the course of the scenario. Outputs
 are all signals of a simulation.
@@ -10,7 +11,7 @@ Parameters are numbers of scenario and design by PATH, so far as they enter the 
 (`PARAMETERS`). Bore, walls, oil, valve flow, line sizes and Coulomb friction are no parameters:
 many numbers are computed from them, in Python. Numbers that are computed from a parameter keep the
 value of the export: those of the end stops and bristles, the tuned gain, and pressures that hold
-the load. FMI 3 and model exchange are not offered.
+the load. FMI 3 is not offered.
 """
 
 from __future__ import annotations
@@ -48,9 +49,10 @@ from ..simulation.components.circuit import (
     SampledSlope,
 )
 from ..simulation.system import SystemState, guard_rates
-from .c import file_word, filled, machine, number, program_tables, quoted, remark, table
+from .c import file_word, filled, machine, number, program_tables, quoted, remark, table, word
 from .c_scenario import circuit_of, programs_of
 from .dxf import plain
+from .fmu_exchange import EXCHANGE
 from .fmu_source import SOURCE
 
 _PRESSURE = DESIGNS["pressure"]
@@ -97,6 +99,8 @@ FLAGS: Final = (
     "-shared",
 )  # fmt: skip
 """Flags of the compiler; results are rounded as in the simulation (no fused products)."""
+RELATIVE: Final = 1e-6
+"""Relative tolerance, as in `simulate`; absolute tolerances divided by it are nominal values."""
 PATIENCE: Final = 300.0
 """Longest time of the compiler [s] (our choice)."""
 _DAY: Final = (1980, 1, 1, 0, 0, 0)
@@ -113,6 +117,16 @@ class UnitVariable:
     causality: str
     variability: str
     start: float | None = None
+    nominal: float | None = None
+    derivative: int | None = None
+    """Index of the state of which this is the time derivative, from 1."""
+
+    @property
+    def initial(self) -> str | None:
+        """How the value at the start follows: by the unit, or from the description."""
+        return {"output": "calculated", "local": "calculated", "parameter": "exact"}.get(
+            self.causality
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,7 +177,10 @@ def unit(
     title = f"{scenario.name}: circuit of a scenario, design {subject.design.name}"
     origin = f"Written by {program}" + (f" on {date}." if date else ".")
     source = _source(equations, variables, title=title, origin=origin)
-    description = _description(name, scenario, variables, title=title, program=program, date=date)
+    description = _description(
+        name, scenario, variables, switches=len(equations.circuit.system.switches),
+        title=title, program=program, date=date,
+    )  # fmt: skip
     digest = hashlib.sha256((source + description).encode("utf-8")).hexdigest()[:32]
     guid = "-".join(digest[a:b] for a, b in ((0, 8), (8, 12), (12, 16), (16, 20), (20, 32)))
     source, description = (filled(text, guid=f"{{{guid}}}") for text in (source, description))
@@ -255,7 +272,10 @@ def _starts(equations: _Equations) -> Array:
 
 
 def _variables(equations: _Equations) -> list[UnitVariable]:
-    """All variables in the order of their references: inputs and parameters, outputs, time."""
+    """All variables in the order of their references.
+
+    These are inputs and parameters, outputs, time, states, and the derivatives of the states.
+    """
     variables = []
     loop = equations.circuit.loop
     inputs = dict(INPUTS)
@@ -276,7 +296,24 @@ def _variables(equations: _Equations) -> list[UnitVariable]:
         variables.append(UnitVariable(name, label, quantity, "parameter", variability, start))
     seconds = Quantity("time", "t", "time", "s", "time")
     clock = UnitVariable("time", seconds.label, seconds, "independent", "continuous")
-    return [*variables, *equations.signals, clock]
+    variables += [*equations.signals, clock]
+    first = len(variables) + 1
+    kind = Quantity("state", "", "ratio", "", "state")
+    states = [
+        UnitVariable(
+            f"state.{word(state.name)}", "state of the integration, in SI units", kind, "local",
+            "continuous", nominal=float(state.tolerance) / RELATIVE,
+        )
+        for state in equations.states
+    ]  # fmt: skip
+    slopes = [
+        UnitVariable(
+            f"der({state.name})", "rate of a state", kind, "local", "continuous",
+            derivative=first + k,
+        )
+        for k, state in enumerate(states)
+    ]  # fmt: skip
+    return [*variables, *states, *slopes]
 
 
 # ---- C ----
@@ -298,6 +335,7 @@ def _source(
         title=remark(title),
         origin=remark(origin),
         machine=machine(),
+        exchange=EXCHANGE,
         guid="@guid@",
         states=len(equations.states),
         instants=len(instants),
@@ -416,19 +454,25 @@ def _units(variables: Sequence[UnitVariable]) -> str:
 def _scalar(reference: int, variable: UnitVariable) -> str:
     """Element of a variable."""
     quantity = variable.quantity
-    initial = {"output": "calculated", "parameter": "exact"}.get(variable.causality)
     display = quantity.unit if quantity.si_unit and quantity.unit != quantity.si_unit else None
     real = _tag(
         "Real",
         unit=quantity.si_unit or None,
         displayUnit=display,
         start=None if variable.start is None else number(variable.start),
+        nominal=None if variable.nominal is None else number(variable.nominal),
+        derivative=variable.derivative,
     )
     return _tag(
         "ScalarVariable", real, name=variable.name, valueReference=reference,
         description=plain(variable.label), causality=variable.causality,
-        variability=variable.variability, initial=initial,
+        variability=variable.variability, initial=variable.initial,
     )  # fmt: skip
+
+
+def _unknowns(name: str, listed: Sequence[bool]) -> str:
+    """Part of the model structure: the indices of the listed variables, from 1."""
+    return _tag(name, "".join(_tag("Unknown", index=k) for k, x in enumerate(listed, 1) if x))
 
 
 def _description(
@@ -436,37 +480,40 @@ def _description(
     scenario: Scenario,
     variables: Sequence[UnitVariable],
     *,
+    switches: int,
     title: str,
     program: str,
     date: str | None,
 ) -> str:
     """The model description; its GUID remains to be filled in."""
-    outputs = "".join(
-        _tag("Unknown", index=k)
-        for k, variable in enumerate(variables, 1)
-        if variable.causality == "output"
-    )
+    sources = _tag("SourceFiles", _tag("File", name=f"{name}.c"))
+    able = {
+        "modelIdentifier": name, "canBeInstantiatedOnlyOncePerProcess": "false",
+        "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true",
+    }  # fmt: skip
+    structure = {
+        "Outputs": [x.causality == "output" for x in variables],
+        "Derivatives": [x.derivative is not None for x in variables],
+        "InitialUnknowns": [x.initial == "calculated" for x in variables],
+    }
     parts = [
-        _tag(
-            "CoSimulation", _tag("SourceFiles", _tag("File", name=f"{name}.c")),
-            modelIdentifier=name, canHandleVariableCommunicationStepSize="true",
-            canBeInstantiatedOnlyOncePerProcess="false", canGetAndSetFMUstate="true",
-            canSerializeFMUstate="true",
-        ),
+        _tag("ModelExchange", sources, **able),
+        _tag("CoSimulation", sources, **able, canHandleVariableCommunicationStepSize="true"),
         _tag("UnitDefinitions", f"\n{_units(variables)}\n"),
         _tag("LogCategories", _tag("Category", name="logStatusError")),
         _tag(
             "DefaultExperiment", startTime="0", stopTime=number(scenario.duration),
-            tolerance="1e-06", stepSize=number(scenario.sample_time or scenario.duration / SAMPLES),
+            tolerance=number(RELATIVE),
+            stepSize=number(scenario.sample_time or scenario.duration / SAMPLES),
         ),
         _tag("ModelVariables", "\n" + "\n".join(map(_scalar, range(len(variables)), variables))),
-        _tag("ModelStructure", _tag("Outputs", outputs) + _tag("InitialUnknowns", outputs)),
+        _tag("ModelStructure", "".join(_unknowns(*part) for part in structure.items())),
     ]  # fmt: skip
     head = _tag(
         "fmiModelDescription", "\n" + "\n".join(parts) + "\n", fmiVersion="2.0", modelName=name,
         guid="@guid@", description=plain(title), generationTool=program,
         generationDateAndTime=f"{date}T00:00:00Z" if date else None,
-        variableNamingConvention="structured",
+        variableNamingConvention="structured", numberOfEventIndicators=switches,
     )  # fmt: skip
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{head}\n'
 
@@ -498,14 +545,15 @@ def _archive(files: Mapping[str, bytes]) -> bytes:
 PAGE = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>@title@</title></head><body>
 <h1>@title@</h1>
-<p>@origin@ A unit for co-simulation by FMI 2.0. All numbers are in SI units; pressures are gauge
-pressures.</p>
+<p>@origin@ A unit for co-simulation and model exchange by FMI 2.0. All numbers are in SI units;
+pressures are gauge pressures.</p>
 <p>An input that is never set follows the course of the scenario over time. Once it is set, it keeps
 its last value. Fixed parameters count at the start only; tunable parameters may change at any time.
 Numbers that the exporting program computed from a parameter do not change with it: stiffness and
 damping of the end stops and of the bristles, the tuned gain, and pressures that hold the load.</p>
-<p>The equations are integrated by RODAS, a Rosenbrock method of order 4, with error control; the
-relative tolerance is that of the experiment, or else 1e-6.</p>
+<p>In co-simulation, the equations are integrated by RODAS, a Rosenbrock method of order 4, with
+error control; the relative tolerance is that of the experiment, or else 1e-6. In model exchange,
+the state of a pressure p is p above zero, and a log(1 + p/a) below, with the atmospheric pressure a.</p>
 <table border="1"><tr><th>name</th><th>causality</th><th>variability</th><th>unit</th><th>start</th>
 <th>description</th></tr>
 @rows@

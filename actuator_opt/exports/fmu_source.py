@@ -1,4 +1,4 @@
-"""C text of an FMI 2.0 co-simulation unit; `fmu` fills in the equations of a scenario.
+"""C text of an FMI 2.0 unit for co-simulation; `fmu` fills in the equations of a scenario.
 
 The declarations of the interface are our own, from the functions and types that the standard
 [FMI-2] names. The integrator is RODAS [HairerWanner1996], a Rosenbrock method of order 4(3): it is
@@ -12,7 +12,7 @@ SOURCE = r"""/* @title@
 
    @origin@
 
-   A unit for co-simulation by FMI 2.0: a C99 source file without any other files, for a shared
+   A unit for co-simulation and model exchange by FMI 2.0: a C99 source file, for a shared
    library or, with FMI2_FUNCTION_PREFIX defined, to be linked. It needs only the mathematics
    library. It has no variables outside functions; memory is allocated for an instance and for a
    stored state only. All numbers are in SI units.
@@ -109,7 +109,8 @@ typedef struct {
     Core core;
     fmi2CallbackFunctions callbacks;
     char name[128];
-    int fresh; /* whether `signals` belong to the point */
+    int exchange; /* whether the host integrates */
+    int fresh;    /* whether `signals` belong to the point */
     double signals[SIGNALS], point[POINT], work[WORK];
     double slopes[STATES * (STATES + 1)], matrix[STATES * STATES], stages[6][STATES];
     double stage[STATES], rates[STATES], end[STATES];
@@ -427,20 +428,25 @@ static fmi2Status one_step(Instance *f, double stop, long *tries, long *changes)
     }
 }
 
+/* Index of the first stop after a time; STOPS if there is none. */
+static int next_stop(double time) {
+    int low = 0, high = STOPS;
+    while (low < high) {
+        const int middle = (low + high) / 2;
+        if (STOP_TIMES[middle] > time + APART) high = middle;
+        else low = middle + 1;
+    }
+    return low;
+}
+
 /* Integrate up to a time; stop at all times at which a course of the scenario jumps or bends. */
 static fmi2Status advanced(Instance *f, double end) {
     Core *core = &f->core;
     long tries = 0, changes = 0;
     if (instants_passed(core)) core->step = RESTART;
     while (core->point[0] < end) {
-        double stop = end;
-        int low = 0, high = STOPS;
-        while (low < high) {
-            const int middle = (low + high) / 2;
-            if (STOP_TIMES[middle] > core->point[0] + APART) high = middle;
-            else low = middle + 1;
-        }
-        if (low < STOPS && STOP_TIMES[low] < end) stop = STOP_TIMES[low];
+        const int next = next_stop(core->point[0]);
+        const double stop = next < STOPS && STOP_TIMES[next] < end ? STOP_TIMES[next] : end;
         if (stop - core->point[0] < shortest(stop)) {
             core->point[0] = stop;
             continue;
@@ -483,8 +489,8 @@ EXPORT fmi2Component FMI(Instantiate)(
     f->callbacks = *functions;
     snprintf(f->name, sizeof f->name, "%s", name ? name : "");
     defaults(f);
-    if (type != fmi2CoSimulation) failed(f, "this unit is for co-simulation only");
-    else if (!guid || strcmp(guid, GUID) != 0) failed(f, "the GUID is not that of this unit");
+    f->exchange = type == fmi2ModelExchange;
+    if (!guid || strcmp(guid, GUID) != 0) failed(f, "the GUID is not that of this unit");
     else return f;
     functions->freeMemory(f);
     return NULL;
@@ -554,9 +560,16 @@ EXPORT fmi2Status FMI(GetReal)(
     if (!f || (count && (!references || !values))) return fmi2Error;
     refresh(f);
     for (size_t k = 0; k < count; k++) {
-        if (references[k] > SIGNALS)
-            return failed(f, "fmi2GetReal: no variable has the reference %u", references[k]);
-        values[k] = references[k] == SIGNALS ? f->core.point[0] : f->signals[references[k]];
+        const fmi2ValueReference at = references[k];
+        if (at >= SIGNALS + 1 + 2 * STATES)
+            return failed(f, "fmi2GetReal: no variable has the reference %u", at);
+        if (at < SIGNALS) values[k] = f->signals[at];
+        else if (at < SIGNALS + 1 + STATES) values[k] = f->core.point[at - SIGNALS];
+        else {
+            place_all(f);
+            computed(&RATES, f, f->rates);
+            values[k] = f->rates[at - SIGNALS - 1 - STATES];
+        }
     }
     return fmi2OK;
 }
@@ -684,6 +697,7 @@ EXPORT fmi2Status FMI(DoStep)(fmi2Component c, fmi2Real time, fmi2Real step, fmi
     Instance *f = (Instance *)c;
     (void)final;
     if (!f) return fmi2Error;
+    if (f->exchange) return failed(f, "fmi2DoStep: this instance is for model exchange");
     if (f->core.phase != STEPPING) return failed(f, "fmi2DoStep: not after the initialisation");
     if (!(step >= 0 && step < INFINITY))
         return failed(f, "fmi2DoStep: the step size is negative or not finite");
@@ -727,6 +741,7 @@ EXPORT fmi2Status FMI(GetStringStatus)(fmi2Component c, fmi2StatusKind kind, fmi
     return c ? fmi2Discard : fmi2Error;
 }
 
+@exchange@
 #ifdef __cplusplus
 }
 #endif

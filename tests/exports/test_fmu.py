@@ -1,4 +1,4 @@
-"""Units for co-simulation: valid, equal to the simulation, and robust against their host."""
+"""Units by FMI 2.0: valid, equal to the simulation, and robust against their host."""
 
 from __future__ import annotations
 
@@ -191,7 +191,10 @@ def test_a_unit_needs_a_scenario(tmp_path):
     [(SERVO, COURSE), (KNEE.parent / "scenarios/knee_step.yaml", KNEE), ("stops", COURSE)],
 )
 def test_an_established_host(scenario, design, tmp_path):
-    """FMPy finds no fault; its run equals `simulate`, without any input and parameter set."""
+    """FMPy finds no fault; its runs equal `simulate`, without any input and parameter set.
+
+    In model exchange, its CVode integrates.
+    """
     pytest.importorskip("fmpy", reason="FMPy is not installed: pip install actuator-opt[fmu]")
     from fmpy import simulate_fmu
     from fmpy.validation import validate_fmu
@@ -203,17 +206,18 @@ def test_an_established_host(scenario, design, tmp_path):
     times, expected = simulated(file, names)
     result = ao.simulate(file)
     step = result.scenario.sample_time
-    rows = simulate_fmu(
-        str(unit), output=names, step_size=step, output_interval=step,
-        stop_time=result.scenario.duration,
-    )  # fmt: skip
-    grid = np.round(times / step)
-    shared = np.abs(times - grid * step) < 1e-9
-    at = grid[shared].astype(int)
-    assert np.allclose(rows["time"][at], times[shared], atol=1e-9)
-    found = np.array([rows[name][at] for name in names]).T
-    assert_close(found[:, :1], expected[shared, :1], 1e-4)
-    assert_close(found[:, 1:], expected[shared, 1:], 1e-3)
+    for kind in ("CoSimulation", "ModelExchange"):
+        rows = simulate_fmu(
+            str(unit), fmi_type=kind, output=names, step_size=step, output_interval=step,
+            stop_time=result.scenario.duration, relative_tolerance=1e-6,
+        )  # fmt: skip
+        rows = rows[np.append(True, np.diff(rows["time"]) > 1e-9)]
+        shared = np.min(np.abs(times[:, None] - rows["time"]), axis=1) < 1e-9
+        assert np.mean(shared) > 0.9
+        at = np.searchsorted(rows["time"], times[shared] - 1e-9)
+        found = np.array([rows[name][at] for name in names]).T
+        assert_close(found[:, :1], expected[shared, :1], 1e-4)
+        assert_close(found[:, 1:], expected[shared, 1:], 1e-3)
 
 
 @pytest.mark.parametrize("model", ["stribeck", "lugre"])
@@ -406,12 +410,50 @@ def test_equations_without_a_solution_are_an_error(tmp_path):
 
 
 def test_wrong_units_are_refused(tmp_path):
-    """Another GUID, model exchange, no memory: no instance, and no leak."""
+    """Another GUID, no memory: no instance, and no leak."""
     file = written(tmp_path, OPEN)
     unit = opened(file, tmp_path, guid="{0}")
     assert unit.component is None
     assert "GUID" in unit.said[-1]
     assert unit.live == 0
     again = tmp_path / "case.fmu"
-    assert Unit(again, tmp_path, kind=0).component is None
     assert Unit(again, tmp_path, memory=False).component is None
+
+
+def test_model_exchange_by_euler(tmp_path):
+    """States, derivatives and indicators in a host's own loop; faults of the host are errors."""
+    unit = opened(written(tmp_path, OPEN), tmp_path, kind=0).begin()
+    size = len([name for name in unit.variables if name.startswith("state.")])
+    count, numbers = ctypes.c_size_t(size), (REAL * size)()
+    info = (ctypes.c_int * 8)()
+    assert unit.step(0.0, 1e-3) == ERROR
+    assert "model exchange" in unit.said[-1]
+    assert unit.call("NewDiscreteStates", info) == OK
+    assert unit.call("EnterContinuousTimeMode") == OK
+    assert unit.call("GetContinuousStates", numbers, count) == OK
+    states, slopes = np.array(numbers), (REAL * size)()
+    assert unit.call("GetNominalsOfContinuousStates", numbers, count) == OK
+    assert np.all(np.array(numbers) > 0)
+    for k in range(4000):  # Euler, short enough for the oil
+        assert unit.call("SetTime", REAL(5e-6 * k)) == OK
+        assert unit.call("SetContinuousStates", (REAL * size)(*states), count) == OK
+        assert unit.call("GetDerivatives", slopes, count) == OK
+        states = states + 5e-6 * np.array(slopes)
+    named = [name for name in unit.variables if name.startswith("der(state.")]
+    assert np.array_equal(unit.get(*named), np.array(slopes))
+    other = Unit(tmp_path / "case.fmu", tmp_path).begin()
+    other.run([0.0, 0.02], "position")
+    expected = other.get("state.position", "state.speed", "state.pressure_a", "state.pressure_b")
+    order = [list(unit.variables).index(f"state.{x}") for x in ("position", "speed")]
+    first = min(list(unit.variables).index(name) for name in unit.variables if "state." in name)
+    assert np.allclose(states[[k - first for k in order]], expected[:2], rtol=2e-2)
+    indicators = (REAL * 2)()
+    assert unit.call("GetEventIndicators", indicators, ctypes.c_size_t(2)) == OK
+    assert indicators[0] == pytest.approx(-unit.get("position")[0])
+    assert unit.call("GetEventIndicators", indicators, ctypes.c_size_t(3)) == ERROR
+    assert unit.call("GetDerivatives", slopes, ctypes.c_size_t(size + 1)) == ERROR
+    assert unit.call("SetTime", REAL(np.nan)) == ERROR
+    bad = (REAL * size)(*(np.nan for _ in range(size)))
+    assert unit.call("SetContinuousStates", bad, count) == ERROR
+    assert other.call("GetDerivatives", slopes, count) == ERROR
+    assert "only for model exchange" in other.said[-1]
