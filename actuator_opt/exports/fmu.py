@@ -123,7 +123,7 @@ class UnitVariable:
 
     @property
     def initial(self) -> str | None:
-        """How the value at the start follows: by the unit, or from the description."""
+        """Origin of the value at the start: computed by the unit, or stated by the description."""
         return {"output": "calculated", "local": "calculated", "parameter": "exact"}.get(
             self.causality
         )
@@ -553,7 +553,8 @@ Numbers that the exporting program computed from a parameter do not change with 
 damping of the end stops and of the bristles, the tuned gain, and pressures that hold the load.</p>
 <p>In co-simulation, the equations are integrated by RODAS, a Rosenbrock method of order 4, with
 error control; the relative tolerance is that of the experiment, or else 1e-6. In model exchange,
-the state of a pressure p is p above zero, and a log(1 + p/a) below, with the atmospheric pressure a.</p>
+the state of a pressure p is p above zero, and a log(1 + p/a) below; a is the atmospheric
+pressure.</p>
 <table border="1"><tr><th>name</th><th>causality</th><th>variability</th><th>unit</th><th>start</th>
 <th>description</th></tr>
 @rows@
