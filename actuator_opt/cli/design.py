@@ -439,7 +439,7 @@ def export(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Export the design to CAD (STEP, DXF), Excel (XLSX) or C, or a scenario as FMU."""
+    """Export the design to CAD (STEP, DXF), Excel, C or FMI."""
     from .. import api as verbs
     from ..exports import require_formats
 
