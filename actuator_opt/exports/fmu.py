@@ -103,6 +103,8 @@ RELATIVE: Final = 1e-6
 """Relative tolerance, as in `simulate`; absolute tolerances divided by it are nominal values."""
 PATIENCE: Final = 300.0
 """Longest time of the compiler [s] (our choice)."""
+_GUID: Final = "@guid@"
+"""Place of the GUID, which is a hash of all the rest."""
 _DAY: Final = (1980, 1, 1, 0, 0, 0)
 """Date of all files in the archive, so that equal units have equal bytes."""
 
@@ -183,7 +185,7 @@ def unit(
     )  # fmt: skip
     digest = hashlib.sha256((source + description).encode("utf-8")).hexdigest()[:32]
     guid = "-".join(digest[a:b] for a, b in ((0, 8), (8, 12), (12, 16), (16, 20), (20, 32)))
-    source, description = (filled(text, guid=f"{{{guid}}}") for text in (source, description))
+    source, description = (text.replace(_GUID, f"{{{guid}}}") for text in (source, description))
     binary, note = _library(name, source)
     files = {
         "modelDescription.xml": description.encode("utf-8"),
@@ -336,7 +338,7 @@ def _source(
         origin=remark(origin),
         machine=machine(),
         exchange=EXCHANGE,
-        guid="@guid@",
+        guid=_GUID,
         states=len(equations.states),
         instants=len(instants),
         switches=len(system.switches),
@@ -511,7 +513,7 @@ def _description(
     ]  # fmt: skip
     head = _tag(
         "fmiModelDescription", "\n" + "\n".join(parts) + "\n", fmiVersion="2.0", modelName=name,
-        guid="@guid@", description=plain(title), generationTool=program,
+        guid=_GUID, description=plain(title), generationTool=program,
         generationDateAndTime=f"{date}T00:00:00Z" if date else None,
         variableNamingConvention="structured", numberOfEventIndicators=switches,
     )  # fmt: skip

@@ -151,6 +151,17 @@ def test_variables_of_a_servo(tmp_path):
     assert base_units("N*m*s/rad") == {"kg": 1, "m": 2, "s": -1, "rad": -1}
 
 
+def test_hostile_names(tmp_path):
+    """Names of scenario and file with marks of XML, C and templates."""
+    text = OPEN.replace("name: open loop", "name: 'a@b@c @guid@ <&> \"x\" */ \\ µ %s'")
+    file = written(tmp_path, text, name="7 µ-valve.yaml")
+    (made,) = ao.export(COURSE, scenario=file, formats=["fmu"], folder=tmp_path)
+    assert made.path.name == "design_7_valve.fmu"
+    unit = Unit(made.path, tmp_path).begin()
+    assert unit.xml.get("description").startswith("a@b@c ")
+    assert unit.step(0.0, 0.01) == OK
+
+
 def test_without_a_compiler(tmp_path, monkeypatch):
     """Sources only, and a note."""
     monkeypatch.setattr(fmu.shutil, "which", lambda name: None)
