@@ -251,8 +251,8 @@ def find(word: str, metrics: Mapping[str, Quantity] | None = None) -> Entry | No
     """The entry of a name; None if it is unknown.
 
     Lower and upper case, spaces and hyphens do not matter. A PATH may have any index or name in its
-    brackets; its last key alone is enough if only one PATH ends with it. A synonym of a name is
-    enough too.
+    brackets; its last key alone is enough if only one PATH of so few keys ends with it. A synonym
+    of a name is enough too.
     """
     folded = fold(word)
     if re.search(r"[a-z_]\.|\[", folded) is None:
@@ -281,8 +281,11 @@ def _path(word: str, metrics: Mapping[str, Quantity] | None) -> Entry | None:
     if generic in blocks():
         return next(entry for entry in _blocks() if entry.name == generic)
     ending = [path for path in known if path.endswith(f".{generic}")]
-    if len(ending) == 1:
-        return _key(ending[0], known[ending[0]])
+    designed = [path for path in ending if not path.startswith("ideal.")] or ending
+    least = min((path.count(".") for path in designed), default=0)
+    nearest = [path for path in designed if path.count(".") == least]
+    if len(nearest) == 1:
+        return _key(nearest[0], known[nearest[0]])
     head, _, rest = word.strip().partition(".")
     if head not in ("requirements", "materials") or not rest:
         return None

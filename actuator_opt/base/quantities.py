@@ -148,6 +148,12 @@ INPUTS = _table("""
  rated_flow           | q_r    | flow        | l/min| 0.001 | 100000| rated flow
  leakage_flow         | q_l    | flow        | l/min| 0     | 1000  | leakage flow
  pressure_drop        | dp     | pressure    | bar  | 0.01  | 1500  | pressure drop
+ spool_stroke         | x_s    | length      | mm   | 0.01  | 100   | stroke of a spool from its centre
+ spool_overlap        | o      | length      | um   | -5000 | 5000  | overlap of an edge; negative: open at the centre
+ spool_clearance      | c      | length      | um   | 0.1   | 500   | radial clearance of a spool
+ edge_rounding        | r      | length      | um   | 0     | 500   | corner radius of an edge
+ area_gradient        | w      | length      | mm   | 0.01  | 1000  | width of a spool's ports around its circumference
+ flow_share           | f      | ratio       | %    | 1     | 1000  | flow of an edge, as a share of the rated flow
  signal               | U      | voltage     | V    | 0.001 | 1000  | signal at full opening
  signal_offset        | U_0    | voltage     | V    | -1000 | 1000  | signal offset
  gain                 | K_p    | signal_gain | V/m  | 0.001 | 1e9   | gain
@@ -354,6 +360,11 @@ BASIS = _table("""
  tank_leakage         | q_lt   | flow        | l/min     | | | leakage of a tank edge at 1 bar, spool centred
  full_signal          | U      | voltage     | V         | | | signal at full opening
  spool_offset         | U_0    | voltage     | mV        | | | signal that centres the spool
+ edge_width           | w      | length      | mm        | | | width of the valve edge P to A
+ edge_overlap         | o      | length      | um        | | | overlap of the valve edge P to A
+ edge_clearance       | c      | length      | um        | | | radial clearance of the valve edge P to A
+ edge_stroke          | x_s    | length      | mm        | | | stroke of the spool at full signal
+ spool_slew_rate      | dU/dt  | signal_rate | V/s       | | | largest speed of the spool
  spool_frequency      | f_v    | frequency   | Hz        | | | natural frequency of the spool
  spool_damping        | zeta   | ratio       | -         | | | damping ratio of the spool
  stop_stiffness       | k_e    | stiffness   | kN/mm     | | | stiffness of a stop

@@ -193,3 +193,11 @@ End: TypeAlias = Annotated[
         "ports.reducing_valve"
     ),
 ]
+SpoolLaw: TypeAlias = Annotated[
+    Literal["course", "lapped"],
+    Choice(
+        "how the metering edges of the valve open and leak; course: an edge opens with the signal "
+        "from its stated leakage, which stays constant when it closes; lapped: edges with overlap, "
+        "clearance and width, whose leakage falls with the overlap"
+    ),
+]

@@ -20,7 +20,7 @@ from ..joints.joint import LEAST_METAL, ROUNDING, Joint
 from ..models import linkage as crank, mass
 from ..models.piston_nut import HEIGHT
 from ..models.spherical_bearing import lug_radius
-from . import assembly, choices, material, seal_faults, wall_faults
+from . import assembly, choices, material, seal_faults, valve_faults, wall_faults
 from .kinds import MaterialName
 from .lengths import closed_length, spigot_length
 from .material import ROLES
@@ -276,25 +276,6 @@ def ports(view: FileView) -> Iterator[Fault]:
         )
 
 
-def valve(view: FileView) -> Iterator[Fault]:
-    """Check that the centred valve leaks less than it passes when open, at equal pressure drop."""
-    numbers = [
-        view.number("valve", name)
-        for name in ("rated_flow", "rated_drop", "leakage_flow", "leakage_drop")
-    ]
-    if any(number is None for number in numbers):
-        return
-    rated, rated_drop, leakage, leakage_drop = (number or 0.0 for number in numbers)
-    most = rated * (leakage_drop / rated_drop) ** 0.5
-    if leakage >= most:
-        text = quantities.INPUTS["leakage_flow"].text
-        yield Fault(
-            ("valve", "leakage_flow"),
-            f"{text(leakage)}: not less than the flow of the open valve at the same pressure drop",
-            f"write less than {text(most)}",
-        )
-
-
 def stiffness(view: FileView) -> Iterator[Fault]:
     """Refuse sticking seals together with a published stiffness formula, which omits seals."""
     published = view.text("stiffness", "topology") != "per_chamber"
@@ -344,7 +325,7 @@ def held_pressures(view: FileView) -> Iterator[Fault]:
 CIRCUIT_CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
     lines,
     ports,
-    valve,
+    valve_faults.valve,
     stiffness,
     control,
     held_pressures,

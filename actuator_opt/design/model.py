@@ -32,6 +32,7 @@ from .kinds import (
     Text,
 )
 from .seals import Seals
+from .valve import Valve
 
 
 class Line(Section):
@@ -63,44 +64,6 @@ class ExtraMass(Section):
         float,
         Of("length", "length of each along the axis, between cap or rod and its eye"),
     ] = 0.0
-
-
-class Valve(Section):
-    """A proportional or servo valve with four control edges that open linearly with the signal."""
-
-    rated_flow: Annotated[float, Of("rated_flow", "flow through one metering edge at full signal")]
-    rated_drop: Annotated[
-        float, Of("pressure_drop", "pressure drop across the edge at rated flow")
-    ] = 35e5
-    leakage_flow: Annotated[
-        float,
-        Of(
-            "leakage_flow",
-            "leakage of one metering edge with centred spool: half of the valve's leakage",
-        ),
-    ] = 0.0
-    leakage_drop: Annotated[
-        float, Of("pressure_drop", "pressure drop across the edge at the leakage flow")
-    ] = 50e5
-    tank_leakage_drop: Annotated[
-        float | None,
-        Of(
-            "pressure_drop",
-            "pressure drop across an edge to tank at the leakage flow; default: leakage_drop",
-        ),
-    ] = None
-    rated_viscosity: Annotated[
-        float | None,
-        Of(
-            "oil_viscosity",
-            "oil viscosity at which the rated flow applies; default: the rated "
-            "flow applies to any oil",
-        ),
-    ] = None
-    offset: Annotated[float, Of("signal_offset", "signal that centres the spool")] = 0.0
-    signal: Annotated[float, Of("signal", "signal of the fully open spool")] = 10.0
-    natural_frequency: Annotated[float, Of("frequency", "natural frequency of the spool")]
-    damping_ratio: Annotated[float, Of("damping_ratio", "damping ratio of the spool")] = 0.7
 
 
 class Throttle(Section):

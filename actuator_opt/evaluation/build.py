@@ -28,7 +28,7 @@ from ..joints.kinds import OWN_KEYS
 from ..metrics import METRICS, MetricRow
 from ..metrics.table import CHECKS
 from ..version import VERSION
-from . import dynamics_study as dynamics, outline, validity as doubts, weight
+from . import dynamics_study as dynamics, outline, validity as doubts, valve_study, weight
 from .film import floats
 from .kernel import ModelRun, PreparedDesign, compute, governing
 from .limits import (
@@ -220,6 +220,13 @@ def _blocks(retention: dict[str, Any] | None) -> Iterator[dict[str, Any]]:
         yield retention
 
 
+def leave_out_unset(valve: dict[str, Any] | None) -> None:
+    """Drop unset keys from the dump of a valve, so that hashes of older designs stay valid."""
+    for key in ("frequency_90deg", "frequency_3db", "slew_rate", "spool"):
+        if valve and valve[key] is None:
+            del valve[key]
+
+
 def spec_hash(subject: PreparedDesign) -> str:
     """Hash of all inputs that determine the result: design, material data and program version."""
     design = subject.design.model_dump(mode="json")
@@ -233,6 +240,7 @@ def spec_hash(subject: PreparedDesign) -> str:
     for block, key in ((design["cylinder"], "port_thread"), (design["clevis"], "bearing")):
         if block and block[key] is None:
             del block[key]
+    leave_out_unset(design["valve"])
     for block in _blocks(design["retention"]):
         for key in ("cap", "head", "sleeve", *OWN_KEYS):
             if key in block and block[key] is None:
@@ -284,6 +292,7 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
         lengths=outline.lengths(design, run.geometry),
         wall=wall_study(subject, v, run),
         dynamics=dynamics.study(subject, v, run, metrics["stiffness_min"].case),
+        valve=valve_study.study(design, v, run.state),
         friction_parts=_friction_parts(computed, v, metrics["friction_running"].case),
     )
 

@@ -9,8 +9,10 @@ import numpy as np
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, maximum, where
 from ..design.model import Design, Line
-from ..models import accumulator, elements, holding_valve, line_ends, lines, one_way_valve, valve
+from ..models import accumulator, elements, holding_valve, line_ends, lines, one_way_valve
+from ..models.lapped_spool import BothSlopes, LappedSpool, lapped_slopes
 from ..models.line_ends import LineEnd
+from . import spool
 from .geometry import Geometry
 from .state import LoadState
 from .values import Values
@@ -97,12 +99,15 @@ class LinearValve(NamedTuple):
     gains: dict[Chamber, Ways]
     """Flow gains K_q into the lines [m^3/s/V], by spool direction."""
     conductances: dict[Chamber, Ways]
-    """Flow-pressure coefficients K_c [m^3/s/Pa]; empty if the valve does not leak."""
+    """Flow-pressure coefficients K_c [m^3/s/Pa] by spool direction; empty if the valve is tight."""
+    resting: dict[Chamber, Array]
+    """Flow-pressure coefficients K_c while the valve holds the load; empty if the valve is tight
+    there."""
 
     def held(self, chamber: Chamber) -> LineEnd:
         """Condition at the valve end of a chamber's line while the valve holds the load."""
-        ways = self.conductances.get(chamber)
-        return LineEnd((maximum(*ways),)) if ways else line_ends.CLOSED
+        leaks = self.resting.get(chamber)
+        return line_ends.CLOSED if leaks is None else LineEnd((leaks,))
 
     def driving(self, chamber: Chamber, extending: Array) -> LineEnd:
         """Condition at the valve end of a chamber's line while the valve moves the load."""
@@ -110,34 +115,23 @@ class LinearValve(NamedTuple):
         return LineEnd((ways.toward(extending),)) if ways else line_ends.CLOSED
 
 
-class Edges(NamedTuple):
-    """Flow coefficients of the valve's metering edges [m^3/s/sqrt(Pa)]."""
+def of_valve(v: Values) -> spool.Read:
+    """Read a number of the design's valve; None if it is not stated."""
 
-    rated: Array
-    """Coefficient of a fully open edge, corrected for the viscosity of the oil."""
-    supply: Array
-    """Coefficient of the supply edges P-A and P-B with the spool centred."""
-    tank: Array
-    """Coefficient of the return edges A-T and B-T with the spool centred."""
+    def read(name: str) -> Array:
+        return v.get("valve." + name, None)
+
+    return read
 
 
-def valve_edges(v: Values, design: Design, state: LoadState) -> Edges:
-    """Flow coefficients of the design's valve edges in every load case."""
+def lapped_spool(v: Values, design: Design, state: LoadState) -> LappedSpool | None:
+    """The lapped spool of the design's valve in every load case; None with the course's law."""
     assert design.valve is not None
-    at = "valve."
-    rated = valve.edge_coefficient(flow=v[at + "rated_flow"], pressure_drop=v[at + "rated_drop"])
-    if design.valve.rated_viscosity is not None:
-        rated = valve.viscosity_corrected(
-            coefficient=rated,
-            rated_viscosity=v[at + "rated_viscosity"],
-            viscosity=state.kinematic_viscosity,
-        )
-    leakage, drop = v[at + "leakage_flow"], v[at + "leakage_drop"]
-    tank_drop = drop if design.valve.tank_leakage_drop is None else v[at + "tank_leakage_drop"]
-    return Edges(
-        rated,
-        valve.edge_coefficient(flow=leakage, pressure_drop=drop),
-        valve.edge_coefficient(flow=leakage, pressure_drop=tank_drop),
+    return spool.lapped_spool(
+        of_valve(v),
+        design.valve,
+        density=state.density,
+        kinematic_viscosity=state.kinematic_viscosity,
     )
 
 
@@ -148,7 +142,33 @@ def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) ->
     """
     if design.valve is None:
         return None
-    edges = valve_edges(v, design, state)
+    outward, inward, *held = _slopes(v, design, state, leakage)
+    conductances: dict[Chamber, Ways] = {
+        "a": Ways(outward.conductance_a, inward.conductance_a),
+        "b": Ways(outward.conductance_b, inward.conductance_b),
+    }
+    tight = not any(np.any(np.real(way) > 0) for ways in conductances.values() for way in ways)
+    closed = not any(np.any(np.real(leaks) > 0) for leaks in held)
+    return LinearValve(
+        {"a": Ways(outward.gain_a, inward.gain_a), "b": Ways(-outward.gain_b, -inward.gain_b)},
+        {} if tight else conductances,
+        {} if closed else dict(zip(CHAMBERS, held, strict=True)),
+    )
+
+
+def _slopes(v: Values, design: Design, state: LoadState, leakage: Array) -> BothSlopes:
+    """Small-signal flows of the valve that drives and holds the load."""
+    lapped = lapped_spool(v, design, state)
+    if lapped is not None:
+        return lapped_slopes(
+            spool=lapped,
+            supply_pressure=v["supply.pressure"],
+            return_pressure=v["supply.return_pressure"],
+            pressure_a=state.holding_a,
+            pressure_b=state.holding_b,
+            piston_leakage=leakage,
+        )
+    edges = spool.course_edges(of_valve(v), viscosity=state.kinematic_viscosity)
     outward, inward = (
         holding_valve.valve_slopes(
             rated_coefficient=edges.rated,
@@ -164,14 +184,11 @@ def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) ->
         )
         for extending in (True, False)
     )
-    conductances: dict[Chamber, Ways] = {
-        "a": Ways(outward.conductance_a, inward.conductance_a),
-        "b": Ways(outward.conductance_b, inward.conductance_b),
-    }
-    tight = not any(np.any(np.real(way) > 0) for ways in conductances.values() for way in ways)
-    return LinearValve(
-        {"a": Ways(outward.gain_a, inward.gain_a), "b": Ways(-outward.gain_b, -inward.gain_b)},
-        {} if tight else conductances,
+    return BothSlopes(
+        outward,
+        inward,
+        maximum(outward.conductance_a, inward.conductance_a),
+        maximum(outward.conductance_b, inward.conductance_b),
     )
 
 

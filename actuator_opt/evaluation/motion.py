@@ -14,6 +14,7 @@ import numpy as np
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, angle, magnitude, maximum, real, where
 from ..design.model import Design
+from ..design.valve import Spool
 from ..models import dynamics, line_ends, linear, loop
 from ..models.line_ends import LineEnd
 from ..models.linear import LinearActuator, Side
@@ -26,9 +27,11 @@ from .circuit import (
     accumulator_ends,
     line_end,
     linear_valve,
+    of_valve,
     throttle_conductances,
 )
 from .limits import MetricArrays
+from .spool import EDGES, spool_motion
 from .springs import Springs, weakest_per_chamber
 from .state import LoadState
 from .values import Values
@@ -154,7 +157,7 @@ def derive(
         },
         accumulators=accumulators,
         valve=holding,
-        spool=(v["valve.natural_frequency"], v["valve.damping_ratio"]) if design.valve else None,
+        spool=spool_motion(of_valve(v)) if design.valve else None,
     )
 
 
@@ -302,8 +305,34 @@ def warnings(
                 "pressures are computed for equal edges; only a simulation takes the difference "
                 "into account",
             )
+        if valve is not None and valve.spool is not None and valve.spool.type == "lapped":
+            yield from _laps(v, valve.spool)
     yield from _ports(v, design, motion, state)
     yield from _lines(design, motion, out)
+
+
+def _laps(v: Values, spool: Spool) -> Iterable[tuple[str, str]]:
+    """Warn of edges that differ, and of overlaps, within which the position is not controlled."""
+    edges = [getattr(spool, key) for key in EDGES.values()]
+    if any(edge != edges[0] for edge in edges):
+        yield (
+            "ultimate_gain",
+            "the valve's four edges differ, but the holding pressures are computed for equal "
+            "edges; only a simulation takes the difference into account",
+        )
+    overlaps = [
+        float(np.max(np.real(v.get(f"valve.spool.{key}.overlap", v["valve.spool.overlap"]))))
+        for key in EDGES.values()
+    ]
+    lost = max((point.signal for point in spool.curve if point.flow == 0), default=0.0)
+    if max(overlaps) > 0:
+        lost = max(overlaps) / float(np.min(np.real(v["valve.spool.stroke"])))
+    if lost > 0:
+        yield (
+            "bandwidth",
+            f"the valve's dead band is {lost:.2g} of its full signal; within it the valve hardly "
+            "moves the load. Gains and margins apply beyond it, where the edges begin to open",
+        )
 
 
 def _weakest_gain(motion: Motion) -> Array:

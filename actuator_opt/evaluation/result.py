@@ -26,6 +26,7 @@ from ..metrics import METRICS
 from ..metrics.table import ROWS
 from ..rendering.tables import DataColumn, DataTable, coded
 from .dynamics_study import DynamicsStudy
+from .valve_study import ValveStudy
 from .wall_study import WallStudy
 
 NO_RESERVE = 1e-3
@@ -430,6 +431,8 @@ class Evaluation(Displayed):
     """Stresses through the thickness of the barrel; None with the wall model `as_published`."""
     dynamics: DynamicsStudy | None = None
     """Modes along the stroke, dynamic stiffness over frequency, and the position loop."""
+    valve: ValveStudy | None = None
+    """Curves of the valve about its null; None unless the design states the spool."""
     friction_parts: Mapping[str, float] = field(default_factory=dict)
     """Running friction [N] of each seal in the governing case; wipers and guides are one entry."""
     yield_estimate: YieldEstimate = UNKNOWN
@@ -616,6 +619,7 @@ class Evaluation(Displayed):
             "wall": None if self.wall is None else self.wall.to_dict(),
             "stiffness_budget": self.curve.to_dict(),
             "dynamics": None if self.dynamics is None else self.dynamics.to_dict(),
+            **({} if self.valve is None else {"valve": self.valve.to_dict()}),
         }
 
     def table(self, name: str = "metrics") -> DataTable:

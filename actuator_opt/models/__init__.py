@@ -18,8 +18,6 @@ Some functions are for scripts alone; no part of the program calls them:
 
 - `end_stop.cushion_mean_pressure`, `end_stop.cushion_open_area`: pressure and flow area of a
   cushion that brakes evenly, as input for `stops.cushion` of a scenario
-- `valve.spool_edge_coefficient`: flow coefficient of a valve's edge from the geometry of its
-  spool, overlap included
 - `end_bending.clamped`: bending of a wall at a rigid clamp, an upper bound for any joint
 - `elements.capacitance`, `elements.resonance_frequency`, `elements.sound_speed`,
   `lugre.lugre_steady_deflection`, `transmission_line.plugged_branch_impedance`,

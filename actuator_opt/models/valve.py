@@ -6,12 +6,15 @@ opens the edges A to T and P to B.
 
 from __future__ import annotations
 
-from math import pi
+from math import pi, sqrt as root
 from typing import NamedTuple
 
-from ..base.numeric import Array, geometry, maximum, minimum, positive, sqrt
+from ..base.numeric import Array, clip, geometry, maximum, minimum, positive, real, sqrt, where
 from .orifice import TURBULENT_COEFFICIENT
 
+WIDEST = root(1 + root(2.0))
+"""Largest ratio of the -3 dB frequency to the natural frequency of a lag of second order, that of
+an undamped one: |G|^2 = 1/(1 - r^2)^2 = 1/2."""
 SMOOTHING = 1e4
 """Pressure difference below which the flow through an edge is laminar [Pa], our choice: 0.1 bar."""
 
@@ -292,24 +295,133 @@ def spool_acceleration(
     return omega * (omega * (command - opening) - 2 * damping_ratio * rate)
 
 
+def limited_spool_acceleration(
+    *,
+    command: Array,
+    opening: Array,
+    rate: Array,
+    natural_frequency: Array,
+    damping_ratio: Array,
+    fastest: Array,
+) -> Array:
+    """Acceleration of a spool whose speed is limited, o'' = 2 zeta w (min(|v|, r) sgn v - o').
+
+    The speed that the spool is driven to is v = w (u - o)/(2 zeta), at most r either way. Below
+    the limit this is `spool_acceleration`.
+
+    Parameters
+    ----------
+    command : u, command to the valve [V]
+    opening, rate : position o of the spool [V] and its speed o' [V/s]
+    natural_frequency, damping_ratio : w/(2 pi) [Hz] and zeta > 0 [-]
+    fastest : r, largest speed of the spool [V/s]
+
+    Returns
+    -------
+    acceleration of the spool [V/s^2]
+
+    Notes
+    -----
+    Valid: the speed approaches its limit with the time constant 1/(2 zeta w).
+
+    References
+    ----------
+    [derived] second-order lag as a lag of first order of the speed; our choice of the limited term
+
+    Examples
+    --------
+    >>> spool = {"natural_frequency": 50 / pi, "damping_ratio": 0.7}  # 100 rad/s
+    >>> law = {"command": 1.0, "opening": 0.4, "rate": 10.0, **spool}
+    >>> [round(limited_spool_acceleration(fastest=r, **law)) for r in (100.0, 20.0)]
+    [4600, 1400]
+    """
+    omega = 2 * pi * natural_frequency
+    wanted = omega * (command - opening) / (2 * damping_ratio)
+    return 2 * damping_ratio * omega * (clip(wanted, -fastest, fastest) - rate)
+
+
+def spool_bandwidth(*, damping_ratio: Array) -> Array:
+    """Frequency at which a lag of second order falls to -3 dB, over its natural frequency.
+
+    r^2 = 1 - 2 zeta^2 + sqrt((1 - 2 zeta^2)^2 + 1), from |G|^2 = 1/2. The phase is -90 degrees at
+    the natural frequency itself, whatever the damping.
+
+    Parameters
+    ----------
+    damping_ratio : zeta [-]
+
+    Returns
+    -------
+    ratio r [-]
+
+    Notes
+    -----
+    Valid: small strokes, below the limit of the spool's speed.
+
+    References
+    ----------
+    [derived] (1 - r^2)^2 + (2 zeta r)^2 = 2
+
+    Examples
+    --------
+    >>> print(f"{spool_bandwidth(damping_ratio=0.7):.4f}")
+    1.0100
+    """
+    side = 1 - 2 * damping_ratio * damping_ratio
+    whole = sqrt(side * side + 1)
+    # at high damping side + whole is small: the quotient avoids the cancellation
+    return sqrt(where(real(side) > 0, side + whole, 1 / (whole - side)))
+
+
+def spool_damping(*, bandwidth: Array) -> Array:
+    """Damping ratio of a lag of second order, zeta^2 = (2 - (1 - r^2)^2)/(4 r^2).
+
+    This is the reverse of `spool_bandwidth`: r is the -3 dB frequency over the natural frequency.
+
+    Parameters
+    ----------
+    bandwidth : r, -3 dB frequency over the natural (-90 degrees) frequency [-]
+
+    Returns
+    -------
+    damping ratio [-]; NaN from `WIDEST` on
+
+    Notes
+    -----
+    Valid: 0 < r < sqrt(1 + sqrt(2)).
+
+    References
+    ----------
+    [derived] (1 - r^2)^2 + (2 zeta r)^2 = 2
+
+    Examples
+    --------
+    >>> print(f"{spool_damping(bandwidth=1.0100):.4f}")
+    0.7000
+    """
+    square = bandwidth * bandwidth
+    return sqrt((2 - (1 - square) * (1 - square)) / (4 * positive(square)))
+
+
 @geometry
 def spool_edge_coefficient(
     *,
     spool_position: Array,
     overlap: Array,
-    spool_diameter: Array,
-    share: Array,
+    area_gradient: Array,
     density: Array,
     flow_coefficient: Array = TURBULENT_COEFFICIENT,
 ) -> Array:
-    """Coefficient of an edge from the spool's geometry, K = C_q f pi d sqrt(2/rho) max(x - x0, 0).
+    """Coefficient of an edge from the spool's geometry, K = C_q w sqrt(2/rho) max(x - x0, 0).
 
     Parameters
     ----------
     spool_position : x from the centre (-x for an edge that the opposite stroke opens) [m]
-    overlap, spool_diameter : x0 (negative if the edge is open at the centre) and d [m]
-    share, flow_coefficient : f, open part of the circumference, and C_q [-]
+    overlap : x0 (negative if the edge is open at the centre) [m]
+    area_gradient : w, width of the ports around the spool: f pi d if they take the share f of the
+        circumference of a spool of diameter d [m]
     density : rho [kg/m^3], > 0
+    flow_coefficient : C_q [-]
 
     Returns
     -------
@@ -321,13 +433,13 @@ def spool_edge_coefficient(
 
     References
     ----------
-    [AaltoThesis] eq. 9; [derived] area of a ring of ports, f pi d (x - x0)
+    [AaltoThesis] eq. 9; [derived] area of a ring of ports, w (x - x0)
 
     Examples
     --------
-    >>> spool = {"spool_diameter": 10e-3, "share": 0.5, "overlap": 0.1e-3}
+    >>> spool = {"area_gradient": 0.5 * pi * 10e-3, "overlap": 0.1e-3}
     >>> print(f"{spool_edge_coefficient(spool_position=6e-4, density=870.0, **spool):.4e}")
     2.3008e-07
     """
     uncovered = maximum(0.0, spool_position - overlap)  # NaN stays
-    return flow_coefficient * share * pi * spool_diameter * uncovered * sqrt(2 / positive(density))
+    return flow_coefficient * area_gradient * uncovered * sqrt(2 / positive(density))

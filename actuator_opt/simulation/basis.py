@@ -15,6 +15,7 @@ from ..base.quantities import BASIS, Quantity
 from ..base.tables import Displayed
 from ..metrics.documentation import describe, function_of
 from ..models import chamber
+from ..models.lapped_spool import LappedSpool
 from .components import motion
 from .components.circuit import Circuit
 
@@ -235,7 +236,22 @@ def _valve(circuit: Circuit) -> Iterator[BasisValue]:
         yield BasisValue("edge_flow", data.rated * BAR, rated, model)
         yield BasisValue("supply_leakage", data.leakage_supply * BAR, leak, model)
         yield BasisValue("tank_leakage", data.leakage_tank * BAR, leak, model)
+    if data.lapped is not None:
+        yield from _lapped(data.lapped)
+    if data.slew_rate is not None:
+        yield BasisValue("spool_slew_rate", data.slew_rate, "valve.slew_rate")
     yield BasisValue("full_signal", data.signal, "valve.signal")
     yield BasisValue("spool_offset", data.offset, "valve.offset")
     yield BasisValue("spool_frequency", data.natural_frequency, "valve.natural_frequency")
     yield BasisValue("spool_damping", data.damping_ratio, "valve.damping_ratio")
+
+
+def _lapped(spool: LappedSpool) -> Iterator[BasisValue]:
+    """Stroke of a lapped spool, and its edge from the supply to port A."""
+    edge, stated = spool.supply_a, "valve.rated_flow, valve.spool.area_gradient"
+    width = float(edge.area_gradient)
+    yield BasisValue("edge_width", width, stated, "lapped_edge.lapped_edge_flow")
+    yield BasisValue("edge_overlap", float(edge.overlap), "valve.spool.overlap")
+    if edge.clearance is not None:
+        yield BasisValue("edge_clearance", float(edge.clearance), "valve.spool.clearance")
+    yield BasisValue("edge_stroke", float(spool.stroke), "valve.spool.stroke")

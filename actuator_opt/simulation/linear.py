@@ -181,8 +181,8 @@ class Linear:
 
         To hold a load, the spool rests on one side of its centre. The loop of that direction is
         taken at this equilibrium. In the other direction, and in both directions if there is no
-        load, the loop is taken with the spool just off its centre. If the valve cannot hold the
-        load, the loops are taken at the given states.
+        load, the loop is taken with the spool just off its centre or, with overlap, where its edges
+        begin to open. If the valve cannot hold the load, the loops are taken at the given states.
         """
         at_rest = {name: 0.0 for name in ("speed", "shaft_speed") if self._known(name)}
         centre = self.circuit.centre
@@ -193,8 +193,9 @@ class Linear:
         rest: list[OpenLoop] = []
         for side in (1.0, -1.0):
             point: tuple[Array, float] | None = equilibrium
-            if equilibrium is None or (equilibrium[1] - centre) * side < TOUCH:
-                off_centre = centre + side * TOUCH
+            touch = TOUCH + self.circuit.start_of_edges(side)
+            if equilibrium is None or (equilibrium[1] - centre) * side < touch:
+                off_centre = centre + side * touch
                 point = self.steady(off_centre, **(states | {"spool": off_centre}))
                 if point is None:
                     point = (

@@ -18,7 +18,7 @@ from ..design.ideal import assumptions
 from ..design.scenario.kinds import Records
 from ..design.scenario.model import SAMPLES, Scenario
 from ..design.scenario.reader import recorded_notes
-from ..evaluation.build import spec_hash
+from ..evaluation.build import leave_out_unset, spec_hash
 from ..evaluation.kernel import PreparedDesign
 from ..models.supply import relief_flow
 from ..studies.plant import Plant, plant
@@ -362,6 +362,10 @@ def _reference_outside_stroke(actuator: Plant, signals: Mapping[str, Array]) -> 
 
 def spec_of(subject: PreparedDesign, scenario: Scenario) -> str:
     """Hash of all inputs that affect the result."""
-    content = json.dumps(scenario.model_dump(mode="json"), sort_keys=True, default=str)
-    text = spec_hash(subject) + content
+    content = scenario.model_dump(mode="json")
+    if content["load"]["cylinder"]:
+        leave_out_unset(content["load"]["cylinder"]["valve"])
+    if content["control"] and content["control"]["dead_band_jump"] is None:
+        del content["control"]["dead_band_jump"]
+    text = spec_hash(subject) + json.dumps(content, sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:16]

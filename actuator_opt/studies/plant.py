@@ -14,15 +14,18 @@ import numpy as np
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, maximum
 from ..design.model import Design, Ideal
+from ..design.valve import Valve
 from ..evaluation import circuit, state
 from ..evaluation.build import spec_hash
 from ..evaluation.circuit import CHAMBERS, Chamber
 from ..evaluation.kernel import ModelRun, PreparedDesign, compute
 from ..evaluation.limits import MaterialValues
 from ..evaluation.rings import Ring
+from ..evaluation.spool import Read, course_edges, lapped_spool, spool_motion
 from ..evaluation.springs import OIL, Give
 from ..evaluation.values import Values
 from ..models import end_stop, lines, linkage
+from ..models.lapped_spool import LappedSpool
 from .bench import Bench, bench, first_case
 
 LEAST_AIR = 1e-4
@@ -84,6 +87,23 @@ class ValveData:
     damping_ratio: float
     offset: float = 0.0
     """Signal that centres the spool [V]."""
+    slew_rate: float | None = None
+    """Largest speed of the spool [V/s]; None: no limit."""
+    lapped: LappedSpool | None = None
+    """Spool whose edges have laps; None: the course's law, with the three flow coefficients."""
+
+    def start(self, side: float) -> float:
+        """Signal, from that of the centred spool, at which the edges of a direction open [V].
+
+        `side` is 1 for the edges P-A and B-T, and -1 for A-T and P-B. It is zero for the course's
+        law and for edges without overlap; an underlap counts as zero too.
+        """
+        if self.lapped is None:
+            return 0.0
+        spool = self.lapped
+        edges = (spool.supply_a, spool.b_tank) if side > 0 else (spool.a_tank, spool.supply_b)
+        stroke = max(float(spool.start(edge)) for edge in edges)
+        return self.signal * spool.signal_share(max(stroke, 0.0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -374,15 +394,33 @@ def _oil(subject: PreparedDesign, v: Values, own: Bench, supply: float) -> Oil:
 def _valve(v: Values, design: Design, done: ModelRun) -> ValveData | None:
     if design.valve is None:
         return None
-    edges = circuit.valve_edges(v, design, done.state)
+    oil = {
+        "density": first_case(done.state.density),
+        "kinematic_viscosity": first_case(done.state.kinematic_viscosity),
+    }
+    return valve_data(circuit.of_valve(v), design.valve, **oil)
+
+
+def valve_data(
+    read: Read, stated: Valve, *, density: float, kinematic_viscosity: float
+) -> ValveData:
+    """Edges and spool of a valve as its block states it, in an oil."""
+    lapped = lapped_spool(read, stated, density=density, kinematic_viscosity=kinematic_viscosity)
+    rated = supply = tank = 0.0
+    if lapped is None:
+        edges = course_edges(read, viscosity=kinematic_viscosity)
+        rated, supply, tank = (float(coefficient) for coefficient in edges)
+    motion = spool_motion(read)
     return ValveData(
-        rated=first_case(edges.rated),
-        leakage_supply=first_case(edges.supply),
-        leakage_tank=first_case(edges.tank),
-        signal=float(v["valve.signal"]),
-        natural_frequency=float(v["valve.natural_frequency"]),
-        damping_ratio=float(v["valve.damping_ratio"]),
-        offset=float(v["valve.offset"]),
+        rated=rated,
+        leakage_supply=supply,
+        leakage_tank=tank,
+        signal=float(read("signal")),
+        natural_frequency=float(motion.natural_frequency),
+        damping_ratio=float(motion.damping_ratio),
+        offset=float(read("offset")),
+        slew_rate=read("slew_rate"),
+        lapped=lapped,
     )
 
 

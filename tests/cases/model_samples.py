@@ -27,6 +27,7 @@ import samples_motion
 import samples_rods
 import samples_servo
 import samples_tube
+import samples_valve
 
 import actuator_opt.models
 from actuator_opt.models import elastomer, end_bending, seals
@@ -557,6 +558,7 @@ for _group in (
     samples_motion,
     samples_rods,
     samples_servo,
+    samples_valve,
     samples_tube,
 ):
     SAMPLES |= _group.SAMPLES

@@ -8,7 +8,7 @@ VALVE = {
     "full_signal": 10.0, "supply_pressure": 14e6, "return_pressure": 4e5, "pressure_a": 8e6,
     "pressure_b": 5e6,
 }  # fmt: skip
-SPOOL = {"overlap": 5e-5, "spool_diameter": 0.01, "share": 0.4, "density": 865.0}
+SPOOL = {"overlap": 5e-5, "area_gradient": 0.0126, "density": 865.0}
 LINE = {"pressure": 5.8e6, "set_pressure": 6e6}
 ULTIMATE = {"ultimate_gain": 400.0, "ultimate_period": 0.008}
 

@@ -95,6 +95,22 @@ def test_a_recorded_design_equals_its_models(name):
     assert actuator.recorded.outside <= 0.3 * actuator.recorded.points
 
 
+def test_the_search_for_the_held_spool_is_recorded(monkeypatch):
+    """A lapped spool whose overlap and clearance vary, and a design that lacks pressure to hold."""
+    text = text_of("servo_knee").replace("  leakage_flow: 0.2 l/min\n", "  spool:\n"
+        "    {type: lapped, stroke: 0.5 mm, overlap: 0 um, clearance: 3 um}\n")  # fmt: skip
+    text = text.replace("  leakage_drop: 50 bar\n", "").replace(
+        "\nvariables:\n",
+        """
+variables:
+  valve.spool.overlap: {lower: -30 um, upper: 20 um}
+  valve.spool.clearance: {lower: 1 um, upper: 8 um}
+""",
+    )
+    monkeypatch.setattr("test_recorded_models.text_of", lambda name: text)
+    test_a_recorded_design_equals_its_models("")
+
+
 def test_every_number_is_an_input():
     """One recording serves changed limits, forces, pressures and material values."""
     actuator = problem_of("knee_bonded")

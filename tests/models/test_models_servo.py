@@ -156,7 +156,7 @@ def test_the_spool_is_a_second_order_lag(natural_frequency, damping_ratio, ratio
 
 def test_spool_geometry_check_value():
     """Ports of 0.30 cm^2 at 5 bar, C_q 0.611, rho 870: 37.287 l/min; nothing within the overlap."""
-    ring = {"spool_diameter": 10e-3, "share": 0.5, "density": 870.0}
+    ring = {"area_gradient": 0.5 * math.pi * 10e-3, "density": 870.0}
     stroke = 0.30e-4 / (0.5 * math.pi * 10e-3)
     for overlap in (0.2e-3, 0.0, -0.1e-3):
         geometry = {**ring, "overlap": overlap}

@@ -10,6 +10,7 @@ from typing import Any
 from ...base import quantities
 from ...base.errors import Fault
 from ...base.quantities import length_text
+from .. import valve_faults
 from ..kinds import Section, position_at
 from ..model import Design
 from ..structure import (
@@ -369,6 +370,11 @@ def load_cylinder(view: FileView) -> Iterator[Fault]:
         yield Fault((*loc, "return_pressure"), message, f"write less than {text(high)}")
 
 
+def load_valve(view: FileView) -> Iterator[Fault]:
+    """Check the valve of the load cylinder."""
+    yield from valve_faults.valve(view, ("load", "cylinder", "valve"))
+
+
 def friction(view: FileView) -> Iterator[Fault]:
     """Check that Coulomb friction is stated where needed and does not exceed breakaway friction."""
     model = view.text("friction", "model")
@@ -435,6 +441,7 @@ CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
     supply,
     cushion,
     load_cylinder,
+    load_valve,
     friction,
     motor,
     held_ports,

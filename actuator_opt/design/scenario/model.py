@@ -10,7 +10,8 @@ from typing import Annotated
 from pydantic import Field
 
 from ..kinds import Boolean, Of, Position, Section, Text
-from ..model import Cushion, Limit, Valve
+from ..model import Cushion, Limit
+from ..valve import Valve
 from . import kinds
 from .kinds import FileName, Label, StartPosition
 
@@ -348,6 +349,14 @@ class Controller(Section):
         float, Of("time_constant", "time constant of the high-pass filter for pressure changes")
     ] = 0.05
     rate_limit: Annotated[float | None, Of("signal_rate", "rate limit of the signal")] = None
+    dead_band_jump: Annotated[
+        float | None,
+        Of(
+            "signal",
+            "signal that is added in its own direction, to pass the dead band of the valve; it "
+            "fades to zero within 1 % of the full signal; tuning and margins leave it out",
+        ),
+    ] = None
 
 
 class Analysis(Section):

@@ -7,6 +7,7 @@ Wilson model; and a load cylinder with its own valve, which loads the rod on a t
 
 from __future__ import annotations
 
+import re
 from typing import NamedTuple
 
 from ...base.kinds import per_kind
@@ -15,13 +16,13 @@ from ...base.quantities import INPUTS, SCENARIOS
 from ...base.symbolic import Expression, Namespace, Symbol
 from ...design.scenario.kinds import ENDS
 from ...design.scenario.model import LoadCylinder
+from ...design.structure import child_at, number_of
 from ...evaluation.circuit import Chamber
 from ...evaluation.springs import Give
 from ...models import chamber, forces, one_way_valve, supply, wilson
 from ...models.chamber import cavity
 from ...models.fluid import ATMOSPHERIC_PRESSURE
-from ...models.valve import edge_coefficient, viscosity_corrected
-from ...studies.plant import Oil, ValveData
+from ...studies.plant import Oil, ValveData, valve_data
 from ..system import System
 from . import valve
 from .circuit import Circuit
@@ -247,7 +248,7 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
     half = 0.5 * stated.force / area
     a = system.pressure(f"{PREFIX}pressure a", middle + half)
     b = system.pressure(f"{PREFIX}pressure b", middle - half)
-    data = _data(stated, circuit.plant.oil.kinematic_viscosity)
+    data = _data(stated, circuit.plant.oil)
     opening = valve.spool(circuit, data, circuit.scenario_signal(stated.signal), PREFIX)
     flows = valve.edges(
         circuit,
@@ -289,32 +290,19 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
     return force_on_rod
 
 
-def _data(load_cylinder: LoadCylinder, viscosity: float) -> ValveData:
+def _data(load_cylinder: LoadCylinder, oil: Oil) -> ValveData:
     """Data of the load cylinder's valve, with the oil of the design."""
-    valve_data = load_cylinder.valve
-    tank_drop = (
-        valve_data.leakage_drop
-        if valve_data.tank_leakage_drop is None
-        else valve_data.tank_leakage_drop
-    )
 
-    def coefficient(flow: float, drop: float) -> float:
-        return float(edge_coefficient(flow=flow, pressure_drop=drop))
+    def read(name: str) -> float | None:
+        keys = re.findall(r"\w+", name)
+        loc = tuple(int(key) if key.isdigit() else key for key in keys)
+        return number_of(child_at(load_cylinder.valve, loc))
 
-    rated = coefficient(valve_data.rated_flow, valve_data.rated_drop)
-    if valve_data.rated_viscosity is not None:
-        corrected = viscosity_corrected(
-            coefficient=rated, rated_viscosity=valve_data.rated_viscosity, viscosity=viscosity
-        )
-        rated = float(corrected)
-    return ValveData(
-        rated=rated,
-        leakage_supply=coefficient(valve_data.leakage_flow, valve_data.leakage_drop),
-        leakage_tank=coefficient(valve_data.leakage_flow, tank_drop),
-        signal=valve_data.signal,
-        natural_frequency=valve_data.natural_frequency,
-        damping_ratio=valve_data.damping_ratio,
-        offset=valve_data.offset,
+    return valve_data(
+        read,
+        load_cylinder.valve,
+        density=oil.density,
+        kinematic_viscosity=oil.kinematic_viscosity,
     )
 
 

@@ -291,6 +291,11 @@ class Circuit:
         """The cushion of the scenario, or else of the design."""
         return self.scenario.stops.cushion or self.plant.design.cushion
 
+    def start_of_edges(self, side: float) -> float:
+        """Signal from the centre at which the edges of a direction (1 or -1) open [V]."""
+        valve = self.plant.valve
+        return 0.0 if valve is None else valve.start(side)
+
     def scenario_signal(self, parts: Sequence[SignalSegment]) -> Expression:
         """A signal of the scenario as a function of time."""
         return signal(self.system, parts, self.records)

@@ -14,7 +14,8 @@ from ...base.numeric import clip, where
 from ...base.quantities import SCENARIOS
 from ...base.symbolic import Expression
 from ...models import valve
-from ...models.valve import spool_acceleration
+from ...models.lapped_spool import lapped_flows
+from ...models.valve import limited_spool_acceleration, spool_acceleration
 from ...studies.plant import ValveData
 from .circuit import Circuit
 
@@ -41,16 +42,17 @@ def spool(circuit: Circuit, data: ValveData, command: Expression, prefix: str = 
     speed = system.state(f"{prefix}spool rate", 0.0, tolerance=SPOOL * 6 * data.natural_frequency)
     limited = clip(command, -data.signal, data.signal)
     system.rate(opening, speed)
-    system.rate(
-        speed,
-        spool_acceleration(
-            command=limited,
-            opening=opening,
-            rate=speed,
-            natural_frequency=data.natural_frequency,
-            damping_ratio=data.damping_ratio,
-        ),
-    )
+    law = {
+        "command": limited,
+        "opening": opening,
+        "rate": speed,
+        "natural_frequency": data.natural_frequency,
+        "damping_ratio": data.damping_ratio,
+    }
+    if data.slew_rate is None:
+        system.rate(speed, spool_acceleration(**law))
+    else:
+        system.rate(speed, limited_spool_acceleration(**law, fastest=data.slew_rate))
     volts = SCENARIOS["signal_value"]
     of = " of the load cylinder" if prefix else ""
     system.signal(f"{prefix}signal", f"signal of the valve{of}", volts, limited)
@@ -74,17 +76,23 @@ def edges(
     The energy that the edges dissipate is added to the balance.
     """
     offset = data.offset if prefix else circuit.value("valve.offset", data.offset)
-    flows = valve.valve_flows(
-        signal=opening - offset,
-        rated_coefficient=data.rated,
-        leakage_supply=data.leakage_supply,
-        leakage_tank=data.leakage_tank,
-        full_signal=data.signal,
-        supply_pressure=supply_pressure,
-        return_pressure=return_pressure,
-        pressure_a=pressure_a,
-        pressure_b=pressure_b,
-    )
+    port_pressures = {
+        "supply_pressure": supply_pressure,
+        "return_pressure": return_pressure,
+        "pressure_a": pressure_a,
+        "pressure_b": pressure_b,
+    }
+    if data.lapped is not None:
+        flows = lapped_flows(spool=data.lapped, signal=opening - offset, **port_pressures)
+    else:
+        flows = valve.valve_flows(
+            signal=opening - offset,
+            rated_coefficient=data.rated,
+            leakage_supply=data.leakage_supply,
+            leakage_tank=data.leakage_tank,
+            full_signal=data.signal,
+            **port_pressures,
+        )
     loss = (
         (supply_pressure - pressure_a) * flows.supply_a
         + (supply_pressure - pressure_b) * flows.supply_b
@@ -111,6 +119,11 @@ HOLD_BAND = 1e-3
 """Distance from the signal limit, as a share of the full signal, over which the controller's
 integration fades out (our choice). Integration stops while the signal is at its limit and the error
 would drive it further."""
+
+
+JUMP_BAND = 0.01
+"""Signal over which the jump across the dead band rises, as a share of the full signal (our
+choice). The narrower it is, the more the valve swings about its null."""
 
 
 RATE_TIME = 1e-4
@@ -178,6 +191,9 @@ def command(
         factor = control.integral_factor * proportional_gain
         rate = factor / circuit.value("control.integral_time", gains.integral_time) * error
         system.rate(integral, where(rate > 0, rate * up, rate * down))
+    if control.dead_band_jump is not None:
+        share = clip(valve_signal / (JUMP_BAND * full_signal), -1.0, 1.0)
+        valve_signal = valve_signal + control.dead_band_jump * share
     valve_signal = clip(valve_signal, -full_signal, full_signal)
     if control.rate_limit is None:
         return valve_signal

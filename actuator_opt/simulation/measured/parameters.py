@@ -10,7 +10,8 @@ from ...base.dataclass import dataclass
 from ...base.errors import Diagnostic, InputError, remedy, shown
 from ...base.quantities import INPUTS, MATERIAL_PROPERTIES, RECORDS, SCENARIOS, Quantity
 from ...design.scenario.model import ForceSignal, Scenario
-from ...studies.plant import LEAST_AIR, Plane, Plant
+from ...evaluation.spool import EDGES
+from ...studies.plant import LEAST_AIR, Plane, Plant, ValveData
 from ..assemble import ends_of, start_of
 from ..components.chambers import LEAST_DEAD
 
@@ -89,6 +90,8 @@ def _idle(name: str, scenario: Scenario, plant: Plant) -> str | None:
         if not on_bench and not motor and ends_of(scenario, plant) != "valve":
             return "the lines do not end at a valve"
         leaks = plant.valve.leakage_supply or plant.valve.leakage_tank
+        if name == "valve_leakage" and plant.valve.lapped is not None:
+            return "the clearance of a lapped spool gives its leakage; fit valve_capacity"
         if name == "valve_leakage" and not leaks:
             return "it multiplies the leakage of the design's valve, which is zero"
         return None
@@ -158,10 +161,22 @@ def _bulk(scenario: Scenario, plant: Plant) -> FitParameter:
 def _capacity(scenario: Scenario, plant: Plant) -> FitParameter:
     def put(s: Scenario, p: Plant, value: float) -> Case:
         assert p.valve is not None
-        return s, replace(p, valve=replace(p.valve, rated=value * p.valve.rated))
+        return s, replace(p, valve=_wider(p.valve, value))
 
     quantity = replace(SCENARIOS["factor"], label="factor on the rated flow of the valve's edges")
     return _positive("valve_capacity", quantity, 1.0, 0.05, 20.0, put)
+
+
+def _wider(valve: ValveData, factor: float) -> ValveData:
+    """The valve with edges that pass a multiple of their flow."""
+    if valve.lapped is None:
+        return replace(valve, rated=factor * valve.rated)
+    edges = {
+        name: replace(edge, area_gradient=factor * edge.area_gradient)
+        for name in EDGES
+        for edge in (getattr(valve.lapped, name),)
+    }
+    return replace(valve, lapped=replace(valve.lapped, **edges))
 
 
 def _valve_leakage(scenario: Scenario, plant: Plant) -> FitParameter:

@@ -1,0 +1,129 @@
+"""The block `valve` of a design or a load cylinder: data sheet, spool and edges."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from ..models.orifice import TURBULENT_COEFFICIENT
+from . import choices
+from .kinds import Of, Section
+
+
+class SpoolEdge(Section):
+    """Values of one metering edge of a lapped spool, where they differ from the other edges."""
+
+    overlap: Annotated[
+        float | None, Of("spool_overlap", "overlap of this edge; default: valve.spool.overlap")
+    ] = None
+    clearance: Annotated[
+        float | None,
+        Of("spool_clearance", "radial clearance of this edge; default: valve.spool.clearance"),
+    ] = None
+    rounding: Annotated[
+        float | None,
+        Of("edge_rounding", "corner radius of this edge; default: valve.spool.rounding"),
+    ] = None
+    flow_share: Annotated[
+        float,
+        Of("flow_share", "width of this edge, as a share of the width that the valve states"),
+    ] = 1.0
+
+
+class CurvePoint(Section):
+    """A point of the curve of flow over signal, both as shares of their full values."""
+
+    signal: Annotated[float, Of("opening", "share of the full signal")]
+    flow: Annotated[float, Of("opening", "share of the rated flow at this signal")]
+
+
+class Spool(Section):
+    """Law and geometry of the metering edges of a valve."""
+
+    type: choices.SpoolLaw = "course"
+    stroke: Annotated[
+        float | None, Of("spool_stroke", "travel of the spool from its centre at full signal")
+    ] = None
+    overlap: Annotated[
+        float, Of("spool_overlap", "overlap of every edge; negative: open at the centre")
+    ] = 0.0
+    clearance: Annotated[
+        float | None,
+        Of("spool_clearance", "radial clearance of the spool; default: the edges do not leak"),
+    ] = None
+    rounding: Annotated[float, Of("edge_rounding", "radius of the corners of every edge")] = 0.0
+    area_gradient: Annotated[
+        float | None,
+        Of(
+            "area_gradient",
+            "width of the ports around the spool, instead of valve.rated_flow: flow area of an "
+            "edge per opening",
+        ),
+    ] = None
+    flow_coefficient: Annotated[
+        float, Of("coefficient", "discharge coefficient of the turbulent flow through an edge")
+    ] = TURBULENT_COEFFICIENT
+    curve: Annotated[tuple[CurvePoint, ...], Field(max_length=30)] = ()
+    pa: SpoolEdge | None = None
+    pb: SpoolEdge | None = None
+    at: SpoolEdge | None = None
+    bt: SpoolEdge | None = None
+
+
+class Valve(Section):
+    """A proportional or servo valve with four control edges that open linearly with the signal."""
+
+    rated_flow: Annotated[
+        float | None,
+        Of(
+            "rated_flow",
+            "flow through one metering edge at full signal; or state valve.spool.area_gradient",
+        ),
+    ] = None
+    rated_drop: Annotated[
+        float, Of("pressure_drop", "pressure drop across the edge at rated flow")
+    ] = 35e5
+    leakage_flow: Annotated[
+        float,
+        Of(
+            "leakage_flow",
+            "leakage of one metering edge with centred spool: half of the valve's leakage",
+        ),
+    ] = 0.0
+    leakage_drop: Annotated[
+        float, Of("pressure_drop", "pressure drop across the edge at the leakage flow")
+    ] = 50e5
+    tank_leakage_drop: Annotated[
+        float | None,
+        Of(
+            "pressure_drop",
+            "pressure drop across an edge to tank at the leakage flow; default: leakage_drop",
+        ),
+    ] = None
+    rated_viscosity: Annotated[
+        float | None,
+        Of(
+            "oil_viscosity",
+            "oil viscosity at which the rated flow applies; default: the rated "
+            "flow applies to any oil",
+        ),
+    ] = None
+    offset: Annotated[float, Of("signal_offset", "signal that centres the spool")] = 0.0
+    signal: Annotated[float, Of("signal", "signal of the fully open spool")] = 10.0
+    natural_frequency: Annotated[
+        float | None,
+        Of("frequency", "natural frequency of the spool; or state frequency_90deg, frequency_3db"),
+    ] = None
+    damping_ratio: Annotated[float, Of("damping_ratio", "damping ratio of the spool")] = 0.7
+    frequency_90deg: Annotated[
+        float | None,
+        Of("frequency", "frequency at which the spool lags its signal by 90 degrees"),
+    ] = None
+    frequency_3db: Annotated[
+        float | None,
+        Of("frequency", "frequency at which the stroke of the spool falls to -3 dB"),
+    ] = None
+    slew_rate: Annotated[
+        float | None,
+        Of("signal_rate", "fastest motion of the spool in volts of signal; default: no limit"),
+    ] = None
+    spool: Spool | None = None
