@@ -40,7 +40,7 @@ def export(
     plugins: Plugins = (),
     scenario: Trial | str | Path | None = None,
 ) -> list[ExportFile]:
-    """Write a design as STEP, DXF, XLSX or C files.
+    """Write a design as STEP, DXF, XLSX or C files, or a scenario with it as C or FMU.
 
     STEP contains the turned parts as solids, in mm, positioned as in the section drawing of the
     retracted actuator; their volumes agree with the mass breakdown. It lacks parts whose shape the
@@ -53,13 +53,15 @@ def export(
     Parameters
     ----------
     subject : a design in any form, an evaluation, or an optimisation (its best design)
-    formats : any of "step", "dxf" (both need the extra ``cad``), "xlsx" (extra ``excel``), "c"
+    formats : any of "step", "dxf" (both need the extra ``cad``), "xlsx" (extra ``excel``), "c"; for
+        a scenario "c" and "fmu"
     folder, stem : folder and name of the files; default: the design's name in ``reports/``
     actuator : the design as read, if `subject` is its evaluation; exports are named after its file
     date : ISO date in the files; default: that of SOURCE_DATE_EPOCH, or else none
     plugins : the user's metrics and constraints, for a design that is not an `Actuator` yet
-    scenario : write the equations of this scenario instead, with the design in it; in C only, and
-        named after the scenario's file
+    scenario : write the equations of this scenario instead, with the design in it, named after the
+        scenario's file: as C, or as a unit by FMI 2.0 ("fmu"). A unit contains a
+        library for this platform if there is a C compiler; else its `ExportFile.note` says so
 
     Returns
     -------
@@ -87,7 +89,9 @@ def export(
         own = plugins_of(plugins) if actuator is None else actuator.plugins
         exported = Actuator(evaluation.design, None if actuator is None else actuator.source, own)
     if scenario is not None:
-        return _export_scenario(as_trial(scenario), exported, Path(folder), stem, date)
+        return _export_scenario(
+            as_trial(scenario), exported, formats=formats, folder=Path(folder), stem=stem, date=date
+        )
     with located(exported):
         return write_exports(
             evaluation or evaluate(exported),
@@ -100,20 +104,20 @@ def export(
 
 
 def _export_scenario(
-    trial: Trial, actuator: Actuator, folder: Path, stem: str | None, date: str | None
-) -> list[ExportFile]:
+    trial: Trial, actuator: Actuator, *, formats: Sequence[str], folder: Path, stem: str | None,
+    date: str | None,
+) -> list[ExportFile]:  # fmt: skip
     """Write the equations of a scenario with a design."""
-    from ..exports import written
-    from ..exports.c_scenario import scenario_files
+    from ..exports import scenario_exports
 
     file = trial.loaded.source.file
     with placed(trial):
-        contents = scenario_files(
+        return scenario_exports(
             trial.scenario, with_design(trial, actuator).subject(), trial.records,
+            formats=formats, folder=folder,
             stem=stem or ("scenario" if file.startswith("<") else Path(file).stem),
             program=f"actuator-opt {VERSION}", date=date,
         )  # fmt: skip
-    return written(folder, contents)
 
 
 ROWS = 5000

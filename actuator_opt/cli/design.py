@@ -420,14 +420,14 @@ def export(
     design: DesignFile,
     formats: Annotated[
         list[str] | None,
-        typer.Option("--format", metavar="step|dxf|xlsx|c", help="File format. Repeatable."),
+        typer.Option("--format", metavar="step|dxf|xlsx|c|fmu", help="File format. Repeatable."),
     ] = None,
     scenario: Annotated[
         str | None,
         typer.Option(
             "--scenario",
             metavar="SCENARIO",
-            help="Write the equations of this scenario with the design instead (C only).",
+            help="Write the equations of this scenario with the design instead (c or fmu).",
         ),
     ] = None,
     sets: Set = None,
@@ -446,7 +446,7 @@ def export(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Export the design to CAD (STEP, DXF), Excel (XLSX) or C."""
+    """Export the design to CAD (STEP, DXF), Excel, C or FMI."""
     from .. import api as verbs
     from ..exports import require_formats
 
@@ -463,7 +463,8 @@ def export(
         evaluation = None
         exports = job.run(verbs.export, scenario=scenario, **options)
     files = [file.to_dict() for file in exports]
-    job.answer(lambda: {"files": files}, files=files)
+    remarks = [f"{file.path}: {file.note}" for file in exports if file.note]
+    job.answer(lambda: {"files": files}, files=files, remarks=remarks)
     return ExitCode.MET if evaluation is None else verbs.exit_code(evaluation)
 
 

@@ -760,7 +760,6 @@ class Design(Section):
     fluid: FluidSection
     supply: Supply
     environment: Environment | None = None
-    ideal: Ideal | None = None
     cylinder: Cylinder
     barrel: Barrel
     rod: Rod
@@ -781,6 +780,7 @@ class Design(Section):
     control: PositionLoop | None = None
     load: Load = Load.model_construct()
     linkage: Linkage | None = None
+    ideal: Ideal | None = None
     load_cases: Annotated[tuple[LoadCase, ...], Field(min_length=1, max_length=100)]
     variables: dict[str, Variable] = {}  # noqa: RUF012 (pydantic copies it)
     choices: dict[str, tuple[float | bool | str | Fraction, ...]] = {}  # noqa: RUF012 (pydantic copies it)

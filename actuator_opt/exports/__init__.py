@@ -1,5 +1,7 @@
 """Files for other programs: parts as STEP, the section as DXF, results as XLSX, formulas as C.
 
+The equations of a scenario are written as C, or as a unit by FMI 2.0 (FMU).
+
 If one of the files fails, none is written.
 """
 
@@ -12,11 +14,15 @@ from pathlib import Path
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, UsageError, library, shown
 from ..base.files import write_all
+from ..design.scenario.kinds import Records
+from ..design.scenario.model import Scenario
 from ..evaluation.kernel import PreparedDesign
 from ..evaluation.result import Evaluation
 
-FORMATS = ("step", "dxf", "xlsx", "c")
+FORMATS = ("step", "dxf", "xlsx", "c", "fmu")
 """Names of the formats, which are also the file suffixes; C has a header file too."""
+SCENARIO_FORMATS = ("c", "fmu")
+"""Formats of the equations of a scenario."""
 
 _NEEDS = {"dxf": "ezdxf", "xlsx": "openpyxl"}
 
@@ -27,10 +33,13 @@ class ExportFile:
 
     path: Path
     sha256: str
+    note: str = ""
+    """Missing part of the file, with the reason."""
 
     def to_dict(self) -> dict[str, object]:
         """The JSON form."""
-        return {"path": str(self.path), "sha256": self.sha256}
+        note = {"note": self.note} if self.note else {}
+        return {"path": str(self.path), "sha256": self.sha256, **note}
 
 
 def require_formats(formats: Sequence[str], *, scenario: bool = False) -> tuple[str, ...]:
@@ -39,7 +48,7 @@ def require_formats(formats: Sequence[str], *, scenario: bool = False) -> tuple[
     Parameters
     ----------
     formats : names of formats
-    scenario : whether the equations of a scenario are written; they have one format only
+    scenario : whether the equations of a scenario are written, in `SCENARIO_FORMATS`
 
     Raises
     ------
@@ -52,9 +61,12 @@ def require_formats(formats: Sequence[str], *, scenario: bool = False) -> tuple[
         if name not in FORMATS:
             remedy = f"use {', '.join(FORMATS)}, each with its own --format"
             raise UsageError(Diagnostic(f'unknown format "{shown(name)}"', remedy))
-        if scenario and name != "c":
+        if scenario and name not in SCENARIO_FORMATS:
             message = f"the equations of a scenario have no {name.upper()} file"
-            raise UsageError(Diagnostic(message, "use --format c only"))
+            raise UsageError(Diagnostic(message, f"use --format {' or '.join(SCENARIO_FORMATS)}"))
+        if name == "fmu" and not scenario:
+            message = "an FMU file contains a circuit over time: it needs a scenario"
+            raise UsageError(Diagnostic(message, "add --scenario FILE"))
         if name in _NEEDS:
             library(_NEEDS[name])
     return tuple(dict.fromkeys(formats))
@@ -116,10 +128,58 @@ def write_exports(
     return written(folder, contents)
 
 
-def written(folder: Path, contents: Mapping[str, bytes]) -> list[ExportFile]:
+def scenario_exports(
+    scenario: Scenario,
+    subject: PreparedDesign,
+    records: Records,
+    *,
+    formats: Sequence[str],
+    folder: Path,
+    stem: str,
+    program: str,
+    date: str | None = None,
+) -> list[ExportFile]:
+    """Write the equations of a scenario into `folder`.
+
+    Parameters
+    ----------
+    scenario, records : inputs over time, and the columns of files that they name
+    subject : the design, already with the values that the scenario sets
+    formats : some of `SCENARIO_FORMATS`
+    folder, stem : folder (created if missing) and file name without suffix
+    program, date : origin of the files
+
+    Raises
+    ------
+    InputError : if the equations cannot be written, or the folder is not writable; no file is
+        written
+    """
+    contents: dict[str, bytes] = {}
+    notes: dict[str, str] = {}
+    for name in require_formats(formats, scenario=True):
+        if name == "c":
+            from .c_scenario import scenario_files
+
+            contents |= scenario_files(
+                scenario, subject, records, stem=stem, program=program, date=date
+            )
+        else:
+            from .fmu import unit
+
+            file, content, note = unit(
+                scenario, subject, records, stem=stem, program=program, date=date
+            )
+            contents[file], notes[file] = content, note
+    return written(folder, contents, notes)
+
+
+def written(
+    folder: Path, contents: Mapping[str, bytes], notes: Mapping[str, str] | None = None
+) -> list[ExportFile]:
     """Write files by name into a folder; raises `InputError`, and then writes none."""
     write_all(folder, contents, what="the export")
+    known = notes or {}
     return [
-        ExportFile(folder / name, hashlib.sha256(content).hexdigest())
+        ExportFile(folder / name, hashlib.sha256(content).hexdigest(), known.get(name, ""))
         for name, content in contents.items()
     ]

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
 from ..base.errors import Diagnostic, InputError
 from ..base.symbolic import program as programs
-from ..base.symbolic.expression import Symbol, jacobian, needed
+from ..base.symbolic.expression import Expression, Symbol, jacobian, needed
 from ..base.symbolic.program import Program
 from ..design.scenario.kinds import Records
 from ..design.scenario.model import Scenario
 from ..evaluation.kernel import PreparedDesign
 from ..simulation.assemble import assemble
+from ..simulation.components.circuit import Circuit
 from ..simulation.linear import tune
 from ..simulation.system import System
 from ..studies.plant import plant
@@ -54,13 +55,7 @@ def scenario_files(
         the scenario lacks a valve or a gain, its equations are too long, or the package was
         installed without its compiled part
     """
-    if not programs.AVAILABLE:
-        reason = f"the scenario cannot be written as C: {programs.NOT_BUILT}"
-        raise InputError(Diagnostic(reason, "install a C compiler, then reinstall actuator-opt"))
-    actuator = plant(subject)
-    tuned = tune(scenario, actuator, records)
-    gains = None if tuned is None else tuned.gains
-    system = assemble(scenario, actuator, records, gains).system
+    system = circuit_of(scenario, subject, records).system
     symbols = [state.symbol for state in system.states]
     rates = [state.rate for state in system.states]
     slopes = [entry for row in jacobian(rates, symbols) for entry in row]
@@ -68,23 +63,45 @@ def scenario_files(
     tables = [node for node in needed([*rates, *slopes, *results]) if node.op == "table"]
     flags = [system.graph.flag(name) for name in system.flags]
     given = [system.time, *symbols, *flags, *tables]
-    try:
-        written = {
-            "RATES": programs.program(given, rates),
-            "JACOBIAN": programs.program(given, slopes),
-            "SIGNALS": programs.program(given, results),
-        }
-    except ValueError as error:
-        reason = f"the scenario cannot be written as C: {error}"
-        raise InputError(
-            Diagnostic(reason, "use fewer hydraulic lines, or signals with fewer pieces")
-        ) from None
+    written = programs_of(given, {"RATES": rates, "JACOBIAN": slopes, "SIGNALS": results})
     inputs, signals = _declared(system, tables, written["SIGNALS"])
     return _texts(
         file_word(stem), inputs, signals, len(symbols), written,
         title=remark(f"{scenario.name}: the equations of a scenario, design {subject.design.name}"),
         origin=remark(f"Written by {program}" + (f" on {date}." if date else ".")),
     )  # fmt: skip
+
+
+def circuit_of(
+    scenario: Scenario, subject: PreparedDesign, records: Records, *, free: Collection[str] = ()
+) -> Circuit:
+    """The circuit of a scenario with its tuned gains; the names in `free` stay variables.
+
+    Raises
+    ------
+    InputError
+        the scenario lacks a valve or a gain, or the package was installed without its compiled part
+    """
+    if not programs.AVAILABLE:
+        reason = f"the scenario cannot be written as C: {programs.NOT_BUILT}"
+        raise InputError(Diagnostic(reason, "install a C compiler, then reinstall actuator-opt"))
+    actuator = plant(subject)
+    tuned = tune(scenario, actuator, records)
+    gains = None if tuned is None else tuned.gains
+    return assemble(scenario, actuator, records, gains, free=free)
+
+
+def programs_of(
+    given: Sequence[Symbol], outputs: Mapping[str, Sequence[Expression]]
+) -> dict[str, Program]:
+    """Programs that compute outputs from the same inputs, by name; raises `InputError`."""
+    try:
+        return {name: programs.program(given, values) for name, values in outputs.items()}
+    except ValueError as error:
+        reason = f"the scenario cannot be written as C: {error}"
+        raise InputError(
+            Diagnostic(reason, "use fewer hydraulic lines, or signals with fewer pieces")
+        ) from None
 
 
 def _declared(

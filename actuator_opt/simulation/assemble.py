@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from dataclasses import replace
 from math import pi
 
 from ..base.errors import Diagnostic, InputError
 from ..base.quantities import INPUTS, SCENARIOS
 from ..base.symbolic import Expression, Symbol
 from ..design.kinds import position_at
-from ..design.scenario.kinds import Records
+from ..design.scenario.kinds import ENDS, Records
 from ..design.scenario.model import HeldPorts, Scenario
 from ..models import linkage
 from ..models.loop import ControllerGains
@@ -71,6 +73,7 @@ def assemble(
     gains: ControllerGains | None,
     *,
     linear: bool = False,
+    free: Collection[str] = (),
 ) -> Circuit:
     """Assemble the equations of a scenario.
 
@@ -81,6 +84,7 @@ def assemble(
     gains : controller gains; None without a controller
     linear : replace the valve signal by a free variable ``u``, which opens the control loop, and
         omit sticking friction
+    free : names of values that become variables; `Circuit.freed` has those that the circuit uses
     """
     circuit = Circuit(
         scenario=scenario,
@@ -90,6 +94,7 @@ def assemble(
         gains=gains,
         loop=loop_of(scenario.control),
         linear=linear,
+        free=free,
     )
     if scenario.held_ports is not None:
         _valve_bench(circuit, scenario.held_ports)
@@ -107,9 +112,10 @@ def _command(circuit: Circuit, measured: Feedback) -> Expression:
     if circuit.linear:
         return inner(circuit, system.graph.variable("u"), measured)
     if loop is None or control is None:
-        return circuit.scenario_signal(circuit.scenario.signal)
-    base = circuit.start.position if loop == "position" else 0.0
+        return circuit.value("signal", circuit.scenario_signal(circuit.scenario.signal))
+    base = circuit.begin.position if loop == "position" else 0.0
     reference = base + circuit.scenario_signal(getattr(control, loop))
+    reference = circuit.value("reference", reference)
     system.signal("reference", "reference", LOOPS[loop].quantity, reference)
     system.signal("error", "error of the loop", LOOPS[loop].quantity, reference - measured.value)
     return command(circuit, reference, measured, LOOPS[loop].typical)
@@ -130,7 +136,7 @@ def _driven(
         data,
         opening=valve.spool(circuit, data, valve_signal),
         supply_pressure=source.pressure,
-        return_pressure=circuit.plant.return_pressure,
+        return_pressure=circuit.return_pressure,
         pressure_a=pressures[0],
         pressure_b=pressures[1],
     )
@@ -139,14 +145,14 @@ def _driven(
 
 
 def _valve_bench(circuit: Circuit, ports: HeldPorts) -> None:
-    valve_signal = circuit.scenario_signal(circuit.scenario.signal)
+    valve_signal = circuit.value("signal", circuit.scenario_signal(circuit.scenario.signal))
     flows = _driven(circuit, valve_signal, (ports.pressure_a, ports.pressure_b))
     work = ports.pressure_a * flows.into_a + ports.pressure_b * flows.into_b
     circuit.energy_port("held ports", work, state="work on the bench")
 
 
 def _motor(circuit: Circuit) -> None:
-    system, start = circuit.system, circuit.start
+    system, start = circuit.system, circuit.begin
     a = system.pressure("pressure a", start.pressure_a)
     b = system.pressure("pressure b", start.pressure_b)
     shaft = chambers.shaft(system)
@@ -171,11 +177,12 @@ def _pressures(system: System, a: Expression, b: Expression, where: str = "chamb
 
 
 def _cylinder(circuit: Circuit) -> None:
-    system, plant, start = circuit.system, circuit.plant, circuit.start
-    scenario = circuit.scenario
+    system, plant, scenario = circuit.system, circuit.plant, circuit.scenario
     ends = ends_of(scenario, plant)
-    position = system.state("position", start.position, tolerance=motion.POSITION)
-    speed = system.state("speed", scenario.initial.speed, tolerance=motion.SPEED)
+    position = system.state("position", circuit.begin.position, tolerance=motion.POSITION)
+    start = circuit.start if ENDS[ends].holds else circuit.begin  # held pressures are no states
+    initial_speed = circuit.value("initial.speed", scenario.initial.speed)
+    speed = system.state("speed", initial_speed, tolerance=motion.SPEED)
     a = chambers.side(circuit, "a", ends, start.pressure_a)
     b = chambers.side(circuit, "b", ends, start.pressure_b)
     valve_flow: tuple[Expression, Expression] = (0.0, 0.0)
@@ -199,9 +206,10 @@ def _cylinder(circuit: Circuit) -> None:
     pressure_force = _chambers(
         circuit, (a, b), (into_a - leakage, into_b + leakage), position, speed
     )
-    circuit.friction = motion.law(plant, scenario.friction, start)
+    circuit.friction = curve = motion.law(plant, scenario.friction, circuit.start)
+    curve = replace(curve, viscous=circuit.value("friction.viscous", curve.viscous))
     friction = motion.resist(
-        circuit, circuit.friction, speed=speed, pressure_a=a.pressure, pressure_b=b.pressure
+        circuit, curve, speed=speed, pressure_a=a.pressure, pressure_b=b.pressure
     )
     load_cylinder = scenario.load.cylinder
     motion.move(

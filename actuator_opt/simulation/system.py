@@ -9,7 +9,6 @@ expression, the guard of the switch, is positive.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import field
 from typing import Any
@@ -17,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, clip, where
+from ..base.numeric import Array, clip, maximum, minimum, where
 from ..base.quantities import Quantity
 from ..base.symbolic import Equations, Expression, Graph, Namespace, Symbol, jacobian
 from ..models.fluid import ATMOSPHERIC_PRESSURE
@@ -41,7 +40,7 @@ class SystemState:
 
     name: str
     symbol: Symbol
-    initial: float
+    initial: Expression
     tolerance: float
     rate: Expression = 0.0
     integral: bool = False
@@ -97,13 +96,14 @@ class System:
         """The time [s]."""
         return self.graph.variable("t")
 
-    def state(self, name: str, initial: float, *, tolerance: float) -> Symbol:
+    def state(self, name: str, initial: Expression, *, tolerance: float) -> Symbol:
         """Add a state, whose time derivative `rate` sets later."""
+        initial = initial if isinstance(initial, Symbol) else float(initial)
         symbol = self.graph.variable(f"y_{len(self.states)}")
-        self.states.append(SystemState(name, symbol, float(initial), tolerance))
+        self.states.append(SystemState(name, symbol, initial, tolerance))
         return symbol
 
-    def pressure(self, name: str, initial: float) -> Symbol:
+    def pressure(self, name: str, initial: Expression) -> Symbol:
         """Add a gauge pressure as a state that cannot fall below vacuum.
 
         The state s is defined by s = p for p above zero, and by s = p_a ln(1 + p/p_a) below zero. p
@@ -111,8 +111,8 @@ class System:
         distance from vacuum, and s has no lower limit.
         """
         air = ATMOSPHERIC_PRESSURE
-        clipped = max(float(initial), (VACUUM - 1) * air)
-        start = clipped if clipped >= 0 else air * math.log1p(clipped / air)
+        clipped = maximum(initial, (VACUUM - 1) * air)
+        start = where(clipped >= 0, clipped, air * Namespace.log1p(minimum(clipped, 0.0) / air))
         state = self.state(name, start, tolerance=PRESSURE)
         below_zero = air * Namespace.expm1(_below(state) / air)
         symbol: Symbol = where(state >= 0, state, below_zero)
@@ -203,7 +203,7 @@ class Compiled:
         return cls(
             system=system,
             rates=system.equations([state.rate for state in system.states]),
-            switches=system.equations([*guards, *_guard_rates(system)]),
+            switches=system.equations([*guards, *guard_rates(system)]),
             signal_values=system.equations([signal.value for signal in system.signals]),
             initial=np.array([state.initial for state in system.states]),
             tolerances=np.array([state.tolerance for state in system.states]),
@@ -223,7 +223,7 @@ def _below(state: Symbol) -> Expression:
     return clip(state, EMPTY * ATMOSPHERIC_PRESSURE, 0.0)
 
 
-def _guard_rates(system: System) -> list[Expression]:
+def guard_rates(system: System) -> list[Expression]:
     """Time derivatives of the guards along the solution."""
     symbols, rates = [state.symbol for state in system.states], [s.rate for s in system.states]
     rates_of_guards = []

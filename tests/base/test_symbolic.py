@@ -21,6 +21,8 @@ NOT_TRACED = {
     "layered_tube.ply_stresses_at_faces": "a matrix of layers",
     "layered_tube.tube_state": "a matrix of layers",
     "layered_tube.tube_stresses": "a matrix of layers",
+    "lapped_spool.holding_stroke": "iterates",
+    "lapped_spool.lapped_slopes": "iterates",
     "lip_seal.line_load": "hyperbolic functions",
     "lip_seal.lip_stiffness": "hyperbolic functions",
     "lip_seal.peak_pressure": "hyperbolic functions",

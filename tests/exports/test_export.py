@@ -172,7 +172,7 @@ def test_bad_designs_are_told_with_their_line(tmp_path):
 def test_the_verb_takes_any_form_of_a_design(design, tmp_path):
     """A path, an actuator, a design, an evaluation."""
     assert callable(ao.export)
-    assert exports.FORMATS == ("step", "dxf", "xlsx", "c")
+    assert exports.FORMATS == ("step", "dxf", "xlsx", "c", "fmu")
     actuator = ao.read(design)
     evaluation = ao.evaluate(actuator)
     contents = []

@@ -17,6 +17,7 @@ from actuator_opt.models.layered_tube import TubeLayer, layered_tube, tube_state
 
 SIGNED = {
     "angle_offset": "an angle",
+    "area_gradient": "of a spool, checked when the file is read",
     "axial_force_per_pressure": "a force over a pressure",
     "compression": "below zero a body is off its stop",
     "deflection": "of a bristle, either way",
@@ -51,6 +52,9 @@ SIGNED = {
     "squeeze": "below zero the contact is lost",
     "steps": "a table",
     "table": "a table",
+    "rounding": "of a spool's edge, checked when the file is read",
+    "spool": "a structure of lengths, checked when the file is read",
+    "uncovered": "below zero the edge is covered",
 }
 """Documented lengths that may be negative, or are no sizes, with the reason."""
 LENGTH = re.compile(r"\[m(\^[234])?\]")

@@ -271,7 +271,7 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
         pressure_b=b,
         inflow_a=flows.into_a,
         inflow_b=flows.into_b,
-        position=position + (0.5 * stated.stroke - circuit.start.position),
+        position=position + (0.5 * stated.stroke - circuit.begin.position),
         speed=speed,
         area_a=area,
         area_b=area,
@@ -360,7 +360,8 @@ def turn(
         ("pipe B", pressure_b, inflow_b + flow),
     ):
         node(circuit, name, pressure, inflow=inflow, volume=motor.pipe_volume)
-    load = circuit.scenario_signal(motor.torque) + motor.damping * speed
+    load = circuit.value("motor.torque", circuit.scenario_signal(motor.torque))
+    load = load + motor.damping * speed
     system.rate(angle, speed)
     system.rate(speed, (torque - load) / motor.inertia)
     circuit.audit.stored.append(("motion", 0.5 * motor.inertia * speed * speed))
@@ -405,7 +406,7 @@ class ChamberPort(NamedTuple):
     """Pressure between the throttle and the line; None without a throttle."""
 
 
-def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> ChamberPort:
+def side(circuit: Circuit, name: Chamber, ends: str, start: Expression) -> ChamberPort:
     """Add the states of a chamber and of its line.
 
     The oil in a line has inertia if it flows; if the far end is closed, the line only adds volume.
@@ -435,7 +436,7 @@ def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> ChamberPor
 
 
 def connect(
-    circuit: Circuit, port: ChamberPort, ends: str, feed: Expression, *, end_pressure: float
+    circuit: Circuit, port: ChamberPort, ends: str, feed: Expression, *, end_pressure: Expression
 ) -> Expression:
     """Connect a chamber to its line; return the flow into the chamber.
 
@@ -517,7 +518,7 @@ def _far(
 
 
 def _reducing(
-    circuit: Circuit, port: ChamberPort, feed: Expression, end_pressure: float
+    circuit: Circuit, port: ChamberPort, feed: Expression, end_pressure: Expression
 ) -> Expression:
     """Flow of the reducing valve into the line."""
     system, data = circuit.system, circuit.plant.reducing_valve
@@ -551,14 +552,14 @@ def _reducing(
 
 
 def _from_valve(
-    circuit: Circuit, port: ChamberPort, feed: Expression, end_pressure: float
+    circuit: Circuit, port: ChamberPort, feed: Expression, end_pressure: Expression
 ) -> Expression:
     """Flow from the valve into the line; zero if the far end is closed."""
     return feed
 
 
 def _no_flow(
-    circuit: Circuit, port: ChamberPort, feed: Expression, end_pressure: float
+    circuit: Circuit, port: ChamberPort, feed: Expression, end_pressure: Expression
 ) -> Expression:
     return 0.0
 

@@ -6,14 +6,14 @@ the position or the speed of the piston or of a motor shaft.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import field
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from ...base.dataclass import dataclass
-from ...base.numeric import Array
+from ...base.numeric import Array, where
 from ...base.quantities import INPUTS, SCENARIOS, Quantity
 from ...base.symbolic import Expression, Namespace, Symbol, jacobian
 from ...design.model import Cushion
@@ -43,7 +43,7 @@ class _Clock:
 
     def samples(self, time: Array, values: Array, label: str) -> Expression:
         self.system.bends += _bends(time, values)
-        course, slope = _between(time, values), _slope(time, values)
+        course, slope = SampledCourse(time, values), _slope(time, values)
         return self.system.graph.table(course, self.time, slope, label)
 
 
@@ -55,27 +55,38 @@ def signal(system: System, parts: Sequence[SignalSegment], records: Records) -> 
     return total
 
 
-def _between(time: Array, values: Array) -> Callable[[Any], Any]:
+@dataclass(frozen=True, slots=True)
+class SampledCourse:
     """Function of time that is linear between the samples and constant outside them."""
 
-    def at(moment: Any) -> Any:
-        values_at = np.interp(moment, time, values)
+    time: Array
+    values: Array
+
+    def __call__(self, moment: Any) -> Any:
+        """Value at a time or at an array of times."""
+        values_at = np.interp(moment, self.time, self.values)
         return float(values_at) if np.ndim(values_at) == 0 else values_at
 
-    return at
 
+@dataclass(frozen=True, slots=True)
+class SampledSlope:
+    """Time derivative of a `SampledCourse`: constant between two samples, zero outside them."""
 
-def _slope(time: Array, values: Array) -> Callable[[Any], Any]:
-    """Time derivative of `_between`: constant between two samples, zero outside them."""
-    run = np.diff(time)
-    rise = np.divide(np.diff(values), run, out=np.zeros(len(run)), where=run > 0)
-    steps = np.concatenate(([0.0], rise, [0.0]))
+    time: Array
+    values: Array
+    """Slope before the first sample, between the samples, and after the last."""
 
-    def at(moment: Any) -> Any:
-        slopes_at = steps[np.searchsorted(time, moment, side="right")]
+    def __call__(self, moment: Any) -> Any:
+        """Slope at a time or at an array of times."""
+        slopes_at = self.values[np.searchsorted(self.time, moment, side="right")]
         return float(slopes_at) if np.ndim(slopes_at) == 0 else slopes_at
 
-    return at
+
+def _slope(time: Array, values: Array) -> SampledSlope:
+    """Time derivative of a `SampledCourse`."""
+    run = np.diff(time)
+    rise = np.divide(np.diff(values), run, out=np.zeros(len(run)), where=run > 0)
+    return SampledSlope(time, np.concatenate(([0.0], rise, [0.0])))
 
 
 def _bends(time: Array, values: Array) -> list[float]:
@@ -163,9 +174,9 @@ power, from which the error tolerances of energies are derived."""
 class InitialState:
     """Position and chamber pressures at the start of a simulation."""
 
-    position: float
-    pressure_a: float
-    pressure_b: float
+    position: Expression
+    pressure_a: Expression
+    pressure_b: Expression
 
 
 @dataclass(slots=True)
@@ -180,6 +191,19 @@ class Audit:
     flows: list[tuple[str, Symbol, bool]] = field(default_factory=list)
     """Name of an energy flow, its integral [J], and whether it enters the circuit (True) or leaves
     it."""
+
+
+class FreeValue(NamedTuple):
+    """A value of the circuit that a variable replaces."""
+
+    symbol: Symbol
+    stated: Expression
+    """Value that the scenario or the design states; it may depend on time."""
+    flag: Symbol | None
+    """Flag that is true if the variable counts, and false if the stated value does; None if the
+    variable always counts, because the stated value is a number."""
+    value: Expression
+    """Value in the equations: the variable or, while its flag is false, the stated value."""
 
 
 class Volumes(NamedTuple):
@@ -226,11 +250,41 @@ class Circuit:
     """Measured value of the controlled quantity."""
     centre: float = 0.0
     """Valve signal that centres the spool [V]."""
+    free: Collection[str] = ()
+    """Names of the values that stay variables of the equations (see `value`)."""
+    freed: dict[str, FreeValue] = field(default_factory=dict)
+    """Those of the names in `free` that the equations use."""
     driven: bool = False
     """Whether the valve of the design drives the circuit."""
     volumes: Volumes | None = None
     friction: FrictionCurve | None = None
     """Friction of the seals, if the circuit has any."""
+
+    def value(self, name: str, stated: Expression) -> Expression:
+        """A stated value, or a variable that replaces it if `name` is one of `free`."""
+        if name not in self.free:
+            return stated
+        if name not in self.freed:
+            graph = self.system.graph
+            symbol, flag = graph.variable(name), None
+            if isinstance(stated, Symbol):
+                flag = graph.flag(f"{name} is set")
+            value = symbol if flag is None else where(flag, symbol, stated)
+            self.freed[name] = FreeValue(symbol, stated, flag, value)
+        return self.freed[name].value
+
+    @property
+    def begin(self) -> InitialState:
+        """The initial position and pressures, from which the states start; some may be free."""
+        names = InitialState.__dataclass_fields__
+        return InitialState(
+            **{name: self.value(f"initial.{name}", getattr(self.start, name)) for name in names}
+        )
+
+    @property
+    def return_pressure(self) -> Expression:
+        """The return pressure."""
+        return self.value("supply.return_pressure", self.plant.return_pressure)
 
     @property
     def cushion(self) -> Cushion | None:

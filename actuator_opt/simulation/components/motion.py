@@ -102,12 +102,15 @@ def move(
     shear = plant.oil_damping * speed
     stop_force = stops(circuit, position, speed)
     cushion_force = cushions(circuit, position, speed)
-    start = circuit.start.position
-    force = circuit.scenario_signal(load.force)
-    load_force = force + load.stiffness * (position - start) + load.damping * speed
+    start = circuit.begin.position
+    force = circuit.value("load.force", circuit.scenario_signal(load.force))
+    stiffness = circuit.value("load.stiffness", load.stiffness)
+    damping = circuit.value("load.damping", load.damping)
+    load_force = force + stiffness * (position - start) + damping * speed
     total = pressure_force - friction - shear + stop_force + cushion_force
     total = total - load_force + load_cylinder_force
-    mass: Expression = plant.mass
+    stated_mass = float(plant.design.load.mass)
+    mass = plant.mass + (circuit.value("load.mass", stated_mass) - stated_mass)
     circuit.audit.stored.append(("motion", 0.5 * plant.mass * speed * speed))
     work_on("friction of the seals", friction)
     if plant.oil_damping:
@@ -129,7 +132,8 @@ def move(
             "drive_position", "position of the external machine", INPUTS["position"], drive_position
         )
     if plant.design.linkage is not None:
-        mass, joint_force = _joint(circuit, position, speed)
+        joint_mass, joint_force = _joint(circuit, position, speed)
+        mass = mass + joint_mass
         total, load_force = total - joint_force, load_force + joint_force
     system.rate(position, speed)
     system.rate(speed, total / mass)
@@ -145,19 +149,20 @@ def move(
 
 
 def _joint(circuit: Circuit, position: Symbol, speed: Symbol) -> tuple[Expression, Expression]:
-    """Moving mass including the joint's inertia, and the force due to its torque and motion [N]."""
+    """Reflected mass of the joint's inertia, and the force due to its torque and motion [N]."""
     system, plant = circuit.system, circuit.plant
     joint = plant.joint(position)
     assert joint is not None
     arm, inertia = joint
     torque = circuit.scenario_signal(circuit.scenario.load.torque)
+    torque = circuit.value("load.torque", torque)
     force = linkage.actuator_force(torque=torque, lever_arm=arm.lever_arm)
     circuit.energy_port("joint", force * speed, state="work on the joint")
     circuit.audit.stored.append(("motion of the joint", 0.5 * inertia.mass * speed * speed))
     angle = plant.joint_angle(position)
     system.signal("joint_angle", "joint angle", SCENARIOS["shaft_angle_value"], angle)
     system.signal("joint_torque", "torque on the joint", SCENARIOS["torque_value"], torque)
-    return plant.mass + inertia.mass, force + inertia.velocity_factor * speed * speed
+    return inertia.mass, force + inertia.velocity_factor * speed * speed
 
 
 LEAST = 1e-3

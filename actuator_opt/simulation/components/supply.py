@@ -39,11 +39,14 @@ class SupplyBuilder:
         """
         stated, system = circuit.scenario.supply, circuit.system
         unit: Expression = circuit.plant.supply_pressure
+        initial = unit
         if SUPPLIES[stated.type].pumps:
-            unit = system.pressure("supply", circuit.plant.supply_pressure)
+            unit = system.pressure("supply", unit)
+        else:
+            initial = unit = circuit.value("supply.pressure", unit)
         port = unit
         if stated.line is not None:
-            port = system.pressure("valve port", circuit.plant.supply_pressure)
+            port = system.pressure("valve port", initial)
         return cls(circuit, port, unit)
 
     def feed(self, demand: Expression, tank: Expression) -> None:
@@ -52,9 +55,7 @@ class SupplyBuilder:
         `demand` is the flow to the valve, `tank` the return flow.
         """
         circuit = self.circuit
-        circuit.energy_port(
-            "return line", circuit.plant.return_pressure * tank, state="return work"
-        )
+        circuit.energy_port("return line", circuit.return_pressure * tank, state="return work")
         circuit.system.signal(
             "pressure_supply", "supply pressure", INPUTS["pressure"], self.pressure
         )
@@ -98,7 +99,7 @@ class SupplyBuilder:
         relieved: Expression = 0.0
         if unit.relief is not None:
             relieved = supply.relief_flow(
-                pressure_difference=pressure - circuit.plant.return_pressure,
+                pressure_difference=pressure - circuit.return_pressure,
                 cracking_pressure=unit.relief.pressure,
                 override=unit.relief.override,
                 rated_flow=unit.relief.rated_flow,
@@ -158,7 +159,7 @@ def _fixed_pump(source: SupplyBuilder) -> Expression:
         assert unit.flow is not None
         return unit.flow
     machine = unit.pump
-    difference = source.unit - plant.return_pressure
+    difference = source.unit - circuit.return_pressure
     common = {
         "speed": machine.shaft_speed,
         "pressure_difference": difference,

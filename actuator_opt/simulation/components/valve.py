@@ -66,7 +66,7 @@ def edges(
     *,
     opening: Expression,
     supply_pressure: Expression,
-    return_pressure: float,
+    return_pressure: Expression,
     pressure_a: Expression,
     pressure_b: Expression,
     prefix: str = "",
@@ -75,6 +75,7 @@ def edges(
 
     The energy that the edges dissipate is added to the balance.
     """
+    offset = data.offset if prefix else circuit.value("valve.offset", data.offset)
     port_pressures = {
         "supply_pressure": supply_pressure,
         "return_pressure": return_pressure,
@@ -82,10 +83,10 @@ def edges(
         "pressure_b": pressure_b,
     }
     if data.lapped is not None:
-        flows = lapped_flows(spool=data.lapped, signal=opening - data.offset, **port_pressures)
+        flows = lapped_flows(spool=data.lapped, signal=opening - offset, **port_pressures)
     else:
         flows = valve.valve_flows(
-            signal=opening - data.offset,
+            signal=opening - offset,
             rated_coefficient=data.rated,
             leakage_supply=data.leakage_supply,
             leakage_tank=data.leakage_tank,
@@ -169,15 +170,17 @@ def command(
     assert gains is not None
     assert circuit.plant.valve is not None
     full_signal = circuit.plant.valve.signal
-    gain = control.gain_factor * gains.proportional_gain
+    proportional_gain = circuit.value(f"control.{circuit.loop}_gain", gains.proportional_gain)
+    gain = control.gain_factor * proportional_gain
     error = reference - measured.value
     valve_signal: Expression = gain * error
     if gains.derivative_time > 0:
         filtered = system.state("filtered error", 0.0, tolerance=1e-9 * scale)
         change = (error - filtered) / control.filter_time
         system.rate(filtered, change)
-        factor = control.derivative_factor * gains.proportional_gain
-        valve_signal = valve_signal + factor * gains.derivative_time * change
+        factor = control.derivative_factor * proportional_gain
+        derivative_time = circuit.value("control.derivative_time", gains.derivative_time)
+        valve_signal = valve_signal + factor * derivative_time * change
     valve_signal = inner(circuit, valve_signal, measured)
     if gains.integral_time < inf:
         integral = system.state("integral part", 0.0, tolerance=1e-7 * full_signal)
@@ -185,8 +188,8 @@ def command(
         band = HOLD_BAND * full_signal
         up = clip((full_signal - valve_signal) / band, 0.0, 1.0)
         down = clip((full_signal + valve_signal) / band, 0.0, 1.0)
-        factor = control.integral_factor * gains.proportional_gain
-        rate = factor / gains.integral_time * error
+        factor = control.integral_factor * proportional_gain
+        rate = factor / circuit.value("control.integral_time", gains.integral_time) * error
         system.rate(integral, where(rate > 0, rate * up, rate * down))
     if control.dead_band_jump is not None:
         share = clip(valve_signal / (JUMP_BAND * full_signal), -1.0, 1.0)
