@@ -523,7 +523,8 @@ class Evaluation(Displayed):
             metric = self.metrics.get(name)
             if check.limit is not None or metric is None or metric.value is None:
                 continue
-            if not name.endswith("_factor") or name == "fatigue_factor":
+            waived = name in self.design.waivers
+            if waived or not name.endswith("_factor") or name == "fatigue_factor":
                 continue
             if metric.quantity.worst == "min" and metric.value < 1:
                 factors[name] = metric.value
