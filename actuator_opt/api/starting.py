@@ -266,30 +266,42 @@ def start(
     ------
     UsageError : a value is unsuitable, or the bore would be larger than 600 mm
     """
-    arm = None if lever_arm is None else duty_value("lever_arm", lever_arm)
-    numbers = {"push": push, "pull": pull, "stroke": stroke, "pressure": pressure, "speed": speed}
-    values = {key: duty_value(key, value, arm=arm) for key, value in numbers.items()}
-    duty = Duty(
-        **values,
-        goal=duty_word("goal", goal),
-        wall=duty_word("wall", wall),
-        lever_arm=arm,
-        stiffness=None if stiffness is None else duty_value("stiffness", stiffness),
-        type=duty_word("type", type),
-    )
+    stated = {
+        "push": push, "pull": pull, "stroke": stroke, "pressure": pressure, "goal": goal,
+        "wall": wall, "lever_arm": lever_arm, "speed": speed, "stiffness": stiffness, "type": type,
+    }  # fmt: skip
+    values = duty_answers({key: value for key, value in stated.items() if value is not None})
+    duty = Duty(**values)  # type: ignore[arg-type]
     return solved_start(duty, name).actuator
 
 
-def duty_value(key: str, value: object, prefix: str = "", arm: float | None = None) -> float:
-    """A number of a duty in SI; a fault names it as ``prefix + key``.
+_WORDS: Mapping[str, Mapping[str, object]] = {"goal": GOALS, "wall": WALLS, "type": TYPES}
+"""The words that each answer in words may be."""
 
-    With the lever arm `arm` [m], a force may be stated as a torque.
 
-    >>> duty_value("push", "9 kN")
-    9000.0
-    >>> duty_value("push", "540 N*m", arm=0.06)
-    9000.0
+def duty_answers(
+    stated: Mapping[str, object], prefix: str = "", arm: float | None = None
+) -> dict[str, float | str]:
+    """Answers of a duty: numbers in SI, and words; a fault names an answer as ``prefix + key``.
+
+    With a lever arm, among the answers or as `arm` [m], a force may be stated as a torque.
+
+    >>> duty_answers({"push": "540 N*m", "lever_arm": "60 mm", "wall": "lined carbon"})
+    {'push': 9000.0, 'lever_arm': 0.06, 'wall': 'lined_carbon'}
+
+    Raises
+    ------
+    UsageError : an answer is unsuitable
     """
+    if "lever_arm" in stated:
+        arm = _number("lever_arm", stated["lever_arm"], prefix, None)
+    return {
+        key: _word(key, str(value), prefix) if key in _WORDS else _number(key, value, prefix, arm)
+        for key, value in stated.items()
+    }
+
+
+def _number(key: str, value: object, prefix: str, arm: float | None) -> float:
     quantity = ADDED[key] if key in ADDED else DUTY[key][0]
     try:
         if quantity.dimension == "force" and isinstance(value, str) and _is_torque(value):
@@ -312,14 +324,8 @@ def _is_torque(text: str) -> bool:
     return True
 
 
-def duty_word(key: str, value: str, prefix: str = "") -> str:
-    """The `goal`, `wall` or `type` of a duty; a fault names it as ``prefix + key``.
-
-    >>> duty_word("wall", "lined carbon")
-    'lined_carbon'
-    """
-    tables: Mapping[str, Mapping[str, object]] = {"goal": GOALS, "wall": WALLS, "type": TYPES}
-    words = tables[key]
+def _word(key: str, value: str, prefix: str) -> str:
+    words = _WORDS[key]
     word = value.strip().casefold().replace("-", "_").replace(" ", "_")
     if word not in words:
         message = f'{prefix}{key}: "{shown(value)}" is not a {key}'

@@ -58,79 +58,88 @@ def _named_file(name: str) -> tuple[str, Path]:
     return title, Path(folder, f"{stem or 'actuator'}.yaml")
 
 
+NewName = Annotated[
+    str | None,
+    typer.Argument(
+        metavar="NAME",
+        help="Name of the actuator or scenario; NAME.yaml is written. "
+        "Without a name the text is printed; without a duty it is a template of all keys.",
+    ),
+]
+Source = Annotated[str | None, typer.Option("--from", metavar="DESIGN", help="Copy this design.")]
+OfDesign = Annotated[
+    str | None,
+    typer.Option("--scenario", metavar="DESIGN", help="Write a scenario for this design instead."),
+]
+Push = Annotated[
+    str | None, typer.Option("--push", metavar="FORCE", help='Push force, e.g. "9 kN".')
+]
+Pull = Annotated[str | None, typer.Option("--pull", metavar="FORCE", help="Pull force; 0 N: none.")]
+Stroke = Annotated[
+    str | None, typer.Option("--stroke", metavar="LENGTH", help='Stroke, e.g. "180 mm".')
+]
+Pressure = Annotated[
+    str | None,
+    typer.Option("--pressure", metavar="PRESSURE", help='Supply pressure, e.g. "160 bar".'),
+]
+GoalWord = Annotated[
+    str | None,
+    typer.Option("--goal", metavar="GOAL", help="What is best: mass, stiffness or friction."),
+]
+WallWord = Annotated[
+    str | None,
+    typer.Option(
+        "--wall",
+        metavar="WALL",
+        help="Barrel: steel, aluminium, lined_carbon or linerless. Piston, head and caps "
+        "are steel in a steel barrel, else aluminium.",
+    ),
+]
+LeverArm = Annotated[
+    str | None,
+    typer.Option(
+        "--lever-arm",
+        metavar="LENGTH",
+        help='Lever arm of a joint; push and pull may then be torques, e.g. "540 N*m".',
+    ),
+]
+Speed = Annotated[
+    str | None,
+    typer.Option("--speed", metavar="SPEED", help='Piston speed; without it "0.1 m/s".'),
+]
+Stiffness = Annotated[
+    str | None,
+    typer.Option("--stiffness", metavar="STIFFNESS", help='Least stiffness, e.g. "10 kN/mm".'),
+]
+TypeWord = Annotated[
+    str | None,
+    typer.Option(
+        "--type", metavar="TYPE", help="Cylinder: differential, or double_rod (two rods)."
+    ),
+]
+Yes = Annotated[bool, typer.Option("--yes", help="Use the defaults instead of asking questions.")]
+NewFile = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="FILE", help="Output file; - prints the text."),
+]
+
+
 def init(
-    name: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="NAME",
-            help="Name of the actuator or scenario; NAME.yaml is written. "
-            "Without a name the text is printed; without a duty it is a template of all keys.",
-        ),
-    ] = None,
-    source: Annotated[
-        str | None, typer.Option("--from", metavar="DESIGN", help="Copy this design.")
-    ] = None,
-    scenario: Annotated[
-        str | None,
-        typer.Option(
-            "--scenario", metavar="DESIGN", help="Write a scenario for this design instead."
-        ),
-    ] = None,
-    push: Annotated[
-        str | None, typer.Option("--push", metavar="FORCE", help='Push force, e.g. "9 kN".')
-    ] = None,
-    pull: Annotated[
-        str | None, typer.Option("--pull", metavar="FORCE", help="Pull force; 0 N: none.")
-    ] = None,
-    stroke: Annotated[
-        str | None, typer.Option("--stroke", metavar="LENGTH", help='Stroke, e.g. "180 mm".')
-    ] = None,
-    pressure: Annotated[
-        str | None,
-        typer.Option("--pressure", metavar="PRESSURE", help='Supply pressure, e.g. "160 bar".'),
-    ] = None,
-    goal: Annotated[
-        str | None,
-        typer.Option("--goal", metavar="GOAL", help="What is best: mass, stiffness or friction."),
-    ] = None,
-    wall: Annotated[
-        str | None,
-        typer.Option(
-            "--wall",
-            metavar="WALL",
-            help="Barrel: steel, aluminium, lined_carbon or linerless; but for steel, piston, "
-            "head and caps are aluminium.",
-        ),
-    ] = None,
-    lever_arm: Annotated[
-        str | None,
-        typer.Option(
-            "--lever-arm",
-            metavar="LENGTH",
-            help='Lever arm of a joint; push and pull may then be torques, e.g. "540 N*m".',
-        ),
-    ] = None,
-    speed: Annotated[
-        str | None,
-        typer.Option("--speed", metavar="SPEED", help='Piston speed; without it "0.1 m/s".'),
-    ] = None,
-    stiffness: Annotated[
-        str | None,
-        typer.Option("--stiffness", metavar="STIFFNESS", help='Least stiffness, e.g. "10 kN/mm".'),
-    ] = None,
-    type_: Annotated[
-        str | None,
-        typer.Option(
-            "--type", metavar="TYPE", help="Cylinder: differential, or double_rod (two rods)."
-        ),
-    ] = None,
-    yes: Annotated[
-        bool, typer.Option("--yes", help="Use the defaults instead of asking questions.")
-    ] = False,
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", metavar="FILE", help="Output file; - prints the text."),
-    ] = None,
+    name: NewName = None,
+    source: Source = None,
+    scenario: OfDesign = None,
+    push: Push = None,
+    pull: Pull = None,
+    stroke: Stroke = None,
+    pressure: Pressure = None,
+    goal: GoalWord = None,
+    wall: WallWord = None,
+    lever_arm: LeverArm = None,
+    speed: Speed = None,
+    stiffness: Stiffness = None,
+    type_: TypeWord = None,
+    yes: Yes = False,
+    out: NewFile = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
@@ -217,19 +226,11 @@ def _duty(answers: dict[str, str], *, ask: bool, defaults: bool) -> Duty:
     """
     from ..api import starting
 
-    values: dict[str, float | str] = {}
-    arm: float | None = None
-
-    def read(key: str, text: str, prefix: str) -> float | str:
-        if key in starting.DUTY or key in starting.ADDED:
-            return starting.duty_value(key, text, prefix, arm)
-        return starting.duty_word(key, text, prefix)
-
     usual = {key: text for key, (_, text) in starting.DUTY.items()}
     usual |= {"goal": next(iter(starting.GOALS)), "wall": next(iter(starting.WALLS))}
-    if "lever_arm" in answers:
-        arm = values["lever_arm"] = starting.duty_value("lever_arm", answers.pop("lever_arm"), "--")
-    values |= {key: read(key, text, "--") for key, text in answers.items()}
+    values = starting.duty_answers(answers, "--")
+    arm = values.get("lever_arm")
+    assert not isinstance(arm, str)
     missing = [key for key in usual if key not in values]
     if missing and not defaults and not (ask and streams.asking()):
         flags = " ".join(f'--{key} "{usual[key]}"' for key in missing)
@@ -241,7 +242,7 @@ def _duty(answers: dict[str, str], *, ask: bool, defaults: bool) -> Duty:
             continue
         offered = ", ".join(usual[key] for key in open_keys)
         if defaults:
-            values |= {key: read(key, usual[key], "") for key in open_keys}
+            values |= starting.duty_answers({key: usual[key] for key in open_keys})
             continue
         choices = {"goal": starting.GOALS, "wall": starting.WALLS}.get(open_keys[0])
         label = words if choices is None else f"{words} ({', '.join(choices)})"
@@ -252,7 +253,7 @@ def _duty(answers: dict[str, str], *, ask: bool, defaults: bool) -> Duty:
             try:
                 if len(parts) != len(open_keys):
                     raise UsageError(Diagnostic(f'"{shown(text)}"', f'write e.g. "{offered}"'))
-                values |= {k: read(k, part, "") for k, part in zip(open_keys, parts, strict=True)}
+                values |= starting.duty_answers(dict(zip(open_keys, parts, strict=True)), arm=arm)
                 break
             except UsageError as error:
                 streams.err(str(error.diagnostics[0]))

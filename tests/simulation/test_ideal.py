@@ -92,7 +92,7 @@ def test_a_one_mass_servo_is_that_of_its_equations(files):
 
 
 def test_only_the_stated_numbers_count(files):
-    """Masses add up; a stiff rod gives way; a leak across the piston lets it sag."""
+    """Masses add up; stiffness and leakage are those of the file; notes name what it leaves out."""
     plain = ao.simulate(files / "step.yaml")
     assert plain.plant.mass == 60.0
     assert "a rigid rod, no leakage across the piston" in plain.notes[0]
