@@ -9,12 +9,10 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Annotated, Any
 
 from ..base.errors import Diagnostic, Fault, InputError
-
-if TYPE_CHECKING:
-    from .model import Design
+from .kinds import Of, Section
 
 _PARTS: Mapping[str, Any] = {
     "cylinder": {"bore": "40 mm", "stroke": "100 mm"},
@@ -38,6 +36,24 @@ _UNUSED = (
 """Blocks that mean nothing beside `ideal`."""
 
 
+class Ideal(Section):
+    """A cylinder stated by its numbers, for a simulation; it has no parts.
+
+    Walls are rigid, and seals have the friction that the scenario states.
+    """
+
+    area_a: Annotated[float, Of("piston_area", "area of the piston at side A, the cap side")]
+    area_b: Annotated[float, Of("piston_area", "area of the piston at side B, the rod side")]
+    stroke: Annotated[float, Of("stroke", "travel of the piston")]
+    mass: Annotated[float, Of("load_mass", "moving mass without load.mass")]
+    dead_volume_a: Annotated[float, Of("volume", "oil of side A at zero stroke")] = 0.0
+    dead_volume_b: Annotated[float, Of("volume", "oil of side B at full stroke")] = 0.0
+    stiffness: Annotated[
+        float | None, Of("stiffness", "of rod and mount in series; default: rigid")
+    ] = None
+    leakage: Annotated[float, Of("conductance", "flow across the piston per pressure")] = 0.0
+
+
 def completed(tree: dict[str, Any]) -> tuple[dict[str, Any], list[Fault]]:
     """The tree of a file with the parts that it needs, and its blocks that mean nothing.
 
@@ -57,27 +73,26 @@ def completed(tree: dict[str, Any]) -> tuple[dict[str, Any], list[Fault]]:
     return parts | {key: value for key, value in tree.items() if key not in _UNUSED}, faults
 
 
-def has_effect(path: str, design: Design) -> bool:
+def has_effect(path: str, stated: Ideal | None) -> bool:
     """Whether the number at a PATH can have an effect: not that of a part beside `ideal`."""
-    return design.ideal is None or path.partition(".")[0].partition("[")[0] not in _UNUSED
+    return stated is None or path.partition(".")[0].partition("[")[0] not in _UNUSED
 
 
-def require_parts(design: Design) -> None:
+def require_parts(stated: Ideal | None) -> None:
     """Refuse a design that only states a cylinder where its parts are needed.
 
     Raises
     ------
     InputError : the design has a block `ideal`
     """
-    if design.ideal is not None:
+    if stated is not None:
         message = "the cylinder is stated, not designed: it has no parts to evaluate"
         remedy = "use simulate, or describe cylinder, barrel, rod, piston and seals"
         raise InputError(Diagnostic(message, remedy, path="ideal"))
 
 
-def assumptions(design: Design) -> list[str]:
+def assumptions(stated: Ideal | None) -> list[str]:
     """A sentence on what a stated cylinder leaves out; empty for a designed one."""
-    stated = design.ideal
     if stated is None:
         return []
     words = ["rigid walls", "seals without friction of their own"]

@@ -17,6 +17,7 @@ from ..joints.kinds import JOINTS
 from ..models.piston_nut import TIGHTENING
 from . import choices
 from .choices import Paper
+from .ideal import Ideal
 from .kinds import (
     Boolean,
     CaseName,
@@ -731,24 +732,6 @@ def _plain_caps(stated: dict[str, Any]) -> Caps:
     if piston is None or cylinder is None:
         return Caps.model_construct(material="", thickness=0.0)
     return Caps(material=piston.material, thickness=PLAIN_CAP * cylinder.bore)
-
-
-class Ideal(Section):
-    """A cylinder stated by its numbers, for a simulation; it has no parts.
-
-    Walls are rigid, and seals have the friction that the scenario states.
-    """
-
-    area_a: Annotated[float, Of("piston_area", "area of the piston at side A, the cap side")]
-    area_b: Annotated[float, Of("piston_area", "area of the piston at side B, the rod side")]
-    stroke: Annotated[float, Of("stroke", "travel of the piston")]
-    mass: Annotated[float, Of("load_mass", "moving mass without load.mass")]
-    dead_volume_a: Annotated[float, Of("volume", "oil of side A at zero stroke")] = 0.0
-    dead_volume_b: Annotated[float, Of("volume", "oil of side B at full stroke")] = 0.0
-    stiffness: Annotated[
-        float | None, Of("stiffness", "of rod and mount in series; default: rigid")
-    ] = None
-    leakage: Annotated[float, Of("conductance", "flow across the piston per pressure")] = 0.0
 
 
 class Design(Section):

@@ -9,7 +9,7 @@ from . import choices
 from .kinds import Of, Section
 
 
-class SpoolEdge(Section):
+class StatedEdge(Section):
     """Values of one metering edge of a lapped spool, where they differ from the other edges."""
 
     overlap: Annotated[
@@ -63,10 +63,10 @@ class Spool(Section):
         float, Of("coefficient", "discharge coefficient of the turbulent flow through an edge")
     ] = TURBULENT_COEFFICIENT
     curve: Annotated[tuple[CurvePoint, ...], Field(max_length=30)] = ()
-    pa: SpoolEdge | None = None
-    pb: SpoolEdge | None = None
-    at: SpoolEdge | None = None
-    bt: SpoolEdge | None = None
+    pa: StatedEdge | None = None
+    pb: StatedEdge | None = None
+    at: StatedEdge | None = None
+    bt: StatedEdge | None = None
 
 
 class Valve(Section):

@@ -322,7 +322,7 @@ IMPLICIT = Implicit()
 def base(subject: PreparedDesign, v: Values, implicit: Implicit = IMPLICIT) -> Base:
     """Compute dimensions, state of the load cases, wall and seals of the designs in `v`."""
     design = subject.design
-    require_parts(design)
+    require_parts(design.ideal)
     stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
     g = geometry_module.derive(v, design)
     case_state = state.derive(v, design, stock, g)

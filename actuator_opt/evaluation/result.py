@@ -512,7 +512,7 @@ class Evaluation(Displayed):
         }
 
     @property
-    def unlimited(self) -> dict[str, float]:
+    def below_one(self) -> dict[str, float]:
         """Factors below 1, of strength by load, for which neither file nor check has a limit.
 
         The fatigue factor is left out: it is that of endless life, and `cycle_life` has a limit.

@@ -228,15 +228,6 @@ def line_pressure_drop(
     >>> print(f"{dp / 1e5:.3f} bar")
     0.477 bar
     """
-    line = {"inner_diameter": inner_diameter, "length": length}
-    laminar, more = _friction(flow, **line, density=density, dynamic_viscosity=dynamic_viscosity)
-    return laminar * (32 + more)
-
-
-def _friction(
-    flow: Array, inner_diameter: Array, length: Array, density: Array, dynamic_viscosity: Array
-) -> tuple[Array, Array]:
-    """Laminar pressure drop divided by 32 [Pa], and what turbulence adds to the 32."""
     signed = (4 / math.pi) * density * flow / (inner_diameter * dynamic_viscosity)
     number = absolute(signed)
     span = TURBULENT_REYNOLDS - LAMINAR_REYNOLDS
@@ -245,50 +236,7 @@ def _friction(
     turbulent = 0.1582 * maximum(number, LAMINAR_REYNOLDS) ** 0.75
     scale = dynamic_viscosity * dynamic_viscosity * length
     scale = scale / (density * inner_diameter * inner_diameter * inner_diameter)
-    return scale * signed, share * (turbulent - 32)
-
-
-@geometry
-def turbulent_excess(
-    *,
-    flow: Array,
-    inner_diameter: Array,
-    length: Array,
-    density: Array,
-    dynamic_viscosity: Array,
-) -> Array:
-    """Pressure drop of a line beyond the laminar drop 128 eta l q/(pi d^4).
-
-    Parameters
-    ----------
-    flow : [m^3/s], either sign
-    inner_diameter, length : [m]
-    density : [kg/m^3]
-    dynamic_viscosity : [Pa s]
-
-    Returns
-    -------
-    `line_pressure_drop` less its laminar part [Pa]; 0 below Re 2300
-
-    Notes
-    -----
-    Valid: as for `line_pressure_drop`.
-
-    References
-    ----------
-    [Blasius1913]
-
-    Examples
-    --------
-    >>> line = {"inner_diameter": 8e-3, "length": 1.2, "density": 865.0}
-    >>> turbulent_excess(flow=1e-4, dynamic_viscosity=0.04, **line)
-    0.0
-    >>> print(f"{turbulent_excess(flow=5e-4, dynamic_viscosity=0.01, **line) / 1e5:.3f} bar")
-    1.633 bar
-    """
-    line = {"inner_diameter": inner_diameter, "length": length}
-    laminar, more = _friction(flow, **line, density=density, dynamic_viscosity=dynamic_viscosity)
-    return laminar * more
+    return scale * signed * (32 + share * (turbulent - 32))
 
 
 @geometry

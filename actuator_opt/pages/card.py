@@ -696,7 +696,7 @@ def _doubts(subject: Evaluation | Optimisation) -> Iterator[Block]:
     counts, parts = evaluation.counts, []
     if tight := (optimisation or evaluation).tight:
         parts.append(count_words(len(tight)))
-    for name, value in evaluation.unlimited.items():
+    for name, value in evaluation.below_one.items():
         parts.append(f"{term_of(name)} factor {text.number(value, 3)} without a limit")
     if results := counts["extrapolated"] + counts["extrapolated_models"]:
         parts.append(f"{_count(results, 'result')} extrapolated (!)")

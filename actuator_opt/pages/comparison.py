@@ -142,15 +142,15 @@ def sentences(comparison: Comparison) -> list[str]:
         missed = [row.name for row in evaluation.requirements if not row.met]
         if missed:
             lines.append(f"{label} misses {len(missed)} of its requirements: {', '.join(missed)}")
-    lines += unlimited(comparison)
+    lines += below_one(comparison)
     return [*lines, *optimality(comparison, remedy=True), *unlike(comparison), *duties(comparison)]
 
 
-def unlimited(comparison: Comparison) -> list[str]:
+def below_one(comparison: Comparison) -> list[str]:
     """Sentence on factors below 1, of strength by load, for which the design has no limit."""
     below: dict[str, list[str]] = {}
     for label, evaluation in zip(comparison.labels, comparison.evaluations, strict=True):
-        for name, value in evaluation.unlimited.items():
+        for name, value in evaluation.below_one.items():
             below.setdefault(name, []).append(f"{label} {number(value, 3)}")
     words = "; ".join(f"{name} {', '.join(values)}" for name, values in below.items())
     return [f"below 1, but without a limit: {words}"] if words else []

@@ -17,7 +17,7 @@ from ..models.loop import ControllerGains
 from ..models.stiffness import holding_pressures
 from ..studies.plant import Plant
 from .components import chambers, circuit, motion, valve
-from .components.circuit import LOOPS, Circuit, InitialState, Volumes, loop_of
+from .components.circuit import LOOPS, ChamberVolumes, Circuit, InitialState, loop_of
 from .components.supply import SupplyBuilder
 from .components.valve import Feedback, command, inner
 from .system import System
@@ -237,7 +237,7 @@ def _chambers(
     Return the pressure force.
     """
     plant, (a, b) = circuit.plant, sides
-    circuit.volumes = volumes = Volumes(
+    circuit.volumes = volumes = ChamberVolumes(
         chambers.dead_volume(circuit, plant.dead_a + a.lumped, plant.area_a, "chamber A"),
         chambers.dead_volume(circuit, plant.dead_b + b.lumped, plant.area_b, "chamber B"),
         plant.walls._replace(a0=plant.walls.a0 + a.lumped_wall, b0=plant.walls.b0 + b.lumped_wall),

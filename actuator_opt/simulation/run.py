@@ -203,7 +203,7 @@ def _notes(
     """Notes on a simulation for its user."""
     scenario, actuator = circuit.scenario, circuit.plant
     return (
-        *assumptions(circuit.plant.design),
+        *assumptions(circuit.plant.design.ideal),
         *recorded_notes(scenario, circuit.records),
         *circuit.system.notes,
         *_controller_notes(tuned),

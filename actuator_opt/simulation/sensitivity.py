@@ -254,7 +254,7 @@ class _Bench:
             return
         design = self.subject.design
         numbers = paths.numbers(design)
-        known = [name for name in DESIGN if name in numbers and has_effect(name, design)]
+        known = [name for name in DESIGN if name in numbers and has_effect(name, design.ideal)]
         yield from map(self._target, known)
         for loc, _, value in leaves(self.scenario, Scenario):
             stated = _stated(self.scenario, loc)

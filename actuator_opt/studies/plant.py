@@ -13,7 +13,8 @@ import numpy as np
 
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, maximum
-from ..design.model import Design, Ideal
+from ..design.ideal import Ideal
+from ..design.model import Design
 from ..design.valve import Valve
 from ..evaluation import circuit, state
 from ..evaluation.build import spec_hash
@@ -108,7 +109,7 @@ class ValveData:
 
 @dataclass(frozen=True, slots=True)
 class LinePiece:
-    """Size, fittings and oil of a pipe or hose, for its pressure drop beyond the laminar drop."""
+    """Size, fittings and oil of a pipe or hose, for its pressure drop."""
 
     inner_diameter: float
     length: float
@@ -116,16 +117,15 @@ class LinePiece:
     density: float
     dynamic_viscosity: float
 
-    def excess(self, flow: Array) -> Array:
-        """Return the pressure drop beyond the laminar one, with that of fittings [Pa]."""
+    def drop(self, flow: Array) -> Array:
+        """Return the pressure drop of the line and its fittings [Pa]."""
         stream = {"flow": flow, "inner_diameter": self.inner_diameter, "density": self.density}
-        turbulent = lines.turbulent_excess(
+        line = lines.line_pressure_drop(
             **stream, length=self.length, dynamic_viscosity=self.dynamic_viscosity
         )
         if not self.loss_coefficient:
-            return turbulent
-        fittings = lines.fitting_pressure_drop(**stream, loss_coefficient=self.loss_coefficient)
-        return turbulent + fittings
+            return line
+        return line + lines.fitting_pressure_drop(**stream, loss_coefficient=self.loss_coefficient)
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,17 +139,12 @@ class LineData:
     near_wall: float = 0.0
     far_volume: float = 0.0
     far_wall: float = 0.0
-    resistance: float = 0.0
-    """Laminar resistance of all lines [Pa s/m^3]."""
     inertance: float = 0.0
     pieces: tuple[LinePiece, ...] = ()
 
     def drop(self, flow: Array) -> Array:
         """Return the pressure drop of all lines at a flow [Pa]."""
-        total = self.resistance * flow
-        for piece in self.pieces:
-            total = total + piece.excess(flow)
-        return total
+        return sum((piece.drop(flow) for piece in self.pieces), 0.0 * flow)
 
 
 @dataclass(frozen=True, slots=True)
@@ -453,7 +448,6 @@ def _lines(v: Values, design: Design, done: ModelRun, chamber: Chamber) -> LineD
         near_wall=walls[0],
         far_volume=volumes[1],
         far_wall=walls[1],
-        resistance=first_case(branch.resistance),
         inertance=first_case(branch.inertance),
         pieces=tuple(pieces),
     )

@@ -215,10 +215,6 @@ SAMPLES = {
         "flow": 2.5e-4, "inner_diameter": 8e-3, "length": 1.2, "density": 865.0,
         "dynamic_viscosity": 0.011,
     },
-    "lines.turbulent_excess": {
-        "flow": 3.5e-4, "inner_diameter": 8e-3, "length": 1.2, "density": 865.0,
-        "dynamic_viscosity": 0.011,
-    },
     "lines.fitting_pressure_drop": {
         "flow": 2e-4, "inner_diameter": 8e-3, "loss_coefficient": 1.5, "density": 865.0,
     },

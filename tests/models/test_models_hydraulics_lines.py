@@ -97,17 +97,6 @@ def test_pressure_drop_is_blasius_when_turbulent():
         assert drop(q) == pytest.approx(expected, rel=1e-12)
 
 
-def test_excess_is_what_turbulence_adds():
-    """None if laminar; else Blasius less Hagen-Poiseuille, by their formulas."""
-    oil = {"density": 865.0, "dynamic_viscosity": 0.01}
-    assert lines.turbulent_excess(flow=flow_at(2000.0), **LINE, **oil) == 0.0
-    q = flow_at(1e4)
-    head = 865.0 * (q / (math.pi / 4 * 8e-3**2)) ** 2 / 2
-    expected = (0.3164 / 1e4**0.25 - 64 / 1e4) * (1.2 / 8e-3) * head
-    assert lines.turbulent_excess(flow=q, **LINE, **oil) == pytest.approx(expected, rel=1e-12)
-    assert lines.turbulent_excess(flow=-q, **LINE, **oil) == pytest.approx(-expected, rel=1e-12)
-
-
 def test_fittings_lose_their_share_of_the_dynamic_pressure():
     """At 4 m/s and 850 kg/m^3 the dynamic pressure is 6800 Pa; 2.5 of it are lost."""
     flow = 4.0 * math.pi / 4 * 8e-3**2

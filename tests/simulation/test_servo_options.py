@@ -109,7 +109,7 @@ def test_the_switch_needs_bristles():
 
 
 def test_tuning_for_the_rest_side(simulated):
-    """Half the ultimate gain of the loop in which the spool holds the load."""
+    """Half the ultimate gain of the loop with a spool that holds the load; a note has the other."""
     rest = simulated(control__tuning_side="rest").tuned
     worst = simulated(control__margin="2").tuned
     assert worst.gains.proportional_gain < rest.gains.proportional_gain

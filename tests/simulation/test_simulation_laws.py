@@ -30,12 +30,13 @@ from simulation_case import (
 from actuator_opt.design.model import Linkage
 from actuator_opt.evaluation.springs import Give
 from actuator_opt.models.loop import ControllerGains
-from actuator_opt.studies.plant import LineData, Plane, SealData
+from actuator_opt.studies.plant import LineData, LinePiece, Plane, SealData
 
 SHARP = {"sharp": 1e3, "relative": 1e-9}
 VACUUM = -101325.0
 AIRY = replace(OIL, air_content=0.005, slope=8.0)
-LINE = LineData(1e-5, 1e-15, 1.2e-5, 2e-15, 5e8, 2e7)
+PIPE = LinePiece(8e-3, 1.8, 0.0, OIL.density, OIL.dynamic_viscosity)  # 5e8 Pa s/m^3
+LINE = LineData(1e-5, 1e-15, 1.2e-5, 2e-15, 2e7, (PIPE,))
 THROTTLE = {
     "opening": 0.3, "needle_area": 0.22e-4, "check_area": 0.64e-4, "cracking_pressure": 0.4e5,
     "density": 870.0, "dynamic_viscosity": 0.03,
@@ -97,7 +98,7 @@ def plants(draw):
         polytropic_index=draw(st.sampled_from([1.0, 1.2, 1.4])),
     )
     lines = st.sampled_from(
-        [LineData(), LINE, replace(LINE, inertance=8e7, far_volume=5e-5, resistance=0.0)]
+        [LineData(), LINE, replace(LINE, inertance=8e7, far_volume=5e-5, pieces=())]
     )
     return plant(
         oil=oil,

@@ -34,7 +34,6 @@ def line(fittings):
     return LineData(
         near_volume=5e-6,
         far_volume=5e-6,
-        resistance=128 * VISCOSITY * LENGTH / (pi * DIAMETER**4),
         inertance=4 * DENSITY * LENGTH / (pi * DIAMETER**2),
         pieces=(piece,),
     )

@@ -206,7 +206,7 @@ class FreeValue(NamedTuple):
     """Value in the equations: the variable or, while its flag is false, the stated value."""
 
 
-class Volumes(NamedTuple):
+class ChamberVolumes(NamedTuple):
     """Dead volumes [m^3] and walls of both chambers, with the lines that are lumped into them."""
 
     dead_a: float
@@ -256,7 +256,7 @@ class Circuit:
     """Those of the names in `free` that the equations use."""
     driven: bool = False
     """Whether the valve of the design drives the circuit."""
-    volumes: Volumes | None = None
+    volumes: ChamberVolumes | None = None
     friction: FrictionCurve | None = None
     """Friction of the seals, if the circuit has any."""
 

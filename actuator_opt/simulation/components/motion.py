@@ -11,7 +11,7 @@ from ...base.numeric import maximum, where
 from ...base.quantities import INPUTS, SCENARIOS
 from ...base.symbolic import Expression, Symbol
 from ...design.scenario.kinds import FRICTIONS
-from ...design.scenario.model import ScenarioFriction as Stated
+from ...design.scenario.model import Drive, ScenarioFriction as Stated
 from ...models import end_stop, friction, linkage, lugre
 from ...studies.plant import Plane, Plant
 from .circuit import Circuit, FrictionCurve, InitialState, rate
@@ -79,6 +79,15 @@ def cushions(circuit: Circuit, position: Symbol, speed: Symbol) -> Expression:
     return total
 
 
+def _machine(circuit: Circuit, drive: Drive, position: Expression, speed: Expression) -> Expression:
+    """Force of an external machine that moves the rod through a spring and a damper [N]."""
+    system = circuit.system
+    wanted = circuit.scenario_signal(drive.position) + circuit.begin.position
+    system.signal("drive_position", "position of the external machine", INPUTS["position"], wanted)
+    force = drive.stiffness * (wanted - position)
+    return force + drive.damping * (rate(system, wanted) - speed)
+
+
 def move(
     circuit: Circuit,
     *,
@@ -122,15 +131,9 @@ def move(
     work_on("load", load_force)
     load_force = load_force - load_cylinder_force
     if load.drive is not None:
-        drive_position = circuit.scenario_signal(load.drive.position) + start
-        drive_speed = rate(system, drive_position)
-        drive_force = load.drive.stiffness * (drive_position - position)
-        drive_force = drive_force + load.drive.damping * (drive_speed - speed)
+        drive_force = _machine(circuit, load.drive, position, speed)
         total, load_force = total + drive_force, load_force - drive_force
         work_on("machine outside", -drive_force)
-        system.signal(
-            "drive_position", "position of the external machine", INPUTS["position"], drive_position
-        )
     if plant.design.linkage is not None:
         joint_mass, joint_force = _joint(circuit, position, speed)
         mass = mass + joint_mass
