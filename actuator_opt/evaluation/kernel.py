@@ -26,7 +26,7 @@ from . import (
     barrel as barrel_module,
     circuit,
     cushion,
-    duty,
+    service,
     film,
     film_tables,
     geometry as geometry_module,
@@ -47,6 +47,9 @@ from . import (
 )
 from .barrel import SEAL_STEP, Wall
 from .circuit import wall_compliance
+from .duty_cycles import metrics as duty_metrics, numbers as numbers_module
+from .duty_cycles.numbers import Numbers, Plan, stacked_numbers
+from .duty_cycles.results import CycleModels, results_in
 from .film_tables import FilmTable, Key, Running
 from .geometry import Geometry
 from .limits import ENDS, MaterialValues, MetricArrays, by_case, margin
@@ -238,6 +241,11 @@ class PreparedDesign:
     material."""
     films: dict[Key, FilmTable] = field(default_factory=dict, compare=False)
     """Tables of the seals' oil films; a cache."""
+    windows: bool = False
+    """Whether extremes along a duty cycle are results of every window of time, as limits of the
+    optimiser."""
+    cycles: dict[tuple[str, ...], CycleModels] = field(default_factory=dict, compare=False)
+    """Models of the duty cycles by the names of their numbers; a cache."""
 
     @property
     def quantities(self) -> Mapping[str, Quantity]:
@@ -388,7 +396,7 @@ def statics(
     strength.compute(v, design, stock, g, case_state, barrel, sections, beams, loaded_joints, out)
     stop = joint.at_stop(case_state.demands, case_state.push)
     stop = replace(stop, mass=weight.moving(parts, stop.mass))
-    duty.compute(v, design, stock, g, case_state, barrel, sections, loaded_joints, stop, net, out)
+    service.compute(v, design, stock, g, case_state, barrel, sections, loaded_joints, stop, net, out)
     _lands(v, design, g, rod, out)
     strength.joint_metrics(loaded_joints, out)
     _manufacture(v, subject, g, out)
@@ -457,6 +465,7 @@ def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = 
             v, design, case_state, s.springs, s.branches, s.moving, s.damping, s.leakage
         )
         places = motion.compute(v, design, linear, wanted, out)
+        _duty(subject, v, s, out)
         for plugin in subject.plugins:
             plugin_value = plugin.call(v, out.metrics, lenient=subject.lenient)
             out.metrics[plugin.name] = {"": plugin_value.value}
@@ -476,6 +485,52 @@ def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = 
         weakest=weakest,
         places=places,
         mass_parts=s.mass_parts,
+    )
+
+
+def duty_numbers(subject: PreparedDesign, v: Values) -> tuple[CycleModels, Array]:
+    """Models of the duty cycles, and the numbers (numbers, designs) on which they depend."""
+    with np.errstate(all="ignore"):
+        plan, numbers = _duty_numbers(subject, v, statics(subject, v, MetricArrays()))
+    return _cycle_models(subject, plan, numbers), stacked_numbers(numbers)
+
+
+def _duty_numbers(subject: PreparedDesign, v: Values, s: Statics) -> tuple[Plan, Numbers]:
+    basis = s.base
+    return numbers_module.collect(
+        v,
+        subject.design,
+        basis.stock,
+        basis.geometry,
+        basis.state,
+        basis.wall,
+        s.rods,
+        s.joints,
+        s.leakage,
+    )
+
+
+def _cycle_models(subject: PreparedDesign, plan: Plan, numbers: Numbers) -> CycleModels:
+    assert subject.design.duty is not None
+    names = tuple(numbers)
+    if names not in subject.cycles:
+        subject.cycles[names] = CycleModels(plan, subject.design.duty.cycles, names)
+    return subject.cycles[names]
+
+
+def _duty(subject: PreparedDesign, v: Values, s: Statics, out: MetricArrays) -> None:
+    """Compute the metrics of duty cycles, by their models or from results among the values."""
+    if subject.design.duty is None:
+        duty_metrics.skip(out)
+        return
+    results = results_in(v)
+    if not results:
+        plan, numbers = _duty_numbers(subject, v, s)
+        models = _cycle_models(subject, plan, numbers)
+        rows = models(stacked_numbers(numbers))
+        results = dict(zip(models.places, rows, strict=True))
+    duty_metrics.compute(
+        v, subject.design, results, s.base.geometry.stroke, windows=subject.windows, out=out
     )
 
 

@@ -70,7 +70,7 @@ def compute(
         }
         law, film = ring.element.friction_law, films.get(ring.label)
         if law.film is None:
-            ring_friction = law.friction(ring.sizes, contact, _row_load(ring, contact), state.speed)
+            ring_friction = law.friction(ring.sizes, contact, row_load(ring, contact), state.speed)
         else:
             ring_friction = law.film(ring.sizes, contact, film)
         if film is not None:
@@ -85,7 +85,7 @@ def compute(
         gland_rows = gland_metrics(v, design, stock, geometry, state, ring, wall.growths)
         for metric, by_place in gland_rows.items():
             by_metric.setdefault(metric, {}).update(by_place)
-    other_friction = _wipers_and_guides(v, design, geometry, state)
+    other_friction = wipers_and_guides(v, design, geometry, state)
     total = total + other_friction
     out.friction_parts["wipers and guides"] = other_friction.running
     for metric, by_place in by_metric.items():
@@ -153,7 +153,7 @@ def compute_film(
     out.skip("inter_seal_pressure", f"{remedy} and add seals.rod.secondary")
 
 
-def _row_load(ring: Ring, contact: SealContact) -> Array:
+def row_load(ring: Ring, contact: SealContact) -> Array:
     """Sum of the line loads (force per circumference) of `count` rings in series.
 
     The first ring seals the pressure; the others are only squeezed.
@@ -184,7 +184,7 @@ def _at_interseal_pressure(ring: Ring, films: Films) -> Ring:
     return ring.at(pressure=absolute(pressure))
 
 
-def _wipers_and_guides(v: Values, design: Design, geometry: Geometry, state: LoadState) -> Friction:
+def wipers_and_guides(v: Values, design: Design, geometry: Geometry, state: LoadState) -> Friction:
     """Coulomb friction of the wipers, and of the guide rings under the side load."""
     total: Array = sum((wiper.friction for wiper in wipers(v, design, geometry, state)), 0.0)
     reactions = side_reactions(geometry, state)

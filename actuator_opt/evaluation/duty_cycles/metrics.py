@@ -1,0 +1,176 @@
+"""Metrics of the duty cycles of a design."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from ...base.numeric import Array, maximum, minimum, real, where
+from ...design.model import Design
+from ...models import fluid
+from ..limits import MetricArrays
+from ..values import Values
+from .results import Place
+
+NO_DUTY = "no duty cycles stated: add duty"
+NAMES = (
+    "duty_flow_peak",
+    "duty_flow_mean",
+    "duty_supply_energy",
+    "duty_work_out",
+    "duty_work_in",
+    "duty_throttling_energy",
+    "duty_friction_energy",
+    "duty_leakage_energy",
+    "duty_efficiency",
+    "duty_power_mean",
+    "duty_power_peak",
+    "duty_power_absorbed",
+    "duty_force_margin",
+    "duty_opening",
+    "duty_supply_share",
+    "duty_supply_needed",
+    "duty_pressure_min",
+    "duty_pressure_max",
+    "duty_suction_ratio",
+    "duty_stroke_margin",
+    "duty_fatigue",
+    "duty_sliding",
+    "duty_wear",
+    "duty_pv",
+    "duty_ripple_volume",
+)
+"""All metrics of duty cycles."""
+
+Extreme = Callable[[Array, Array], Array]
+
+
+def skip(out: MetricArrays) -> None:
+    """Record that a design without duty cycles has none of these metrics."""
+    for name in NAMES:
+        out.skip(name, NO_DUTY)
+
+
+def compute(
+    v: Values,
+    design: Design,
+    results: Mapping[Place, Array],
+    stroke: Array,
+    *,
+    windows: bool,
+    out: MetricArrays,
+) -> None:
+    """Compute the metrics of all duty cycles from their results.
+
+    With `windows`, an extreme is given for the worst samples of every window of time, as limits of
+    the optimiser; otherwise for each cycle.
+    """
+    extremes = _Extremes(results, windows=windows)
+    for metric, result in (
+        ("duty_flow_peak", "flow_peak"),
+        ("duty_power_peak", "power_peak"),
+        ("duty_power_absorbed", "power_absorbed"),
+        ("duty_supply_share", "share"),
+        ("duty_supply_needed", "needed"),
+        ("duty_opening", "opening"),
+        ("duty_pv", "pv"),
+    ):
+        _put(out, metric, extremes.of(result, maximum))
+    _put(out, "duty_force_margin", extremes.of("reserve", minimum))
+    low = extremes.of("pressure_a_min", minimum, "chamber A")
+    low |= extremes.of("pressure_b_min", minimum, "chamber B")
+    high = extremes.of("pressure_a_max", maximum, "chamber A")
+    high |= extremes.of("pressure_b_max", maximum, "chamber B")
+    _put(out, "duty_pressure_min", low)
+    _put(out, "duty_pressure_max", high)
+    air = fluid.ATMOSPHERIC_PRESSURE
+    _put(out, "duty_suction_ratio", {place: (p + air) / air for place, p in low.items()})
+    least = extremes.of("position_min", minimum, "retracted")
+    most = extremes.of("position_max", maximum, "extended")
+    _put(out, "duty_stroke_margin", least | {place: stroke - x for place, x in most.items()})
+    _sums(v, design, results, out)
+    _life(v, design, results, out)
+
+
+def _put(out: MetricArrays, metric: str, values: dict[str, Array]) -> None:
+    if values:
+        out.put(metric, values)
+    else:
+        out.skip(metric, "no valve stated: add valve")
+
+
+class _Extremes:
+    """Extremes of the cycles, for each window or for each cycle."""
+
+    def __init__(self, results: Mapping[Place, Array], *, windows: bool) -> None:
+        self._results, self._windows = results, windows
+
+    def of(self, name: str, pick: Extreme, word: str = "") -> dict[str, Array]:
+        """Values by place; `word` names the chamber or end."""
+        values: dict[str, Array] = {}
+        for place, value in self._results.items():
+            if place.name != name:
+                continue
+            part, _, window = place.place.rpartition("|")
+            words = place.cycle, part, word, window if self._windows else ""
+            label = ", ".join(x for x in words if x)
+            values[label] = pick(values[label], value) if label in values else value
+        return values
+
+
+def _by_cycle(results: Mapping[Place, Array], name: str) -> dict[str, Array]:
+    return {place.cycle: value for place, value in results.items() if place.name == name}
+
+
+def _sums(v: Values, design: Design, results: Mapping[Place, Array], out: MetricArrays) -> None:
+    """Energies, mean flow and power of every cycle."""
+    duration = _by_cycle(results, "duration")
+    energy = _by_cycle(results, "supply_energy")
+    for name in (
+        "supply_energy", "work_out", "work_in", "throttling_energy", "friction_energy",
+        "leakage_energy", "ripple_volume",
+    ):  # fmt: skip
+        out.put(f"duty_{name}", _by_cycle(results, name))
+    volume = _by_cycle(results, "volume")
+    out.put("duty_flow_mean", {name: x / duration[name] for name, x in volume.items()})
+    out.put("duty_power_mean", {name: x / duration[name] for name, x in energy.items()})
+    work = _by_cycle(results, "work_out")
+    moves = {name: real(x) > 0 for name, x in energy.items()}
+    out.put(
+        "duty_efficiency",
+        {name: work[name] / where(moves[name], x, 1.0) for name, x in energy.items()},
+    )
+
+
+def _life(v: Values, design: Design, results: Mapping[Place, Array], out: MetricArrays) -> None:
+    """Fatigue damage, sliding distance and wear of the whole life."""
+    damage = {
+        place.place: value
+        for place, value in results.items()
+        if place.name == "damage" and not place.cycle
+    }
+    if damage:
+        out.put("duty_fatigue", damage)
+    else:
+        out.skip("duty_fatigue", "no part has a known fatigue strength")
+    repeats = {c.name: v[f"duty.cycles[{c.name}].repeats"] for c in design.duty.cycles}
+    way = _by_cycle(results, "way")
+    total: Array = sum((repeats[name] * x for name, x in way.items()), 0.0)
+    out.put("duty_sliding", total)
+    wear: dict[str, Array] = {}
+    for seal, severity in _severities(results, repeats):
+        path = f"duty.wear.{'piston' if seal.startswith('piston') else 'rod'}.rate"
+        if path in v:
+            wear[seal] = wear.get(seal, 0.0) + v[path] * severity
+    if wear:
+        out.put("duty_wear", wear)
+    else:
+        out.skip("duty_wear", "no measured wear rate stated: add duty.wear")
+
+
+def _severities(
+    results: Mapping[Place, Array], repeats: Mapping[str, Array]
+) -> Iterator[tuple[str, Array]]:
+    """Severity of every seal in a life, cycle by cycle."""
+    for place, value in results.items():
+        if place.name == "severity":
+            yield place.place, repeats[place.cycle] * value
