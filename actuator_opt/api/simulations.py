@@ -88,8 +88,8 @@ def read_scenario(
 def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tuple[Array, Array]]:
     """Columns of the records that the scenario's signals use, by file and column."""
     from ..base.files import read_bytes
-    from ..design.scenario import recorded_parts
     from ..base.sheet import decode_record
+    from ..design.scenario import recorded_parts
     from ..identification import column_units, parse_column
 
     known_units = column_units(units)
