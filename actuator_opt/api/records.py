@@ -73,7 +73,8 @@ def read_record(
         not a number
     """
     from ..base.files import read_bytes
-    from ..identification import column_units, decode_record, parse_record
+    from ..base.sheet import decode_record
+    from ..identification import column_units, parse_record
 
     known_units = column_units(units)
     kinds = (".csv", ".txt", ".tsv")

@@ -88,8 +88,9 @@ def read_scenario(
 def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tuple[Array, Array]]:
     """Columns of the records that the scenario's signals use, by file and column."""
     from ..base.files import read_bytes
+    from ..base.sheet import decode_record
     from ..design.scenario import recorded_parts
-    from ..identification import column_units, decode_record, parse_column
+    from ..identification import column_units, parse_column
 
     known_units = column_units(units)
     records: dict[tuple[str, str], tuple[Array, Array]] = {}
@@ -276,7 +277,8 @@ def compare_measured(
         as for `read_scenario`; or record and simulation do not overlap, or a parameter is unknown
     """
     from ..base.files import read_bytes
-    from ..identification import column_units, decode_record
+    from ..base.sheet import decode_record
+    from ..identification import column_units
     from ..simulation.linear import tune
     from ..simulation.measured import overlay, parse_measured
     from ..simulation.measured.fit import fit as fitted

@@ -165,6 +165,23 @@ INPUTS = _table("""
  gas_volume           | V_g    | volume      | ml   | 0.1   | 1e6   | gas volume
  precharge            | p_0    | pressure    | bar  | 0.1   | 1000  | gas precharge, gauge
  polytropic_index     | n      | ratio       | -    | 1     | 3     | polytropic index of the gas
+ repeats              | N      | ratio       | -    | 0     | 1e12  | number of repeats
+ scale                | k      | ratio       | -    | 0.001 | 1000  | factor
+ phase                | phi    | ratio       | %    | 0     | 100   | delay, as a share of the period
+ sample_count         | n      | count       | -    | 4     | 20000 | number of samples
+ opening_limit        | y_lim  | ratio       | %    | 1     | 100   | largest opening of the valve
+ service_time         | t      | time        | h    | 0     | 1e6   | time in service
+ thermal_conductance  | G      | thermal_conductance | W/K | 0 | 1e6  | heat flow per temperature difference
+ emissivity           | eps    | ratio       | -    | 0     | 1     | emissivity
+ wear_rate            | k      | wear_rate   | m^2/N| 0     | 1e-9  | worn volume per force and distance
+ wear_depth           | delta  | length      | mm   | 0.0001| 10    | wear depth
+ machine_efficiency   | eta    | ratio       | %    | 1     | 100   | efficiency
+ precharge_ratio      | p_0/p  | ratio       | -    | 0.1   | 1     | precharge, as a share of the lowest pressure, both absolute
+ specific_energy      | e      | specific_energy | MJ/kg | 0.001 | 1000 | energy per mass
+ mass_per_power       | m/P    | mass_per_power | kg/kW | 0  | 1000  | mass per power
+ mass_per_conductance | m/G    | mass_per_conductance | kg*K/W | 0 | 100 | mass per thermal conductance
+ shell_density        | m/V    | density     | kg/l | 0     | 100   | mass per volume of gas
+ system_part_mass     | m      | mass        | kg   | 0     | 1e6   | mass of other parts
 """)
 
 MATERIAL_PROPERTIES = _table("""

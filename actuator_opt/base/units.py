@@ -54,6 +54,11 @@ BASE = {
     "angular_speed": "rad/s",
     "angular_damping": "N*m*s/rad",
     "inertia": "kg*m^2",
+    "thermal_conductance": "W/K",
+    "wear_rate": "m^2/N",
+    "specific_energy": "J/kg",
+    "mass_per_power": "kg/W",
+    "mass_per_conductance": "kg*K/W",
 }
 """Every dimension with its SI unit."""
 
@@ -183,6 +188,11 @@ _SCALES: dict[str, dict[str, float]] = {
     },
     "angular_damping": {"N*m*s/rad": 1.0, "N*m/rpm": 30 / math.pi},
     "inertia": {"kg*m^2": 1.0, "kg*cm^2": 1e-4, "kg*mm^2": 1e-6, "g*cm^2": 1e-7},
+    "thermal_conductance": {"W/K": 1.0, "kW/K": 1e3, "mW/K": 1e-3},
+    "wear_rate": {"m^2/N": 1.0, "mm^2/N": 1e-6, "mm^3/(N*m)": 1e-9, "m^3/(N*m)": 1.0, "1/Pa": 1.0},
+    "specific_energy": {"J/kg": 1.0, "kJ/kg": 1e3, "MJ/kg": 1e6, "W*h/kg": 3600.0, "Wh/kg": 3600.0},
+    "mass_per_power": {"kg/W": 1.0, "kg/kW": 1e-3, "g/W": 1e-3},
+    "mass_per_conductance": {"kg*K/W": 1.0, "g*K/W": 1e-3, "kg/(W/K)": 1.0},
 }
 _OFFSETS = {"degC": 273.15, "°C": 273.15, "degF": 459.67 * 5 / 9, "°F": 459.67 * 5 / 9}
 

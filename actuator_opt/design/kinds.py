@@ -55,6 +55,12 @@ EXAMPLES = {
     "pump_gain": "2 l/min/bar", "coulomb_force": "80 N", "static_force": "120 N",
     "part_factor": "0.5", "oil_volume": "80 ml", "inertia": "0.013 kg*m^2",
     "stribeck_exponent": "2", "margin": "2", "cycles_per_window": "5",
+    "repeats": "5e6", "scale": "1.2", "phase": "50 %", "sample_count": "400",
+    "opening_limit": "90 %", "service_time": "2000 h", "thermal_conductance": "30 W/K",
+    "emissivity": "0.9", "wear_rate": "2e-17 m^2/N", "wear_depth": "0.1 mm",
+    "machine_efficiency": "85 %", "precharge_ratio": "0.9", "specific_energy": "0.6 MJ/kg",
+    "mass_per_power": "1 kg/kW", "mass_per_conductance": "0.03 kg*K/W",
+    "shell_density": "1.5 kg/l", "system_part_mass": "0.5 kg",
 }  # fmt: skip
 """A valid example of every input quantity, for messages, the schema and the start file."""
 MATERIAL_EXAMPLES = {
@@ -293,6 +299,28 @@ class Text(ValueKind):
         if not value.strip() and not self.multiline:
             raise ValueFault("the text is empty", "write a name")
         return value
+
+
+class Label(Text):
+    """A free text, with the example that messages show."""
+
+    def __init__(self, help: str, example: str, longest: int = 200) -> None:
+        super().__init__(help, longest)
+        self.example = example
+
+
+class FileName(Label):
+    """Name of a file, relative to the folder of the file that names it."""
+
+    def __init__(self, help: str, example: str) -> None:
+        super().__init__(help, example, 300)
+
+    def validate(self, value: Any) -> str:
+        """The name of the file."""
+        text = super().validate(value)
+        if text.strip() == "-":
+            raise ValueFault(f'"{shown(text)}" is not a file', f"write e.g. {self.example}")
+        return text
 
 
 class Boolean(ValueKind):

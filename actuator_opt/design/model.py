@@ -17,6 +17,7 @@ from ..joints.kinds import JOINTS
 from ..models.piston_nut import TIGHTENING
 from . import choices
 from .choices import Paper
+from .duty import DutySection
 from .ideal import Ideal
 from .kinds import (
     Boolean,
@@ -765,6 +766,7 @@ class Design(Section):
     linkage: Linkage | None = None
     ideal: Ideal | None = None
     load_cases: Annotated[tuple[LoadCase, ...], Field(min_length=1, max_length=100)]
+    duty: DutySection | None = None
     variables: dict[str, Variable] = {}  # noqa: RUF012 (pydantic copies it)
     choices: dict[str, tuple[float | bool | str | Fraction, ...]] = {}  # noqa: RUF012 (pydantic copies it)
     requirements: dict[str, RequirementLimit] = {}  # noqa: RUF012 (pydantic copies it)

@@ -12,7 +12,8 @@ import pytest
 from hypothesis import example, given, strategies as st
 
 from actuator_opt.base.errors import InputError
-from actuator_opt.identification.record import CHANNELS, decode_record, parse_record
+from actuator_opt.base.sheet import decode_record
+from actuator_opt.identification.record import CHANNELS, parse_record
 
 PLAIN = "t [s],p1 [bar],p2 [bar],x [mm]\n0,10,2,5\n0.001,11,3,6\n"
 INCH, POUND, GRAVITY = 0.0254, 0.45359237, 9.80665

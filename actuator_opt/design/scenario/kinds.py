@@ -16,10 +16,9 @@ from typing import Annotated, Any, Literal, Protocol, TypeAlias
 import numpy as np
 
 from ...base.dataclass import dataclass
-from ...base.errors import shown
 from ...base.kinds import kinds
 from ...base.numeric import Array, where
-from ..kinds import Choice, Position, PositionKind, Text, ValueFault, choice_of
+from ..kinds import Choice, Position, PositionKind, ValueFault, choice_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -475,28 +474,6 @@ SHAPES = kinds(
     ),
 )
 """All shapes by name."""
-
-
-class Label(Text):
-    """A free text, with the example that messages show."""
-
-    def __init__(self, help: str, example: str, longest: int = 200) -> None:
-        super().__init__(help, longest)
-        self.example = example
-
-
-class FileName(Label):
-    """Name of a file, relative to the scenario's folder."""
-
-    def __init__(self, help: str, example: str) -> None:
-        super().__init__(help, example, 300)
-
-    def validate(self, value: Any) -> str:
-        """The name of the file."""
-        text = super().validate(value)
-        if text.strip() == "-":
-            raise ValueFault(f'"{shown(text)}" is not a file', f"write e.g. {self.example}")
-        return text
 
 
 class StartPosition(PositionKind):

@@ -9,11 +9,11 @@ from typing import Annotated
 
 from pydantic import Field
 
-from ..kinds import Boolean, Of, Position, Section, Text
+from ..kinds import Boolean, FileName, Label, Of, Position, Section, Text
 from ..model import Cushion, Limit
 from ..valve import Valve
 from . import kinds
-from .kinds import FileName, Label, StartPosition
+from .kinds import StartPosition
 
 
 class SignalSegment(Section):
