@@ -26,6 +26,7 @@ BASE = {
     "energy": "J",
     "power": "W",
     "pressure": "Pa",
+    "pressure_speed": "W/m^2",
     "temperature": "K",
     "temperature_difference": "K",
     "angle": "rad",
@@ -116,6 +117,7 @@ _SCALES: dict[str, dict[str, float]] = {
     },
     "energy": {"J": 1.0, "mJ": 1e-3, "kJ": 1e3},
     "power": {"W": 1.0, "mW": 1e-3, "kW": 1e3},
+    "pressure_speed": {"W/m^2": 1.0, "MPa*m/s": 1e6},
     "pressure": {
         "Pa": 1.0,
         "kPa": 1e3,

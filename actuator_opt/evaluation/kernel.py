@@ -511,10 +511,12 @@ def _duty_numbers(subject: PreparedDesign, v: Values, s: Statics) -> tuple[Plan,
 
 
 def _cycle_models(subject: PreparedDesign, plan: Plan, numbers: Numbers) -> CycleModels:
-    assert subject.design.duty is not None
+    duty = subject.design.duty
+    assert duty is not None
     names = tuple(numbers)
     if names not in subject.cycles:
-        subject.cycles[names] = CycleModels(plan, subject.design.duty.cycles, names)
+        records = {cycle.name: duty.record(cycle) for cycle in duty.cycles}
+        subject.cycles[names] = CycleModels(plan, records, names)
     return subject.cycles[names]
 
 
@@ -527,8 +529,7 @@ def _duty(subject: PreparedDesign, v: Values, s: Statics, out: MetricArrays) -> 
     if not results:
         plan, numbers = _duty_numbers(subject, v, s)
         models = _cycle_models(subject, plan, numbers)
-        rows = models(stacked_numbers(numbers))
-        results = dict(zip(models.places, rows, strict=True))
+        results = dict(zip(models.places, models(stacked_numbers(numbers)), strict=True))
     duty_metrics.compute(
         v, subject.design, results, s.base.geometry.stroke, windows=subject.windows, out=out
     )

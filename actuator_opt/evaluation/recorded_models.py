@@ -19,6 +19,8 @@ from ..base.symbolic.program import Program
 from ..base.symbolic.recorded import RecordedFunction
 from ..design.structure import leaves, number_of
 from .build import Many, many, names_of_metrics, rows_of_many
+from . import kernel
+from .duty_cycles.results import CycleModels
 from .kernel import PreparedDesign
 from .limits import LimitRow
 
@@ -67,20 +69,30 @@ def recorded_models(
         for key, entry in material.properties.items()
         if entry.points and f"materials.{name}.{key}" in read
     }
-    first, second = len(paths), len(paths) + len(numbers)
-    third = second + len(factors)
+    count, first = len(paths), len(numbers)
+    second = first + len(factors)
 
-    def rows(inputs: Array) -> Array:
-        design, varied = subject, dict(zip(numbers, inputs[first:second], strict=True))
-        further = inputs[second:]
-        if namespace(inputs) is not np or (further != present[second:, None]).any():
-            changed = dict(zip(factors, inputs[second:third], strict=True))
-            design = replace(subject, factors=dict(subject.factors) | changed)
-            design = _with_tables(design, tables, list(inputs[third:]))
-        objectives, margins = evaluate(design, inputs[:first], varied)
+    def changed(inputs: Array) -> tuple[PreparedDesign, dict[str, Array]]:
+        """The design with the inputs after the variables, and the numbers among them."""
+        design, varied = subject, dict(zip(numbers, inputs[:first], strict=True))
+        if namespace(inputs) is not np or (inputs[first:] != present[count + first :, None]).any():
+            factored = dict(zip(factors, inputs[first:second], strict=True))
+            design = replace(subject, factors=dict(subject.factors) | factored)
+            design = _with_tables(design, tables, list(inputs[second:]))
+        return design, varied
+
+    def rows(inputs: Array, results: Mapping[str, Array] = {}) -> Array:
+        design, varied = changed(inputs[count:])
+        objectives, margins = evaluate(design, inputs[:count], varied | dict(results))
         xp = namespace(margins)
         shown = [xp.broadcast_to(value, (1, inputs.shape[1])) for value in objectives]
         return xp.concatenate([*shown, margins])
+
+    def duty_numbers(inputs: Array) -> Array:
+        design, varied = changed(inputs[count:])
+        values = varied | dict(zip(paths, inputs[:count], strict=True))
+        numbers = kernel.duty_numbers(design, design.values(values))[1]
+        return namespace(numbers).broadcast_to(numbers, (len(numbers), inputs.shape[1]))
 
     names = [*paths, *numbers, *map(str, factors)]
     known = [subject.numbers[path] for path in (*paths, *numbers)]
@@ -94,7 +106,68 @@ def recorded_models(
         for x in limits
     ]
     structure = [*_structure(subject, read, neutral), list(map(neutral.path, paths)), places, goals]
-    return RecordedFunction(rows, names, present, structure)
+    if subject.design.duty is None:
+        return RecordedFunction(rows, names, present, structure)
+    models = kernel.duty_numbers(subject, subject.values())[0]
+    return RecordedWithDuty(
+        rows, names, present, structure, count, models, RecordedFunction(
+            duty_numbers, names, present, [*structure, "duty numbers"]
+        )
+    )
+
+
+class RecordedWithDuty(RecordedFunction):
+    """A recorded function with results of duty cycles between two recordings.
+
+    The first recording computes the numbers of the design on which its cycles depend. The cycles
+    then have their own models (`duty_cycles`). The second recording takes their results as inputs
+    after the variables, so that its size does not depend on the number of samples.
+    """
+
+    def __init__(
+        self,
+        rows: Callable[..., Array],
+        names: Sequence[str],
+        present: Array,
+        structure: Any,
+        count: int,
+        models: CycleModels,
+        numbers: RecordedFunction,
+    ) -> None:
+        with np.errstate(all="ignore"):
+            results = models(numbers.function(present[:, None]))[:, 0]
+        paths = [place.path for place in models.places]
+        self._count, self._width = count, len(paths)
+        self._models, self._numbers = models, numbers
+        last = count + len(paths)
+
+        def function(inputs: Array) -> Array:
+            others = namespace(inputs).concatenate([inputs[:count], inputs[last:]])
+            return rows(others, dict(zip(paths, inputs[count:last], strict=True)))
+
+        super().__init__(
+            function,
+            [*names[:count], *paths, *names[count:]],
+            np.concatenate([present[:count], results, present[count:]]),
+            [structure, paths],
+        )
+
+    def __call__(self, points: Array) -> Array:
+        """Results (rows, k) at points (inputs, k); results of the duty cycles are computed here."""
+        return super().__call__(self._with_results(points))
+
+    def confirmed(
+        self, points: Array, expected: Array | None = None, floor: float | Array = 1.0
+    ) -> bool:
+        """Whether the machine and the function agree, see `RecordedFunction.confirmed`."""
+        return super().confirmed(self._with_results(points), expected, floor)
+
+    def _with_results(self, points: Array) -> Array:
+        count, last = self._count, self._count + self._width
+        variables, others = points[:count], points[last:]
+        known = variables if len(points) <= last else np.concatenate([variables, others])
+        results = self._models(self._numbers(known))
+        return np.concatenate([variables, results, others])
 
 
 def _with_tables(

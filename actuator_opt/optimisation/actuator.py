@@ -369,6 +369,7 @@ def build(
     """
     if subject.design.choices:
         subject = replace(subject, design=of_one_joint(subject.design))
+    subject = replace(subject, windows=True)
     design = subject.design
     if not design.variables:
         raise InputError(

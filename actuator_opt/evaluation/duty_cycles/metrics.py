@@ -68,13 +68,14 @@ def compute(
     for metric, result in (
         ("duty_flow_peak", "flow_peak"),
         ("duty_power_peak", "power_peak"),
-        ("duty_power_absorbed", "power_absorbed"),
         ("duty_supply_share", "share"),
         ("duty_supply_needed", "needed"),
         ("duty_opening", "opening"),
         ("duty_pv", "pv"),
     ):
         _put(out, metric, extremes.of(result, maximum))
+    absorbed = {place: -x for place, x in extremes.of("power_least", minimum).items()}
+    _put(out, "duty_power_absorbed", absorbed)
     _put(out, "duty_force_margin", extremes.of("reserve", minimum))
     low = extremes.of("pressure_a_min", minimum, "chamber A")
     low |= extremes.of("pressure_b_min", minimum, "chamber B")
@@ -143,6 +144,7 @@ def _sums(v: Values, design: Design, results: Mapping[Place, Array], out: Metric
 
 def _life(v: Values, design: Design, results: Mapping[Place, Array], out: MetricArrays) -> None:
     """Fatigue damage, sliding distance and wear of the whole life."""
+    assert design.duty is not None
     damage = {
         place.place: value
         for place, value in results.items()
@@ -150,16 +152,21 @@ def _life(v: Values, design: Design, results: Mapping[Place, Array], out: Metric
     }
     if damage:
         out.put("duty_fatigue", damage)
-    else:
-        out.skip("duty_fatigue", "no part has a known fatigue strength")
-    repeats = {c.name: v[f"duty.cycles[{c.name}].repeats"] for c in design.duty.cycles}
+    repeats = {
+        cycle.name: v[f"duty.cycles[{cycle.name}].repeats"]
+        for cycle in design.duty.cycles
+        if cycle.repeats is not None
+    }
+    if not repeats:
+        for name in ("duty_fatigue", "duty_sliding", "duty_wear"):
+            out.skip(name, "no life stated: add duty.cycles[NAME].repeats")
+        return
     way = _by_cycle(results, "way")
-    total: Array = sum((repeats[name] * x for name, x in way.items()), 0.0)
-    out.put("duty_sliding", total)
+    out.put("duty_sliding", sum((count * way[name] for name, count in repeats.items()), 0.0))
     wear: dict[str, Array] = {}
     for seal, severity in _severities(results, repeats):
         path = f"duty.wear.{'piston' if seal.startswith('piston') else 'rod'}.rate"
-        if path in v:
+        if v.get(path, None) is not None:
             wear[seal] = wear.get(seal, 0.0) + v[path] * severity
     if wear:
         out.put("duty_wear", wear)
@@ -172,5 +179,5 @@ def _severities(
 ) -> Iterator[tuple[str, Array]]:
     """Severity of every seal in a life, cycle by cycle."""
     for place, value in results.items():
-        if place.name == "severity":
+        if place.name == "severity" and place.cycle in repeats:
             yield place.place, repeats[place.cycle] * value

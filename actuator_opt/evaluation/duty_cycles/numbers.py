@@ -14,6 +14,7 @@ import numpy as np
 
 from ...base.dataclass import dataclass
 from ...base.numeric import Array, array_of, maximum, namespace, sqrt
+from ...design.cycle_record import CycleRecord
 from ...design.duty import DutyCycle
 from ...design.model import Design
 from ...models import friction, lines, rod
@@ -37,6 +38,9 @@ CYCLE = ("load_scale", "time_scale", "level", "arm", "shift")
 """Numbers of a cycle that its samples need; their names are those of the cycle, a bar, and this."""
 LIFE = ("repeats", "starts")
 """Numbers of a cycle that its share of the life needs."""
+STRESS = ("span", "offset", "slope", "ultimate", "limit", "limit_cycles")
+"""Numbers of a part of metal: range of its stress under the full pulse of its load, offset and
+slope of its mean stress, tensile strength, fatigue strength, and the cycles of that strength."""
 EDGES = ("feed_a", "feed_b", "drain_a", "drain_b")
 """Edges from supply to chamber A and B, and from A and B to the return line."""
 
@@ -103,8 +107,9 @@ def collect(
         "opening_limit": v["duty.opening_limit"],
         "piston_leakage": _largest(leakage),
     }
+    assert design.duty is not None
     for cycle in design.duty.cycles:
-        numbers |= _cycle(v, design, cycle, g)
+        numbers |= _cycle(v, design, cycle, design.duty.record(cycle), g)
     for chamber in ("a", "b"):
         numbers[f"line_volume_{chamber}"] = sum(
             lines.line_volume(
@@ -134,15 +139,17 @@ def collect(
     return plan, numbers
 
 
-def _cycle(v: Values, design: Design, cycle: DutyCycle, g: Geometry) -> Numbers:
+def _cycle(
+    v: Values, design: Design, cycle: DutyCycle, record: CycleRecord, g: Geometry
+) -> Numbers:
     """Numbers of one cycle."""
     at, name = f"duty.cycles[{cycle.name}].", cycle.name
-    joint = cycle.record.angle is not None
+    joint = record.joint
     arm: Array = 1.0
     shift: Array = 0.0
     if joint and design.linkage is None:
         arm = v[f"{at}lever_arm"]
-        low, high = cycle.record.motion.min(), cycle.record.motion.max()
+        low, high = record.motion.min(), record.motion.max()
         shift = g.stroke / 2 - arm * (low + high) / 2
     level = v["supply.pressure"]
     if cycle.supply_pressure is not None:
@@ -153,9 +160,9 @@ def _cycle(v: Values, design: Design, cycle: DutyCycle, g: Geometry) -> Numbers:
         "level": level,
         "arm": arm,
         "shift": shift,
-        "repeats": v[f"{at}repeats"],
-        "starts": v[f"{at}starts"],
     }
+    if cycle.repeats is not None:
+        numbers |= {key: v[at + key] for key in LIFE}
     return {f"{name}|{key}": value for key, value in numbers.items()}
 
 

@@ -8,46 +8,50 @@ windows of time, and the worst two samples of each window are separate results.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from ...base.dataclass import dataclass
-from ...base.numeric import STEP, Array, real, where
+from ...base.numeric import STEP, Array
 from ...base.quantities import Sense
 from ...design.cycle_record import CycleRecord
-from ...design.duty import DutyCycle
+from ...models import supply_sizing
 from ..values import Values
-from .fatigue import damages
+from .fatigue import Fatigue
 from .numbers import CYCLE, Numbers, Plan
 from .samples import SampleModel, leakage_at_rest
 
 WINDOWS = 8
-"""Windows of time of a cycle, in which extremes are separate limits of the optimiser (our choice).
+"""Windows of time of all cycles together, in which extremes are separate limits of the optimiser (our choice).
 """
+LEAST_WINDOWS = 2
+"""Windows of each cycle if there are many cycles."""
 RANKS = 2
 """Samples of each window that are separate limits: the worst and the next. At an optimum two
 neighbouring samples may be equally bad; one limit for both would then have a kink."""
 
-EXTREMES: Mapping[str, tuple[str, Sense, float]] = {
-    "share": ("share", "max", 1.0),
-    "needed": ("needed", "max", 1.0),
-    "reserve": ("reserve", "min", 1.0),
-    "flow_peak": ("flow", "max", 1.0),
-    "power_peak": ("power", "max", 1.0),
-    "power_absorbed": ("power", "min", -1.0),
-    "opening": ("opening", "max", 1.0),
-    "pressure_a_min": ("pressure_a", "min", 1.0),
-    "pressure_b_min": ("pressure_b", "min", 1.0),
-    "pressure_a_max": ("pressure_a", "max", 1.0),
-    "pressure_b_max": ("pressure_b", "max", 1.0),
-    "position_min": ("position", "min", 1.0),
-    "position_max": ("position", "max", 1.0),
+EXTREMES: Mapping[str, tuple[str, Sense]] = {
+    "share": ("share", "max"),
+    "needed": ("needed", "max"),
+    "reserve": ("reserve", "min"),
+    "flow_peak": ("flow", "max"),
+    "power_peak": ("power", "max"),
+    "power_least": ("power", "min"),
+    "opening": ("opening", "max"),
+    "pressure_a_min": ("pressure_a", "min"),
+    "pressure_b_min": ("pressure_b", "min"),
+    "pressure_a_max": ("pressure_a", "max"),
+    "pressure_b_max": ("pressure_b", "max"),
 }
-"""Extremes of a cycle: result of the samples, whether its least or largest value, and a factor."""
-
+"""Extremes in every window: result of the samples, and whether its least or largest value."""
+ENDS: Mapping[str, tuple[str, Sense]] = {
+    "position_min": ("position", "min"),
+    "position_max": ("position", "max"),
+}
+"""Extremes of the whole cycle: the piston has a single farthest position."""
 
 
 class Place(NamedTuple):
@@ -64,14 +68,6 @@ class Place(NamedTuple):
 
 
 RESULT = "result of a duty cycle|"
-
-
-class Window(NamedTuple):
-    """Samples of a cycle from `first` to before `last`, and their times as text."""
-
-    first: int
-    last: int
-    label: str
 
 
 def results_in(v: Values) -> dict[Place, Array]:
@@ -121,16 +117,45 @@ class CycleModels:
     Parameters
     ----------
     plan : structure of the design
-    cycles : the cycles with their records
+    records : records of the cycles by name
     names : names of the numbers, in order
+
+    Attributes
+    ----------
+    places : the results, in the order of their rows
     """
 
-    def __init__(self, plan: Plan, cycles: Sequence[DutyCycle], names: Sequence[str]) -> None:
-        self.plan, self.cycles, self.names = plan, tuple(cycles), tuple(names)
+    def __init__(
+        self, plan: Plan, records: Mapping[str, CycleRecord], names: Sequence[str]
+    ) -> None:
+        self.plan, self.records, self.names = plan, dict(records), tuple(names)
+        self._row = {name: k for k, name in enumerate(names)}
         self.common = tuple(name for name in names if "|" not in name)
+        lives = [cycle for cycle in records if f"{cycle}|repeats" in self._row]
+        self._fatigue = Fatigue(plan, lives, self._row)
+        count = max(LEAST_WINDOWS, WINDOWS // len(records))
         self._models: dict[tuple[str, ...], SampleModel] = {}
-        self._data: dict[str, npt.NDArray[np.float64]] = {}
-        self.places: tuple[Place, ...] = ()
+        self._cycles: dict[str, _Cycle] = {}
+        places: list[Place] = []
+        for name, record in records.items():
+            cycle = self._cycle(name, record, count)
+            self._cycles[name] = cycle
+            places += [Place(name, *key) for key in cycle.keys]
+        places += [Place(*key) for key in self._fatigue.keys]
+        self.places = (*places, Place("", "rest_leakage"))
+
+    def _cycle(self, name: str, record: CycleRecord, count: int) -> _Cycle:
+        columns = [record.motion, record.load, record.speed]
+        titles = ["=motion", "=load", "=rate"]
+        if record.supply_pressure is not None:
+            columns.append(record.supply_pressure)
+            titles.append("=supply")
+        model = self._models.setdefault(
+            tuple(titles), SampleModel(self.plan, (*self.common, *CYCLE), titles)
+        )
+        order = [self._row[key] for key in self.common]
+        order += [self._row[f"{name}|{key}"] for key in CYCLE]
+        return _Cycle(self.plan, record, model, np.stack(columns, axis=1), order, count)
 
     def __call__(self, points: Array) -> Array:
         """Results (places, k) at numbers (numbers, k), real or complex."""
@@ -140,73 +165,114 @@ class CycleModels:
         for part in np.split(points, np.flatnonzero(new)[1:], axis=1):
             seeds = part.imag / STEP if stepped else np.zeros((len(part), 0))
             with np.errstate(all="ignore"):
-                results = self._results(part.real[:, 0], seeds)
-            self.places = tuple(results)
-            rows = np.stack([np.ravel(value) for value in results.values()])
+                rows = self._results(part.real[:, 0], seeds)
             parts.append(np.broadcast_to(rows, (len(rows), part.shape[1])))
         return np.concatenate(parts, axis=1)
 
-    def _results(self, values: Array, seeds: Array) -> dict[Place, Array]:
-        """Results at one design, each (1,) or complex (directions,)."""
-        numbers = dict(zip(self.names, _stepped(values, seeds), strict=True))
-        results: dict[Place, Array] = {}
-        tracks = {}
-        for cycle in self.cycles:
-            track = self.track(cycle, values, seeds)
-            tracks[cycle.name] = track
-            own = {name: numbers[name] for name in self.common}
-            own |= {name: numbers[f"{cycle.name}|{name}"] for name in CYCLE}
-            for name, value in cycle_results(self.plan, own, cycle, track).items():
-                results[Place(cycle.name, *name)] = value
-        results |= {
-            Place(*key): value
-            for key, value in damages(self.plan, numbers, self.cycles, tracks).items()
-        }
-        results[Place("", "rest_leakage")] = leakage_at_rest(self.plan, numbers)
-        return results
+    def tracks(self, values: Array) -> dict[str, Track]:
+        """Results of all samples of every cycle, at numbers (numbers,)."""
+        seeds = np.zeros((len(values), 0))
+        return {name: cycle.track(values, seeds) for name, cycle in self._cycles.items()}
 
-    def track(self, cycle: DutyCycle, values: Array, seeds: Array) -> Track:
-        """Results of all samples of a cycle at one design."""
-        columns = ["=travel", "=load", "=rate"]
-        record = cycle.record
-        if record.supply_pressure is not None:
-            columns.append("=supply")
-        model = self._models.setdefault(
-            tuple(columns), SampleModel(self.plan, (*self.common, *CYCLE), columns)
-        )
-        order = [self.names.index(name) for name in self.common]
-        order += [self.names.index(f"{cycle.name}|{name}") for name in CYCLE]
-        if cycle.name not in self._data:
-            self._data[cycle.name] = _columns(record)
-        rows = model.run(values[order], seeds[order], self._data[cycle.name])
-        return Track(rows, model.outputs)
+    def _results(self, values: Array, seeds: Array) -> Array:
+        """Results at one design, (places, 1) or complex (places, directions)."""
+        numbers = values[:, None] + 1j * STEP * seeds if seeds.shape[1] else values[:, None]
+        blocks, tracks = [], {}
+        for name, cycle in self._cycles.items():
+            tracks[name] = cycle.track(values, seeds)
+            u = dict(zip((*self.common, *CYCLE), numbers[cycle.order], strict=True))
+            blocks.append(cycle.results(u, tracks[name]))
+        u = dict(zip(self.names, numbers, strict=True))
+        blocks.append(self._fatigue.damages(numbers, tracks))
+        blocks.append(np.reshape(leakage_at_rest(self.plan, u), (1, -1)))
+        width = numbers.shape[1]
+        return np.concatenate([np.broadcast_to(x, (len(x), width)) for x in blocks])
 
 
-def _stepped(values: Array, seeds: Array) -> Array:
-    """Numbers (numbers, 1) or complex (numbers, directions)."""
-    return values[:, None] if not seeds.shape[1] else values[:, None] + 1j * STEP * seeds
+class _Cycle:
+    """Results of one cycle except fatigue, and the keys (name, place) of their rows."""
+
+    def __init__(
+        self,
+        plan: Plan,
+        record: CycleRecord,
+        model: SampleModel,
+        data: Array,
+        order: Sequence[int],
+        count: int,
+    ) -> None:
+        self.plan, self.record, self.model = plan, record, model
+        self.data, self.order = data, list(order)
+        self.extremes = {k: v for k, v in EXTREMES.items() if plan.valve or k != "opening"}
+        self.windows, self.whole = windows_of(record, count), windows_of(record, 1)
+        labels = [ring.label for ring in plan.rings]
+        self.keys: list[tuple[str, str]] = [(name, "") for name in SUMS]
+        self.keys += [(name, label) for name in SEAL_SUMS for label in labels]
+        for name in self.extremes:
+            self.keys += [(name, place) for place in _ranked(self.windows)]
+        for name in ENDS:
+            self.keys += [(name, place) for place in _ranked(self.whole)]
+        for label in labels:
+            self.keys += [("pv", f"{label}|{place}") for place in _ranked(self.windows)]
+
+    def track(self, values: Array, seeds: Array) -> Track:
+        """Results of all samples."""
+        rows = self.model.run(values[self.order], seeds[self.order], self.data)
+        return Track(rows, self.model.outputs)
+
+    def results(self, u: Numbers, track: Track) -> Array:
+        """All results, (keys, 1) or complex (keys, directions)."""
+        sums = _sums(u, self.record.time[:, None] * u["time_scale"], track)
+        blocks = [np.stack(np.broadcast_arrays(*(sums[name] for name in SUMS)))]
+        blocks += self._seal_sums(track)
+        blocks.append(self._worst(self.extremes, self.windows, track))
+        blocks.append(self._worst(ENDS, self.whole, track))
+        blocks += self._pressure_times_speed(track)
+        return np.concatenate(blocks)
+
+    def _seal_sums(self, track: Track) -> list[Array]:
+        """Severity and friction energy of every seal."""
+        x = track.array("position")
+        dx = x[1:] - x[:-1]
+        way = np.where(dx.real > 0, dx, -dx)
+        return [
+            (mean(track.array(f"{name}{i}")) * way).sum(axis=0, keepdims=True)
+            for name in SEAL_SUMS.values()
+            for i in range(len(self.plan.rings))
+        ]
+
+    def _worst(
+        self, extremes: Mapping[str, tuple[str, Sense]], windows: Windows, track: Track
+    ) -> Array:
+        """Extremes in windows, name by name."""
+        columns = [track.outputs.index(output) for output, _ in extremes.values()]
+        signs = np.array([1.0 if sense == "min" else -1.0 for _, sense in extremes.values()])
+        rows = windows.least(track.values[:, columns, 0] * signs)
+        picked = complexed(track.values[rows, np.array(columns)[:, None]])
+        return picked.reshape(-1, picked.shape[-1])
+
+    def _pressure_times_speed(self, track: Track) -> list[Array]:
+        """Largest contact pressure times speed of every seal, in windows."""
+        blocks = []
+        for i in range(len(self.plan.rings)):
+            value = np.abs(track.real("speed") * track.real(f"contact{i}"))
+            rows = self.windows.least(-value[:, None])[0]
+            product = track.array("speed", rows) * track.array(f"contact{i}", rows)
+            blocks.append(np.where(product.real < 0, -product, product))
+        return blocks
 
 
-def _columns(record: CycleRecord) -> npt.NDArray[np.float64]:
-    columns = [record.motion, record.load, record.speed]
-    if record.supply_pressure is not None:
-        columns.append(record.supply_pressure)
-    return np.stack(columns, axis=1)
+SUMS = (
+    "duration", "way", "volume", "supply_energy", "leakage_energy", "work_out", "work_in",
+    "friction_energy", "return_energy", "throttling_energy", "oil_volume", "position_mean",
+    "inlet_heat", "inlet_volume", "ripple_volume", "exchange_a", "exchange_b",
+)  # fmt: skip
+"""Sums over a cycle."""
+SEAL_SUMS = {"severity": "contact", "seal_friction_energy": "friction"}
+"""Sums over a cycle for each seal, with the result of the samples that is summed over the way."""
 
 
-def cycle_results(
-    plan: Plan, u: Numbers, cycle: DutyCycle, track: Track
-) -> dict[tuple[str, ...], Array]:
-    """All results of one cycle by (name,) or (name, place), except fatigue."""
-    time = cycle.record.time[:, None] * u["time_scale"]
-    sums = _sums(plan, u, time, track)
-    results: dict[tuple[str, ...], Array] = {(name,): value for name, value in sums.items()}
-    results |= _seals(plan, track)
-    results |= _extremes(plan, cycle.record, track)
-    return results
-
-
-def _sums(plan: Plan, u: Numbers, time: Array, track: Track) -> dict[str, Array]:
+def _sums(u: Numbers, time: Array, track: Track) -> dict[str, Array]:
     """Sums over the motion and over time."""
     dt = time[1:] - time[:-1]
     x = track.array("position")
@@ -216,18 +282,18 @@ def _sums(plan: Plan, u: Numbers, time: Array, track: Track) -> dict[str, Array]
     areas = u["area_a"], u["area_b"]
     volume = np.where(outward, *areas) * way
     returned = np.where(outward, *areas[::-1]) * way
-    work = _mean(track.array("force")) * dx
+    work = mean(track.array("force")) * dx
     supply = track.array("supply")
     leakage = track.array("leakage")
     duration = dt.sum(axis=0)
-    supplied = (_mean(supply) * volume).sum(axis=0)
-    leaked = (_mean(supply * leakage) * dt).sum(axis=0)
+    supplied = (mean(supply) * volume).sum(axis=0)
+    leaked = (mean(supply * leakage) * dt).sum(axis=0)
     out = np.where(work.real > 0, work, 0.0).sum(axis=0)
     absorbed = -np.where(work.real < 0, work, 0.0).sum(axis=0)
-    rubbed = (_mean(track.array("friction")) * way).sum(axis=0)
+    rubbed = (mean(track.array("friction")) * way).sum(axis=0)
     drained = (u["drain"] * returned).sum(axis=0)
     oil = u["area_a"] * x + u["area_b"] * (u["stroke"] - x)
-    leaked_volume = (_mean(leakage) * dt).sum(axis=0)
+    leaked_volume = (mean(leakage) * dt).sum(axis=0)
     sums = {
         "duration": duration,
         "way": way.sum(axis=0),
@@ -239,27 +305,18 @@ def _sums(plan: Plan, u: Numbers, time: Array, track: Track) -> dict[str, Array]
         "friction_energy": rubbed,
         "return_energy": drained,
         "throttling_energy": supplied - drained - (out - absorbed) - rubbed,
-        "oil_volume": (_mean(oil) * dt).sum(axis=0) / duration,
-        "position_mean": (_mean(x) * dt).sum(axis=0) / duration,
-        "inlet_heat": (_mean(track.array("inlet_drop")) * volume).sum(axis=0),
+        "oil_volume": (mean(oil) * dt).sum(axis=0) / duration,
+        "position_mean": (mean(x) * dt).sum(axis=0) / duration,
+        "inlet_heat": (mean(track.array("inlet_drop")) * volume).sum(axis=0),
         "inlet_volume": volume.sum(axis=0),
-        "ripple_volume": ripple(track.array("flow"), dt),
+        "ripple_volume": supply_sizing.ripple_volume(time=time, flow=track.array("flow")).volume,
     }
     return sums | _exchange(u, x, duration)
 
 
-def _mean(values: Array) -> Array:
+def mean(values: Array) -> Array:
     """Means of neighbouring samples."""
     return 0.5 * (values[1:] + values[:-1])
-
-
-def ripple(flow: Array, dt: Array) -> Array:
-    """Volume of an accumulator that evens out a flow over a period (mass-curve method) [m^3]."""
-    steps = _mean(flow) * dt
-    mean = steps.sum(axis=0) / dt.sum(axis=0)
-    curve = np.concatenate([0 * steps[:1], np.cumsum(steps - mean * dt, axis=0)])
-    level = curve[:, 0].real
-    return curve[np.argmax(level)] - curve[np.argmin(level)]
 
 
 def turning_points(position: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
@@ -281,62 +338,50 @@ def _exchange(u: Numbers, x: Array, duration: Array) -> dict[str, Array]:
     return flows
 
 
-def _seals(plan: Plan, track: Track) -> dict[tuple[str, ...], Array]:
-    """Severity and friction energy of every seal."""
-    x = track.array("position")
-    dx = x[1:] - x[:-1]
-    way = np.where(dx.real > 0, dx, -dx)
-    results: dict[tuple[str, ...], Array] = {}
-    for i, ring in enumerate(plan.rings):
-        severity = (_mean(track.array(f"contact{i}")) * way).sum(axis=0)
-        results["severity", ring.label] = severity
-        energy = (_mean(track.array(f"friction{i}")) * way).sum(axis=0)
-        results["seal_friction_energy", ring.label] = energy
-    return results
+class Windows(NamedTuple):
+    """Windows of time of a cycle."""
+
+    labels: tuple[str, ...]
+    rows: npt.NDArray[np.intp]
+    """Samples of every window (windows, samples); short windows repeat their last sample."""
+    repeated: npt.NDArray[np.bool_]
+    """Whether a sample only fills up its window."""
+
+    def least(self, values: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
+        """Samples of the `RANKS` least values of every window, in order.
+
+        Values (samples, columns) give samples (columns, windows * RANKS). An unknown value (NaN)
+        is the least.
+        """
+        keys = np.where(np.isnan(values), -np.inf, values)[self.rows]
+        keys[self.repeated] = np.inf
+        last = min(RANKS, keys.shape[1]) - 1
+        picked = np.argpartition(keys, last, axis=1)[:, : last + 1]
+        order = np.argsort(np.take_along_axis(keys, picked, axis=1), axis=1, kind="stable")
+        picked = np.take_along_axis(picked, order, axis=1)
+        picked = picked[:, np.minimum(np.arange(RANKS), last)]
+        windows = np.arange(len(self.rows))[:, None, None]
+        return self.rows[windows, picked].transpose(2, 0, 1).reshape(keys.shape[2], -1)
 
 
-def _extremes(plan: Plan, record: CycleRecord, track: Track) -> dict[tuple[str, ...], Array]:
-    """The worst samples of every window."""
-    results: dict[tuple[str, ...], Array] = {}
-    parts = windows_of(record)
-    for name, (output, sense, factor) in EXTREMES.items():
-        if output not in track.outputs:
-            continue
-        values = track.real(output)
-        for window in parts:
-            for rank, row in enumerate(worst(values[window.first : window.last], sense)):
-                picked = track.array(output, slice(window.first + row, window.first + row + 1))
-                results[name, _ranked(window, rank)] = factor * picked[0]
-    for i, ring in enumerate(plan.rings):
-        speed, contact = track.real("speed"), track.real(f"contact{i}")
-        for window in parts:
-            values = np.abs(speed * contact)[window.first : window.last]
-            for rank, row in enumerate(worst(values, "max")):
-                rows = slice(window.first + row, window.first + row + 1)
-                product = track.array("speed", rows) * track.array(f"contact{i}", rows)
-                picked = np.where(product.real < 0, -product, product)[0]
-                results["pv", f"{ring.label}|{_ranked(window, rank)}"] = picked
-    return results
-
-
-def windows_of(record: CycleRecord) -> tuple[Window, ...]:
+def windows_of(record: CycleRecord, windows: int) -> Windows:
     """Windows of a record; the last sample of a closed cycle repeats its first."""
     count = len(record.time) - (1 if record.closed else 0)
-    edges = np.linspace(0, count, min(WINDOWS, count) + 1).round().astype(int)
-    return tuple(
-        Window(int(a), int(b), f"{record.time[a]:.3g} s to {record.time[b - 1]:.3g} s")
-        for a, b in zip(edges[:-1], edges[1:], strict=True)
+    edges = np.linspace(0, count, min(windows, count) + 1).round().astype(int)
+    longest = int(np.diff(edges).max())
+    steps = np.arange(longest)
+    first, last = edges[:-1, None], edges[1:, None]
+    return Windows(
+        tuple(
+            f"{record.time[a]:.3g} s to {record.time[b - 1]:.3g} s"
+            for a, b in zip(edges[:-1], edges[1:], strict=True)
+        ),
+        np.minimum(first + steps, last - 1),
+        first + steps >= last,
     )
 
 
-def _ranked(window: Window, rank: int) -> str:
-    return window.label if rank == 0 else f"{window.label}, next"
-
-
-def worst(values: npt.NDArray[np.float64], sense: Sense) -> list[int]:
-    """Indices of the worst samples, the worst first; at most `RANKS`."""
-    keys = values if sense == "min" else -values
-    keys = np.where(np.isnan(keys), -np.inf, keys)  # an unknown value is the worst
-    count = min(RANKS, len(keys))
-    picked = np.argpartition(keys, count - 1)[:count]
-    return [int(i) for i in picked[np.argsort(keys[picked], kind="stable")]]
+def _ranked(windows: Windows) -> list[str]:
+    """Names of the results of all windows, the worst sample first."""
+    words = ["", *(", next" if k == 1 else f", next {k}" for k in range(1, RANKS))]
+    return [label + word for label in windows.labels for word in words]

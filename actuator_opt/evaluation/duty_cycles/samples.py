@@ -29,7 +29,7 @@ def sample(plan: Plan, u: Mapping[str, Array], s: Mapping[str, Array]) -> dict[s
     ----------
     plan : structure of the design
     u : numbers of the design and of the cycle, see `numbers.collect`
-    s : "travel" (joint angle or position), "load" (torque or force), "rate" (slope of the travel by
+    s : "motion" (joint angle or position), "load" (torque or force), "rate" (slope of the motion by
         time), and "supply" if the cycle states the supply pressure of every sample
 
     Returns
@@ -110,11 +110,11 @@ def _kinematics(
         at = linkage.linkage(
             base_radius=u["base_radius"],
             crank_radius=u["crank_radius"],
-            joint_angle=s["travel"],
+            joint_angle=s["motion"],
             angle_offset=u["angle_offset"],
         )
         return at.length - u["closed_length"], at.lever_arm
-    return u["arm"] * s["travel"] + u["shift"], u["arm"]
+    return u["arm"] * s["motion"] + u["shift"], u["arm"]
 
 
 def _line_drops(plan: Plan, u: Mapping[str, Array], speed: Array) -> tuple[Array, Array]:
