@@ -14,6 +14,7 @@ from ..base.errors import Diagnostic, Fault, InputError
 from ..base.quantities import Quantity
 from ..metrics import METRICS
 from . import choice_list, requirements
+from .cycle_reader import attach, folder_of
 from .faults import cross_field, material_faults
 from .kinds import Fraction, Section, ValueFault, shape_in_words
 from .model import Design, Ply
@@ -283,6 +284,12 @@ def with_values(
             variable["start"] = number
     for block in removed:
         remove(tree, block)
+    diagnostics += [
+        Diagnostic(fault.message, fault.remedy, path=spell(fault.loc, tree))
+        if isinstance(fault, Fault)
+        else fault
+        for fault in attach(tree, folder_of(design))
+    ]
     if not diagnostics:
         built = build(tree, materials=materials, metrics=metrics, contradictions=contradictions)
         diagnostics = [

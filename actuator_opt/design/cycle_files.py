@@ -1,8 +1,8 @@
 """Files of duty cycles that a design names: read once, and kept with the design.
 
 The value of ``duty.cycles[NAME].file`` is a text: the name of a file, relative to the folder of the
-design, or the text of the file itself, of several lines. Once read, this value is a `CycleFile`: the
-same text, with the content of the file. It stays with the design through all changes, so that a
+design, or the text of the file itself, of several lines. Once read, this value is a `CycleFile`:
+the same text, with the content of the file. It stays with the design through all changes, so that a
 design needs its files only once.
 """
 

@@ -66,10 +66,9 @@ def _read(written: str, folder: Path, known: dict[str, CycleFile]) -> CycleFile:
         return written
     if written not in known:
         CycleFileName("", "walk.csv").validate(written)
-        text = written if "\n" in written else cycle_text(folder / written.strip())
-        known[written] = CycleFile(
-            written if "\n" in written else written.strip(), text, str(folder)
-        )
+        inside = "\n" in written
+        name = written if inside else written.strip()
+        known[written] = CycleFile(name, name if inside else cycle_text(folder / name), str(folder))
     return known[written]
 
 

@@ -331,9 +331,8 @@ def _columns(sheet: Sheet, ignore: Sequence[str]) -> tuple[dict[str, Array], Arr
     if faults:
         raise InputError(faults)
     values, lines = numbers(sheet, [column.place for column in table.values()])
-    return {
-        key: column.values(values[:, k]) for k, (key, column) in enumerate(table.items())
-    }, lines
+    numbered = enumerate(table.items())
+    return {key: column.values(values[:, k]) for k, (key, column) in numbered}, lines
 
 
 def _plain(name: str) -> str:

@@ -20,7 +20,16 @@ from ..joints.joint import LEAST_METAL, ROUNDING, Joint
 from ..models import linkage as crank, mass
 from ..models.piston_nut import HEIGHT
 from ..models.spherical_bearing import lug_radius
-from . import assembly, choices, double_rod, material, seal_faults, valve_faults, wall_faults
+from . import (
+    assembly,
+    choices,
+    double_rod,
+    duty_faults,
+    material,
+    seal_faults,
+    valve_faults,
+    wall_faults,
+)
 from .kinds import MaterialName
 from .lengths import closed_length, spigot_length
 from .material import ROLES
@@ -638,6 +647,7 @@ CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
     environment,
     wall_faults.keys,
     load_cases,
+    *duty_faults.CHECKS,
     *seal_faults.CHECKS,
     *CIRCUIT_CHECKS,
     *LINKAGE_CHECKS,

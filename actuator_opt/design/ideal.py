@@ -30,7 +30,7 @@ _PARTS: Mapping[str, Any] = {
 
 _UNUSED = (
     *_PARTS, "second_rod", "head", "retention", "clevis", "sensor", "cushion", "extra_masses",
-    "stiffness", "linkage", "variables", "choices", "requirements", "waivers", "measured",
+    "stiffness", "linkage", "duty", "variables", "choices", "requirements", "waivers", "measured",
     "uncertainty", "objective",
 )  # fmt: skip
 """Blocks that mean nothing beside `ideal`."""

@@ -1,10 +1,10 @@
 """PATHs: names of single values of a design in files, `--set`, scripts and reports.
 
 ``cylinder.bore`` · ``barrel.layup[1].thickness`` · ``load_cases[stance].force`` ·
-``requirements.stiffness_min.min`` · ``variables.cylinder.bore.upper`` ·
-``materials.NAME.PROPERTY``. A load case is given by name or by its index from 0; the canonical PATH
-uses the name. All functions accept a `Design` or its tree of dicts and lists; `resolve` also
-accepts other types of file, such as scenarios.
+``duty.cycles[walk].torque_scale`` · ``requirements.stiffness_min.min`` ·
+``variables.cylinder.bore.upper`` · ``materials.NAME.PROPERTY``. A load case or duty cycle is given
+by name or by its index from 0; the canonical PATH uses the name. All functions accept a `Design` or
+its tree of dicts and lists; `resolve` also accepts other types of file, such as scenarios.
 """
 
 from __future__ import annotations
@@ -35,6 +35,10 @@ _TEXTS = ("waivers", "set")
 _TABLES = (*_ENDS, *_TEXTS, "requirements", "materials", "objective")
 
 
+NAMED_LISTS: tuple[Loc, ...] = (("load_cases",), ("duty", "cycles"))
+"""Lists whose entries PATHs give by name."""
+
+
 class _Token(NamedTuple):
     """One part of a PATH: a key, or the text in brackets."""
 
@@ -57,7 +61,7 @@ class Target:
 
 
 def spell(loc: Loc, tree: Any = None) -> str:
-    """The canonical PATH of a location; a load case is given by its name if no other case has it.
+    """The canonical PATH of a location; an entry of `NAMED_LISTS` by its name, if only it has it.
 
     >>> spell(("barrel", "layup", 1, "thickness"))
     'barrel.layup[1].thickness'
@@ -68,17 +72,17 @@ def spell(loc: Loc, tree: Any = None) -> str:
             text += f".{key}" if text else key
             continue
         name: object = key
-        if depth == 1 and loc[0] == "load_cases":
-            names = _case_names(tree)
+        if loc[:depth] in NAMED_LISTS:
+            names = _names(tree, loc[:depth])
             if key < len(names) and isinstance(names[key], str) and names.count(names[key]) == 1:
                 name = names[key]
         text += f"[{name}]"
     return text
 
 
-def _case_names(tree: Any) -> list[Any]:
-    cases = child(tree, "load_cases")
-    return [child(case, "name") for case in cases] if isinstance(cases, (list, tuple)) else []
+def _names(tree: Any, loc: Loc) -> list[Any]:
+    items = child_at(tree, loc)
+    return [child(item, "name") for item in items] if isinstance(items, (list, tuple)) else []
 
 
 def resolve(
@@ -256,6 +260,9 @@ def words_of(path: str) -> str:
         return term_of(rest.rpartition(".")[0])
     if head.startswith("load_cases["):
         return f"{rest} {head[len('load_cases[') : -1]}".replace("_", " ")
+    if path.startswith("duty.cycles["):
+        name, _, key = path.removeprefix("duty.cycles[").partition("].")
+        return f"{key} {name}".replace("_", " ").replace(".", " ")
     if head == "seals":
         place, _, name = rest.partition(".")
         return f"{place} seal {name}".replace("_", " ").replace(".", " ")

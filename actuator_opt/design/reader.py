@@ -19,6 +19,8 @@ from ..base.quantities import Quantity
 from . import layup
 from .build import MOST_FAULTS, Root, build
 from .changes import Changed, Override, changed, meaningless
+from .cycle_files import CycleFile
+from .cycle_reader import attach
 from .ideal import completed
 from .kinds import Section, ValueFault
 from .model import Design
@@ -117,8 +119,9 @@ def read_design(
     overrides: Iterable[Override | Change] = (),
     materials: MaterialLookup | None = None,
     metrics: Mapping[str, Quantity] | None = None,
+    files: Mapping[str, str] | None = None,
 ) -> LoadedDesign:
-    """Read a design file, or its text.
+    """Read a design file, or its text, and the files of duty cycles that it names.
 
     Parameters
     ----------
@@ -127,34 +130,29 @@ def read_design(
         in SI, but a value that comes from another file needs its unit; None removes the key
     materials : names and kinds of materials; default: the library
     metrics : metrics that may be named; default: `metrics.METRICS`
+    files : texts of files that the design names, by name, to use instead of these files
 
     Raises
     ------
     InputError
-        with all faults, in line order
+        with all faults, in line order; those at lines of other files come first
     """
     text, file = opened(source)
-    return read_document(
-        parse(text, file), overrides=overrides, materials=materials, metrics=metrics
-    )
-
-
-def read_document(
-    document: Document,
-    *,
-    overrides: Iterable[Override | Change] = (),
-    materials: MaterialLookup | None = None,
-    metrics: Mapping[str, Quantity] | None = None,
-) -> LoadedDesign:
-    """The design of a parsed YAML document; parameters as for `read_design`."""
+    folder = Path() if file in (TEXT, STDIN) else Path(source).parent
+    known = {name: CycleFile(name, text, str(folder)) for name, text in (files or {}).items()}
+    beside: list[Diagnostic] = []
 
     def build_design(tree: dict[str, Any]) -> tuple[Design | None, Sequence[Fault]]:
         lookup = library() if materials is None else materials
         whole, unused = completed(tree)
+        cycle_faults = list(attach(whole, folder, known))
+        beside[:] = [fault for fault in cycle_faults if isinstance(fault, Diagnostic)]
         built = build(whole, materials=lookup, metrics=metrics)
-        return (None if unused else built.design), [*unused, *built.faults]
+        faults = [*unused, *built.faults, *(x for x in cycle_faults if isinstance(x, Fault))]
+        return (None if faults else built.design), faults
 
-    return LoadedDesign(*load(layup.expanded(document), Design, build_design, overrides, metrics))
+    document = layup.expanded(parse(text, file))
+    return LoadedDesign(*load(document, Design, build_design, overrides, metrics, beside))
 
 
 def load(
@@ -163,6 +161,7 @@ def load(
     build_section: Callable[[dict[str, Any]], tuple[Root | None, Sequence[Fault]]],
     overrides: Iterable[Override | Change] = (),
     metrics: Mapping[str, Quantity] | None = None,
+    beside: Sequence[Diagnostic] = (),
 ) -> tuple[Root, FileSource]:
     """Build the object that a document describes, and record the locations of its values.
 
@@ -173,6 +172,7 @@ def load(
     build_section : function that builds the object from a tree, or lists the faults of the tree
     overrides : values that replace those of the document, as for `read_design`
     metrics : metrics that may be named; default: `metrics.METRICS`
+    beside : faults at lines of other files, which `build_section` updates
 
     Raises
     ------
@@ -189,6 +189,7 @@ def load(
     faults = [*document.faults, *new.faults]
     source = FileSource(document, new.places, root, metrics)
     section, section_faults = build_section(new.tree)
+    faults += beside
     if section_faults and new.choices:
         advice, section_faults = meaningless(
             new, section_faults, lambda tree: build_section(tree)[1],

@@ -31,6 +31,7 @@ from .kinds import (
 )
 from .material import ROLES
 from .model import Design, Ply, Uncertain
+from .paths import NAMED_LISTS
 from .sizes import MOST_SIZES
 from .standard_sizes import SERIES
 from .structure import (
@@ -295,8 +296,10 @@ def _by_path(schemas: Mapping[str, Schema]) -> Schema:
             properties[path] = schema
             continue
         head, _, tail = path.partition("[*]")
-        inside = "[0-9]+" if head != "load_cases" else r"[^\[\]]+"
-        patterns[f"^{re.escape(head)}\\[{inside}\\]{re.escape(tail)}$"] = schema
+        named = tuple(head.split(".")) in NAMED_LISTS
+        inside = r"[^\[\]]+" if named else "[0-9]+"
+        below = r"\[[0-9]+\]".join(map(re.escape, tail.split("[*]")))
+        patterns[f"^{re.escape(head)}\\[{inside}\\]{below}$"] = schema
         for index in range(_LISTED.get(head, 0)):
             listed = f"{head}[{index}]{tail}"
             properties[listed] = schema | {"title": listed}
