@@ -130,8 +130,8 @@ def dead_points(view: FileView) -> Iterator[Fault]:
             angle = INPUTS["joint_angle"].text(float(record.angle[at]))
             yield Fault(
                 (*loc, "file"),
-                f"{shown(record.name, 200)}, line {record.lines[at]}: at {angle}, the joint is at or "
-                "past a dead point of the linkage, where the lever arm is 0",
+                f"{shown(record.name, 200)}, line {record.lines[at]}: at {angle}, the joint is at "
+                "or past a dead point of the linkage, where the lever arm is 0",
                 "change linkage.angle_offset, or correct sign and zero of the angles",
             )
 

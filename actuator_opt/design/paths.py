@@ -3,8 +3,8 @@
 ``cylinder.bore`` · ``barrel.layup[1].thickness`` · ``load_cases[stance].force`` ·
 ``duty.cycles[walk].torque_scale`` · ``requirements.stiffness_min.min`` ·
 ``variables.cylinder.bore.upper`` · ``materials.NAME.PROPERTY``. A load case or duty cycle is given
-by name or by its index from 0; the canonical PATH uses the name. All functions accept a `Design` or its tree of dicts and lists; `resolve` also
-accepts other types of file, such as scenarios.
+by name or by its index from 0; the canonical PATH uses the name. All functions accept a `Design` or
+its tree of dicts and lists; `resolve` also accepts other types of file, such as scenarios.
 """
 
 from __future__ import annotations

@@ -235,7 +235,11 @@ def leave_out_unset(valve: dict[str, Any] | None) -> None:
 def spec_hash(subject: PreparedDesign) -> str:
     """Hash of all inputs that determine the result: design, material data and program version."""
     design = subject.design.model_dump(mode="json")
-    for key in ("uncertainty", "extra_masses", "sensor", "cushion"):
+    if subject.design.duty is not None:  # the content of a cycle's file counts, not its name
+        cycles = zip(design["duty"]["cycles"], subject.design.duty.cycles, strict=True)
+        for cycle, stated in cycles:
+            cycle["file"] = stated.record.digest
+    for key in ("uncertainty", "extra_masses", "sensor", "cushion", "duty"):
         if not design[key]:  # unset fields are left out: hashes of older designs stay valid
             del design[key]
     for component in design.get("extra_masses", ()):

@@ -20,7 +20,8 @@ from ..base.tables import Displayed
 from ..design import Design
 from ..design.build import to_tree
 from ..design.kinds import Fraction
-from ..design.paths import quantity_of
+from ..design.paths import NAMED_LISTS, quantity_of
+from ..design.structure import child_at
 from ..metrics import METRICS
 from .result import Evaluation
 
@@ -30,8 +31,8 @@ SAME = 1e-9
 """Relative difference up to which two numbers count as equal. Our choice, above rounding errors."""
 _IDLE = ("name", "notes")
 """Keys of a design that do not affect its results."""
-_DUTY = ("supply", "load", "load_cases", "fluid", "environment", "linkage")
-"""Blocks of a design that state its duty."""
+_DUTY = ("supply", "load", "load_cases", "duty", "fluid", "environment", "linkage")
+"""Blocks of a design that state what it must do."""
 _MADE = ("environment.cure_temperature",)
 """PATHs in these blocks that state how the actuator is made."""
 
@@ -297,7 +298,7 @@ _MISSING = _Missing()
 
 
 def _tree(design: Design) -> dict[str, Any]:
-    """Inputs of a design that affect its result, with load cases by name.
+    """Inputs of a design that affect its result, with load cases and cycles by name.
 
     Starting values of variables are left out.
     """
@@ -306,10 +307,11 @@ def _tree(design: Design) -> dict[str, Any]:
         path: {key: value for key, value in variable.items() if key != "start"}
         for path, variable in tree.get("variables", {}).items()
     }
-    cases = tree.get("load_cases", [])
-    names = [case.get("name") for case in cases]
-    if len(set(names)) == len(names):
-        tree["load_cases"] = _Named({f"[{case['name']}]": case for case in cases})
+    for loc in NAMED_LISTS:
+        block, entries = child_at(tree, loc[:-1]), child_at(tree, loc) or []
+        names = [entry.get("name") for entry in entries]
+        if entries and len(set(names)) == len(names):
+            block[loc[-1]] = _Named({f"[{entry['name']}]": entry for entry in entries})
     return tree
 
 

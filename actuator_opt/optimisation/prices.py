@@ -363,7 +363,7 @@ class Sensitivity:
     def kind(self) -> Kind:
         """Whether the parameter is a limit, a number of the design, or a material property."""
         root = self.parameter.partition(".")[0].partition("[")[0]
-        if root in ("requirements", "load_cases"):
+        if root in ("requirements", "load_cases", "duty"):
             return "requirement"
         return "material" if root == "materials" else "parameter"
 
