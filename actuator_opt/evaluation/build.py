@@ -29,8 +29,9 @@ from ..metrics import METRICS, MetricRow
 from ..metrics.table import CHECKS
 from ..version import VERSION
 from . import dynamics_study as dynamics, outline, validity as doubts, valve_study, weight
+from .duty_cycles.study import DutyStudy, study as duty_study
 from .film import floats
-from .kernel import ModelRun, PreparedDesign, compute, governing
+from .kernel import ModelRun, PreparedDesign, compute, duty_numbers, governing
 from .limits import (
     ALL_CASES,
     LimitRow,
@@ -306,8 +307,17 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
         wall=wall_study(subject, v, run),
         dynamics=dynamics.study(subject, v, run, metrics["stiffness_min"].case),
         valve=valve_study.study(design, v, run.state),
+        duty=_duty(subject, v),
         friction_parts=_friction_parts(computed, v, metrics["friction_running"].case),
     )
+
+
+def _duty(subject: PreparedDesign, v: Values) -> DutyStudy | None:
+    """The duty cycles of the design over time."""
+    if subject.design.duty is None:
+        return None
+    models, numbers = duty_numbers(subject, v)
+    return duty_study(models, numbers[:, 0], ())
 
 
 def _friction_parts(computed: MetricArrays, v: Values, case: str | None) -> dict[str, float]:

@@ -26,6 +26,7 @@ from ..metrics import METRICS
 from ..metrics.table import ROWS
 from ..rendering.tables import DataColumn, DataTable, coded
 from .dynamics_study import DynamicsStudy
+from .duty_cycles.study import DutyStudy
 from .valve_study import ValveStudy
 from .wall_study import WallStudy
 
@@ -433,6 +434,8 @@ class Evaluation(Displayed):
     """Modes along the stroke, dynamic stiffness over frequency, and the position loop."""
     valve: ValveStudy | None = None
     """Curves of the valve about its null; None unless the design states the spool."""
+    duty: DutyStudy | None = None
+    """Duty cycles over time; None without the block `duty`."""
     friction_parts: Mapping[str, float] = field(default_factory=dict)
     """Running friction [N] of each seal in the governing case; wipers and guides are one entry."""
     yield_estimate: YieldEstimate = UNKNOWN
@@ -621,6 +624,7 @@ class Evaluation(Displayed):
             "stiffness_budget": self.curve.to_dict(),
             "dynamics": None if self.dynamics is None else self.dynamics.to_dict(),
             **({} if self.valve is None else {"valve": self.valve.to_dict()}),
+            **({} if self.duty is None else {"duty": self.duty.to_dict()}),
         }
 
     def table(self, name: str = "metrics") -> DataTable:

@@ -1,0 +1,161 @@
+"""Duty cycles of a design over time, for figures and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ...base.dataclass import dataclass
+from ...design.cycle_record import CycleRecord
+from ..values import plain
+from .results import CycleModels, Place, Track
+
+Trace = npt.NDArray[np.float64]
+
+ENERGIES: Mapping[str, str] = {
+    "work_out": "work on the load",
+    "work_in": "work of the load",
+    "throttling_energy": "throttling",
+    "leakage_energy": "leakage",
+    "friction_energy": "friction",
+    "return_energy": "return line",
+}
+"""Parts of the energy from the supply; it is their sum, with the work of the load subtracted."""
+
+
+class WorstSample(NamedTuple):
+    """The sample of a cycle at which a result is worst."""
+
+    index: int
+    time: float
+    """Time of the file [s]."""
+    value: float
+
+
+@dataclass(frozen=True)
+class CycleStudy:
+    """A cycle of a design: its record, and results at all samples, SI.
+
+    The traces are those of `samples.sample`, by name. Times and speeds are scaled as the design
+    states.
+    """
+
+    name: str
+    record: CycleRecord
+    time: Trace
+    traces: Mapping[str, Trace]
+    energies: Mapping[str, float]
+    """Energy per cycle [J] by the names in `ENERGIES`, and "supply_energy"."""
+    worst: Mapping[str, WorstSample]
+    damage: Mapping[str, float]
+    """Fatigue damage of every part by this cycle in a life; empty without repeats."""
+    severity: Mapping[str, float]
+    """Contact pressure times way of every seal per cycle [N/m]."""
+    repeats: float | None
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON data: sums and worst samples, without traces."""
+        data: dict[str, Any] = plain(
+            {
+                "name": self.name,
+                "duration": float(self.time[-1] - self.time[0]),
+                "samples": len(self.time),
+                "reversals": self.record.reversals,
+                "energies": self.energies,
+                "worst": {key: sample._asdict() for key, sample in self.worst.items()},
+                "damage": self.damage,
+                "severity": self.severity,
+                "warnings": [*self.record.notes, *self.record.warnings],
+            }
+        )
+        return data
+
+
+@dataclass(frozen=True)
+class DutyStudy:
+    """All duty cycles of a design."""
+
+    cycles: tuple[CycleStudy, ...]
+    unknown: Mapping[str, str]
+    """Parts that are not assessed for fatigue, with the reason."""
+    notes: tuple[str, ...]
+    """What the results assume."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON data."""
+        return {
+            "cycles": [cycle.to_dict() for cycle in self.cycles],
+            "not_assessed_for_fatigue": dict(self.unknown),
+            "notes": list(self.notes),
+        }
+
+
+NOTES = (
+    "quasi-static: pressures follow force and direction; the oil is incompressible and the spool "
+    "has no dynamics",
+    "the torques or forces of a cycle contain the inertia of the load: load.mass and load.inertia "
+    "are not added",
+)
+"""What all duty cycles assume."""
+
+_WORST: Mapping[str, tuple[str, float]] = {
+    "share": ("share", -1.0),
+    "reserve": ("reserve", 1.0),
+    "opening": ("opening", -1.0),
+    "flow": ("flow", -1.0),
+    "power": ("power", -1.0),
+    "absorbed": ("power", 1.0),
+    "pressure_a": ("pressure_a", 1.0),
+    "pressure_b": ("pressure_b", 1.0),
+    "force": ("force", -1.0),
+    "pull": ("force", 1.0),
+    "speed": ("speed", -1.0),
+}
+"""Worst samples by name: the trace, and 1 for its least or -1 for its largest value."""
+
+
+def study(models: CycleModels, numbers: npt.NDArray[np.float64], notes: tuple[str, ...]) -> DutyStudy:
+    """The duty cycles of one design at its numbers (numbers,)."""
+    results = dict(zip(models.places, models(numbers[:, None])[:, 0].tolist(), strict=True))
+    named = dict(zip(models.names, numbers.tolist(), strict=True))
+    cycles = []
+    for name, track in models.tracks(numbers).items():
+        record = models.records[name]
+        time = record.time * named[f"{name}|time_scale"]
+        cycles.append(_cycle(name, record, time, track, results, named.get(f"{name}|repeats")))
+    return DutyStudy(tuple(cycles), dict(models.plan.unknown), (*NOTES, *notes))
+
+
+def _cycle(
+    name: str,
+    record: CycleRecord,
+    time: Trace,
+    track: Track,
+    results: Mapping[Place, float],
+    repeats: float | None,
+) -> CycleStudy:
+    own = {place: value for place, value in results.items() if place.cycle == name}
+
+    def by_place(result: str) -> dict[str, float]:
+        return {place.place: value for place, value in own.items() if place.name == result}
+
+    traces = {output: track.real(output) for output in track.outputs}
+    worst = {}
+    for key, (output, sign) in _WORST.items():
+        if output in traces:
+            at = int(np.argmin(sign * traces[output]))
+            worst[key] = WorstSample(at, float(record.time[at]), float(traces[output][at]))
+    return CycleStudy(
+        name=name,
+        record=record,
+        time=time,
+        traces=traces,
+        energies={key: own[Place(name, key)] for key in ("supply_energy", *ENERGIES)},
+        worst=worst,
+        damage=by_place("damage"),
+        severity=by_place("severity"),
+        repeats=repeats,
+    )
