@@ -187,6 +187,45 @@ def lifted(value: Array, dims: int) -> Array:
     return namespace(value).reshape(value, shape)
 
 
+def histories(*values: Array | Sequence[Array]) -> list[Array]:
+    """Histories as arrays with time as their first axis; the samples of a list are stacked.
+
+    All arrays get the same number of axes, so that they broadcast.
+
+    >>> [history.shape for history in histories([0.0, 1.0, 2.0], np.ones((3, 4)))]
+    [(3, 1), (3, 4)]
+    """
+    lists = [value if isinstance(value, tuple | list) else [value] for value in values]
+    xp = namespace(*(sample for samples in lists for sample in samples))
+    arrays = [
+        together([xp.asarray(sample) for sample in value])
+        if isinstance(value, tuple | list)
+        else xp.asarray(value)
+        for value in values
+    ]
+    dims = max(array.ndim for array in arrays) - 1
+    return [lifted(array, dims) for array in arrays]
+
+
+def over_time(values: Array, time: Array) -> Array:
+    """Integral of a history over time by the trapezoid rule; both are `histories`."""
+    return namespace(values, time).sum(_means(values) * (time[1:, ...] - time[:-1, ...]), axis=0)
+
+
+def over_travel(values: Array, position: Array) -> Array:
+    """Integral of a history over the distance travelled, sum of mean |x_(i+1) - x_i|.
+
+    Both are `histories`. The samples must contain the turning points of the position.
+    """
+    steps = absolute(position[1:, ...] - position[:-1, ...])
+    return namespace(values, position).sum(_means(values) * steps, axis=0)
+
+
+def _means(values: Array) -> Array:
+    """Mean of a history in each interval between samples."""
+    return 0.5 * (values[1:, ...] + values[:-1, ...])
+
+
 P = ParamSpec("P")
 T = TypeVar("T")
 _SIZE = re.compile(

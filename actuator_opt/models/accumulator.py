@@ -1,4 +1,4 @@
-"""Gas-charged accumulators: gas volume, capacitance and usable volume.
+"""Gas-charged accumulators: gas volume, capacitance, usable volume and size.
 
 Pressures are gauge, as everywhere; the gas laws add the atmospheric pressure themselves. An
 accumulator connected to a line is `line_ends.accumulator_end`: inertance and resistance of its neck
@@ -7,7 +7,7 @@ in series with this capacitance.
 
 from __future__ import annotations
 
-from ..base.numeric import Array, geometry, maximum, minimum, real, where
+from ..base.numeric import Array, geometry, maximum, minimum, positive, real, where
 from .fluid import ATMOSPHERIC_PRESSURE
 
 
@@ -162,6 +162,63 @@ def usable_volume(
     ratio = (high_pressure + atmospheric_pressure) / (low_pressure + atmospheric_pressure)
     expanded = filled * ratio ** (1 / polytropic_index)
     return minimum(expanded, gas_volume) - filled
+
+
+@geometry
+def gas_volume_needed(
+    *,
+    oil_volume: Array,
+    low_pressure: Array,
+    high_pressure: Array,
+    precharge_pressure: Array,
+    polytropic_index: Array = 1.4,
+    filling_index: Array = 1.0,
+    atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
+) -> Array:
+    """Gas volume of an accumulator that delivers an oil volume: `usable_volume` solved for V0.
+
+    V0 = dV/u, where u is the usable volume per gas volume. While the gas does not fill the shell,
+    V0 = dV/{((p0 + p_a)/(p_high + p_a))^(1/m) [((p_high + p_a)/(p_low + p_a))^(1/n) - 1]}, with
+    the filling index m.
+
+    Parameters
+    ----------
+    oil_volume : dV to deliver between the two pressures [m^3]
+    low_pressure, high_pressure : gauge [Pa], high > low
+    precharge_pressure : p0, gauge [Pa], at the temperature of use
+    polytropic_index : n of the discharge [-]: 1.4 for cycles under a minute, 1.0 above
+    filling_index : m while the accumulator was filled [-]: 1.0 if slowly
+    atmospheric_pressure : absolute [Pa]
+
+    Returns
+    -------
+    V0, at the precharge pressure [m^3]; NaN where the pressures leave no usable volume
+
+    Notes
+    -----
+    Valid: ideal gas, to about 200 bar; real nitrogen above needs up to 20 % more.
+
+    References
+    ----------
+    [derived] `usable_volume` is proportional to V0
+
+    Examples
+    --------
+    >>> v = gas_volume_needed(oil_volume=7.375e-6, low_pressure=190e5, high_pressure=210e5,
+    ...                       precharge_pressure=171e5)
+    >>> print(f"{v * 1e3:.4f} l")
+    0.1227 l
+    """
+    share = usable_volume(
+        low_pressure=low_pressure,
+        high_pressure=high_pressure,
+        precharge_pressure=precharge_pressure,
+        gas_volume=1.0,
+        polytropic_index=polytropic_index,
+        filling_index=filling_index,
+        atmospheric_pressure=atmospheric_pressure,
+    )
+    return oil_volume / positive(share)
 
 
 @geometry

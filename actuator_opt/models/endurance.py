@@ -1,11 +1,19 @@
-"""Fatigue life under pressure cycles, and impact at the end of the stroke."""
+"""Fatigue life under pressure cycles, and impact at the end of the stroke.
+
+The cycles of a stress history are counted in `rainflow`.
+"""
 
 from __future__ import annotations
 
-from ..base.numeric import Array, geometry, namespace, real, sqrt, where
+from collections.abc import Sequence
+from typing import Any
+
+from ..base.numeric import Array, geometry, histories, maximum, namespace, real, sqrt, where
 
 _LOW_CYCLES = 1e3
 _LOW_SHARE = 0.9
+_ENDLESS = 690.0
+"""Natural logarithm of a number of cycles that counts as infinite, near the largest number."""
 
 
 def cycles_to_failure(
@@ -56,10 +64,135 @@ def cycles_to_failure(
     reversed_stress = where(idle | lost, low + 0 * amplitude, amplitude) / where(
         lost, 0 * left + 1, left
     )
-    slope = xp.log(limit_cycles / _LOW_CYCLES) / xp.log(fatigue_limit / low)
-    life = _LOW_CYCLES * xp.exp(slope * xp.log(reversed_stress / low))
+    exponent = _basquin_exponent(xp, reversed_stress, low, fatigue_limit, limit_cycles)
+    life = _LOW_CYCLES * xp.exp(exponent)
     life = where(idle, 0 * life + float("inf"), life)
     return where(lost, 0 * amplitude, life)
+
+
+def _basquin_exponent(
+    xp: Any, stress: Array, low: Array, fatigue_limit: Array, limit_cycles: Array
+) -> Array:
+    """ln(N/1e3) on the line from the stress `low` at 1e3 cycles through the fatigue limit."""
+    slope = xp.log(limit_cycles / _LOW_CYCLES) / xp.log(fatigue_limit / low)
+    return slope * xp.log(stress / low)
+
+
+def reversed_amplitude(*, amplitude: Array, mean: Array, ultimate_strength: Array) -> Array:
+    """Fully reversed amplitude of the same life, s_r = s_a/(1 - max(s_m, 0)/R_m).
+
+    This is Goodman's line without credit for a compressive mean. `cycles_to_failure` gives that
+    credit.
+
+    Parameters
+    ----------
+    amplitude, mean : s_a >= 0 and s_m of a cycle, notch included [Pa]
+    ultimate_strength : R_m [Pa]
+
+    Returns
+    -------
+    amplitude s_r [Pa]; infinite where the mean stress alone reaches R_m
+
+    Notes
+    -----
+    Valid: metals; uniaxial tension or its von Mises equivalent.
+
+    References
+    ----------
+    [Shigley2011] modified Goodman line; [derived] no credit for compression (our choice)
+
+    Examples
+    --------
+    >>> s = reversed_amplitude(amplitude=99.75e6, mean=99.75e6, ultimate_strength=570e6)
+    >>> print(f"{s / 1e6:.4f} MPa")
+    120.9091 MPa
+    """
+    left = 1 - maximum(0.0, mean) / ultimate_strength
+    lost = real(left) <= 0
+    stress = amplitude / where(lost, 0 * left + 1, left)
+    return where(lost, 0 * left + float("inf"), stress)
+
+
+def basquin_cycles(
+    *, amplitude: Array, ultimate_strength: Array, fatigue_limit: Array, limit_cycles: Array
+) -> Array:
+    """Cycles of a fully reversed amplitude until failure, N = 1e3 (s_r/(0.9 R_m))^b.
+
+    b = ln(N_w/1e3)/ln(S_w/(0.9 R_m)): a straight line in logarithms from 0.9 R_m at 1e3 cycles
+    through the fatigue limit S_w at N_w cycles. It continues beyond N_w: no amplitude is harmless.
+
+    Parameters
+    ----------
+    amplitude : s_r, fully reversed, from `reversed_amplitude` [Pa]
+    ultimate_strength : R_m [Pa]
+    fatigue_limit : S_w, fully reversed amplitude endured for N_w cycles, with all reductions [Pa]
+    limit_cycles : N_w [-]
+
+    Returns
+    -------
+    cycles [-]; infinite at no amplitude, 0 at an infinite one
+
+    Notes
+    -----
+    Valid: from 1e3 cycles; beyond N_w on the safe side for steel.
+
+    References
+    ----------
+    [Shigley2011] stress-life method; [derived] line continued beyond N_w (our choice)
+
+    Examples
+    --------
+    >>> n = basquin_cycles(amplitude=120.9091e6, ultimate_strength=570e6, fatigue_limit=159e6,
+    ...                    limit_cycles=5e8)
+    >>> print(f"{n:.4e}")
+    1.0749e+10
+    """
+    xp = namespace(amplitude, ultimate_strength, fatigue_limit, limit_cycles)
+    idle, lost = real(amplitude) <= 0, real(amplitude) >= float("inf")
+    low = _LOW_SHARE * ultimate_strength
+    stress = where(idle | lost, low, amplitude)
+    exponent = _basquin_exponent(xp, stress, low, fatigue_limit, limit_cycles)
+    endless = idle | (real(exponent) > _ENDLESS)
+    life = _LOW_CYCLES * xp.exp(where(endless, 0.0, exponent))
+    life = where(endless, float("inf"), life)
+    return where(lost, 0.0, life)
+
+
+def miner_damage(
+    *, cycles: Array | Sequence[Array], counts: Array | Sequence[Array], repeats: Array
+) -> Array:
+    """Damage by Miner's sum, D = repeats times the sum of n/N.
+
+    Parameters
+    ----------
+    cycles : N endured by each cycle of the history, cycles on the first axis [-]
+    counts : n, how often each occurs per repeat, of the same form [-]
+    repeats : of the history in a life [-]
+
+    Returns
+    -------
+    damage D [-], without the first axis; infinite where a cycle endures nothing
+
+    Notes
+    -----
+    Valid: any order of cycles; tests scatter from D = 0.3 to 3 at failure.
+
+    The life is reached at D = 1. Designs for a safe life limit D to 0.1 to 0.3.
+
+    References
+    ----------
+    [Miner1945] cumulative damage
+
+    Examples
+    --------
+    >>> print(miner_damage(cycles=[1e6, 4e5], counts=[1.0, 2.0], repeats=1e5))
+    0.6
+    """
+    endured, number = histories(cycles, counts)
+    failed = real(endured) <= 0
+    share = number / where(failed, 1.0, endured)
+    share = where(failed & (real(number) > 0), float("inf"), share)
+    return repeats * namespace(share).sum(share, axis=0)
 
 
 def fatigue_factor(
@@ -149,7 +282,7 @@ def bolt_cycles(*, amplitude: Array, diameter: Array) -> Array:
 
     Returns
     -------
-    cycles [-]
+    cycles [-]; infinite at no amplitude
 
     Notes
     -----
@@ -164,8 +297,10 @@ def bolt_cycles(*, amplitude: Array, diameter: Array) -> Array:
     >>> print(f"{bolt_cycles(amplitude=102e6, diameter=10e-3):.0f}")
     250000
     """
-    share = bolt_endurance_amplitude(diameter=diameter) / amplitude
-    return 2e6 * share * share * share
+    idle = real(amplitude) <= 0
+    endured = bolt_endurance_amplitude(diameter=diameter)
+    share = endured / where(idle, 0 * amplitude + 1, amplitude)
+    return where(idle, 0 * share + float("inf"), 2e6 * share * share * share)
 
 
 def end_stop_compression(

@@ -15,6 +15,7 @@ from math import pi
 
 import samples_contact
 import samples_criteria
+import samples_duty
 import samples_dynamics
 import samples_film
 import samples_fluid
@@ -37,6 +38,7 @@ from actuator_opt.models.strength_modes import PlyStrength
 SCALAR_ONLY = {
     **dict.fromkeys(samples_lines.FREQUENCY_RESPONSES, "complex-valued, laws of their own"),
     **samples_dynamics.COMPLEX,
+    **samples_duty.COUNTS,
 }
 """Public functions outside the array laws, with the reason."""
 
@@ -543,6 +545,7 @@ SAMPLES = {
 for _group in (
     samples_contact,
     samples_criteria,
+    samples_duty,
     samples_dynamics,
     samples_film,
     samples_fluid,
