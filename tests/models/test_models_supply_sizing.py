@@ -75,6 +75,18 @@ def test_ripple_of_a_sine():
     assert t[[ripple.largest, ripple.smallest]] == pytest.approx([period / 2, 0.0])
 
 
+@pytest.mark.parametrize("samples", [20, 50])
+def test_coarse_samples_leave_out_little(samples):
+    """At the worst phase of a sine the volume is too small by 8/n^2, and never too large."""
+    t = np.linspace(0.0, 1.0, samples + 1)
+    shares = [
+        np.pi * supply_sizing.ripple_volume(time=t, flow=np.sin(2 * np.pi * (t + late))).volume
+        for late in np.linspace(0.0, 1 / samples, 21)
+    ]
+    assert 1 - min(shares) == pytest.approx(8 / samples**2, rel=0.05)
+    assert max(shares) < 1
+
+
 @given(flows, st.data())
 def test_ripple_does_not_depend_on_the_beginning(flow, data):
     """A closed cycle that begins at another sample needs the same accumulator."""
