@@ -396,7 +396,9 @@ def statics(
     strength.compute(v, design, stock, g, case_state, barrel, sections, beams, loaded_joints, out)
     stop = joint.at_stop(case_state.demands, case_state.push)
     stop = replace(stop, mass=weight.moving(parts, stop.mass))
-    service.compute(v, design, stock, g, case_state, barrel, sections, loaded_joints, stop, net, out)
+    service.compute(
+        v, design, stock, g, case_state, barrel, sections, loaded_joints, stop, net, out
+    )
     _lands(v, design, g, rod, out)
     strength.joint_metrics(loaded_joints, out)
     _manufacture(v, subject, g, out)

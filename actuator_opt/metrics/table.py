@@ -19,6 +19,7 @@ from ..models.thread import LEAST_OVERLAP
 from .duty_rows import DUTY_ROWS
 from .metric_row import AT_ENDS, CRITERION, CheckLine, Feed, Least, MetricRow
 
+
 def table(rows: Iterable[MetricRow]) -> Mapping[str, MetricRow]:
     """The rows by name, in their order.
 

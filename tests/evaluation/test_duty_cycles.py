@@ -48,7 +48,9 @@ def of(results: dict[Place, float], name: str) -> list[float]:
     return [value for place, value in results.items() if place.name == name]
 
 
-STEPS = "time [s],position [mm],force [N]\n0,20,500\n0.3,60,800\n0.5,90,-200\n0.8,50,-600\n1,20,500\n"
+STEPS = (
+    "time [s],position [mm],force [N]\n0,20,500\n0.3,60,800\n0.5,90,-200\n0.8,50,-600\n1,20,500\n"
+)
 LEAK = {
     f"{name}.leak_root": 0.2 / 60000 / math.sqrt(50 * BAR)
     for name in ("feed_a", "feed_b", "drain_a", "drain_b")

@@ -133,9 +133,7 @@ def collect(
     seals = _seals(v, design, stock, g, resting, wall, supply, numbers)
     parts, unknown = _fatigue(v, design, stock, g, wall, sections, loaded_joints, supply, numbers)
     lines = tuple((line.chamber, i) for i, line in enumerate(design.lines))
-    plan = Plan(
-        design.linkage is not None, design.valve is not None, lines, seals, parts, unknown
-    )
+    plan = Plan(design.linkage is not None, design.valve is not None, lines, seals, parts, unknown)
     return plan, numbers
 
 
@@ -334,8 +332,10 @@ def _fatigue(
         numbers |= {f"{at}ultimate": ultimate, f"{at}limit": limit}
         numbers[f"{at}limit_cycles"] = stock.get(material, "fatigue_cycles", default=1e6)
         parts.append(part)
-    lives = {name: ("rod", life) for name, life in piston_nut.lives(
-        v, design, stock, g, push, pull).items()}
+    lives = {
+        name: ("rod", life)
+        for name, life in piston_nut.lives(v, design, stock, g, push, pull).items()
+    }
     for end in loaded_joints:
         for place, life in end.placed(end.joint.fatigue(end.loaded).lives).items():
             if end.joint.name == "tie_rods":

@@ -102,9 +102,7 @@ def sample(plan: Plan, u: Mapping[str, Array], s: Mapping[str, Array]) -> dict[s
     return results
 
 
-def _kinematics(
-    plan: Plan, u: Mapping[str, Array], s: Mapping[str, Array]
-) -> tuple[Array, Array]:
+def _kinematics(plan: Plan, u: Mapping[str, Array], s: Mapping[str, Array]) -> tuple[Array, Array]:
     """Piston position and lever arm; the arm is 1 for a cycle of position and force."""
     if plan.linkage:
         at = linkage.linkage(

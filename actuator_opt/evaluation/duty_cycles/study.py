@@ -117,7 +117,9 @@ _WORST: Mapping[str, tuple[str, float]] = {
 """Worst samples by name: the trace, and 1 for its least or -1 for its largest value."""
 
 
-def study(models: CycleModels, numbers: npt.NDArray[np.float64], notes: tuple[str, ...]) -> DutyStudy:
+def study(
+    models: CycleModels, numbers: npt.NDArray[np.float64], notes: tuple[str, ...]
+) -> DutyStudy:
     """The duty cycles of one design at its numbers (numbers,)."""
     results = dict(zip(models.places, models(numbers[:, None])[:, 0].tolist(), strict=True))
     named = dict(zip(models.names, numbers.tolist(), strict=True))
