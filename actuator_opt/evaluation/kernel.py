@@ -518,7 +518,10 @@ def _cycle_models(subject: PreparedDesign, plan: Plan, numbers: Numbers) -> Cycl
     names = tuple(numbers)
     if names not in subject.cycles:
         records = {cycle.name: duty.record(cycle) for cycle in duty.cycles}
-        subject.cycles[names] = CycleModels(plan, records, names)
+        phases = {
+            cycle.name: [other.phase - cycle.phase for other in cycle.also] for cycle in duty.cycles
+        }
+        subject.cycles[names] = CycleModels(plan, records, names, phases)
     return subject.cycles[names]
 
 
@@ -533,7 +536,13 @@ def _duty(subject: PreparedDesign, v: Values, s: Statics, out: MetricArrays) -> 
         models = _cycle_models(subject, plan, numbers)
         results = dict(zip(models.places, models(stacked_numbers(numbers)), strict=True))
     duty_metrics.compute(
-        v, subject.design, results, s.base.geometry.stroke, windows=subject.windows, out=out
+        v,
+        subject.design,
+        results,
+        s.base.geometry.stroke,
+        actuator_mass=out.metrics["mass"][""] + out.metrics["mass_oil"][""],
+        windows=subject.windows,
+        out=out,
     )
 
 

@@ -9,6 +9,7 @@ from ...design.model import Design
 from ...models import fluid
 from ..limits import MetricArrays
 from ..values import Values
+from . import supply
 from .results import Place
 
 NO_DUTY = "no duty cycles stated: add duty"
@@ -38,6 +39,9 @@ NAMES = (
     "duty_wear",
     "duty_pv",
     "duty_ripple_volume",
+    "duty_gas_volume",
+    "duty_tank_temperature",
+    "system_mass",
 )
 """All metrics of duty cycles."""
 
@@ -56,6 +60,7 @@ def compute(
     results: Mapping[Place, Array],
     stroke: Array,
     *,
+    actuator_mass: Array,
     windows: bool,
     out: MetricArrays,
 ) -> None:
@@ -90,6 +95,7 @@ def compute(
     _put(out, "duty_stroke_margin", least | {place: stroke - x for place, x in most.items()})
     _sums(v, design, results, out)
     _life(v, design, results, out)
+    supply.compute(v, design, results, actuator_mass, out)
 
 
 def _put(out: MetricArrays, metric: str, values: dict[str, Array]) -> None:

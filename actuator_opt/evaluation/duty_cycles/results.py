@@ -139,6 +139,7 @@ class CycleModels:
     plan : structure of the design
     records : records of the cycles by name
     names : names of the numbers, in order
+    phases : delays of further actuators on the same supply by cycle, as shares of the period
 
     Attributes
     ----------
@@ -146,7 +147,11 @@ class CycleModels:
     """
 
     def __init__(
-        self, plan: Plan, records: Mapping[str, CycleRecord], names: Sequence[str]
+        self,
+        plan: Plan,
+        records: Mapping[str, CycleRecord],
+        names: Sequence[str],
+        phases: Mapping[str, Sequence[float]] | None = None,
     ) -> None:
         self.plan, self.records, self.names = plan, dict(records), tuple(names)
         self._row = {name: k for k, name in enumerate(names)}
@@ -158,13 +163,13 @@ class CycleModels:
         self._cycles: dict[str, _Cycle] = {}
         places: list[Place] = []
         for name, record in records.items():
-            cycle = self._cycle(name, record, count)
+            cycle = self._cycle(name, record, count, (phases or {}).get(name, ()))
             self._cycles[name] = cycle
             places += [Place(name, *key) for key in cycle.keys]
         places += [Place(*key) for key in self._fatigue.keys]
         self.places = (*places, Place("", "rest_leakage"))
 
-    def _cycle(self, name: str, record: CycleRecord, count: int) -> _Cycle:
+    def _cycle(self, name: str, record: CycleRecord, count: int, phases: Sequence[float]) -> _Cycle:
         columns = [record.motion, record.load, record.speed]
         titles = ["=motion", "=load", "=rate"]
         if record.supply_pressure is not None:
@@ -175,7 +180,7 @@ class CycleModels:
         )
         order = [self._row[key] for key in self.common]
         order += [self._row[f"{name}|{key}"] for key in CYCLE]
-        return _Cycle(self.plan, record, model, np.stack(columns, axis=1), order, count)
+        return _Cycle(self.plan, record, model, np.stack(columns, axis=1), order, count, phases)
 
     def need(self, rows: Array) -> None:
         """Compute only results that are needed from now on, (places,) of truth; others are 0."""
@@ -249,8 +254,9 @@ class _Cycle:
         data: Array,
         order: Sequence[int],
         count: int,
+        phases: Sequence[float],
     ) -> None:
-        self.plan, self.record, self.model = plan, record, model
+        self.plan, self.record, self.model, self.phases = plan, record, model, tuple(phases)
         self.data, self.order = data, list(order)
         self.extremes = {k: v for k, v in EXTREMES.items() if plan.valve or k != "opening"}
         self.windows, self.whole = windows_of(record, count), windows_of(record, 1)
@@ -294,8 +300,25 @@ class _Cycle:
         return np.concatenate(blocks)
 
     def _sums(self, u: Numbers, track: Track) -> Array:
-        sums = sums_of(u, self.record.time[:, None] * u["time_scale"], track)
+        time = self.record.time[:, None] * u["time_scale"]
+        total = self._total_flow(track.array("flow"))
+        most = np.argmax(total.real, axis=0)[None]
+        sums = sums_of(u, time, track) | {
+            "ripple_volume": supply_sizing.ripple_volume(time=time, flow=total).volume,
+            "flow_total": np.take_along_axis(total, most, axis=0)[0],
+        }
         return np.stack(np.broadcast_arrays(*(sums[name] for name in SUMS)))
+
+    def _total_flow(self, flow: Array) -> Array:
+        """Flow of all actuators on the supply; the others run the same cycle later or earlier."""
+        total, time = flow, self.record.time
+        period = time[-1] - time[0]
+        for phase in self.phases:
+            moved = (time - time[0] - phase * period) % period + time[0]
+            left = np.clip(np.searchsorted(time, moved, side="right") - 1, 0, len(time) - 2)
+            share = ((moved - time[left]) / (time[left + 1] - time[left]))[:, None]
+            total = total + (1 - share) * flow[left] + share * flow[left + 1]
+        return total
 
     def _seal_sums(self, u: Numbers, track: Track) -> Array:
         """Severity and friction energy of every seal."""
@@ -336,7 +359,7 @@ class _Cycle:
 SUMS = (
     "duration", "way", "volume", "supply_energy", "leakage_energy", "work_out", "work_in",
     "friction_energy", "return_energy", "throttling_energy", "oil_volume", "position_mean",
-    "inlet_heat", "inlet_volume", "ripple_volume", "exchange_a", "exchange_b",
+    "inlet_heat", "inlet_volume", "ripple_volume", "flow_total", "exchange_a", "exchange_b",
 )  # fmt: skip
 """Sums over a cycle."""
 SEAL_SUMS = {"severity": "contact", "seal_friction_energy": "friction"}
@@ -380,7 +403,6 @@ def sums_of(u: Numbers, time: Array, track: Track) -> dict[str, Array]:
         "position_mean": (mean(x) * dt).sum(axis=0) / duration,
         "inlet_heat": (mean(track.array("inlet_drop")) * volume).sum(axis=0),
         "inlet_volume": volume.sum(axis=0),
-        "ripple_volume": supply_sizing.ripple_volume(time=time, flow=track.array("flow")).volume,
     }
     return sums | _exchange(u, x, duration, turning_points(track.real("position")[:, 0]))
 
