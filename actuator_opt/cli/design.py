@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from os.path import relpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -265,13 +266,18 @@ def _start_text(
 ) -> str:
     """Text of a start file named by `title`: a design, or a scenario that `out` will contain."""
     from ..design import read_design
+    from ..design.cycle_reader import moved
     from ..design.kinds import ValueFault
     from ..design.scenario.reader import scenario_text
     from ..design.writer import init_text
 
     try:
         if scenario is None:
-            return init_text(from_design=None if source is None else read_design(source), **title)
+            folder = Path() if out is None else out.parent
+            loaded = None if source is None else read_design(source)
+            if loaded is not None:
+                loaded = replace(loaded, design=moved(loaded.design, folder))
+            return init_text(from_design=loaded, **title)
         file = relpath(scenario, Path() if out is None else out.parent)
         return scenario_text(read_design(scenario).design, file, **title)
     except ValueFault as fault:

@@ -206,6 +206,15 @@ class DutySection(Section):
     wear: Wear | None = None
     supply: DutySupply | None = None
 
+    @property
+    def warnings(self) -> list[str]:
+        """Sentences on doubtful data of all cycles, each with the cycle's PATH."""
+        return [
+            f"duty.cycles[{cycle.name}]: {text}"
+            for cycle in self.cycles
+            for text in cycle.record.warnings
+        ]
+
     def record(self, cycle: DutyCycle) -> CycleRecord:
         """The record of a cycle, with at least `samples` samples."""
         return cycle.sampled(None if self.samples is None else int(self.samples))
