@@ -30,7 +30,7 @@ ThermalBasis: TypeAlias = Annotated[
 class SharingActuator(Section):
     """A further actuator on the same supply, which runs the same cycle with another phase."""
 
-    phase: Annotated[float, Of("phase", "delay of its cycle, as a share of the period")]
+    phase: Annotated[float, Of("cycle_phase", "delay of its cycle, as a share of the period")]
 
 
 class DutyCycle(Section):
@@ -56,9 +56,11 @@ class DutyCycle(Section):
     starts: Annotated[
         float, Of("repeats", "times in a life that the pressure is raised from zero for this cycle")
     ] = 0.0
-    torque_scale: Annotated[float, Of("scale", "factor of the file's torques")] = 1.0
-    force_scale: Annotated[float, Of("scale", "factor of the file's forces")] = 1.0
-    time_scale: Annotated[float, Of("scale", "factor of the file's times; 2: half as fast")] = 1.0
+    torque_scale: Annotated[float, Of("scale_factor", "factor of the file's torques")] = 1.0
+    force_scale: Annotated[float, Of("scale_factor", "factor of the file's forces")] = 1.0
+    time_scale: Annotated[
+        float, Of("scale_factor", "factor of the file's times; 2: half as fast")
+    ] = 1.0
     lever_arm: Annotated[
         float | None,
         Of(
@@ -75,7 +77,7 @@ class DutyCycle(Section):
         bool, Boolean("whether the cycle repeats, so that its last sample is its first")
     ] = True
     phase: Annotated[
-        float, Of("phase", "delay of this actuator's cycle, as a share of the period")
+        float, Of("cycle_phase", "delay of this actuator's cycle, as a share of the period")
     ] = 0.0
     also: Annotated[tuple[SharingActuator, ...], Field(max_length=20)] = ()
     ignore: Annotated[
