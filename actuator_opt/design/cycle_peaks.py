@@ -1,4 +1,4 @@
-"""What a duty cycle asks of the rod at most: forces, speeds, travel, powers, reversals."""
+"""Extreme values of the rod in a duty cycle: forces, speeds, travel, powers, reversals."""
 
 from __future__ import annotations
 

@@ -488,7 +488,7 @@ def _closed(
     notes: list[str],
     warnings: list[str],
 ) -> Array:
-    """The column with its last sample set to its first; told in notes, or in warnings if far."""
+    """The column with its last sample set to its first; notes or, if far, warnings state it."""
     first, last = float(values[0]), float(values[-1])
     if first == last:
         return values
@@ -498,8 +498,8 @@ def _closed(
         message = f'column "{name}" does not close: {ends}'
         remedy = "repeat the first sample at the end, one period later, or write closed: false"
         raise InputError(Diagnostic(message, remedy, file=sheet.name, line=int(lines[-1])))
-    told = f'column "{name}": last sample set to the first ({ends})'
-    (warnings if far else notes).append(told)
+    sentence = f'column "{name}": last sample set to the first ({ends})'
+    (warnings if far else notes).append(sentence)
     return np.append(values[:-1], first)
 
 
