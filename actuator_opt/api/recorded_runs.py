@@ -72,6 +72,7 @@ _BODY: Form = {
         "text": str,
         "set": [[str]],
         "unset?": [str],
+        "files?": {"*": str},
         "plugins": [{"file": str, "sha256": str}],
     },
     "versions": {"*": str},
@@ -133,6 +134,7 @@ _RUN: Form = {
     "source_name": str,
     "date?": (str, None),
     "spec_hash?": str,
+    "files?": {"*": str},
     "result?": (
         {
             "status?": (str, None),
@@ -296,13 +298,14 @@ def record_run(
     ------
     InputError : the record cannot be written
     """
+    from ..design.cycle_reader import texts_of
     from ..design.writer import to_yaml
     from ..evaluation.build import spec_hash
 
     place = _folder(folder)
     if place is None:
         return None
-    source = actuator.source
+    source, files = actuator.source, texts_of(actuator.design)
     started = _started()
     common_head = {
         "kind": kind,
@@ -320,6 +323,7 @@ def record_run(
             "name": file_name(actuator.design, source),
             "text": to_yaml(actuator.design) if source is None else source.text,
             **_changes(source),
+            **({"files": files} if files else {}),
             "plugins": _plugins(actuator.plugins),
         },
         "versions": _versions(),

@@ -166,8 +166,8 @@ INPUTS = _table("""
  precharge            | p_0    | pressure    | bar  | 0.1   | 1000  | gas precharge, gauge
  polytropic_index     | n      | ratio       | -    | 1     | 3     | polytropic index of the gas
  repeats              | N      | ratio       | -    | 0     | 1e12  | number of repeats
- scale                | k      | ratio       | -    | 0.001 | 1000  | factor
- phase                | phi    | ratio       | %    | 0     | 100   | delay, as a share of the period
+ scale_factor         | k      | ratio       | -    | 0.001 | 1000  | factor
+ cycle_phase          | phi    | ratio       | %    | 0     | 100   | delay, as a share of the period
  sample_count         | n      | count       | -    | 4     | 20000 | number of samples
  opening_limit        | y_lim  | ratio       | %    | 1     | 100   | largest opening of the valve
  service_time         | t      | time        | h    | 0     | 1e6   | time in service
