@@ -24,4 +24,10 @@ Some functions are for scripts alone; no part of the program calls them:
   `stiffness_published.barrel_stiffness_as_published`,
   `stiffness_published.line_stiffness_as_published`: equations of [AaltoThesis] that the report
   of its test cylinder names
+- `heat_transfer.oil_film_coefficient`, `heat_transfer.throttle_temperature_rise`,
+  `heat_transfer.exchanged_volume`, `heat_transfer.oil_exchange_conductance`,
+  `heat_transfer.tank_temperature`, `heat_transfer.friction_heat`,
+  `thermal_network.thermal_network`, `thermal_network.steady_temperatures`,
+  `thermal_network.temperatures_after`, `thermal_network.slowest_time_constant`,
+  `thermal_network.ripple_bound`: temperatures of an actuator that works in cycles
 """
