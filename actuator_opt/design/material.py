@@ -292,6 +292,22 @@ def _isotropic_ply(numbers: Mapping[str, Array]) -> dict[str, Array]:
     return result
 
 
+def conductivity_through(numbers: Mapping[str, Array]) -> Array | None:
+    """Thermal conductivity through a wall of the material [W/(m K)]; None if it is not known.
+
+    A ply conducts far better along its fibres than through its thickness; a material with one
+    modulus conducts alike in both directions, unless `thermal_conductivity_through` is stated.
+
+    Parameters
+    ----------
+    numbers : stated properties, SI
+    """
+    through = numbers.get("thermal_conductivity_through")
+    if through is None and "youngs_modulus_1" not in numbers:
+        return numbers.get("thermal_conductivity")
+    return through
+
+
 def compliance_determinant(constants: Mapping[str, float]) -> float:
     """A number that is positive if the compliance matrix of a ply is positive definite.
 
