@@ -63,6 +63,9 @@ PLY_CONSTANTS: Final = (
     "poissons_ratio_12", "poissons_ratio_13", "poissons_ratio_23",
 )  # fmt: skip
 
+HEAT: Final = ("thermal_conductivity", "thermal_conductivity_through", "specific_heat")
+"""Properties of heat flow, which no model of strength, stiffness or friction reads."""
+
 _ROOM_TEMPERATURE = 296.15
 _MATRIX = ("strength_2_tension", "strength_2_compression", "strength_12", "strength_23")
 _FIBRE = ("strength_1_tension", "strength_1_compression")
@@ -178,6 +181,16 @@ class Material:
         return "youngs_modulus" in self.properties and "youngs_modulus_1" not in self.properties
 
     @property
+    def through_wall(self) -> tuple[str, ...]:
+        """Properties that give the thermal conductivity through a wall; the first stated counts.
+
+        A ply conducts far better along its fibres than through its thickness, so that only its own
+        value through the ply counts.
+        """
+        along, through, _ = HEAT
+        return (through, along) if self.isotropic or self.kind == "fluid" else (through,)
+
+    @property
     def unverified(self) -> tuple[str, ...]:
         """Names of the properties that nobody has checked against their source.
 
@@ -290,22 +303,6 @@ def _isotropic_ply(numbers: Mapping[str, Array]) -> dict[str, Array]:
         result |= dict.fromkeys((*_FIBRE, *_MATRIX[:2]), strength)
         result["strength_12"] = strength / math.sqrt(3)
     return result
-
-
-def conductivity_through(numbers: Mapping[str, Array]) -> Array | None:
-    """Thermal conductivity through a wall of the material [W/(m K)]; None if it is not known.
-
-    A ply conducts far better along its fibres than through its thickness; a material with one
-    modulus conducts alike in both directions, unless `thermal_conductivity_through` is stated.
-
-    Parameters
-    ----------
-    numbers : stated properties, SI
-    """
-    through = numbers.get("thermal_conductivity_through")
-    if through is None and "youngs_modulus_1" not in numbers:
-        return numbers.get("thermal_conductivity")
-    return through
 
 
 def compliance_determinant(constants: Mapping[str, float]) -> float:

@@ -311,6 +311,9 @@ def radiation_coefficient(
     -----
     Valid: a grey surface in large surroundings at the temperature of the air; no sun.
 
+    Emissivity is near 0.9 for painted surfaces and laminates, 0.8 for anodised and 0.1 for bare
+    aluminium (recalled).
+
     References
     ----------
     [derived] eps sigma (T_s^4 - T_a^4) divided by T_s - T_a

@@ -11,12 +11,7 @@ import pytest
 from actuator_opt.base import files as store
 from actuator_opt.base.errors import InputError
 from actuator_opt.base.quantities import MATERIAL_PROPERTIES
-from actuator_opt.design.material import (
-    BASES,
-    CONFIDENCES,
-    compliance_determinant,
-    conductivity_through,
-)
+from actuator_opt.design.material import BASES, CONFIDENCES, compliance_determinant
 from actuator_opt.design.materials import (
     Library,
     Spread,
@@ -493,11 +488,17 @@ def test_text_tables_can_be_ascii_and_show_everything(library):
 # ---- heat ----
 
 
+def through_wall(material):
+    """Conductivity through a wall of the material, None if it states none."""
+    stated = [material.numbers[key] for key in material.through_wall if key in material.numbers]
+    return stated[0] if stated else None
+
+
 def test_every_wall_and_fluid_conducts_and_stores_heat(library):
     """Metals, plies and fluids state conductivity and specific heat; plies also through the ply."""
     for material in library:
         if material.kind in ("metal", "ply", "fluid"):
-            assert conductivity_through(material.numbers) is not None, material.name
+            assert through_wall(material) is not None, material.name
             assert "specific_heat" in material.numbers, material.name
         if material.kind == "ply":
             assert "thermal_conductivity_through" in material.numbers, material.name
@@ -516,9 +517,10 @@ def test_every_wall_and_fluid_conducts_and_stores_heat(library):
 )
 def test_published_heat_values(library, name, along, through, heat):
     """Values of the named pages, in SI; through a ply, the conductivity is that across fibres."""
-    numbers = library.get(name).numbers
+    material = library.get(name)
+    numbers = material.numbers
     assert numbers["thermal_conductivity"] == pytest.approx(along, rel=1e-12)
-    assert conductivity_through(numbers) == pytest.approx(through, rel=1e-12)
+    assert through_wall(material) == pytest.approx(through, rel=1e-12)
     assert numbers["specific_heat"] == pytest.approx(heat, rel=1e-12)
 
 
@@ -536,11 +538,20 @@ def test_heat_values_follow_wiedemann_and_franz_and_dulong_and_petit(library):
         assert numbers["specific_heat"] * molar == pytest.approx(3 * 8.314, rel=0.12), name
 
 
-def test_a_ply_without_its_own_value_through_has_none():
-    """The conductivity along the fibre never serves for that through the ply."""
-    assert conductivity_through({"youngs_modulus_1": 1e11, "thermal_conductivity": 5.0}) is None
-    assert conductivity_through({"youngs_modulus": 1e11, "thermal_conductivity": 5.0}) == 5.0
-    assert conductivity_through({"youngs_modulus": 1e11}) is None
+def test_a_ply_without_its_own_value_through_has_none(tmp_path):
+    """The conductivity along the fibre never serves for that through the ply; a metal's does."""
+    elastic = (
+        "    youngs_modulus_1: 135 GPa\n    youngs_modulus_2: 8 GPa\n"
+        "    shear_modulus_12: 4 GPa\n    poissons_ratio_12: 0.3\n"
+    )
+    ply = (
+        "bar:\n  kind: ply\n  label: Bar\n" + META + "  properties:\n    density: 1570 kg/m^3\n"
+        + elastic + "    thermal_conductivity: 5 W/(m*K)\n"
+    )  # fmt: skip
+    path = own(tmp_path, METAL + "    thermal_conductivity: 40 W/m/K\n" + ply)
+    mine = load_library([path])
+    assert through_wall(mine.get("bar")) is None
+    assert through_wall(mine.get("foo")) == 40.0
 
 
 @pytest.mark.parametrize(
