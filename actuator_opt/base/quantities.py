@@ -210,6 +210,9 @@ MATERIAL_PROPERTIES = _table("""
  thermal_expansion    | alpha  | per_temperature | ppm/K | -20 | 500  | thermal expansion
  thermal_expansion_1  | alpha_1| per_temperature | ppm/K | -20 | 500  | thermal expansion along the fibre
  thermal_expansion_2  | alpha_2| per_temperature | ppm/K | -20 | 500  | thermal expansion across the fibre
+ thermal_conductivity | lambda | thermal_conductivity | W/(m*K) | 0.01 | 2500 | thermal conductivity; of a ply along the fibre (warp)
+ thermal_conductivity_through | lambda_t | thermal_conductivity | W/(m*K) | 0.01 | 2500 | thermal conductivity through the ply
+ specific_heat        | c_p    | specific_heat | J/(kg*K) | 50 | 10000 | specific heat
  minimum_thickness    | t_min  | length      | mm     | 0     | 50    | minimum thickness that can be made
  minimum_angle        | theta_min | angle    | deg    | 0     | 90    | smallest winding angle that can be made
  temperature_knockdown| k_T    | ratio       | -      | 0.05  | 1     | strength at the knock-down temperature, as a share of that at 23 degC
