@@ -538,8 +538,9 @@ def _duty(subject: PreparedDesign, v: Values, s: Statics, out: MetricArrays) -> 
     duty_metrics.compute(
         v,
         subject.design,
+        s.base.stock,
+        s.base.geometry,
         results,
-        s.base.geometry.stroke,
         actuator_mass=out.metrics["mass"][""] + out.metrics["mass_oil"][""],
         windows=subject.windows,
         out=out,
