@@ -19,8 +19,8 @@ from ..base.symbolic.program import Program
 from ..base.symbolic.program_store import Recording
 from ..base.symbolic.recorded import RecordedFunction
 from ..design.structure import leaves, number_of
-from .build import Many, many, names_of_metrics, rows_of_many
 from . import kernel
+from .build import Many, many, names_of_metrics, rows_of_many
 from .duty_cycles.results import CycleModels, width_of
 from .kernel import PreparedDesign
 from .limits import LimitRow

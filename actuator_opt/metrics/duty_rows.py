@@ -11,7 +11,7 @@ DUTY_ROWS = (
               term="supply pressure needed", worst="max", model="quasi_static.needed_supply",
               feeds=(),
               check=CheckLine("14.1", "force and speed along the duty cycles", 1.0,
-                          "the supply moves the load with at most the stated opening of the valve")),
+                          "the supply moves the load within the permitted opening of the valve")),
     MetricRow("duty_supply_needed", "p_n", "pressure", "bar",
               "least supply pressure that moves the load along a duty cycle",
               term="least supply pressure", worst="max", model="quasi_static.needed_supply",

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from math import pi
 from types import MappingProxyType
 
-from ..base.quantities import INFINITY, Quantity
+from ..base.quantities import Quantity
 from ..joints.cone import LEAST_CREST, LEAST_GRIP
 from ..joints.joint import LEAST_METAL, judged_on, models_at
 from ..joints.kinds import JOINTS, SLEEVED

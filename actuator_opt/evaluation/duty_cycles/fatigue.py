@@ -100,7 +100,7 @@ class Fatigue:
             np.take_along_axis(share, spread(at), axis=1) for at in (pairs.largest, pairs.smallest)
         )
         high, low = _ends(share)
-        peak = np.where(np.abs(high.real) >= np.abs(low.real), high, low)
+        peak: Array = np.where(np.abs(high.real) >= np.abs(low.real), high, low)
         up = np.where(peak.real > 0, peak, 0.0)
         begun = np.broadcast_to(starts, (loads, 1, columns))
         return _Counted(

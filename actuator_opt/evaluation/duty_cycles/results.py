@@ -9,6 +9,7 @@ windows of time, and the worst two samples of each window are separate results.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -25,8 +26,8 @@ from .numbers import CYCLE, Numbers, Plan
 from .samples import SampleModel, leakage_at_rest
 
 WINDOWS = 8
-"""Windows of time of all cycles together, in which extremes are separate limits of the optimiser (our choice).
-"""
+"""Windows of time of all cycles together (our choice). The extremes in each window are separate
+limits of the optimiser."""
 MOST = 200
 """Designs that are computed together, to bound memory."""
 LEAST_WINDOWS = 2
@@ -239,7 +240,7 @@ class _Block(NamedTuple):
     """Results that are computed together: names, number of rows, and their function."""
 
     names: tuple[str, ...]
-    count: int
+    rows: int
     results: Callable[[Numbers, Track], Array]
 
 
@@ -294,7 +295,7 @@ class _Cycle:
         """All results (keys, columns)."""
         columns = track.shape[0] * track.shape[1]
         blocks = [
-            block.results(u, track) if needed else np.zeros((block.count, columns))
+            block.results(u, track) if needed else np.zeros((block.rows, columns))
             for block, needed in zip(self._blocks, self._needed, strict=True)
         ]
         return np.concatenate(blocks)
@@ -470,10 +471,7 @@ def windows_of(record: CycleRecord, windows: int) -> Windows:
     steps = np.arange(longest)
     first, last = edges[:-1, None], edges[1:, None]
     return Windows(
-        tuple(
-            f"{record.time[a]:.3g} s to {record.time[b - 1]:.3g} s"
-            for a, b in zip(edges[:-1], edges[1:], strict=True)
-        ),
+        tuple(f"{record.time[a]:.3g} s to {record.time[b - 1]:.3g} s" for a, b in pairwise(edges)),
         np.minimum(first + steps, last - 1),
         first + steps >= last,
     )

@@ -29,7 +29,7 @@ ENERGIES: Mapping[str, str] = {
 class WorstSample(NamedTuple):
     """The sample of a cycle at which a result is worst."""
 
-    index: int
+    sample: int
     time: float
     """Time of the file [s]."""
     value: float

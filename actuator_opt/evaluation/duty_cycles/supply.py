@@ -99,8 +99,10 @@ class _Sizes:
 
     @property
     def pump_power(self) -> Array:
-        """Largest hydraulic power of the pump [W]: the mean of a cycle, or without an accumulator
-        its peak flow at its supply pressure."""
+        """Largest hydraulic power of the pump [W].
+
+        With an accumulator it is the mean of a cycle, otherwise its peak flow times the pressure.
+        """
         if self.gas_volume is not None:
             duration = self._each("duration")
             powers = {

@@ -69,7 +69,10 @@ def compute(
     if supplied is None:
         supplied = v.get("duty.oil_supply", None)
         supplied = v["fluid.temperature"] if supplied is None else supplied
-    oil, wall, seal, spare = {}, {}, {}, {}
+    oil: dict[str, Array] = {}
+    wall: dict[str, Array] = {}
+    seal: dict[str, Array] = {}
+    spare: dict[str, Array] = {}
     for name, heats in _each(v, design, results):
         state = _steady(v, design, stock, g, heats, supplied)
         oil[name] = state.oil
@@ -101,7 +104,9 @@ def _spare(
 
 def _missing(design: Design, stock: MaterialValues) -> list[str]:
     """Properties that the model needs and the library does not state."""
-    needed = [(design.fluid.material, ("thermal_conductivity", "specific_heat"))]
+    needed: list[tuple[str, tuple[str, ...]]] = [
+        (design.fluid.material, ("thermal_conductivity", "specific_heat"))
+    ]
     for ply in design.barrel.layup:
         keys = ("thermal_conductivity_through", "thermal_conductivity")
         needed += [(ply.material, keys[:1] if _laminated(stock, ply.material) else keys[1:])]
