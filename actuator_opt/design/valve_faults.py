@@ -8,6 +8,7 @@ from ..base.errors import Fault
 from ..base.quantities import INPUTS, length_text
 from ..models.valve import WIDEST
 from .structure import FileView, Loc, how_to_add, section_at, without_effect
+from .valve import Valve
 
 EDGES = ("pa", "pb", "at", "bt")
 """Metering edges of a spool: from supply p to the ports a and b, and from these to the tank t."""
@@ -113,10 +114,15 @@ def _size(view: FileView, loc: Loc) -> Iterator[Fault]:
         )
     if not sized and not view.has(*loc, "rated_flow"):
         yield _missing(view, (*loc, "rated_flow"), "missing: required without spool.area_gradient")
+    others = tuple(  # a design that a program changes states its defaults
+        name
+        for name in COURSE
+        if view.number(*loc, name) != Valve.model_fields[name].default
+    )
     yield from without_effect(
         view,
         loc,
-        COURSE,
+        others,
         "with a lapped spool, which leaks through its clearance",
         "remove it, and state spool.clearance",
     )
