@@ -115,9 +115,7 @@ def _size(view: FileView, loc: Loc) -> Iterator[Fault]:
     if not sized and not view.has(*loc, "rated_flow"):
         yield _missing(view, (*loc, "rated_flow"), "missing: required without spool.area_gradient")
     others = tuple(  # a design that a program changes states its defaults
-        name
-        for name in COURSE
-        if view.number(*loc, name) != Valve.model_fields[name].default
+        name for name in COURSE if view.number(*loc, name) != Valve.model_fields[name].default
     )
     yield from without_effect(
         view,

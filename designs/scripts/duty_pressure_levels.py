@@ -1,8 +1,8 @@
 """At which supply pressure a walking robot is lightest, for missions of different length.
 
 The knee of knee_walking.yaml is optimised for the mass of the whole system (both knees, pump,
-accumulator, cooler, battery) for several missions, with supply pressure, linkage, valve and cylinder
-free. Specific masses are the assumptions of the design file.
+accumulator, cooler, battery) for several missions, with supply pressure, linkage, valve and
+cylinder free. Specific masses are the assumptions of the design file.
 
     python designs/scripts/duty_pressure_levels.py                  # prints the table
     python designs/scripts/duty_pressure_levels.py --out reports    # and writes the report there
@@ -49,6 +49,7 @@ def row(minutes: float, start: Data | None = None) -> Data:
     """Numbers of the optimum for a mission, SI."""
     found = ao.optimise(asked(minutes, start), starts=1, prices=False)
     evaluation = found.evaluation
+    assert evaluation.duty is not None
     study = next(cycle for cycle in evaluation.duty.cycles if cycle.name == WALK)
     metrics = {name: evaluation.metrics[name].value for name in ("system_mass", "mass")}
     return metrics | {
@@ -96,17 +97,19 @@ def lead(study: Data) -> list[str]:
     rows = sorted(study["rows"], key=lambda entry: float(entry["mission"]))
     first, last = rows[0], rows[-1]
     said = [
-        "The mass of the source is mean power times mission time over its specific energy. A longer"
-        " mission gives the energy of a stride more weight, the mass of the knee less.",
-        "Without leakage, a stride takes pressure times swept volume, whatever the load. The largest"
-        " force fixes pressure times area. So energy hardly depends on pressure itself.",
+        "The mass of the source is mean power times mission time over its specific energy. A"
+        " longer mission gives the energy of a stride more weight, the mass of the knee less.",
+        "Without leakage, a stride takes pressure times swept volume, whatever the load. The"
+        " largest force fixes pressure times area. So energy hardly depends on pressure itself.",
     ]
     if first is not last:
         low, high = (entry["values"]["supply.pressure"] / BAR for entry in (first, last))
+        times = [fixed(entry["mission"] / MINUTE, 0) for entry in (first, last)]
+        masses = [fixed(1e3 * entry["mass"], 0) for entry in (first, last)]
         said.append(
-            f"From {fixed(first['mission'] / MINUTE, 0)} to {fixed(last['mission'] / MINUTE, 0)} min"
+            f"From {times[0]} to {times[1]} min"
             f" the pressure goes from {fixed(low, 1)} to {fixed(high, 1)} bar, the knee from"
-            f" {fixed(1e3 * first['mass'], 0)} to {fixed(1e3 * last['mass'], 0)} g, and a stride from"
+            f" {masses[0]} to {masses[1]} g, and a stride from"
             f" {fixed(first['energy'], 0)} to {fixed(last['energy'], 0)} J."
         )
     return said
