@@ -31,7 +31,7 @@ class _Counted(NamedTuple):
     largest: Array
     smallest: Array
     count: Array
-    """How often each occurs in a life; 0 fills up the cycles of a load."""
+    """Number of times each occurs in a life; 0 fills up the cycles of a load."""
 
 
 class Fatigue:

@@ -72,7 +72,7 @@ class FatiguePart:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What the model of the samples needs to know of a design besides numbers."""
+    """Structure of a design, for the model of the samples."""
 
     linkage: bool
     valve: bool

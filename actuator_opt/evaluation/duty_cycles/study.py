@@ -82,7 +82,7 @@ class DutyStudy:
     unknown: Mapping[str, str]
     """Parts that are not assessed for fatigue, with the reason."""
     notes: tuple[str, ...]
-    """What the results assume."""
+    """Assumptions behind the results."""
 
     def to_dict(self) -> dict[str, Any]:
         """JSON data."""
@@ -99,7 +99,7 @@ NOTES = (
     "the torques or forces of a cycle contain the inertia of the load: load.mass and load.inertia "
     "are not added",
 )
-"""What all duty cycles assume."""
+"""Assumptions of all duty cycles."""
 
 _WORST: Mapping[str, tuple[str, float]] = {
     "share": ("share", -1.0),
