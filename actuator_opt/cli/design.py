@@ -38,7 +38,7 @@ from .options import (
 
 if TYPE_CHECKING:
     from ..api import Restored
-    from ..api.starting import Duty
+    from ..api.starting import Duty, Start
     from ..api.starting_cycle import CycleStart
 
 
@@ -177,11 +177,7 @@ def init(
     if answers or cycle or yes or (out is not None and not copied):
         found = _cycle(cycle, answers, out)
         duty = _duty(answers, ask=not as_json, defaults=yes)
-        from ..api.starting import solved_start
-
-        start = job.run(solved_start, duty, **title)
-        if found is not None:
-            start = found.added_to(start)
+        start = _solved(job, duty, found, title)
         text, verdict = start.text, {"met": start.met}
         if start.met:
             remarks = [f"{duty.words}, solved: {start.solved}; edit it, or optimise it"]
@@ -221,6 +217,14 @@ def _target(name: str | None, out: Path | None) -> tuple[dict[str, str], Path | 
         raise UsageError(Diagnostic("exists already", "choose another name", str(out)))
     store.require_writable(out)
     return title, out
+
+
+def _solved(job: Job, duty: Duty, cycle: CycleStart | None, title: dict[str, str]) -> Start:
+    """The solved start design named by `title`, with its cycle."""
+    from ..api.starting import solved_start
+
+    start: Start = job.run(solved_start, duty, **title)
+    return start if cycle is None else cycle.added_to(start)
 
 
 def _cycle(file: str | None, answers: dict[str, str], out: Path | None) -> CycleStart | None:
