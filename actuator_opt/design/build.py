@@ -249,7 +249,7 @@ def with_values(
 ) -> Design:
     """Copy a design with changed values by PATH (SI numbers, or texts with units); check it.
 
-    The value None removes a key or block, and the word `none` the optional block that requires the
+    The value None removes a key or block before any value is set, and the word `none` the optional block that requires the
     key (see `is_removed_by_none`), both with their variables. If an optimisation variable started
     at the old value, it now starts at the new value. Without
     `contradictions` values may contradict each other; this is needed where a search found no
@@ -261,12 +261,14 @@ def with_values(
         if a PATH has no value, a value is unsuitable, or the new values contradict each other
     """
     tree = to_tree(design)
-    diagnostics, removed = [], list[Loc]()
-    for path, value in values.items():
+    diagnostics, removed, unset = [], list[Loc](), list[Loc]()
+    for path, value in sorted(values.items(), key=lambda change: change[1] is not None):
         try:
             if value is None:
-                removed.append(stated(path, tree, metrics))
+                unset.append(stated(path, tree, metrics))
                 continue
+            while unset:  # before any value is set
+                remove(tree, unset.pop())
             target = resolve(path, tree, metrics)
         except ValueFault as fault:
             message = fault.message.removeprefix(f"{path}: ")
@@ -281,7 +283,7 @@ def with_values(
         variable = tree.get("variables", {}).get(target.path)
         if variable is not None and variable.get("start") == old:
             variable["start"] = number
-    for block in removed:
+    for block in (*unset, *removed):
         remove(tree, block)
     if not diagnostics:
         built = build(tree, materials=materials, metrics=metrics, contradictions=contradictions)

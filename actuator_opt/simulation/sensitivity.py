@@ -51,7 +51,7 @@ DESIGN = (
 LEAST = {"hold_drift": 1e-7, "overshoot": 1e-5, "steady_state_ratio": 1e-5, "following_error": 1e-7}
 """Values of some results below which they count as rounding error [SI] (our choice)."""
 _TIMES = ("start", "end", "phase", "frequency")
-_APART = ("duration", "sample_time", "requirements", "analysis", "set")
+_APART = ("duration", "sample_time", "requirements", "analysis", "set", "unset")
 
 
 @dataclass(frozen=True, slots=True)
