@@ -249,9 +249,9 @@ def with_values(
 ) -> Design:
     """Copy a design with changed values by PATH (SI numbers, or texts with units); check it.
 
-    The value None removes a key or block before any value is set, and the word `none` the optional block that requires the
-    key (see `is_removed_by_none`), both with their variables. If an optimisation variable started
-    at the old value, it now starts at the new value. Without
+    The value None removes a key or block before any value is set, and the word `none` the optional
+    block that requires the key (see `is_removed_by_none`), both with their variables. If an
+    optimisation variable started at the old value, it now starts at the new value. Without
     `contradictions` values may contradict each other; this is needed where a search found no
     feasible design.
 

@@ -29,9 +29,10 @@ class Override(NamedTuple):
     If the new value comes from another file, `file` and `loc` are its location there; `file` is
     None for the command line.
 
-    None comes from ``--unset PATH`` or the list ``unset`` of a scenario. A word, as in ``PATH=none``, would collide with values of that
-    name: ``back_up: none`` states that there is no back-up ring, and ``none`` in `choices` removes
-    a whole block. A removed key instead takes its default, or is missing.
+    None comes from ``--unset PATH`` or the list ``unset`` of a scenario. A word, as in
+    ``PATH=none``, would collide with values of that name: ``back_up: none`` states that there is no
+    back-up ring, and ``none`` in `choices` removes a whole block. A removed key instead takes its
+    default, or is missing.
     """
 
     path: str

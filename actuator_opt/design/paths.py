@@ -370,7 +370,8 @@ def remove(tree: dict[str, Any], loc: Loc) -> None:
     node.pop(loc[-1], None)
     needed = _LIMITS if loc[0] == "requirements" else tuple(node)
     if len(loc) > 2 and loc[0] in _TABLES and not any(key in node for key in needed):
-        (tree.get(loc[0]) or {}).pop(loc[1], None)  # an entry of a table that states no limit or value any more
+        # an entry of a table that states no limit or value any more
+        (tree.get(loc[0]) or {}).pop(loc[1], None)
     for table in filter(None, map(tree.get, _ENDS)):
         for path in list(table):
             if path == name or path.startswith((f"{name}.", f"{name}[")):

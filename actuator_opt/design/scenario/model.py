@@ -164,7 +164,7 @@ class SupplyLine(Section):
     """A pipe between supply and valve."""
 
     length: Annotated[float, Of("part_length", "length of the pipe")]
-    inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
+    inner_diameter: Annotated[float, Of("line_diameter", "inner diameter")]
 
 
 class ValveSupply(Section):
@@ -383,7 +383,7 @@ class Scenario(Section):
         tuple[
             Annotated[
                 str,
-                Label("key or block of the design that the scenario removes, before set", "cushion"),
+                Label("key or block of the design to remove, before any is set", "cushion"),
             ],
             ...,
         ],
