@@ -453,7 +453,7 @@ def export(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Export a design to CAD (STEP, DXF), Excel or C, or a scenario to C or FMI."""
+    """Export a design to CAD, Excel, C; a scenario to C, FMI."""
     from .. import api as verbs
     from ..api.exports import is_exported_scenario
     from ..exports import require_formats

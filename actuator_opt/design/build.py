@@ -29,6 +29,7 @@ from .structure import (
     leaves,
     meanings,
     section_at,
+    value_at,
 )
 
 MOST_FAULTS = 100
@@ -224,12 +225,18 @@ def _unknown_key(loc: Loc, root: type[Section], *, near: bool) -> Fault:
     return Fault(loc, "unknown key", errors.remedy(str(loc[-1]), names), at_key=True)
 
 
-def to_tree(section: Section) -> dict[str, Any]:
-    """Convert a design or a block to dicts, lists, texts and SI numbers; omit unset values."""
+def to_tree(section: Section, *, stated: bool = False) -> dict[str, Any]:
+    """Convert a design or a block to dicts, lists, texts and SI numbers; omit unset values.
+
+    With `stated`, values that are not stated are omitted too, though they have a default: a check
+    may allow a key only if another key is not stated.
+    """
 
     def plain(value: Any) -> Any:
         if isinstance(value, Section):
-            pairs = ((name, getattr(value, name)) for name in type(value).model_fields)
+            fields = type(value).model_fields
+            names = value.model_fields_set if stated else fields.keys()
+            pairs = ((name, getattr(value, name)) for name in fields if name in names)
             return {name: plain(below) for name, below in pairs if below is not None}
         if isinstance(value, Mapping):
             return {key: plain(below) for key, below in value.items()}
@@ -260,7 +267,7 @@ def with_values(
     InputError
         if a PATH has no value, a value is unsuitable, or the new values contradict each other
     """
-    tree = to_tree(design)
+    tree = to_tree(design, stated=True)
     diagnostics, removed, unset = [], list[Loc](), list[Loc]()
     for path, value in sorted(values.items(), key=lambda change: change[1] is not None):
         try:
@@ -278,7 +285,7 @@ def with_values(
             removed.append(target.loc[:-1])
             continue
         number = float(value) if isinstance(value, (int, float)) else value
-        old = child_at(tree, target.loc)
+        old = value_at(tree, target.loc)
         put(tree, target, number)
         variable = tree.get("variables", {}).get(target.path)
         if variable is not None and variable.get("start") == old:
