@@ -18,7 +18,7 @@ from actuator_opt.base.symbolic import program
 from actuator_opt.design.scenario.model import Scenario
 from actuator_opt.models.loop import ControllerGains
 from actuator_opt.simulation.assemble import assemble
-from actuator_opt.simulation.integrate import METHODS, RELATIVE, cvodes, integrate
+from actuator_opt.simulation.integrate import integrate
 from actuator_opt.simulation.system import Compiled
 from actuator_opt.studies.plant import Plant, plant
 
@@ -57,17 +57,9 @@ def test_tracing_and_compiling(benchmark, knee):
     benchmark(lambda: assemble(SCENE, knee, {}, GAINS).system.compiled())
 
 
-def test_translating_for_cvodes(benchmark, compiled):
-    """From the graph to CasADi's equations."""
-    pytest.importorskip("casadi")
-    benchmark(lambda: cvodes(compiled, RELATIVE["cvodes"], [0], METHODS["lsoda"]))
-
-
-@pytest.mark.parametrize(("method", "rounds"), [("lsoda", 20), ("cvodes", 20), ("radau", 2)])
+@pytest.mark.parametrize(("method", "rounds"), [("lsoda", 20), ("radau", 2)])
 def test_integrating(benchmark, compiled, method, rounds):
-    """Budget 100 ms by LSODA, as a mature peer in C++; CVODES with its translation; Radau."""
-    if method == "cvodes":
-        pytest.importorskip("casadi")
+    """Budget 100 ms by LSODA, as a mature peer in C++; Radau."""
     found = benchmark.pedantic(
         integrate, (compiled,), {"method": method} | RUN, rounds=rounds, warmup_rounds=1
     )
@@ -93,13 +85,3 @@ def test_the_machine_against_generated_python(benchmark, knee, monkeypatch):
     (_, own), (_, python) = pairs[0]
     assert own.states[0, -1] == pytest.approx(python.states[0, -1], abs=1e-7)
     assert ratio >= 2.0
-
-
-def test_running_cvodes_once_built(benchmark, compiled, monkeypatch):
-    """Many runs of the same equations: about half of LSODA's time."""
-    pytest.importorskip("casadi")
-    built = METHODS["cvodes"](compiled, RELATIVE["cvodes"], [0])
-    monkeypatch.setitem(METHODS, "cvodes", lambda *_: built)
-    benchmark.pedantic(
-        integrate, (compiled,), {"method": "cvodes"} | RUN, rounds=20, warmup_rounds=1
-    )

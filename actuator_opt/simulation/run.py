@@ -32,7 +32,7 @@ from .linear import CAUSES, UNHELD, Tuned, tune
 from .result import Second, SignalLabel, Simulation
 from .system import Compiled
 
-SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "cvodes": "radau", "radau": "lsoda"}
+SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "radau": "lsoda"}
 """For each integration method, the second method that checks it."""
 COMPARED = (
     "position", "speed", "pressure_a", "pressure_b", "shaft_speed", "shaft_angle", "spool",
