@@ -85,3 +85,42 @@ def test_the_machine_against_generated_python(benchmark, knee, monkeypatch):
     (_, own), (_, python) = pairs[0]
     assert own.states[0, -1] == pytest.approx(python.states[0, -1], abs=1e-7)
     assert ratio >= 2.0
+
+
+SERVOS = (
+    "knee_step", "course_position_servo", "course_motor_position", "course_motor_velocity",
+    "test_rig_sine",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SERVOS)
+def test_a_shipped_servo_warm(benchmark, name):
+    """Budget 50 ms of processor time for a whole run in a process that has run it before."""
+    trial = ao.read_scenario(KNEE.parent / "scenarios" / f"{name}.yaml")
+    ao.simulate(trial)
+
+    def seconds() -> float:
+        begin = time.process_time()
+        ao.simulate(trial)
+        return time.process_time() - begin
+
+    best = 1e3 * min(seconds() for _ in range(15))
+    benchmark.extra_info["milliseconds"] = best
+    benchmark.pedantic(lambda: ao.simulate(trial), rounds=5)
+    print(f"\n{name}: {best:.1f} ms")
+    assert best <= 50.0
+
+
+def test_the_lugre_servo_within_its_budget(benchmark, knee):
+    """Budget 20 ms of processor time for equations and motion of the 5 s LuGre servo."""
+
+    def seconds() -> float:
+        begin = time.process_time()
+        integrate(assemble(SCENE, knee, {}, GAINS).system.compiled(), **RUN)
+        return time.process_time() - begin
+
+    best = 1e3 * min(seconds() for _ in range(40))
+    benchmark.extra_info["milliseconds"] = best
+    benchmark.pedantic(seconds, rounds=5)
+    print(f"\n5 s LuGre servo: {best:.1f} ms")
+    assert best <= 20.0

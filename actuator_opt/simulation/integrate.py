@@ -383,10 +383,13 @@ def _suspects(times: Array, margin: Array, slope: Array) -> Array:
     crosses = b <= 0
     valley = ~crosses & (c < 0) & (d > 0)
     if valley.any():
+        a, b, c, d = (end[valley] for end in (a, b, c, d))
+        below = np.zeros(a.shape, dtype=bool)
         for s in np.linspace(0.1, 0.9, 9):
             guard = (1 + 2 * s) * (1 - s) ** 2 * a + s * (1 - s) ** 2 * c
             guard += s * s * (3 - 2 * s) * b + s * s * (s - 1) * d
-            crosses = crosses | (valley & (guard <= 0))
+            below |= guard <= 0
+        crosses[valley] = below
     return crosses
 
 
