@@ -24,7 +24,7 @@ governing value | Value of a metric that is compared with its limit: the largest
 requirement | A smallest (min) or largest (max) value of a metric that the design must have in every load case. `optimise` meets all requirements; their prices say what each costs. | our choice | metric, margin, price, check
 check | A line of the professional check list: a metric with a usual limit and its source. `optimise` meets all checks except advice and waived ones. | our choice | requirement, waiver
 advice | A line of the check list that is shown and gives a warning, but does not bind the optimiser. A requirement on the same metric binds it; a waiver accepts it. | our choice | check, waiver, requirement
-unset | Keys and blocks of the design that a scenario removes, by PATH, before it sets values: "unset: [cushion]" in the scenario, --unset on the command line. A removed key takes its default. | our choice | PATH
+set / unset | What a scenario changes in its design, by PATH. The list "unset: [cushion]" removes keys and blocks, which then take their defaults; after that "set" gives values. On the command line: --unset and --set. | our choice | PATH
 waiver | A check that does not apply, with the reason, under `waivers` in the design file. Reports print it. | our choice | check
 load case | A duty of the actuator: direction, force or joint torque, speed, position, temperature, side load. Every requirement holds in every load case. | our choice | load_cases, requirement
 bound / bounds | Smallest or largest value that a variable may have, under `variables` in the design file. An optimum at a bound may improve if the bound is wider. | our choice | variable, optimum

@@ -256,9 +256,9 @@ class _Bench:
             return
         design = self.subject.design
         numbers = paths.numbers(design)
-        known = [name for name in DESIGN if name in numbers and has_effect(name, design.ideal)]
         if design.valve is not None and _damping_follows(design.valve):
-            known.remove("valve.damping_ratio")
+            del numbers["valve.damping_ratio"]
+        known = [name for name in DESIGN if name in numbers and has_effect(name, design.ideal)]
         yield from map(self._target, known)
         for loc, _, value in leaves(self.scenario, Scenario):
             stated = _stated(self.scenario, loc)
