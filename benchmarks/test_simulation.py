@@ -95,7 +95,7 @@ SERVOS = (
 
 @pytest.mark.parametrize("name", SERVOS)
 def test_a_shipped_servo_warm(benchmark, name):
-    """Budget 50 ms of processor time for a whole run in a process that has run it before."""
+    """Budget 50 ms of processor time for a whole run, warm, on an otherwise idle machine."""
     trial = ao.read_scenario(KNEE.parent / "scenarios" / f"{name}.yaml")
     ao.simulate(trial)
 
@@ -112,7 +112,7 @@ def test_a_shipped_servo_warm(benchmark, name):
 
 
 def test_the_lugre_servo_within_its_budget(benchmark, knee):
-    """Budget 20 ms of processor time for equations and motion of the 5 s LuGre servo."""
+    """Budget 20 ms of processor time for the 5 s LuGre servo, on an otherwise idle machine."""
 
     def seconds() -> float:
         begin = time.process_time()
