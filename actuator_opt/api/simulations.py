@@ -138,7 +138,7 @@ def simulate(
     verify : whether to integrate again by another method and compare the results
     margins : whether to compute the margins of the control loop even if its gain is stated; they
         are always computed for a gain that is tuned by them
-    method : integration method: "lsoda" (the fastest), "cvodes" (extra ``fast``) or "radau"
+    method : integration method: "lsoda" (the faster) or "radau"
 
     Returns
     -------

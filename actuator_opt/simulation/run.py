@@ -32,7 +32,7 @@ from .linear import CAUSES, UNHELD, Tuned, tune
 from .result import Second, SignalLabel, Simulation
 from .system import Compiled
 
-SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "cvodes": "radau", "radau": "lsoda"}
+SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "radau": "lsoda"}
 """For each integration method, the second method that checks it."""
 COMPARED = (
     "position", "speed", "pressure_a", "pressure_b", "shaft_speed", "shaft_angle", "spool",
@@ -367,5 +367,7 @@ def spec_of(subject: PreparedDesign, scenario: Scenario) -> str:
         leave_out_unset(content["load"]["cylinder"]["valve"])
     if content["control"] and content["control"]["dead_band_jump"] is None:
         del content["control"]["dead_band_jump"]
+    if not content["unset"]:
+        del content["unset"]
     text = spec_hash(subject) + json.dumps(content, sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:16]

@@ -132,7 +132,7 @@ def collect(
     if design.lines:
         numbers["density"] = _flat(resting.density)
         numbers["dynamic_viscosity"] = _flat(resting.dynamic_viscosity)
-    seals = _seals(v, design, stock, g, resting, wall, supply, numbers)
+    seals = _seals(v, design, stock, g, resting, wall, sections, supply, numbers)
     parts, unknown = _fatigue(v, design, stock, g, wall, sections, loaded_joints, supply, numbers)
     lines = tuple((line.chamber, i) for i, line in enumerate(design.lines))
     linked = frozenset(
@@ -270,6 +270,7 @@ def _seals(
     g: Geometry,
     resting: LoadState,
     wall: Wall,
+    sections: Sequence[RodSection],
     supply: Array,
     numbers: Numbers,
 ) -> tuple[Ring, ...]:
@@ -297,7 +298,7 @@ def _seals(
             numbers[f"seal{i}.contact[{share}]"] = _flat(contact.line_load / contact.width)
         for key in ("breakaway_ratio", "stribeck_speed", "viscous_friction"):
             numbers[f"seal{i}.{key}"] = _flat(ring[key])
-    others = sealing.wipers_and_guides(v, design, g, resting)
+    others = sealing.wipers_and_guides(v, design, g, resting, sections)
     numbers["other_friction"] = _flat(others.running)
     return seals
 
