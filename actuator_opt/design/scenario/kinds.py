@@ -518,6 +518,15 @@ class StartPosition(PositionKind):
         return position
 
 
+PublishedCase: TypeAlias = Annotated[
+    Literal["Exudyn2022", "FOSSEE788"] | None,
+    Choice(
+        "published case that this scenario repeats: its report compares the published numbers "
+        "with ours; "
+        "Exudyn2022: arm lifted by a cylinder, a test model of the multibody program EXUDYN; "
+        "FOSSEE788: electrohydraulic servo, examples of a textbook of fluid power"
+    ),
+]
 Shape: TypeAlias = Annotated[str, choice_of("shape of this part of the signal", SHAPES)]
 Law: TypeAlias = Annotated[str, choice_of("law of the controller", LAWS)]
 Tuning: TypeAlias = Annotated[
