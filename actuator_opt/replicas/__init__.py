@@ -17,7 +17,7 @@ from ..simulation import Simulation
 
 MODULES = {"ElAsswad2018": "elasswad", "AaltoThesis": "aalto", "Huang2017": "huang"}
 """The module of each paper that `Design.reproduces` can name."""
-CASES = {"Exudyn2022": "exudyn", "FOSSEE788": "fossee"}
+CASES = {"Exudyn2022": "exudyn", "ExudynPress": "exudyn", "FOSSEE788": "fossee"}
 """The module of each case that `Scenario.reproduces` can name."""
 
 

@@ -1,4 +1,4 @@
-"""Published cases in time: EXUDYN's lifted arm and a textbook's servo, beside ours."""
+"""Published and foreign cases in time: EXUDYN's arm and press, a textbook's servo, beside ours."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from actuator_opt.simulation import Simulation
 
 ROOT = Path(__file__).parents[2]
 SCENARIOS = ROOT / "designs" / "scenarios"
-NAMES = ("exudyn_arm", "textbook_servo")
+NAMES = ("exudyn_arm", "exudyn_press", "textbook_servo")
 
 
 @cache
@@ -104,7 +104,7 @@ def test_a_page_holds_the_published_values(tmp_path) -> None:
     assert with_them[0].path.stat().st_size > without[0].path.stat().st_size + 1000
 
 
-# ---- EXUDYN's arm ----
+# ---- EXUDYN's arm and press ----
 
 
 def shares(simulation: Simulation) -> dict[str, float]:
@@ -125,12 +125,30 @@ def test_the_arm_is_that_of_exudyn() -> None:
     assert max(found["pressure_a"], found["pressure_b"]) < 1e-4
 
 
+def test_the_press_is_that_of_exudyn() -> None:
+    """Unequal areas, volumes that change, 60 kN: at every sample, with pressures to 180 bar."""
+    one = run("exudyn_press")
+    found = shares(one)
+    assert set(found) == {"position", "pressure_a", "pressure_b"}
+    assert found["position"] < 1e-4
+    assert max(found["pressure_a"], found["pressure_b"]) < 2e-4
+    assert max(one.signals["pressure_b"]) > 175e5
+    assert max(one.signals["pressure_a"]) > 125e5
+    assert min(one.signals["pressure_b"]) > 5e5
+
+
 @pytest.mark.parametrize(
-    "change", [{"valve__natural_frequency": "100 Hz"}, {"load__inertia": "44 kg*m^2"}]
+    ("name", "change"),
+    [
+        ("exudyn_arm", {"valve__natural_frequency": "100 Hz"}),
+        ("exudyn_arm", {"load__inertia": "44 kg*m^2"}),
+        ("exudyn_press", {"ideal__area_b": "25.25 cm^2"}),
+        ("exudyn_press", {"fluid__air_content": "0.1 %"}),
+    ],
 )
-def test_another_arm_is_not_that_of_exudyn(change) -> None:
-    """A real spool, or 10 % of inertia, is seen."""
-    assert max(shares(run("exudyn_arm", **change)).values()) > 2e-3
+def test_another_circuit_is_not_that_of_exudyn(name, change) -> None:
+    """A real spool, 10 % of inertia, 1 % of area, air: each is seen."""
+    assert max(shares(run(name, **change)).values()) > 1e-3
 
 
 def test_the_end_is_that_of_exudyn_but_for_its_steps() -> None:
@@ -143,6 +161,7 @@ def test_the_end_is_that_of_exudyn_but_for_its_steps() -> None:
     assert -0.006 < a.deviation < 0
     assert -0.003 < b.deviation < 0
     assert exudyn.end_values(run("exudyn_arm", duration="0.35 s")) == []
+    assert exudyn.end_values(run("exudyn_press")) == []
 
 
 def test_the_record_obeys_the_equations_of_exudyn() -> None:
@@ -159,7 +178,7 @@ def test_the_record_obeys_the_equations_of_exudyn() -> None:
         back=0.0, gain=20.0, reference=reference, viscous=2e5, spool=(1e6, 0.7), arm=arm,
         volumes=(1.0, 1.0),
     )  # fmt: skip
-    channels = exudyn.record().channels
+    channels = exudyn.record("Exudyn2022").channels
     time = channels["position"][0]
     truth = servo.run(pi / 2, (2e6, 2e6), time, (1 / 3,))
     moved = channels["position"][1] + 0.3 - start
@@ -168,10 +187,17 @@ def test_the_record_obeys_the_equations_of_exudyn() -> None:
         assert np.max(np.abs(channels[name][1] - truth[name])) < 5e-5 * 2e7
 
 
-def test_the_blocks_of_the_arm() -> None:
-    """Record, end, chart, notes."""
-    kinds = [type(block) for block in published(run("exudyn_arm"))]
-    assert kinds == [Table, Table, Chart, Notes]
+@pytest.mark.parametrize(
+    ("name", "kinds"),
+    [
+        ("exudyn_arm", [Table, Table, Chart, Notes]),
+        ("exudyn_press", [Table, Chart, Notes]),
+        ("textbook_servo", [Table, Notes]),
+    ],
+)
+def test_the_blocks_of_a_case(name, kinds) -> None:
+    """Record or values, end, chart, notes."""
+    assert [type(block) for block in published(run(name))] == kinds
 
 
 # ---- the textbook's servo ----

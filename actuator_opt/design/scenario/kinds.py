@@ -519,11 +519,12 @@ class StartPosition(PositionKind):
 
 
 PublishedCase: TypeAlias = Annotated[
-    Literal["Exudyn2022", "FOSSEE788"] | None,
+    Literal["Exudyn2022", "ExudynPress", "FOSSEE788"] | None,
     Choice(
-        "published case that this scenario repeats: its report compares the published numbers "
-        "with ours; "
+        "published or foreign case that this scenario repeats: its report compares the numbers of "
+        "the source with ours; "
         "Exudyn2022: arm lifted by a cylinder, a test model of the multibody program EXUDYN; "
+        "ExudynPress: press ram, our circuit as computed by EXUDYN; "
         "FOSSEE788: electrohydraulic servo, examples of a textbook of fluid power"
     ),
 ]
