@@ -362,7 +362,7 @@ def _reference_outside_stroke(actuator: Plant, signals: Mapping[str, Array]) -> 
 
 def spec_of(subject: PreparedDesign, scenario: Scenario) -> str:
     """Hash of all inputs that affect the result."""
-    content = scenario.model_dump(mode="json")
+    content = scenario.model_dump(mode="json", exclude={"reproduces"})
     if content["load"]["cylinder"]:
         leave_out_unset(content["load"]["cylinder"]["valve"])
     if content["control"] and content["control"]["dead_band_jump"] is None:

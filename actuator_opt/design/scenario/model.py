@@ -376,6 +376,7 @@ class Scenario(Section):
 
     name: Annotated[str, Label("title of the scenario", "step response")]
     notes: Annotated[str, Text("free text for the report", 20000, multiline=True)] = ""
+    reproduces: kinds.PublishedCase = None
     design: Annotated[str, FileName("the design file, in the folder of the scenario", "knee.yaml")]
     set: dict[str, str] = {}  # noqa: RUF012 (pydantic copies it)
     """Values of the design that the scenario changes, by PATH."""
