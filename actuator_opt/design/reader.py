@@ -16,7 +16,7 @@ from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, Fault, InputError
 from ..base.files import read_bytes
 from ..base.quantities import Quantity
-from . import layup
+from . import flow_tables, layup
 from .build import MOST_FAULTS, Root, build
 from .changes import Changed, Override, changed, meaningless
 from .ideal import completed
@@ -150,7 +150,10 @@ def read_document(
 
     def build_design(tree: dict[str, Any]) -> tuple[Design | None, Sequence[Fault]]:
         lookup = library() if materials is None else materials
-        whole, unused = completed(tree)
+        with_tables, unread = flow_tables.attached(tree, flow_tables.OF_DESIGN, document)
+        if unread:
+            return None, unread
+        whole, unused = completed(with_tables)
         built = build(whole, materials=lookup, metrics=metrics)
         return (None if unused else built.design), [*unused, *built.faults]
 

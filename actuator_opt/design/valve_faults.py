@@ -7,10 +7,9 @@ from collections.abc import Iterator
 from ..base.errors import Fault
 from ..base.quantities import INPUTS, length_text
 from ..models.valve import WIDEST
+from .flow_curve import EDGES, FlowTable, check_ends
 from .structure import FileView, Loc, how_to_add, section_at, without_effect
 
-EDGES = ("pa", "pb", "at", "bt")
-"""Metering edges of a spool: from supply p to the ports a and b, and from these to the tank t."""
 LAPS = (
     "stroke", "overlap", "clearance", "rounding", "area_gradient", "flow_coefficient", "curve",
     *EDGES,
@@ -18,6 +17,9 @@ LAPS = (
 """Keys of a lapped spool."""
 COURSE = ("leakage_flow", "leakage_drop", "tank_leakage_drop")
 """Keys of the leakage that the course's law keeps at any opening."""
+SIZES = ("rated_flow", "edge_coefficients", "flow_curve")
+"""A valve states the size of its edges by a single one of these keys; a lapped spool may state its
+width instead."""
 
 
 def valve(view: FileView, loc: Loc = ("valve",)) -> Iterator[Fault]:
@@ -25,6 +27,7 @@ def valve(view: FileView, loc: Loc = ("valve",)) -> Iterator[Fault]:
     if not view.has(*loc):
         return
     yield from _response(view, loc)
+    yield from _hysteresis(view, loc)
     if view.text(*loc, "spool", "type") == "lapped":
         yield from _size(view, loc)
         yield from _lapped(view, loc)
@@ -32,8 +35,8 @@ def valve(view: FileView, loc: Loc = ("valve",)) -> Iterator[Fault]:
     else:
         remedy = 'write "type: lapped", or remove it'
         yield from without_effect(view, (*loc, "spool"), LAPS, "with type: course", remedy)
-        if not view.has(*loc, "rated_flow"):
-            yield _missing(view, (*loc, "rated_flow"))
+        yield from _one_size(view, loc)
+        yield from _flow_curve(view, loc)
         yield from _leakage(view, loc)
 
 
@@ -42,16 +45,67 @@ def _missing(view: FileView, loc: Loc, why: str = "missing") -> Fault:
     return Fault(loc, why, how_to_add(str(loc[-1]), section_at(view.root, loc)[1]))
 
 
+def _one_size(view: FileView, loc: Loc) -> Iterator[Fault]:
+    """Check that one key states the size of the edges."""
+    stated = [name for name in SIZES if view.has(*loc, name)]
+    if not stated:
+        yield _missing(view, (*loc, "rated_flow"))
+    for name in stated[1:]:
+        yield Fault(
+            (*loc, name),
+            f"states the size of the edges a second time, beside {stated[0]}",
+            "keep one of them",
+            at_key=True,
+        )
+    if stated == ["edge_coefficients"]:
+        yield from without_effect(view, loc, ("rated_drop",), "with edge_coefficients")
+
+
+def _flow_curve(view: FileView, loc: Loc) -> Iterator[Fault]:
+    """Check a flow curve: its pressure drop, its ends, and no second statement of the leakage."""
+    if not view.has(*loc, "flow_curve"):
+        return
+    if not view.has(*loc, "rated_drop"):
+        yield _missing(view, (*loc, "rated_drop"), "missing: pressure drop of the flow curve")
+    where = "with flow_curve, whose flow at the centre is the leakage"
+    yield from without_effect(view, loc, COURSE, where)
+    table, full = view.value(*loc, "flow_curve"), view.number(*loc, "signal")
+    if isinstance(table, FlowTable) and full is not None:
+        for message, remedy in check_ends(table, full):
+            yield Fault((*loc, "flow_curve"), message, remedy)
+
+
+def _hysteresis(view: FileView, loc: Loc) -> Iterator[Fault]:
+    """Check that the threshold, which is part of the hysteresis, does not exceed it."""
+    hysteresis, threshold = (view.number(*loc, name) for name in ("hysteresis", "threshold"))
+    if hysteresis is None or threshold is None or threshold <= hysteresis:
+        return
+    text = INPUTS["threshold"].text
+    yield Fault(
+        (*loc, "threshold"),
+        f"{text(threshold)}: more than the hysteresis ({text(hysteresis)}), which includes it",
+        f"write at most {text(hysteresis)}",
+    )
+
+
+def _full_coefficient(view: FileView, loc: Loc) -> float | None:
+    """Least flow coefficient of a fully open edge [m^3/s/sqrt(Pa)]; None if it is not stated."""
+    if view.has(*loc, "edge_coefficients"):
+        numbers = [view.number(*loc, "edge_coefficients", edge) for edge in EDGES]
+        return min((number for number in numbers if number is not None), default=None)
+    rated, drop = view.number(*loc, "rated_flow"), view.number(*loc, "rated_drop")
+    return None if rated is None or drop is None else rated / drop**0.5
+
+
 def _leakage(view: FileView, loc: Loc) -> Iterator[Fault]:
     """Check that the centred valve leaks less than it passes when open, at equal pressure drop."""
-    numbers = [
-        view.number(*loc, name)
-        for name in ("rated_flow", "rated_drop", "leakage_flow", "leakage_drop")
-    ]
-    if any(number is None for number in numbers):
+    open_edge, leakage, drop, tank_drop = (
+        _full_coefficient(view, loc),
+        *(view.number(*loc, name) for name in COURSE),
+    )
+    if open_edge is None or leakage is None or drop is None:
         return
-    rated, rated_drop, leakage, leakage_drop = (number or 0.0 for number in numbers)
-    most = rated * (leakage_drop / rated_drop) ** 0.5
+    most = open_edge * min(drop, tank_drop or drop) ** 0.5
     if leakage >= most:
         text = INPUTS["leakage_flow"].text
         yield Fault(
@@ -99,6 +153,13 @@ def _response(view: FileView, loc: Loc) -> Iterator[Fault]:
 
 def _size(view: FileView, loc: Loc) -> Iterator[Fault]:
     """Check that a lapped spool states the size of its edges once, and no leakage flow."""
+    yield from without_effect(
+        view,
+        loc,
+        SIZES[1:],
+        "with a lapped spool, whose edges differ by overlap and flow_share",
+        'remove it, or write "type: course"',
+    )
     sized = view.has(*loc, "spool", "area_gradient")
     if sized and view.has(*loc, "rated_flow"):
         yield Fault(

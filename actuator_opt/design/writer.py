@@ -154,7 +154,7 @@ class _Leaves:
         """YAML scalar of a value, in the unit of the text `old` that it replaces."""
         number = number_of(value)
         if number is None:
-            return str(value).lower() if isinstance(value, bool) else scalar(value)
+            return str(value).lower() if isinstance(value, bool) else scalar(str(value))
         unit = None
         quantity = self.quantity(loc, value)
         if old is not None and quantity is not None:
@@ -170,7 +170,7 @@ class _Leaves:
         if isinstance(value, bool):
             return Boolean.words.get(old.strip().lower()) == value
         if number is None:
-            return bool(value == old)
+            return str(value) == old
         quantity = self.quantity(loc, value)
         if isinstance(value, Fraction) != ("%" in old) and loc[-1] == "position":
             return False

@@ -4,7 +4,7 @@ from .bending import BendingResult, Specimen, bending
 from .calibration import Calibration, calibration
 from .column_units import ColumnUnits, column_units
 from .identify import identify
-from .record import CHANNELS, Record, decode_record, parse_column, parse_record
+from .record import CHANNELS, Record, parse_column, parse_record
 from .result import Identification, Settings
 
 __all__ = [
@@ -19,7 +19,6 @@ __all__ = [
     "bending",
     "calibration",
     "column_units",
-    "decode_record",
     "identify",
     "parse_column",
     "parse_record",

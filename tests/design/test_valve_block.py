@@ -132,11 +132,11 @@ def test_every_edge_passes_the_rated_flow(clearance, overlap, tmp_path):
              "at: {overlap: 5 um}"]  # fmt: skip
     lines += [] if clearance is None else [f"clearance: {clearance}"]
     own = plant(design(tmp_path, SIZE, SPEED, spool_lines=lines).subject()).valve
-    from actuator_opt.models.lapped_spool import lapped_flows
+    from actuator_opt.models.metering_spool import spool_flows
 
     for signal in (10.0, -10.0):
-        found = lapped_flows(
-            spool=own.lapped, signal=signal, supply_pressure=70e5, return_pressure=0.0,
+        found = spool_flows(
+            spool=own.metering, signal=signal, supply_pressure=70e5, return_pressure=0.0,
             pressure_a=35e5, pressure_b=35e5,
         )  # fmt: skip
         shares = (found.supply_a, found.b_tank) if signal > 0 else (found.a_tank, found.supply_b)
@@ -150,11 +150,11 @@ def test_flow_follows_a_stated_curve(tmp_path):
     lines = ["type: lapped", "curve: [{signal: 5 %, flow: 0 %}, {signal: 40 %, flow: 15 %}]"]
     made = design(tmp_path, SIZE, SPEED, spool_lines=lines)
     own = plant(made.subject()).valve
-    from actuator_opt.models.lapped_spool import lapped_flows
+    from actuator_opt.models.metering_spool import spool_flows
 
     for signal, share in ((4.0, 0.15), (-4.0, -0.15), (0.4, 0.0), (7.0, 0.575), (10.0, 1.0)):
-        found = lapped_flows(
-            spool=own.lapped, signal=signal, supply_pressure=70e5, return_pressure=0.0,
+        found = spool_flows(
+            spool=own.metering, signal=signal, supply_pressure=70e5, return_pressure=0.0,
             pressure_a=35e5, pressure_b=35e5,
         )  # fmt: skip
         assert found.into_a == pytest.approx(share * 20 * LITRE, rel=1e-9, abs=1e-15)
@@ -169,12 +169,13 @@ def test_stated_width_is_the_area_gradient(tmp_path):
     lines = ["type: lapped", "stroke: 0.4 mm", "area_gradient: 15 mm", "flow_coefficient: 0.65",
              "overlap: 20 um"]  # fmt: skip
     own = plant(design(tmp_path, SPEED, spool_lines=lines).subject())
-    edge, density = own.valve.lapped.supply_a, own.oil.density
+    edge, density = own.valve.metering.supply_a, own.oil.density
     from actuator_opt.models.lapped_edge import lapped_edge_flow
 
     flow = lapped_edge_flow(
         uncovered=0.4e-3 - edge.overlap, pressure_drop=50e5, area_gradient=edge.area_gradient,
-        density=density, dynamic_viscosity=0.03, flow_coefficient=own.valve.lapped.flow_coefficient,
+        density=density, dynamic_viscosity=0.03,
+        flow_coefficient=own.valve.metering.flow_coefficient,
     )  # fmt: skip
     by_hand = 0.65 * 15e-3 * 0.38e-3 * math.sqrt(2 * 50e5 / density)
     assert flow == pytest.approx(by_hand, rel=1e-5)
