@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
+import numpy as np
+
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, clip, positive, real, where
 from .valve import edge_conductance, edge_flow
@@ -245,9 +247,27 @@ def curve_slope(*, curve: MeteringCurve, share: Array, opens: bool = False) -> A
     return where(begun & (real(share) <= last), slope, 0 * slope)
 
 
-def _piece(curve: MeteringCurve, share: Array) -> tuple[Array, Array, Array, Array, Array, Array]:
+def _plain(value: Array) -> bool:
+    """Whether a value is a number or an array of numbers, real or complex."""
+    if isinstance(value, (float, complex, np.number)):
+        return True
+    return type(value) is np.ndarray and value.dtype.kind in "fc"
+
+
+def _looked_up(x: Array, places: Array, values: Array, slopes: Array) -> tuple[Array, ...]:
+    """The piece of a curve at numbers, by a search in its places."""
+    k = np.clip(np.searchsorted(places, real(x), side="right") - 1, 0, len(places) - 2)
+    h = places[k + 1] - places[k]
+    rise = values[k + 1] - values[k]
+    return (x - places[k]) / h, h, values[k], rise, slopes[k], slopes[k + 1]
+
+
+def _piece(curve: MeteringCurve, share: Array) -> tuple[Array, ...]:
     """Place t within the cubic at a share, its length, first value, rise, and both slopes."""
     x = clip(share, curve.places[0], curve.places[-1])
+    table = (curve.places, curve.values, curve.slopes)
+    if _plain(x) and all(type(number) is float for row in table for number in row):
+        return _looked_up(x, *(np.array(row) for row in table))
     points = list(zip(curve.places, curve.values, curve.slopes, strict=True))
     chosen: tuple[Array, ...] = ()
     for (x0, y0, m0), (x1, y1, m1) in pairwise(points):
