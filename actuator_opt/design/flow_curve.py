@@ -8,6 +8,7 @@ The first column is the signal (``signal [%]`` of the full signal, or ``signal [
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import field
 from itertools import pairwise
 from math import isfinite
 from pathlib import Path
@@ -37,11 +38,14 @@ _KINDS = (".csv", ".txt", ".tsv")
 
 @dataclass(frozen=True, slots=True)
 class FlowTable:
-    """Flow over signal, SI; signals are in V, or shares of the full signal."""
+    """Flow over signal, SI; signals are in V, or shares of the full signal.
 
-    file: str
+    Tables of equal numbers are equal, whatever their files and texts.
+    """
+
+    file: str = field(compare=False)
     """Name of the file as stated; empty if the table is written out in the design."""
-    text: str
+    text: str = field(compare=False)
     """The table as CSV."""
     in_volts: bool
     signal: tuple[float, ...]

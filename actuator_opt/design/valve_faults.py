@@ -62,11 +62,9 @@ def _one_size(view: FileView, loc: Loc) -> Iterator[Fault]:
 
 
 def _flow_curve(view: FileView, loc: Loc) -> Iterator[Fault]:
-    """Check a flow curve: its pressure drop, its ends, and no second statement of the leakage."""
+    """Check a flow curve: its ends, and no second statement of the leakage."""
     if not view.has(*loc, "flow_curve"):
         return
-    if not view.has(*loc, "rated_drop"):
-        yield _missing(view, (*loc, "rated_drop"), "missing: pressure drop of the flow curve")
     where = "with flow_curve, whose flow at the centre is the leakage"
     yield from without_effect(view, loc, COURSE, where)
     table, full = view.value(*loc, "flow_curve"), view.number(*loc, "signal")
