@@ -27,11 +27,14 @@ def valve_blocks(evaluation: Evaluation) -> list[Block]:
     study = evaluation.valve
     if study is None:
         return []
-    blocks = [_figure(study), _table(study)]
+    valve = evaluation.design.valve
+    whole = valve is not None and valve.flow_curve is not None
+    title = "Valve over its whole signal" if whole else "Valve about its null"
+    blocks = [_figure(study, title), _table(study)]
     return blocks if study.hysteresis is None else [*blocks, _hysteresis(study)]
 
 
-def _figure(study: ValveStudy) -> Block:
+def _figure(study: ValveStudy, title: str) -> Block:
     lap = max((abs(curve.overlap or 0.0) for curve in study.curves[1:]), default=0.0)
     note = (
         f'Supply at {PRESSURE.text(study.supply_pressure)}, oil of load case "{study.case}". Flow: '
@@ -42,7 +45,7 @@ def _figure(study: ValveStudy) -> Block:
             f" For comparison, the same spool with open ({text.value_text(OVERLAP, -lap)}), "
             f"critical, and closed ({text.value_text(OVERLAP, lap)}) centre."
         )
-    return Chart("Valve about its null", panels(study), note, height=HEIGHT)
+    return Chart(title, panels(study), note, height=HEIGHT)
 
 
 def panels(study: ValveStudy) -> list[Panel]:

@@ -95,7 +95,7 @@ def test_equal_linear_edges_are_the_course():
 
 
 def test_each_edge_has_its_own_flow():
-    """q = K sqrt(dp) of every edge by hand, and the other edges closed."""
+    """Q = K sqrt(dp) of every edge by hand, and the other edges closed."""
     coefficients = (3.0e-7, 1.5e-7, 2.8e-7, 1.4e-7)
     one = spool([CurveEdge(LINEAR, k) for k in coefficients])
     drops = (SUPPLY - 80e5, SUPPLY - 62e5, 80e5 - 2e5, 62e5 - 2e5)
