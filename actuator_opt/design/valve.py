@@ -49,7 +49,10 @@ class Spool(Section):
     ] = 0.0
     clearance: Annotated[
         float | None,
-        Of("spool_clearance", "radial clearance of the spool; default: the edges do not leak"),
+        Of(
+            "spool_clearance",
+            "radial clearance of the spool, or state valve.leakage_flow; default: no leakage",
+        ),
     ] = None
     rounding: Annotated[float, Of("edge_rounding", "radius of the corners of every edge")] = 0.0
     area_gradient: Annotated[
@@ -106,7 +109,8 @@ class Valve(Section):
         float,
         Of(
             "leakage_flow",
-            "leakage of one metering edge with centred spool: half of the valve's leakage",
+            "leakage of one metering edge with centred spool: half of the valve's leakage; with a "
+            "lapped spool, the clearance follows from it",
         ),
     ] = 0.0
     leakage_drop: Annotated[

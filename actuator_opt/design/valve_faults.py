@@ -172,13 +172,66 @@ def _size(view: FileView, loc: Loc) -> Iterator[Fault]:
         )
     if not sized and not view.has(*loc, "rated_flow"):
         yield _missing(view, (*loc, "rated_flow"), "missing: required without spool.area_gradient")
+    if view.has(*loc, "leakage_flow"):
+        yield from _lapped_leakage(view, loc)
+    else:
+        yield from without_effect(view, loc, ("leakage_drop",), "without leakage_flow")
     yield from without_effect(
-        view,
-        loc,
-        COURSE,
-        "with a lapped spool, which leaks through its clearance",
-        "remove it, and state spool.clearance",
+        view, loc, COURSE[2:], "with a lapped spool, whose edges have one clearance"
     )
+
+
+MOST_LEAKAGE = 0.5
+"""Largest leakage of an edge from which its clearance follows, as a share of the flow of the open
+edge at the same pressure drop (our choice): the clearance then stays well below the stroke."""
+
+
+def _lapped_leakage(view: FileView, loc: Loc) -> Iterator[Fault]:
+    """Check the leakage of a lapped spool, from which the clearance of its equal edges follows."""
+    leakage, drop, rated, rated_drop = (
+        view.number(*loc, name)
+        for name in ("leakage_flow", "leakage_drop", "rated_flow", "rated_drop")
+    )
+    clearance = 'state the clearance instead: "spool: {clearance: 3 um}"'
+    if not view.has(*loc, "rated_flow"):
+        yield Fault((*loc, "leakage_flow"), "needs valve.rated_flow with a lapped spool", clearance)
+        return
+    if not view.has(*loc, "rated_viscosity"):
+        why = "missing: oil of the data sheet, required with leakage_flow and a lapped spool"
+        yield _missing(view, (*loc, "rated_viscosity"), why)
+    if view.has(*loc, "spool", "clearance"):
+        yield Fault(
+            (*loc, "spool", "clearance"),
+            "states the leakage a second time, beside valve.leakage_flow",
+            "keep one of them",
+            at_key=True,
+        )
+    for edge in EDGES:
+        for key in ("overlap", "clearance", "rounding"):
+            if view.has(*loc, "spool", edge, key):
+                yield Fault(
+                    (*loc, "spool", edge, key),
+                    "edges that differ do not leak alike, as valve.leakage_flow says",
+                    clearance,
+                    at_key=True,
+                )
+    overlap = view.number(*loc, "spool", "overlap")
+    if overlap is not None and overlap < 0:
+        yield Fault(
+            (*loc, "leakage_flow"),
+            "without effect on edges that are open at the centre (negative overlap)",
+            clearance,
+        )
+    if leakage is None or drop is None or rated is None or rated_drop is None:
+        return
+    most = MOST_LEAKAGE * rated * (drop / rated_drop) ** 0.5
+    if not 0 < leakage < most:
+        text = INPUTS["leakage_flow"].text
+        yield Fault(
+            (*loc, "leakage_flow"),
+            f"{text(leakage)}: no clearance follows from it",
+            f"write more than zero and less than {text(most)}",
+        )
 
 
 def _curve(view: FileView, loc: Loc) -> Iterator[Fault]:
@@ -229,14 +282,15 @@ def _lapped(view: FileView, loc: Loc) -> Iterator[Fault]:
         overlap, clearance, rounding = (
             view.number(*at, name) for name in ("overlap", "clearance", "rounding")
         )
-        if rounding and not (clearance or view.number(*spool, "clearance")):
+        leaks = view.number(*spool, "clearance") or view.number(*loc, "leakage_flow")
+        if rounding and not (clearance or leaks):
             yield Fault(
                 (*at, "rounding"),
                 "without effect on edges without clearance",
                 'remove it, or add e.g. "clearance: 3 um"',
                 at_key=True,
             )
-        stated = stated or bool(overlap or clearance)
+        stated = stated or bool(overlap or clearance or view.number(*loc, "leakage_flow"))
         if stroke is None:
             continue
         if overlap is not None and abs(overlap) >= stroke:
@@ -256,5 +310,7 @@ def _lapped(view: FileView, loc: Loc) -> Iterator[Fault]:
             )
     if (stated or view.has(*spool, "area_gradient")) and not view.has(*spool, "stroke"):
         yield _missing(
-            view, (*spool, "stroke"), "missing: required with overlap, clearance or area_gradient"
+            view,
+            (*spool, "stroke"),
+            "missing: required with overlap, clearance, leakage_flow or area_gradient",
         )

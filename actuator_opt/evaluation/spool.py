@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from ..base.numeric import Array
 from ..design.valve import Valve
-from ..models import lapped_edge, play, valve as models
+from ..models import lapped_edge, lapped_leakage, play, valve as models
 from ..models.lapped_spool import LappedSpool, SpoolEdge
 from ..models.metering_curve import CurveEdge, CurveSpool, MeteringCurve
 from ..models.metering_spool import MeteringSpool
@@ -140,8 +140,11 @@ def _lapped(read: Read, stated: Valve, density: Array, kinematic_viscosity: Arra
         "dynamic_viscosity": density * kinematic_viscosity,
         **oil,
     }
+    clearance = read("spool.clearance")
+    if stated.leakage_flow > 0:
+        clearance = _leaking_clearance(read, spool["stroke"], oil)
     edges = {
-        name: _edge(read, key, spool["stroke"], oil, kinematic_viscosity)
+        name: _edge(read, key, spool["stroke"], oil, kinematic_viscosity, clearance)
         for name, key in EDGES.items()
     }
     points = tuple(
@@ -151,17 +154,41 @@ def _lapped(read: Read, stated: Valve, density: Array, kinematic_viscosity: Arra
     return LappedSpool(**edges, **spool, curve=points)
 
 
+def _leaking_clearance(read: Read, stroke: Array, oil: dict[str, Array]) -> Array:
+    """Clearance with which every edge leaks as the data sheet says, in its oil."""
+    return lapped_leakage.clearance_of_leakage(
+        leakage=read("leakage_flow"),
+        leakage_drop=read("leakage_drop"),
+        overlap=read("spool.overlap"),
+        stroke=stroke,
+        dynamic_viscosity=oil["density"] * read("rated_viscosity"),
+        rated_flow=read("rated_flow"),
+        rated_drop=read("rated_drop"),
+        rounding=read("spool.rounding"),
+        **oil,
+    )
+
+
 def _edge(
-    read: Read, key: str, stroke: Array, oil: dict[str, Array], viscosity: Array
+    read: Read,
+    key: str,
+    stroke: Array,
+    oil: dict[str, Array],
+    viscosity: Array,
+    clearance: Array | None,
 ) -> SpoolEdge:
-    """One edge of the spool."""
+    """One edge of the spool; `clearance` is that of the edges that state none."""
 
     def own(name: str) -> Array:
         value = read(f"spool.{key}.{name}")
         return read(f"spool.{name}") if value is None else value
 
     share = read(f"spool.{key}.flow_share")
-    gap = {"clearance": own("clearance"), "rounding": own("rounding")}
+    stated = read(f"spool.{key}.clearance")
+    gap = {
+        "clearance": clearance if stated is None else stated,
+        "rounding": own("rounding"),
+    }
     overlap, width = own("overlap"), read("spool.area_gradient")
     if width is None:
         width = _width(read, stroke - overlap, oil, viscosity, gap)

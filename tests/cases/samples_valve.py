@@ -76,6 +76,19 @@ SAMPLES = {
     "metering_curve.curve_slope": [
         {"curve": CURVE, "share": x, "opens": x > 0} for x in (-0.7, -0.2, 0.3, 1.4)
     ],
+    "lapped_leakage.clearance_of_leakage": [
+        {
+            "leakage": 2e-6,
+            "leakage_drop": 5e6,
+            "overlap": overlap,
+            "stroke": 5e-4,
+            "rated_flow": 3e-4,
+            "rated_drop": 3.5e6,
+            "rounding": 1e-6,
+            **OIL,
+        }
+        for overlap in (1e-6, 3e-5)
+    ],
     "play.play_half_widths": {"hysteresis": 0.3, "threshold": 0.1},
     "play.play_rate": [
         {"command": u, "output": 1.0, "half_width": 0.1, "natural_frequency": 120.0}

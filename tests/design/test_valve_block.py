@@ -53,7 +53,8 @@ REFUSED = {
     ),
     "no stroke": (
         [SIZE, SPEED], ["type: lapped", "overlap: 10 um"],
-        "valve.spool.stroke: missing: required with overlap, clearance or area_gradient; add",
+        "valve.spool.stroke: missing: required with overlap, clearance, leakage_flow or "
+        "area_gradient; add",
     ),
     "two sizes": (
         [SIZE, SPEED], ["type: lapped", "stroke: 0.5 mm", "area_gradient: 12 mm"],
@@ -61,9 +62,64 @@ REFUSED = {
         "valve.rated_flow; keep one of them",
     ),
     "two leakages": (
-        [SIZE, SPEED, "leakage_flow: 0.2 l/min"], ["type: lapped"],
-        "valve.leakage_flow: without effect with a lapped spool, which leaks through its "
-        "clearance; remove it, and state spool.clearance",
+        [SIZE, SPEED, "leakage_flow: 0.2 l/min", "rated_viscosity: 32 mm^2/s"],
+        ["type: lapped", "stroke: 0.5 mm", "clearance: 3 um"],
+        "valve.spool.clearance: states the leakage a second time, beside valve.leakage_flow; keep",
+    ),
+    "leakage in any oil": (
+        [SIZE, SPEED, "leakage_flow: 0.2 l/min"], ["type: lapped", "stroke: 0.5 mm"],
+        "valve.rated_viscosity: missing: oil of the data sheet, required with leakage_flow",
+    ),
+    "leakage of an open centre": (
+        [SIZE, SPEED, "leakage_flow: 0.2 l/min", "rated_viscosity: 32 mm^2/s"],
+        ["type: lapped", "stroke: 0.5 mm", "overlap: -5 um"],
+        "valve.leakage_flow: without effect on edges that are open at the centre",
+    ),
+    "leakage of unequal edges": (
+        [SIZE, SPEED, "leakage_flow: 0.2 l/min", "rated_viscosity: 32 mm^2/s"],
+        ["type: lapped", "stroke: 0.5 mm", "pa: {overlap: 5 um}"],
+        "valve.spool.pa.overlap: edges that differ do not leak alike, as valve.leakage_flow says",
+    ),
+    "leakage of half the flow": (
+        [SIZE, SPEED, "leakage_flow: 12 l/min", "rated_viscosity: 32 mm^2/s"],
+        ["type: lapped", "stroke: 0.5 mm"],
+        "valve.leakage_flow: 12 l/min: no clearance follows from it; write more than zero and "
+        "less than 11.95 l/min",
+    ),
+    "leakage by the width": (
+        [SPEED, "leakage_flow: 0.2 l/min"],
+        ["type: lapped", "stroke: 0.5 mm", "area_gradient: 12 mm"],
+        "valve.leakage_flow: needs valve.rated_flow with a lapped spool",
+    ),
+    "threshold and hysteresis": (
+        [SIZE, SPEED, "hysteresis: 1 %", "threshold: 2 %"], [],
+        "valve.threshold: 2 %: more than the hysteresis (1 %), which includes it; write at most",
+    ),
+    "coefficients and flow": (
+        [SIZE, SPEED, "edge_coefficients: {pa: 3 l/min/sqrt(bar), pb: 3 l/min/sqrt(bar), "
+         "at: 3 l/min/sqrt(bar), bt: 3 l/min/sqrt(bar)}"], [],
+        "valve.edge_coefficients: states the size of the edges a second time, beside rated_flow",
+    ),
+    "coefficients of two edges": (
+        [SPEED, "edge_coefficients: {pa: 3 l/min/sqrt(bar), pb: 3 l/min/sqrt(bar), "
+         "at: 3 l/min/sqrt(bar)}"], [],
+        "valve.edge_coefficients.bt: missing",
+    ),
+    "coefficients and drop": (
+        [SPEED, "rated_drop: 30 bar", "edge_coefficients: {pa: 3 l/min/sqrt(bar), "
+         "pb: 3 l/min/sqrt(bar), at: 3 l/min/sqrt(bar), bt: 3 l/min/sqrt(bar)}"], [],
+        "valve.rated_drop: without effect with edge_coefficients",
+    ),
+    "leakage of coefficients": (
+        [SPEED, "leakage_flow: 8 l/min", "edge_coefficients: {pa: 3 l/min/sqrt(bar), "
+         "pb: 1 l/min/sqrt(bar), at: 3 l/min/sqrt(bar), bt: 3 l/min/sqrt(bar)}"], [],
+        "valve.leakage_flow: 8 l/min: not less than the flow of the open valve at the same "
+        "pressure drop; write less than 7.071 l/min",
+    ),
+    "coefficient without root": (
+        [SPEED, "edge_coefficients: {pa: 3 l/min/bar, pb: 3 l/min/sqrt(bar), "
+         "at: 3 l/min/sqrt(bar), bt: 3 l/min/sqrt(bar)}"], [],
+        "valve.edge_coefficients.pa",
     ),
     "lap of the course's law": (
         [SIZE, SPEED], ["overlap: 10 um"],
@@ -143,6 +199,31 @@ def test_every_edge_passes_the_rated_flow(clearance, overlap, tmp_path):
         half = 1.0 if signal > 0 else 0.5
         assert shares[0] == pytest.approx(20 * LITRE, rel=1e-9)
         assert shares[1] == pytest.approx(half * 20 * LITRE, rel=1e-9)
+
+
+@pytest.mark.parametrize("overlap", [0, 20])
+def test_clearance_follows_from_the_leakage(overlap, tmp_path):
+    """At the drop and in the oil of the data sheet each edge leaks and opens as stated."""
+    lines = ["type: lapped", "stroke: 0.5 mm", f"overlap: {overlap} um"]
+    leak = ["leakage_flow: 0.15 l/min", "leakage_drop: 60 bar", "rated_viscosity: 30 mm^2/s"]
+    own = plant(design(tmp_path, SIZE, SPEED, *leak, spool_lines=lines).subject())
+    spool = own.valve.metering
+    assert 1e-6 < spool.supply_a.clearance < 20e-6
+    from actuator_opt.models.lapped_edge import lapped_edge_flow
+    from actuator_opt.models.lapped_leakage import clearance_of_leakage
+
+    oil = {"density": own.oil.density, "dynamic_viscosity": 30e-6 * own.oil.density,
+           "flow_coefficient": spool.flow_coefficient}  # fmt: skip
+    edge = {"clearance": spool.a_tank.clearance, "area_gradient": spool.a_tank.area_gradient} | oil
+    leaks = lapped_edge_flow(uncovered=-overlap * UM, pressure_drop=60e5, **edge)
+    opened = lapped_edge_flow(uncovered=0.5e-3 - overlap * UM, pressure_drop=35e5, **edge)
+    assert leaks == pytest.approx(0.15 * LITRE, rel=1e-8)
+    assert opened == pytest.approx(20 * LITRE, rel=1e-8)
+    again = clearance_of_leakage(
+        leakage=0.15 * LITRE, leakage_drop=60e5, overlap=overlap * UM, stroke=0.5e-3,
+        rated_flow=20 * LITRE, rated_drop=35e5, **oil,
+    )  # fmt: skip
+    assert again == pytest.approx(spool.b_tank.clearance, rel=1e-12)
 
 
 def test_flow_follows_a_stated_curve(tmp_path):

@@ -64,6 +64,11 @@ def _played(circuit: Circuit, data: ValveData, command: Expression, prefix: str)
     """Signal that drives the spool: mean of the plays; a linear model leaves them out."""
     if circuit.linear or not data.plays:
         return command
+    if circuit.loop is not None and not prefix:
+        circuit.system.notes.append(
+            "margins and tuned gains of the loop leave out hysteresis and threshold of the valve; "
+            "the simulation includes them"
+        )
     total: Expression = 0.0
     for number, half_width in enumerate(data.plays, 1):
         output = circuit.system.state(f"{prefix}valve play {number}", 0.0, tolerance=SPOOL)
