@@ -10,7 +10,7 @@ LEAST = 1e-8
 """Smallest clearance of the search [m]; through it, an edge passes practically nothing."""
 ROUNDS = 50
 """Halvings of the logarithm of the bracket, to rounding."""
-STEP = 4e-3
+STEP = 5e-4
 """Relative step of the differences of fourth order in the last Newton step. Their error is of the
 order of STEP^4."""
 
