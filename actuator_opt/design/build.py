@@ -239,6 +239,20 @@ def to_tree(section: Section) -> dict[str, Any]:
     return tree
 
 
+def _drop_unstated_valve(tree: dict[str, Any], design: Design) -> None:
+    """Drop defaults that the valve does not state: its laws refuse keys of other laws as stated."""
+    valve = design.valve
+    if valve is None:
+        return
+    blocks: list[tuple[Section, dict[str, Any]]] = [(valve, tree["valve"])]
+    if valve.spool is not None:
+        blocks.append((valve.spool, tree["valve"]["spool"]))
+    for section, node in blocks:
+        for name in type(section).model_fields:
+            if name not in section.model_fields_set:
+                node.pop(name, None)
+
+
 def with_values(
     design: Design,
     values: Mapping[str, float | str | Fraction | None],
@@ -261,6 +275,7 @@ def with_values(
         if a PATH has no value, a value is unsuitable, or the new values contradict each other
     """
     tree = to_tree(design)
+    _drop_unstated_valve(tree, design)
     diagnostics, removed = [], list[Loc]()
     for path, value in values.items():
         try:

@@ -54,6 +54,11 @@ class FlowTable:
     """Flow of every row [m^3/s]: of one column, or of the edges in the order of `EDGES`."""
 
     def __str__(self) -> str:
+        """The name of the file, and the number of rows."""
+        return f"{self.file or WRITTEN}, {len(self.signal)} rows"
+
+    @property
+    def stated(self) -> str:
         """The text that states this table in a design: the name of its file, or the table."""
         return self.file or self.text
 

@@ -24,6 +24,7 @@ from ..seals.kinds import TYPES
 from . import layup
 from .build import build, to_tree
 from .choice_list import quantity_of_choice
+from .flow_curve import FlowTable
 from .flow_tables import self_contained
 from .kinds import Boolean, Fraction, Section, Text
 from .model import Design
@@ -157,8 +158,10 @@ class _Leaves:
     def text(self, loc: Loc, value: Any, old: str | None = None) -> str:
         """YAML scalar of a value, in the unit of the text `old` that it replaces."""
         number = number_of(value)
+        if isinstance(value, FlowTable):
+            return scalar(value.stated)
         if number is None:
-            return str(value).lower() if isinstance(value, bool) else scalar(str(value))
+            return str(value).lower() if isinstance(value, bool) else scalar(value)
         unit = None
         quantity = self.quantity(loc, value)
         if old is not None and quantity is not None:
@@ -174,7 +177,7 @@ class _Leaves:
         if isinstance(value, bool):
             return Boolean.words.get(old.strip().lower()) == value
         if number is None:
-            return str(value) == old
+            return bool((value.stated if isinstance(value, FlowTable) else value) == old)
         quantity = self.quantity(loc, value)
         if isinstance(value, Fraction) != ("%" in old) and loc[-1] == "position":
             return False

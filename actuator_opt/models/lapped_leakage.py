@@ -93,7 +93,5 @@ def clearance_of_leakage(
         leaks_less = real(excess(middle)) < 0
         low, high = where(leaks_less, middle, low), where(leaks_less, high, middle)
     found = sqrt(low * high)
-    near, far = (
-        real(excess(found * (1 + h)) - excess(found * (1 - h))) for h in (STEP, 2 * STEP)
-    )
+    near, far = (real(excess(found * (1 + h)) - excess(found * (1 - h))) for h in (STEP, 2 * STEP))
     return found - excess(found) * 12 * STEP * found / (8 * near - far)

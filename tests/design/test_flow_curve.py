@@ -333,3 +333,23 @@ def test_a_load_cylinder_has_a_curve_too(tmp_path):
         ao.read_scenario(tmp_path / "scenario.yaml")
     (fault,) = caught.value.diagnostics
     assert fault.path == "load.cylinder.valve.flow_curve"
+
+
+def test_designs_with_curves_are_changed_and_compared(tmp_path):
+    """Another number keeps the table; two tables are a difference, named by file and rows."""
+    made = design(tmp_path, GOOD, block("frequency_3db: 110 Hz"))
+    changed = made.changed({"valve.rated_drop": 20e5})
+    assert changed.design.valve.flow_curve == made.design.valve.flow_curve
+    assert flows(changed, 10.0)[0] == pytest.approx(20 * np.sqrt(35 / 20), rel=1e-4)
+    (tmp_path / "other.csv").write_text(GOOD.replace("50,9", "50,8\n60,10"), "utf-8")
+    other = ao.read(tmp_path / "design.yaml", set={"valve.flow_curve": "other.csv"})
+    found = ao.compare(made, other)
+    (change,) = [change for change in found.changes if change.path == "valve.flow_curve"]
+    assert change.values == ("curve.csv, 5 rows", "other.csv, 6 rows")
+    assert "other.csv, 6 rows" in str(found)
+    lapped = design(tmp_path, GOOD, [
+        "rated_flow: 20 l/min", "natural_frequency: 120 Hz",
+        "spool: {type: lapped, stroke: 0.5 mm, clearance: 3 um}",
+    ])  # fmt: skip
+    moved = lapped.changed({"valve.spool.overlap": 2e-6}).design.valve
+    assert moved.spool.overlap == 2e-6

@@ -17,7 +17,9 @@ from scipy.optimize import brentq
 from simulation_case import AREA_A, AREA_B, BAR, MIDDLE, OIL, VALVE, plant, run, scenario
 
 from actuator_opt.design.valve import Valve
+from actuator_opt.models import linear
 from actuator_opt.models.loop import ControllerGains
+from actuator_opt.models.metering_spool import held_slopes
 from actuator_opt.models.play import FASTER, play_half_widths
 from actuator_opt.simulation.assemble import assemble
 from actuator_opt.simulation.linear import ControllerLaw, Linear
@@ -300,3 +302,42 @@ def test_the_linear_model_leaves_out_the_plays():
         states.append({state.name for state in circuit.system.states})
     np.testing.assert_allclose(*(loop.at(np.array([3.0, 80.0])) for loop in loops), rtol=1e-12)
     assert states[1] - states[0] == {"valve play 1", "valve play 2"}
+
+
+@pytest.mark.parametrize("name", ["coefficients", "one flow"])
+def test_both_tiers_have_the_same_loop(name):
+    """The slopes of the held spool give the frequency response of the linearised circuit."""
+    stated = dict(STATED[name])
+    if name == "coefficients":  # equal edges hold both chambers at one place of the spool
+        stated["edge_coefficients"] = dict.fromkeys(("pa", "pb", "at", "bt"), "6 l/min/sqrt(bar)")
+    # beyond a dead band the valve moves the piston: equal areas keep the pressures of the rest
+    area_b = AREA_B if name == "coefficients" else AREA_A
+    own = plant(valve=valve(**stated), area_b=area_b)
+    hold = 70 * BAR * (AREA_A - area_b)
+    scene = scenario(
+        control={"position": [{"shape": "constant", "value": 0.0}]},
+        load={"force": [{"shape": "constant", "value": hold}]}, initial={"position": 0.08},
+    )  # fmt: skip
+    loops = Linear.of(assemble(scene, own, {}, None, linear=True)).about(position=0.08).loops
+    slopes = held_slopes(
+        spool=own.valve.metering, supply_pressure=SUPPLY, return_pressure=0.0,
+        pressure_a=70 * BAR, pressure_b=70 * BAR,
+    )  # fmt: skip
+    omega = np.array([5.0, 100.0, 400.0, 900.0])
+    for loop, way in zip(loops, (slopes.extending, slopes.retracting), strict=True):
+        sides = [
+            linear.Side(
+                area=area, compliance=(DEAD + area * 0.08) / OIL.bulk_modulus,
+                end=linear.LineEnd((leak,)), flow_gain=gain,
+            )
+            for area, leak, gain in (
+                (AREA_A, way.conductance_a, way.gain_a), (area_b, way.conductance_b, -way.gain_b)
+            )
+        ]  # fmt: skip
+        model = linear.linear_actuator(side_a=sides[0], side_b=sides[1], mass=MASS, damping=DAMPING)
+        s = 1j * omega
+        spool = OMEGA**2 / (s**2 + 2 * ZETA * OMEGA * s + OMEGA**2)
+        plain = sum(c * s**i for i, c in enumerate(model.drive)) / sum(
+            c * s**i for i, c in enumerate(model.characteristic)
+        )
+        np.testing.assert_allclose(loop.at(omega), plain * spool, rtol=5e-3)
