@@ -188,12 +188,13 @@ def origin(
 ) -> Origin:
     """The origin stated on a page: the file as read, or else the design's text."""
     from ..design.cycle_reader import texts_of
+    from ..design.flow_tables import self_contained
     from ..design.writer import to_yaml
     from ..evaluation.build import spec_hash
     from ..rendering.blocks import Origin
 
     return Origin(
-        source_text=source.text if source is not None else to_yaml(design),
+        source_text=to_yaml(design) if source is None else self_contained(source.text, design),
         source_name=file_name(design, source),
         command=command,
         spec_hash=spec_hash(prepare(design)),

@@ -88,7 +88,7 @@ def read_scenario(
 def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tuple[Array, Array]]:
     """Columns of the records that the scenario's signals use, by file and column."""
     from ..base.files import read_bytes
-    from ..base.sheet import decode_record
+    from ..base.sheets import decode_sheet
     from ..design.scenario import recorded_parts
     from ..identification import column_units, parse_column
 
@@ -102,7 +102,7 @@ def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tupl
             if file not in texts:
                 path_of = loaded.folder / file
                 data = read_bytes(path_of, most=MOST_BYTES + 1, kinds=_TABLES, what="CSV file")
-                texts[file] = decode_record(data, name, most=MOST_BYTES)
+                texts[file] = decode_sheet(data, name, most=MOST_BYTES)
             records[file, column] = parse_column(
                 texts[file], column, dimension, name=name, units=known_units
             )
@@ -277,7 +277,7 @@ def compare_measured(
         as for `read_scenario`; or record and simulation do not overlap, or a parameter is unknown
     """
     from ..base.files import read_bytes
-    from ..base.sheet import decode_record
+    from ..base.sheets import decode_sheet
     from ..identification import column_units
     from ..simulation.linear import tune
     from ..simulation.measured import overlay, parse_measured
@@ -287,7 +287,7 @@ def compare_measured(
     trial = as_trial(scenario)
     name = str(record)
     data = read_bytes(record, most=MOST_BYTES + 1, kinds=_TABLES, what="CSV file")
-    text = decode_record(data, name, most=MOST_BYTES)
+    text = decode_sheet(data, name, most=MOST_BYTES)
     measured = parse_measured(text, name=name, columns=columns, units=column_units(units))
     with placed(trial):
         if not fit:

@@ -283,6 +283,29 @@ def test_both_stops(model, tmp_path):
     assert np.max(np.abs(found[:, 4])) > 1e3
 
 
+def test_a_valve_by_its_data_sheet(tmp_path):
+    """A flow curve from a file, hysteresis and threshold: the unit moves as `simulate`."""
+    rows = "0,0.1", "4,0.1", "8,0.6", "20,6", "50,17", "100,40"
+    (tmp_path / "curve.csv").write_text("\n".join(("signal [%],q [l/min]", *rows)), "utf-8")
+    data = "  flow_curve: curve.csv\n  hysteresis: 5 %\n  threshold: 2 %\n"
+    lines = COURSE.read_text("utf-8").splitlines(keepends=True)
+    kept = [line for line in lines if not line.startswith(("  rated_flow", "  leakage_"))]
+    design = tmp_path / "valve.yaml"
+    design.write_text("".join(kept).replace("valve:\n", f"valve:\n{data}", 1), "utf-8")
+    file = written(tmp_path, STOPS, design=design)
+    unit = opened(file, tmp_path, design).begin()
+    result = ao.simulate(file)
+    stated = {value.name: value.value for value in result.basis.values}
+    assert stated["valve_hysteresis"] == pytest.approx(0.5)
+    assert stated["valve_threshold"] == pytest.approx(0.2)
+    names = ("position", "pressure_a", "pressure_b", "spool")
+    times = np.append(0.0, np.arange(7e-3, 1.59, 7e-3))
+    found = unit.run(times, *names)
+    for k, name in enumerate(names):
+        expected = np.interp(times, result.time, result.signals[name])
+        assert np.max(np.abs(found[:, k] - expected)) <= 1e-3 * np.ptp(expected), name
+
+
 def test_the_spool_has_a_closed_form(tmp_path):
     """A step of the signal moves the spool as a damped oscillator of second order."""
     text = OPEN.replace("value: 2 V", "value: 3 V")

@@ -18,6 +18,7 @@ from ...base.errors import Diagnostic, Fault, InputError
 from ...base.numeric import Array
 from ...base.quantities import RESULTS, Quantity
 from ...metrics import METRICS
+from .. import flow_tables
 from ..build import check
 from ..changes import Override
 from ..kinds import Of, Section, Text, ValueFault
@@ -75,7 +76,15 @@ def read_scenario(source: str | Path, *, overrides: Iterable[Change] = ()) -> Lo
     for path, value in overrides:
         of_design = (_unset_in_design if value is None else _of_design)(path, document.data)
         (design_overrides if of_design else scenario_overrides).append((path, value))
-    scenario, place = load(document, Scenario, _build_scenario, scenario_overrides, RESULTS)
+
+    def build_scenario(tree: dict[str, Any]) -> tuple[Scenario | None, Sequence[Fault]]:
+        with_tables, unread = flow_tables.attached(tree, flow_tables.OF_SCENARIO, document)
+        if unread:
+            return None, unread
+        checked = check(with_tables, Scenario, RESULTS, cross_field)
+        return checked.section, checked.faults
+
+    scenario, place = load(document, Scenario, build_scenario, scenario_overrides, RESULTS)
     stated_changes: list[tuple[str, str | None, Loc]] = [
         *((path, None, ("unset", index)) for index, path in enumerate(scenario.unset)),
         *((path, value, ("set", path)) for path, value in scenario.set.items()),
@@ -87,11 +96,6 @@ def read_scenario(source: str | Path, *, overrides: Iterable[Change] = ()) -> Lo
     changes += [Override(path, value) for path, value in design_overrides]
     folder = Path() if file in (TEXT, STDIN) else Path(source).parent
     return LoadedScenario(scenario, place, folder, tuple(changes))
-
-
-def _build_scenario(tree: dict[str, Any]) -> tuple[Scenario | None, Sequence[Fault]]:
-    checked = check(tree, Scenario, RESULTS, cross_field)
-    return checked.section, checked.faults
 
 
 def _of_design(path: str, tree: Any) -> bool:

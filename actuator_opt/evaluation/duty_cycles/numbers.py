@@ -19,7 +19,7 @@ from ...design.duty import DutyCycle
 from ...design.model import Design
 from ...joints.joint import Life
 from ...models import friction, lines, rod
-from ...models.lapped_spool import LappedSpool, lapped_flows
+from ...models.metering_spool import MeteringSpool, spool_flows
 from .. import circuit, piston_nut, rings as rings_module, rod_strength, sealing, spool
 from ..barrel import SEAL_STEP, Wall
 from ..geometry import Geometry
@@ -217,7 +217,7 @@ def _edges(v: Values, design: Design, resting: LoadState) -> Numbers:
     A shut edge leaks q = G dp + K sqrt(dp), through its flows at half and at all of the pressure
     between supply and return.
     """
-    lapped = circuit.lapped_spool(v, design, resting)
+    lapped = circuit.metering_spool(v, design, resting)
     if lapped is None:
         edges = spool.course_edges(circuit.of_valve(v), viscosity=resting.kinematic_viscosity)
         numbers = {name: _flat(edges.rated) for name in EDGES}
@@ -229,7 +229,7 @@ def _edges(v: Values, design: Design, resting: LoadState) -> Numbers:
     return _lapped_edges(lapped, v["valve.signal"], v["supply.pressure"])
 
 
-def _lapped_edges(lapped: LappedSpool, signal: Array, supply: Array) -> Numbers:
+def _lapped_edges(lapped: MeteringSpool, signal: Array, supply: Array) -> Numbers:
     numbers: Numbers = {}
     half = 0.5 * supply
 
@@ -238,7 +238,7 @@ def _lapped_edges(lapped: LappedSpool, signal: Array, supply: Array) -> Numbers:
         return dict(
             zip(
                 ("feed_a", "feed_b", "drain_a", "drain_b"),
-                lapped_flows(
+                spool_flows(
                     spool=lapped,
                     signal=value,
                     supply_pressure=2 * drop,
