@@ -112,8 +112,10 @@ def _export_scenario(
 
     file = trial.loaded.source.file
     with placed(trial):
+        used = with_design(trial, actuator)
+        inputs, records = trial.inputs(used)
         return scenario_exports(
-            trial.scenario, with_design(trial, actuator).subject(), trial.records,
+            inputs, used.subject(), records,
             formats=formats, folder=folder,
             stem=stem or ("scenario" if file.startswith("<") else Path(file).stem),
             program=f"actuator-opt {VERSION}", date=date,
