@@ -106,17 +106,18 @@ def test_the_energy_of_the_supply_is_that_of_all_parts_of_the_split():
     plan = Plan(True, True, (), (), (), {})
     values = numbers(other_friction=250.0, **LEAK)
     models = CycleModels(plan, {"walk": read_cycle(text)}, tuple(values))
-    track = models.tracks(np.array([*values.values()]))["walk"]
-    x = track.real("position")
-    a, b = track.real("pressure_a"), track.real("pressure_b")
+    track = models.tracks(np.array([*values.values()])[:, None])["walk"]
+    x, a, b, speed, force, rubbed = (
+        track.real(name)[:, 0]
+        for name in ("position", "pressure_a", "pressure_b", "speed", "force", "friction")
+    )
     dx = np.diff(x)
     mean_a, mean_b = (a[1:] + a[:-1]) / 2, (b[1:] + b[:-1]) / 2
     out = (210 * BAR - mean_a) * AREA_A + (mean_b - 5 * BAR) * AREA_B
     back = (210 * BAR - mean_b) * AREA_B + (mean_a - 5 * BAR) * AREA_A
-    away = track.real("speed") >= 0
+    away = speed >= 0
     same = (away[1:] == away[:-1]) & (away[1:] == (dx > 0))  # no reversal within the interval
     edges = np.where(dx > 0, out, back) * np.abs(dx)
-    force, rubbed = track.real("force"), track.real("friction")
     work = (force[1:] + force[:-1]) / 2 * dx
     loss = (rubbed[1:] + rubbed[:-1]) / 2 * np.abs(dx)
     given = np.where(dx > 0, AREA_A, AREA_B) * 210 * BAR * np.abs(dx)

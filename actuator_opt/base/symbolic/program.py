@@ -112,7 +112,8 @@ class Program:
         Parameters
         ----------
         points : inputs of every point, (points, inputs)
-        seeds : change of every input in every direction, (points, inputs, directions)
+        seeds : change of every input in every direction, (points, inputs, directions); fewer seeds
+            are each for the same number of successive points
         """
         runnable = self._runnable(seeds.any(axis=(0, 2)))
         points = np.ascontiguousarray(points, dtype=float)
@@ -124,7 +125,7 @@ class Program:
             width = next(width for width in WIDTHS if width >= used)
             padded = np.zeros((count, inputs, width))
             padded[:, :, :used] = part
-            results = np.empty((count, len(self.outputs), 1 + width))
+            results = np.empty((len(points), len(self.outputs), 1 + width))
             _MACHINE.run(runnable, points, padded, width, results)
             values = results[:, :, 0]
             parts.append(results[:, :, 1 : 1 + used])

@@ -27,6 +27,8 @@ from .samples import SampleModel, leakage_at_rest
 WINDOWS = 8
 """Windows of time of all cycles together, in which extremes are separate limits of the optimiser (our choice).
 """
+MOST = 200
+"""Designs that are computed together, to bound memory."""
 LEAST_WINDOWS = 2
 """Windows of each cycle if there are many cycles."""
 RANKS = 2
@@ -83,22 +85,28 @@ def results_in(v: Values) -> dict[Place, Array]:
 class Track:
     """Results of all samples of a cycle, with slopes in every direction.
 
-    Arrays are (samples, 1) without directions; otherwise complex (samples, directions), whose
-    imaginary parts are the slopes times the complex step.
+    Arrays are (samples, columns): a column for each design, or for each direction of each design;
+    their imaginary parts are then the slopes times the complex step.
     """
 
     values: npt.NDArray[np.float64]
-    """(samples, outputs, 1 + directions)"""
+    """(samples, outputs, designs, 1 + directions)"""
     outputs: tuple[str, ...]
 
-    def array(self, name: str, rows: Array | slice = slice(None)) -> Array:
-        """A result at samples."""
-        part = self.values[rows, self.outputs.index(name)]
-        return complexed(part)
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of designs, and of columns of each."""
+        designs, width = self.values.shape[2:]
+        return designs, max(width - 1, 1)
+
+    def array(self, name: str) -> Array:
+        """A result at all samples (samples, columns)."""
+        part = complexed(self.values[:, self.outputs.index(name)])
+        return part.reshape(len(part), -1)
 
     def real(self, name: str) -> npt.NDArray[np.float64]:
-        """A result at all samples, without slopes (samples,)."""
-        return self.values[:, self.outputs.index(name), 0]
+        """A result at all samples, without slopes (samples, designs)."""
+        return self.values[:, self.outputs.index(name), :, 0]
 
 
 def complexed(part: Array) -> Array:
@@ -158,25 +166,40 @@ class CycleModels:
         return _Cycle(self.plan, record, model, np.stack(columns, axis=1), order, count)
 
     def __call__(self, points: Array) -> Array:
-        """Results (places, k) at numbers (numbers, k), real or complex."""
-        stepped = np.iscomplexobj(points)
+        """Results (places, k) at numbers (numbers, k), real or complex.
+
+        Neighbouring columns with equal real parts are one design, with a direction in each.
+        """
         new = np.append(True, (points.real[:, 1:] != points.real[:, :-1]).any(axis=0))
-        parts = []
-        for part in np.split(points, np.flatnonzero(new)[1:], axis=1):
-            seeds = part.imag / STEP if stepped else np.zeros((len(part), 0))
-            with np.errstate(all="ignore"):
-                rows = self._results(part.real[:, 0], seeds)
-            parts.append(np.broadcast_to(rows, (len(rows), part.shape[1])))
-        return np.concatenate(parts, axis=1)
+        firsts = np.flatnonzero(new)
+        count, width = len(firsts), len(new) // len(firsts)
+        if len(new) % count or not new[::width].all():  # groups of different sizes
+            parts = np.split(points, firsts[1:], axis=1)
+            return np.concatenate([self(part) for part in parts], axis=1)
+        values = points.real[:, firsts]
+        seeds = np.zeros((len(points), count, 0))
+        if np.iscomplexobj(points):
+            seeds = points.imag.reshape(len(points), count, width) / STEP
+        with np.errstate(all="ignore"):
+            rows = [
+                self._results(values[:, at : at + MOST], seeds[:, at : at + MOST])
+                for at in range(0, count, MOST)
+            ]
+        results = rows[0] if len(rows) == 1 else np.concatenate(rows, axis=1)
+        if results.shape[1] < points.shape[1]:  # equal real points
+            results = np.repeat(results, width, axis=1)
+        return results
 
     def tracks(self, values: Array) -> dict[str, Track]:
-        """Results of all samples of every cycle, at numbers (numbers,)."""
-        seeds = np.zeros((len(values), 0))
+        """Results of all samples of every cycle, at numbers (numbers, designs)."""
+        seeds = np.zeros((*values.shape, 0))
         return {name: cycle.track(values, seeds) for name, cycle in self._cycles.items()}
 
     def _results(self, values: Array, seeds: Array) -> Array:
-        """Results at one design, (places, 1) or complex (places, directions)."""
-        numbers = values[:, None] + 1j * STEP * seeds if seeds.shape[1] else values[:, None]
+        """Results (places, columns) at values (numbers, designs)."""
+        numbers = values
+        if seeds.shape[2]:
+            numbers = (values[:, :, None] + 1j * STEP * seeds).reshape(len(values), -1)
         blocks, tracks = [], {}
         for name, cycle in self._cycles.items():
             tracks[name] = cycle.track(values, seeds)
@@ -185,8 +208,7 @@ class CycleModels:
         u = dict(zip(self.names, numbers, strict=True))
         blocks.append(self._fatigue.damages(numbers, tracks))
         blocks.append(np.reshape(leakage_at_rest(self.plan, u), (1, -1)))
-        width = numbers.shape[1]
-        return np.concatenate([np.broadcast_to(x, (len(x), width)) for x in blocks])
+        return np.concatenate(blocks)
 
 
 class _Cycle:
@@ -245,11 +267,12 @@ class _Cycle:
         self, extremes: Mapping[str, tuple[str, Sense]], windows: Windows, track: Track
     ) -> Array:
         """Extremes in windows, name by name."""
-        columns = [track.outputs.index(output) for output, _ in extremes.values()]
+        outputs = np.array([track.outputs.index(output) for output, _ in extremes.values()])
         signs = np.array([1.0 if sense == "min" else -1.0 for _, sense in extremes.values()])
-        rows = windows.least(track.values[:, columns, 0] * signs)
-        picked = complexed(track.values[rows, np.array(columns)[:, None]])
-        return picked.reshape(-1, picked.shape[-1])
+        rows = windows.least(track.values[..., 0][:, outputs] * signs[:, None])
+        designs = np.arange(track.shape[0])
+        picked = complexed(track.values[rows, outputs[:, None, None], designs])
+        return picked.reshape(rows.shape[0] * rows.shape[1], -1)
 
     def _pressure_times_speed(self, track: Track) -> list[Array]:
         """Largest contact pressure times speed of every seal, in windows."""
@@ -257,7 +280,9 @@ class _Cycle:
         for i in range(len(self.plan.rings)):
             value = np.abs(track.real("speed") * track.real(f"contact{i}"))
             rows = self.windows.least(-value[:, None])[0]
-            product = track.array("speed", rows) * track.array(f"contact{i}", rows)
+            rows = np.repeat(rows, track.shape[1], axis=1)
+            speed = np.take_along_axis(track.array("speed"), rows, axis=0)
+            product = speed * np.take_along_axis(track.array(f"contact{i}"), rows, axis=0)
             blocks.append(np.where(product.real < 0, -product, product))
         return blocks
 
@@ -311,7 +336,7 @@ def _sums(u: Numbers, time: Array, track: Track) -> dict[str, Array]:
         "inlet_volume": volume.sum(axis=0),
         "ripple_volume": supply_sizing.ripple_volume(time=time, flow=track.array("flow")).volume,
     }
-    return sums | _exchange(u, x, duration)
+    return sums | _exchange(u, x, duration, turning_points(track.real("position")[:, 0]))
 
 
 def mean(values: Array) -> Array:
@@ -327,10 +352,14 @@ def turning_points(position: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
     return np.concatenate([[0], turns, [len(position) - 1]])
 
 
-def _exchange(u: Numbers, x: Array, duration: Array) -> dict[str, Array]:
-    """Flow of fresh oil into each chamber: of every stroke, what the line does not hold back."""
-    ends = x[turning_points(x[:, 0].real)]
-    strokes = ends[1:] - ends[:-1]
+def _exchange(
+    u: Numbers, x: Array, duration: Array, turns: npt.NDArray[np.intp]
+) -> dict[str, Array]:
+    """Flow of fresh oil into each chamber: of every stroke, what the line does not hold back.
+
+    All designs turn at the same samples: a lever arm does not change its sign.
+    """
+    strokes = x[turns[1:]] - x[turns[:-1]]
     flows = {}
     for chamber, sign in (("a", 1.0), ("b", -1.0)):
         fresh = sign * u[f"area_{chamber}"] * strokes - u[f"line_volume_{chamber}"]
@@ -350,8 +379,8 @@ class Windows(NamedTuple):
     def least(self, values: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
         """Samples of the `RANKS` least values of every window, in order.
 
-        Values (samples, columns) give samples (columns, windows * RANKS). An unknown value (NaN)
-        is the least.
+        Values (samples, outputs, designs) give samples (outputs, windows * RANKS, designs). An
+        unknown value (NaN) is the least.
         """
         keys = np.where(np.isnan(values), -np.inf, values)[self.rows]
         keys[self.repeated] = np.inf
@@ -359,9 +388,10 @@ class Windows(NamedTuple):
         picked = np.argpartition(keys, last, axis=1)[:, : last + 1]
         order = np.argsort(np.take_along_axis(keys, picked, axis=1), axis=1, kind="stable")
         picked = np.take_along_axis(picked, order, axis=1)
-        picked = picked[:, np.minimum(np.arange(RANKS), last)]
-        windows = np.arange(len(self.rows))[:, None, None]
-        return self.rows[windows, picked].transpose(2, 0, 1).reshape(keys.shape[2], -1)
+        picked = picked[:, np.minimum(np.arange(RANKS), last)]  # (windows, ranks, outputs, designs)
+        windows = np.arange(len(self.rows))[:, None, None, None]
+        found = self.rows[windows, picked].transpose(2, 0, 1, 3)
+        return found.reshape(keys.shape[2], -1, keys.shape[3])
 
 
 def windows_of(record: CycleRecord, windows: int) -> Windows:

@@ -122,7 +122,7 @@ def study(models: CycleModels, numbers: npt.NDArray[np.float64], notes: tuple[st
     results = dict(zip(models.places, models(numbers[:, None])[:, 0].tolist(), strict=True))
     named = dict(zip(models.names, numbers.tolist(), strict=True))
     cycles = []
-    for name, track in models.tracks(numbers).items():
+    for name, track in models.tracks(numbers[:, None]).items():
         record = models.records[name]
         time = record.time * named[f"{name}|time_scale"]
         cycles.append(_cycle(name, record, time, track, results, named.get(f"{name}|repeats")))
@@ -142,7 +142,7 @@ def _cycle(
     def by_place(result: str) -> dict[str, float]:
         return {place.place: value for place, value in own.items() if place.name == result}
 
-    traces = {output: track.real(output) for output in track.outputs}
+    traces = {output: track.real(output)[:, 0] for output in track.outputs}
     worst = {}
     for key, (output, sign) in _WORST.items():
         if output in traces:
