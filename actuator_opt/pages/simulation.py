@@ -638,7 +638,7 @@ def _cycle(simulation: Simulation) -> Iterator[Block]:
             row.label,
             value_text(row.quantity, row.quasi_static),
             value_text(row.quantity, row.simulated),
-            DASH if row.difference is None else f"{100 * row.difference:+.2g} %",
+            DASH if row.difference is None else pretty(f"{100 * row.difference:+.2g} %"),
         ]
         for row in cycle.rows
     ]

@@ -31,7 +31,7 @@ from ..design.scenario.model import (
     ScenarioLoad,
     ValveSignal,
 )
-from ..evaluation.duty_cycles.results import CycleModels, Track
+from ..evaluation.duty_cycles.results import CycleModels
 from ..evaluation.duty_cycles.study import CycleStudy, study
 from ..evaluation.kernel import PreparedDesign, duty_numbers
 from ..evaluation.values import plain
@@ -93,14 +93,14 @@ def with_cycle(scenario: Scenario, subject: PreparedDesign) -> tuple[Scenario, R
     if cycle is None:
         return scenario, {}
     actuator = plant_of(scenario, plant(subject), loaded=True)
-    record, track = _resampled(cycle, subject)
-    position, force = track.real("position"), track.real("force")
+    finer = _resampled(cycle, subject)
+    record, position = finer.record, finer.traces["position"]
     _require_positions(cycle, record, position, actuator.stroke)
     assert actuator.valve is not None
     columns = {
         "position": position - position[0],
-        "force": force,
-        "valve signal": _signal(actuator.valve, track),
+        "force": finer.traces["force"],
+        "valve signal": _signal(actuator.valve, finer.traces),
     }
     label = getattr(cycle.file, "label", str(cycle.file))
     time, repeated = _repeated(record, cycle.time_scale, scenario.duration)
@@ -108,26 +108,28 @@ def with_cycle(scenario: Scenario, subject: PreparedDesign) -> tuple[Scenario, R
         (label, f"{name} of {cycle.name}"): (time, repeated(values))
         for name, values in columns.items()
     }
-    parts = [{"shape": "record", "file": file, "column": column} for file, column in records]
+    position_column, force_column, signal_column = (column for _, column in records)
     control = scenario.control or Controller()
-    changed: dict[str, Any] = {"position": (PositionSignal(**parts[0]),)}
+    changed: dict[str, Any] = {
+        "position": (PositionSignal(shape="record", file=label, column=position_column),)
+    }
     if not control.feed_forward:
-        changed["feed_forward"] = (ValveSignal(**parts[2]),)
+        changed["feed_forward"] = (ValveSignal(shape="record", file=label, column=signal_column),)
     initial = scenario.initial.model_copy(update={"position": float(position[0])})
     update = {
         "control": control.model_copy(update=changed),
-        "load": ScenarioLoad(force=(ForceSignal(**parts[1]),)),
+        "load": ScenarioLoad(force=(ForceSignal(shape="record", file=label, column=force_column),)),
         "initial": initial,
     }
     return scenario.model_copy(update=update), records
 
 
-def _resampled(cycle: DutyCycle, subject: PreparedDesign) -> tuple[CycleRecord, Track]:
-    """The record of a cycle with enough samples for a smooth reference, and its results."""
+def _resampled(cycle: DutyCycle, subject: PreparedDesign) -> CycleStudy:
+    """A cycle with enough samples for a smooth reference."""
     models, numbers = duty_numbers(subject, subject.values())
     record = models.records[cycle.name].resampled(SAMPLES + 1)
     finer = CycleModels(models.plan, {**models.records, cycle.name: record}, models.names)
-    return record, finer.tracks(numbers[:, 0])[cycle.name]
+    return next(x for x in study(finer, numbers[:, 0], ()).cycles if x.name == cycle.name)
 
 
 def _require_positions(
@@ -146,12 +148,12 @@ def _require_positions(
         raise InputError(Diagnostic(message, remedy, path="cycle"))
 
 
-def _signal(valve: ValveData, track: Track) -> Array:
+def _signal(valve: ValveData, traces: Mapping[str, Array]) -> Array:
     """Signal of the valve for the quasi-static opening; the full signal past stall [V]."""
-    extending = track.real("speed") >= 0
+    extending = traces["speed"] >= 0
     side = np.where(extending, 1.0, -1.0)
     start = np.where(extending, valve.start(1.0), valve.start(-1.0))
-    opening = np.nan_to_num(track.real("opening"), nan=1.0, posinf=1.0)
+    opening = np.nan_to_num(traces["opening"], nan=1.0, posinf=1.0)
     opening = np.clip(opening, 0.0, 1.0)
     start = np.where(opening > 0, start, 0.0)
     signal: Array = valve.offset + side * (start + opening * (valve.signal - start))
@@ -235,14 +237,13 @@ class CycleComparison:
         side = "more" if self.difference > 0 else "less"
         text = INPUTS["position"].text
         error = f"rms position error {text(self.position_error, 3)}"
-        if abs(self.difference) <= AGREEMENT:
-            return (
-                f"{self.cycle}: the simulation takes {share} {side} energy from the supply than "
-                f"the quasi-static model, within {100 * AGREEMENT:g} %; {error}"
-            )
+        within = abs(self.difference) <= AGREEMENT
+        judged = f"within {100 * AGREEMENT:g} %"
+        if not within:
+            judged = f"beyond {100 * AGREEMENT:g} %: trust the simulation"
         return (
-            f"{self.cycle}: the simulation takes {share} {side} energy from the supply than the "
-            f"quasi-static model, beyond {100 * AGREEMENT:g} %: trust the simulation; {error}"
+            f"duty cycle {self.cycle}: the simulation takes {share} {side} energy from the supply "
+            f"than the quasi-static model, {judged}; {error}"
         )
 
     @property

@@ -244,9 +244,9 @@ def _cycle(circuit: Circuit) -> Iterator[str]:
         return
     mass = INPUTS["load_mass"].text(circuit.plant.mass, 3)
     yield (
-        f"the force of {name} contains the inertia of the load: load.mass and load.inertia are left "
-        f"out, and only rod and piston move ({mass}); the gain and its margins are those with the "
-        "load"
+        f"the force of {name} contains the inertia of the load: load.mass and load.inertia are "
+        f"left out, and only rod and piston move ({mass}); the gain and its margins are those with "
+        "the load"
     )
     yield (
         f"the valve opening that {name} needs by the quasi-static model is added to the signal of "
@@ -387,8 +387,11 @@ def spec_of(subject: PreparedDesign, scenario: Scenario) -> str:
     content = scenario.model_dump(mode="json")
     if content["load"]["cylinder"]:
         leave_out_unset(content["load"]["cylinder"]["valve"])
-    for block, key in ((content["control"], "dead_band_jump"), (content["control"], "feed_forward"),
-                       (content, "cycle")):
+    for block, key in (
+        (content["control"], "dead_band_jump"),
+        (content["control"], "feed_forward"),
+        (content, "cycle"),
+    ):
         if block and not block[key]:  # unset fields are left out: hashes of older runs stay valid
             del block[key]
     text = spec_hash(subject) + json.dumps(content, sort_keys=True, default=str)

@@ -23,7 +23,7 @@ from ...design.model import Design
 from ...design.paths import quantity_of
 from ...metrics import METRICS
 from ..kernel import PreparedDesign, duty_numbers, duty_results
-from .study import CycleStudy, DutyStudy
+from .study import CycleStudy, DutyStudy, study as of_models
 
 Bools = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
@@ -32,8 +32,8 @@ CHECKED = ("duty_supply_share", "duty_suction_ratio", "duty_stroke_margin", "dut
 LIFE = "the life"
 """Word for all cycles of a life."""
 STEPS, FINER = 8, 4
-"""Values tried for each number, evenly spaced by ratio; then within the first step that is enough
-(our choice)."""
+"""Values tried for each number, evenly spaced by ratio; then, twice, within the first step that is
+enough (our choice)."""
 MOST = 4
 """Largest number of cures in a sentence, those with the least relative change first."""
 DIGITS = 3
@@ -153,8 +153,10 @@ def _force_or_flow(study: CycleStudy, subject: PreparedDesign, limit: float) -> 
     if subject.design.valve is not None:
         varied = {"valve.rated_flow": np.array([UNLIMITED * float(v["valve.rated_flow"])])}
         models, numbers = duty_numbers(subject, subject.values(varied))
-        track = models.tracks(numbers[:, 0])[study.name]
-        sizeless = float(track.real("needed")[index])
+        larger = next(
+            x for x in of_models(models, numbers[:, 0], ()).cycles if x.name == study.name
+        )
+        sizeless = float(larger.traces["needed"][index])
     available = limit * at["supply"]
     pressure, flow = METRICS["duty_supply_needed"], METRICS["duty_flow_peak"]
     if sizeless >= available or not np.isfinite(at.get("opening", np.inf)):
@@ -198,7 +200,9 @@ def _travel(study: CycleStudy, subject: PreparedDesign, limit: float) -> str:
     low, high = int(np.argmin(position)), int(np.argmax(position))
     before, beyond = limit - float(position[low]), float(position[high]) + limit - stroke
     text = METRICS["duty_stroke_margin"].text
-    stop, index, over = ("extended", high, beyond) if beyond > before else ("retracted", low, before)
+    stop, index, over = (
+        ("extended", high, beyond) if beyond > before else ("retracted", low, before)
+    )
     where = f"beyond the {stop} stop" if limit == 0 else f"too near the {stop} stop"
     return f"{_at(study, index)} travel lacks: the piston would be {text(over)} {where}"
 
@@ -216,7 +220,8 @@ def _fatigue(duty: DutyStudy, model: _Model) -> str:
     shares = {study.name: study.damage.get(part, 0.0) for study in duty.cycles}
     most = max(shares, key=lambda name: shares[name])
     share = "" if len(shares) == 1 else f", {shares[most] / model.damage[part]:.0%} of it by {most}"
-    return f"{LIFE}: fatigue strength lacks: {part} reaches a damage of {model.damage[part]:.3g}{share}"
+    damage = f"{model.damage[part]:.3g}{share}"
+    return f"{LIFE}: fatigue strength lacks: {part} reaches a damage of {damage}"
 
 
 # ---- cures ----
@@ -272,9 +277,7 @@ class _Model:
     damage : fatigue damage of the design by part
     """
 
-    def __init__(
-        self, subject: PreparedDesign, limits: Mapping[str, tuple[Sense, float]]
-    ) -> None:
+    def __init__(self, subject: PreparedDesign, limits: Mapping[str, tuple[Sense, float]]) -> None:
         self._subject, self._limits = subject, limits
         results = duty_results(subject, subject.values()).metrics
         self.damage = {
@@ -282,9 +285,7 @@ class _Model:
         }
         self.present = self._margins({}, 1)
 
-    def _margins(
-        self, varied: Mapping[str, Floats], count: int
-    ) -> dict[tuple[str, str], Floats]:
+    def _margins(self, varied: Mapping[str, Floats], count: int) -> dict[tuple[str, str], Floats]:
         """Least margins (designs,) by metric and cycle."""
         results = duty_results(self._subject, self._subject.values(varied)).metrics
         margins: dict[tuple[str, str], Floats] = {}
@@ -323,7 +324,7 @@ class _Model:
     ) -> float | None:
         """The sufficient value nearest to the present one, rounded away from it."""
         first, last = now, now * factor
-        for steps in (STEPS, FINER):
+        for steps in (STEPS, FINER, FINER):
             values = np.geomspace(first, last, steps + 1)[1:]
             enough = np.flatnonzero(self.enough(target, path, values))
             if not enough.size:
@@ -339,9 +340,14 @@ class _Model:
         return next((rounded[at] for at in enough if self._valid(path, rounded[at])), None)
 
     def _valid(self, path: str, value: float) -> bool:
-        """Whether a design file may have this value."""
+        """Whether a design file may have this value, whatever the bounds of a variable."""
+        changes: dict[str, float | str | None] = {path: value}
+        variable = self._subject.design.variables.get(path)
+        if variable is not None and not variable.lower <= value <= variable.upper:
+            side = "upper" if value > variable.upper else "lower"
+            changes[f"variables.{path}.{side}"] = value
         try:
-            with_values(self._subject.design, {path: value}, metrics=self._subject.quantities)
+            with_values(self._subject.design, changes, metrics=self._subject.quantities)
         except InputError:
             return False
         return True
