@@ -409,14 +409,30 @@ def verify_dynamics(
     ----------
     scenario : the scenario as read, or the path of its file
     design : a design in place of the scenario's own; it gets the values that the scenario sets
+
+    Raises
+    ------
+    InputError
+        the scenario simulates a duty cycle, in which the load has no mass
     """
     from ..simulation.verification import verify
 
     trial = as_trial(scenario)
+    _require_load(trial)
     actuator = trial.actuator if design is None else fitting(trial, design)
     with placed(trial):
         inputs, records = trial.inputs(actuator)
         return verify(inputs, actuator.subject(), records=records)
+
+
+def _require_load(trial: Trial) -> None:
+    """Refuse the scenario of a duty cycle, in which the load has no mass."""
+    if trial.scenario.cycle is not None:
+        message = (
+            "dynamic requirements depend on the mass of the load, which a duty cycle leaves out"
+        )
+        remedy = "use a scenario with control or signal in place of cycle"
+        raise InputError(replace(trial.loaded.diagnostic("cycle", message), remedy=remedy))
 
 
 def fitting(trial: Trial, design: Actuator | Design | Result | str | Path) -> Actuator:
@@ -425,9 +441,10 @@ def fitting(trial: Trial, design: Actuator | Design | Result | str | Path) -> Ac
     Raises
     ------
     InputError
-        the scenario does not fit this design, or has a motor or held ports in place of a
-        cylinder
+        the scenario does not fit this design, has a motor or held ports in place of a cylinder,
+        or simulates a duty cycle
     """
+    _require_load(trial)
     scenario = trial.scenario
     for key in ("motor", "held_ports"):
         if getattr(scenario, key) is not None:

@@ -326,7 +326,7 @@ def _duty(subject: PreparedDesign, v: Values) -> DutyStudy | None:
 def _cures(
     subject: PreparedDesign, duty: DutyStudy | None, checks: Sequence[Check]
 ) -> Iterator[str]:
-    """Yield what the duty cycles lack where they miss a check, and what would cure it."""
+    """Yield a sentence for every missed check of the duty cycles: the shortfall and its cures."""
     own = [c for c in checks if c.metric in remedies.CHECKED and c.status != "not_checked"]
     missed = [c.metric for c in own if c.status == "missed" and c.metric is not None]
     if duty is None or not missed:

@@ -1,4 +1,4 @@
-"""What a duty cycle lacks where it misses a check, and whether the named cures are enough."""
+"""Shortfalls of duty cycles that miss a check, and whether the named cures are enough."""
 
 from __future__ import annotations
 
@@ -75,8 +75,8 @@ def test_force_lacks_at_the_sample_of_the_largest_need():
     results = ao.evaluate(actuator)
     walk = results.duty.cycles[0]
     at = walk.worst["share"]
-    assert f"walk: at {at.time:.4g} s (sample {at.index}) force lacks" in shortfall.lacks
-    assert f"{-walk.worst['reserve'].value:.0f} N less than the load needs" in shortfall.lacks
+    assert f"walk: at {at.time:.4g} s (sample {at.index}) too little force" in shortfall.reason
+    assert f"{-walk.worst['reserve'].value:.0f} N less than the load needs" in shortfall.reason
     needed = results.metrics["duty_supply_needed"].value
     cure = next(x for x in shortfall.remedies if x.path == "supply.pressure")
     assert cure.needed == pytest.approx(needed, rel=0.02)  # friction grows with the pressure
@@ -99,13 +99,13 @@ def test_the_valve_that_is_enough_follows_from_the_square_of_its_flow():
     cure = next(x for x in shortfall.remedies if x.path == "valve.rated_flow")
     assert cure.needed == pytest.approx(now * sqrt(ratio), rel=0.01)
     assert cure.needed >= now * sqrt(ratio)
-    assert "flow lacks: at 90 % opening the valve passes" in shortfall.lacks
+    assert "too little flow: at 90 % opening the valve passes" in shortfall.reason
 
 
 def test_the_stroke_that_is_enough_is_that_of_the_motion():
     """A sine of 60 mm about 55 mm passes both stops of 110 mm by 5 mm: no stroke is enough."""
     shortfall = missed(knee(wave(amplitude=60.0)))["duty_stroke_margin"]
-    assert "5 mm beyond the" in shortfall.lacks
+    assert "5 mm beyond the" in shortfall.reason
     assert shortfall.remedies == ()
     sentence = shortfall.sentence(knee(wave(amplitude=60.0)).design)
     assert sentence.endswith("no change of stroke alone is enough")
@@ -114,8 +114,8 @@ def test_the_stroke_that_is_enough_is_that_of_the_motion():
 def test_a_pull_faster_than_the_supply_cavitates():
     """A load that helps the motion empties the driven chamber."""
     shortfall = missed(knee(wave(force=-9000.0)))["duty_suction_ratio"]
-    assert "oil lacks in chamber A, which cavitates" in shortfall.lacks
-    assert "because the load pulls the piston" in shortfall.lacks
+    assert "cavitation in chamber A" in shortfall.reason
+    assert "because the load pulls the piston" in shortfall.reason
 
 
 def test_the_number_of_repeats_is_that_of_miners_sum():
@@ -126,7 +126,7 @@ def test_the_number_of_repeats_is_that_of_miners_sum():
     cure = next(x for x in shortfall.remedies if x.path.endswith("repeats"))
     assert cure.needed <= 1e12 / damage
     assert cure.needed == pytest.approx(1e12 / damage, rel=0.1)
-    assert f"reaches a damage of {damage:.3g}" in shortfall.lacks
+    assert f"reaches a damage of {damage:.3g}" in shortfall.reason
 
 
 def test_a_feasible_cycle_lacks_nothing():

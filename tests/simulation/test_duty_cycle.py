@@ -240,3 +240,17 @@ def test_the_page_sets_both_models_side_by_side():
     (table,) = [block for block in tables if "both models" in block.title]
     assert len(table.rows) == len(found.cycle.rows)
     assert table.note.startswith("Position error")
+
+
+def test_a_cycle_does_not_verify_dynamic_requirements(folder):
+    """They depend on the mass of the load."""
+    trial = ao.cycle_scenario(folder / "knee.yaml", "walk")
+    with pytest.raises(ao.InputError, match="mass of the load"):
+        ao.verify_dynamics(trial)
+
+
+def test_the_equations_of_a_cycle_are_exported(folder):
+    """As those of any scenario."""
+    trial = ao.cycle_scenario(folder / "knee.yaml", "walk", periods=1)
+    files = ao.export(trial.actuator, scenario=trial, formats=["c"], folder=folder)
+    assert [file.path.suffix for file in files] == [".h", ".c"]

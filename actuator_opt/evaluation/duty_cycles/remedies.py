@@ -1,4 +1,4 @@
-"""What a duty cycle lacks where it misses a check, and single changes that cure it.
+"""Shortfalls of duty cycles that miss a check, and single changes that cure them.
 
 A cure is one number of the design: it is enough for the missed check, and no other check of the
 duty cycles gets missed by it. The models of the cycles confirm each cure at its printed value.
@@ -69,22 +69,22 @@ class Remedy(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Shortfall:
-    """A check that a duty cycle misses, what it lacks, and cures."""
+    """A check that a duty cycle misses, with the reason and cures."""
 
     metric: str
     cycle: str
-    lacks: str
-    """Sentence that names the sample, the time and what lacks."""
+    reason: str
+    """Sentence that names the sample, the time and the shortfall."""
     remedies: tuple[Remedy, ...]
     tried: tuple[str, ...]
     """Words of all numbers that were tried."""
 
     def sentence(self, design: Design) -> str:
-        """What lacks, and what would cure it."""
+        """The shortfall and its cures."""
         if not self.remedies:
-            return f"{self.lacks}; no change of {_listed(self.tried, 'or')} alone is enough"
+            return f"{self.reason}; no change of {_listed(self.tried, 'or')} alone is enough"
         texts = [remedy.text(design) for remedy in self.remedies]
-        return f"{self.lacks}; {_listed(texts, 'or')} is enough for the duty cycles"
+        return f"{self.reason}; {_listed(texts, 'or')} is enough for the duty cycles"
 
 
 def _listed(words: Sequence[str], last: str) -> str:
@@ -120,11 +120,11 @@ def shortfalls(
         if metric not in missed or model.present[metric, cycle][0] >= -MISSED:
             continue
         if metric == "duty_fatigue":
-            lacks = _fatigue(duty, model)
+            reason = _fatigue(duty, model)
             candidates = list(_life_candidates(subject.design))
         else:
             study, stated = studies[cycle], cycles[cycle]
-            lacks = _LACKS[metric](study, subject, limits[metric][1])
+            reason = _REASONS[metric](study, subject, limits[metric][1])
             candidates = list(_candidates(metric, stated, subject.design))
         candidates = [c for c in candidates if subject.numbers.get(c.path)]
         found = [model.cure((metric, cycle), candidate) for candidate in candidates]
@@ -133,10 +133,10 @@ def shortfalls(
             key=lambda remedy: abs(np.log(remedy.needed / remedy.now)),
         )
         tried = tuple(dict.fromkeys(c.words.removeprefix("a ") for c in candidates))
-        yield Shortfall(metric, cycle, lacks, tuple(remedies[:MOST]), tried)
+        yield Shortfall(metric, cycle, reason, tuple(remedies[:MOST]), tried)
 
 
-# ---- what lacks ----
+# ---- shortfalls ----
 
 
 def _at(study: CycleStudy, index: int) -> str:
@@ -145,7 +145,7 @@ def _at(study: CycleStudy, index: int) -> str:
 
 
 def _force_or_flow(study: CycleStudy, subject: PreparedDesign, limit: float) -> str:
-    """What lacks where the supply does not move the load with the permitted opening."""
+    """Missing force or flow where the supply does not move the load with the permitted opening."""
     index = int(np.argmax(study.traces["share"]))
     at = {name: float(trace[index]) for name, trace in study.traces.items()}
     v = subject.values()
@@ -166,7 +166,7 @@ def _force_or_flow(study: CycleStudy, subject: PreparedDesign, limit: float) -> 
         if sizeless < at["needed"]:
             parts = f", of which {pressure.text(at['needed'] - sizeless)} for the flow"
         return (
-            f"{_at(study, index)} force lacks: the supply gives "
+            f"{_at(study, index)} too little force: the supply gives "
             f"{force((at['needed'] - available) * area)} less than the load needs "
             f"({pressure.text(at['needed'])}{parts})"
         )
@@ -174,7 +174,7 @@ def _force_or_flow(study: CycleStudy, subject: PreparedDesign, limit: float) -> 
     passed = abs(at["flow"] - at["leakage"])
     possible = passed * np.sqrt((available - sizeless) / (at["needed"] - sizeless))
     return (
-        f"{_at(study, index)} flow lacks: at {100 * share:.3g} % opening the valve passes "
+        f"{_at(study, index)} too little flow: at {100 * share:.3g} % opening the valve passes "
         f"{flow.text(possible)} of {flow.text(passed)} that the motion needs"
     )
 
@@ -188,8 +188,8 @@ def _cavitation(study: CycleStudy, subject: PreparedDesign, limit: float) -> str
     pull = float(study.traces["force"][index]) * np.sign(float(study.traces["speed"][index]))
     cause = ", because the load pulls the piston" if pull < 0 else ""
     return (
-        f"{_at(study, index)} oil lacks in chamber {chamber.upper()}, which cavitates: its "
-        f"pressure falls to {METRICS['duty_pressure_min'].text(low)}{cause}"
+        f"{_at(study, index)} cavitation in chamber {chamber.upper()}: its pressure "
+        f"falls to {METRICS['duty_pressure_min'].text(low)}{cause}"
     )
 
 
@@ -204,10 +204,10 @@ def _travel(study: CycleStudy, subject: PreparedDesign, limit: float) -> str:
         ("extended", high, beyond) if beyond > before else ("retracted", low, before)
     )
     where = f"beyond the {stop} stop" if limit == 0 else f"too near the {stop} stop"
-    return f"{_at(study, index)} travel lacks: the piston would be {text(over)} {where}"
+    return f"{_at(study, index)} too little travel: the piston would be {text(over)} {where}"
 
 
-_LACKS = {
+_REASONS = {
     "duty_supply_share": _force_or_flow,
     "duty_suction_ratio": _cavitation,
     "duty_stroke_margin": _travel,
@@ -221,7 +221,7 @@ def _fatigue(duty: DutyStudy, model: _Model) -> str:
     most = max(shares, key=lambda name: shares[name])
     share = "" if len(shares) == 1 else f", {shares[most] / model.damage[part]:.0%} of it by {most}"
     damage = f"{model.damage[part]:.3g}{share}"
-    return f"{LIFE}: fatigue strength lacks: {part} reaches a damage of {damage}"
+    return f"{LIFE}: too little fatigue strength: {part} reaches a damage of {damage}"
 
 
 # ---- cures ----
