@@ -223,6 +223,8 @@ class CycleComparison:
     """Range of the reference position [m]."""
     change: float | None
     """Supply energy of this period divided by that of the period before, minus 1."""
+    traces: Mapping[str, tuple[Array, Array]]
+    """Times [s] in this period and quasi-static pressures [Pa] by the names of the signals."""
 
     @property
     def difference(self) -> float:
@@ -331,6 +333,10 @@ def compare(
         position_error_max=float(np.max(np.abs(errors))),
         travel=float(np.ptp(position)),
         change=change,
+        traces={
+            name: (window.start + static.time - static.time[0], static.traces[name])
+            for name in ("pressure_a", "pressure_b")
+        },
     )
 
 

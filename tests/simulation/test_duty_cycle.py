@@ -15,6 +15,7 @@ from duty_case import GAIT, knee, text, wave
 import actuator_opt as ao
 from actuator_opt.design.scenario.model import Scenario
 from actuator_opt.pages.simulation import page
+from actuator_opt.pages.simulation_figures import strips
 from actuator_opt.rendering.blocks import Table
 from actuator_opt.simulation import simulate
 from actuator_opt.simulation.duty_cycle import AGREEMENT, plant_of, with_cycle
@@ -240,6 +241,14 @@ def test_the_page_sets_both_models_side_by_side():
     (table,) = [block for block in tables if "both models" in block.title]
     assert len(table.rows) == len(found.cycle.rows)
     assert table.note.startswith("Position error")
+    (strip,) = [
+        x for x in strips(found, found.cycle.traces) if x.panel.title.startswith("Pressure")
+    ]
+    first, second = [curve for curve in strip.panel.curves if curve.words == "quasi-static"]
+    assert np.asarray(first.xs)[[0, -1]] == pytest.approx([0.0, 0.5])
+    known = ao.evaluate(actuator).duty.cycles[0].traces
+    assert np.asarray(first.ys) == pytest.approx(known["pressure_a"] / 1e5)
+    assert np.asarray(second.ys) == pytest.approx(known["pressure_b"] / 1e5)
 
 
 def test_a_cycle_does_not_verify_dynamic_requirements(folder):
