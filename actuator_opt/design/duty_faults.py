@@ -13,7 +13,7 @@ from .cycle_files import CycleFile
 from .cycle_reader import CYCLES
 from .cycle_record import CycleRecord
 from .duty import DutyCycle
-from .structure import FileView, Loc, child, child_at, without_effect
+from .structure import FileView, Loc, child, entries, without_effect
 
 DEAD = 1e-3
 """Lever arm at a dead point, divided by the crank radius (our choice: force and speed are then off
@@ -49,6 +49,15 @@ def names(view: FileView) -> Iterator[Fault]:
         seen.setdefault(name, f"also the name of entry {index}")
 
 
+def _without_effect(
+    view: FileView, loc: Loc, keys: tuple[str, ...], where: str, remedy: str = "remove the line"
+) -> Iterator[Fault]:
+    """Faults of keys that have no effect; a key that equals its default is none."""
+    defaults = {key: entries(DutyCycle)[key].default for key in keys}
+    changed = [key for key in keys if view.value(*loc, key) not in (defaults[key], [])]
+    yield from without_effect(view, loc, changed, where, remedy)
+
+
 def columns(view: FileView) -> Iterator[Fault]:
     """Check that keys of each cycle suit its columns, and that a joint has a lever arm."""
     for index in range(len(view.items(*CYCLES))):
@@ -57,26 +66,15 @@ def columns(view: FileView) -> Iterator[Fault]:
             continue
         if not record.joint:
             where = "with the columns position and force"
-            yield from without_effect(
-                view, loc, _changed(view, loc, "lever_arm", "torque_scale"), where
-            )
+            yield from _without_effect(view, loc, ("lever_arm", "torque_scale"), where)
             continue
         where = "with the columns joint_angle and joint_torque"
         remedy = "write torque_scale instead"
-        yield from without_effect(view, loc, _changed(view, loc, "force_scale"), where, remedy)
+        yield from _without_effect(view, loc, ("force_scale",), where, remedy)
         if not view.has(*loc, "lever_arm") and not view.has("linkage"):
             message = "the file states a joint's angle and torque, but there is no linkage"
             remedy = 'add a block "linkage:", or e.g. "lever_arm: 40 mm" to the cycle'
             yield Fault((*loc, "file"), message, remedy)
-
-
-def _changed(view: FileView, loc: Loc, *names: str) -> list[str]:
-    """Those of the keys of a cycle whose value is not the default.
-
-    A design that was read states its defaults too, and is checked again when a value changes.
-    """
-    defaults = {name: DutyCycle.model_fields[name].default for name in names}
-    return [name for name in names if child_at(view.tree, (*loc, name)) not in (defaults[name], [])]
 
 
 def phases(view: FileView) -> Iterator[Fault]:
@@ -85,7 +83,7 @@ def phases(view: FileView) -> Iterator[Fault]:
         loc = (*CYCLES, index)
         if view.flag(*loc, "closed") is False:
             where = "with closed: false, as the cycle has no period"
-            yield from without_effect(view, loc, _changed(view, loc, "phase", "also"), where)
+            yield from _without_effect(view, loc, ("phase", "also"), where)
 
 
 def pressures(view: FileView) -> Iterator[Fault]:

@@ -33,4 +33,10 @@ Some functions are for scripts alone; no part of the program calls them:
   `supply_sizing.electric_power`, `supply_sizing.oil_heat`, `supply_sizing.tank_temperature`,
   `supply_sizing.cooler_conductance_needed`, `supply_sizing.supply_masses`,
   `supply_sizing.system_mass`, `accumulator.gas_volume_needed`: size of the supply of a cycle
+- `heat_transfer.oil_film_coefficient`, `heat_transfer.throttle_temperature_rise`,
+  `heat_transfer.exchanged_volume`, `heat_transfer.oil_exchange_conductance`,
+  `heat_transfer.tank_temperature`, `heat_transfer.friction_heat`,
+  `thermal_network.thermal_network`, `thermal_network.steady_temperatures`,
+  `thermal_network.temperatures_after`, `thermal_network.slowest_time_constant`,
+  `thermal_network.ripple_bound`: temperatures of an actuator that works in cycles
 """

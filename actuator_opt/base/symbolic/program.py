@@ -106,6 +106,14 @@ class Program:
             self.frozen, constants, self.slots - len(values), count,
         )  # fmt: skip
 
+    def used_inputs(self) -> Array:
+        """Whether each input is read (inputs,)."""
+        read = np.zeros(self.slots + len(self.constants), dtype=bool)
+        plain = self.code[:, 0] & 255 != OPERATIONS.index("roots")  # it reads its slots from extra
+        for slots in (self.code[plain, 2:], self.extra, self.outputs):
+            read[slots.ravel()] = True
+        return read[: self.inputs]
+
     def slopes(self, points: Array, seeds: Array) -> tuple[Array, Array]:
         """Outputs (points, outputs) and their slopes (points, outputs, directions).
 

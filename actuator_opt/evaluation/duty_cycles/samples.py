@@ -7,7 +7,6 @@ together; where the machine is missing, NumPy runs it with a complex step.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ from ...base.dataclass import dataclass
 from ...base.numeric import STEP, Array, absolute, maximum, real, sqrt, where
 from ...base.symbolic.recorded import RecordedFunction
 from ...models import lines, linkage, quasi_static
-from .numbers import SHARES, Numbers, Plan
+from .numbers import SHARES, Plan
 
 PASSES = 2
 """Passes for friction, which depends on the pressures, and pressures, which depend on friction."""
@@ -102,9 +101,7 @@ def sample(plan: Plan, u: Mapping[str, Array], s: Mapping[str, Array]) -> dict[s
     return results
 
 
-def _kinematics(
-    plan: Plan, u: Mapping[str, Array], s: Mapping[str, Array]
-) -> tuple[Array, Array]:
+def _kinematics(plan: Plan, u: Mapping[str, Array], s: Mapping[str, Array]) -> tuple[Array, Array]:
     """Piston position and lever arm; the arm is 1 for a cycle of position and force."""
     if plan.linkage:
         at = linkage.linkage(

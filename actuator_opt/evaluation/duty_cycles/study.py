@@ -29,7 +29,7 @@ ENERGIES: Mapping[str, str] = {
 class WorstSample(NamedTuple):
     """The sample of a cycle at which a result is worst."""
 
-    index: int
+    sample: int
     time: float
     """Time of the file [s]."""
     value: float
@@ -82,7 +82,7 @@ class DutyStudy:
     unknown: Mapping[str, str]
     """Parts that are not assessed for fatigue, with the reason."""
     notes: tuple[str, ...]
-    """What the results assume."""
+    """Assumptions behind the results."""
 
     def to_dict(self) -> dict[str, Any]:
         """JSON data."""
@@ -99,7 +99,7 @@ NOTES = (
     "the torques or forces of a cycle contain the inertia of the load: load.mass and load.inertia "
     "are not added",
 )
-"""What all duty cycles assume."""
+"""Assumptions of all duty cycles."""
 
 _WORST: Mapping[str, tuple[str, float]] = {
     "share": ("share", -1.0),
@@ -117,7 +117,9 @@ _WORST: Mapping[str, tuple[str, float]] = {
 """Worst samples by name: the trace, and 1 for its least or -1 for its largest value."""
 
 
-def study(models: CycleModels, numbers: npt.NDArray[np.float64], notes: tuple[str, ...]) -> DutyStudy:
+def study(
+    models: CycleModels, numbers: npt.NDArray[np.float64], notes: tuple[str, ...]
+) -> DutyStudy:
     """The duty cycles of one design at its numbers (numbers,)."""
     results = dict(zip(models.places, models(numbers[:, None])[:, 0].tolist(), strict=True))
     named = dict(zip(models.names, numbers.tolist(), strict=True))
