@@ -75,7 +75,9 @@ def test_force_lacks_at_the_sample_of_the_largest_need():
     results = ao.evaluate(actuator)
     walk = results.duty.cycles[0]
     at = walk.worst["share"]
-    assert f"walk: at {at.time:.4g} s (sample {at.index}) too little force" in shortfall.reason
+    index = int(np.argmax(walk.traces["needed"]))
+    assert at.time == walk.record.time[index]
+    assert f"walk: at {at.time:.4g} s (sample {index}) too little force" in shortfall.reason
     assert f"{-walk.worst['reserve'].value:.0f} N less than the load needs" in shortfall.reason
     needed = results.metrics["duty_supply_needed"].value
     cure = next(x for x in shortfall.remedies if x.path == "supply.pressure")
