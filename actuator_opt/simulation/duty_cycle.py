@@ -258,6 +258,13 @@ class CycleComparison:
                 f"the position differs from that of the cycle by up to {share:.2g} % of its "
                 "travel: work and flow differ as well; a higher gain follows closer"
             )
+        opening = next(row for row in self.rows if row.name == "duty_opening").quasi_static
+        if opening > 1:
+            needed = f"by {100 * opening:.3g} %" if np.isfinite(opening) else "more than fully"
+            yield (
+                f"by the quasi-static model the valve would have to open {needed}: the supply "
+                f"cannot move {self.cycle} as stated, and the position falls behind"
+            )
         if self.change is not None and abs(self.change) > REPEATED:
             yield (
                 f"the supply energy still changes by {100 * self.change:.2g} % from one period to "

@@ -279,6 +279,7 @@ class _Model:
 
     def __init__(self, subject: PreparedDesign, limits: Mapping[str, tuple[Sense, float]]) -> None:
         self._subject, self._limits = subject, limits
+        self._known = self._faults({})  # a search that found no design may leave contradictions
         results = duty_results(subject, subject.values()).metrics
         self.damage = {
             place: float(np.ravel(x)[0]) for place, x in results.get("duty_fatigue", {}).items()
@@ -346,11 +347,15 @@ class _Model:
         if variable is not None and not variable.lower <= value <= variable.upper:
             side = "upper" if value > variable.upper else "lower"
             changes[f"variables.{path}.{side}"] = value
+        return self._faults(changes) <= self._known
+
+    def _faults(self, changes: Mapping[str, float | str | None]) -> frozenset[str | None]:
+        """PATHs of the values that contradict each other after changes."""
         try:
             with_values(self._subject.design, changes, metrics=self._subject.quantities)
-        except InputError:
-            return False
-        return True
+        except InputError as error:
+            return frozenset(fault.path for fault in error.diagnostics)
+        return frozenset()
 
 
 def _outward(value: float, digits: int, *, up: bool) -> float:
