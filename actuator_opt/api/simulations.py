@@ -17,7 +17,7 @@ from ..design import Design, pairs
 from ..studies.plant import plant
 from .actuator import Actuator, Result, as_actuator
 from .records import Units
-from .reports import ReportArguments, ReportPlace, page_of
+from .reports import ReportArguments, ReportPlace, page_of, published
 
 if TYPE_CHECKING:
     from ..design.scenario import LoadedScenario, Scenario
@@ -211,7 +211,7 @@ def simulate(
     verify : whether to integrate again by another method and compare the results
     margins : whether to compute the margins of the control loop even if its gain is stated; they
         are always computed for a gain that is tuned by them
-    method : integration method: "lsoda" (the fastest), "cvodes" (extra ``fast``) or "radau"
+    method : integration method: "lsoda" (the faster) or "radau"
 
     Returns
     -------
@@ -508,7 +508,8 @@ def write_simulation(
         raise UsageError(Diagnostic(message, "give scenario=read_scenario(...)"))
     simulation = with_margins(simulation, scenario.inputs()[1])
     origin, place = _page(scenario, simulation, "", paper)
-    blocks = [] if measured is None else measured.blocks()
+    blocks = published(simulation)
+    blocks += [] if measured is None else measured.blocks()
     blocks += [] if sensitivities is None else sensitivity_blocks(sensitivities)
     record = None if measured is None else drawn(measured.overlay)
     report = page(simulation, measured=record, extra=blocks)

@@ -111,6 +111,7 @@ INPUTS = _table("""
  thread_diameter      | d_t    | length      | mm   | 1     | 500   | nominal thread diameter
  thread_pitch         | P      | length      | mm   | 0.2   | 12    | thread pitch
  diameter             | d      | length      | mm   | 0.5   | 1000  | diameter
+ line_diameter        | d      | length      | mm   | 0.5   | 1000  | inner diameter of a line
  volume               | V      | volume      | ml   | 0     | 100000| volume
  pressure             | p      | pressure    | bar  | 0     | 1500  | gauge pressure
  working_pressure     | p_s    | pressure    | bar  | 1     | 1500  | supply gauge pressure

@@ -207,9 +207,9 @@ _MARKS = {"design": "cylinder", "scenario": "design"}
 
 
 def is_scenario(source: str | Path) -> bool:
-    """Whether a file, or a text of several lines, is a scenario."""
+    """Whether a file, or a text of several lines, is a scenario, even if it names no design."""
     data = parse(*opened(source, "design")).data
-    return _MARKS["scenario"] in data and _MARKS["design"] not in data
+    return (_MARKS["scenario"] in data or "duration" in data) and _MARKS["design"] not in data
 
 
 def _require_kind(document: Document) -> None:

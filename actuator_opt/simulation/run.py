@@ -33,7 +33,7 @@ from .linear import CAUSES, UNHELD, Tuned, tune
 from .result import Second, SignalLabel, Simulation
 from .system import Compiled
 
-SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "cvodes": "radau", "radau": "lsoda"}
+SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "radau": "lsoda"}
 """For each integration method, the second method that checks it."""
 COMPARED = (
     "position", "speed", "pressure_a", "pressure_b", "shaft_speed", "shaft_angle", "spool",
@@ -384,13 +384,14 @@ def _reference_outside_stroke(actuator: Plant, signals: Mapping[str, Array]) -> 
 
 def spec_of(subject: PreparedDesign, scenario: Scenario) -> str:
     """Hash of all inputs that affect the result."""
-    content = scenario.model_dump(mode="json")
+    content = scenario.model_dump(mode="json", exclude={"reproduces"})
     if content["load"]["cylinder"]:
         leave_out_unset(content["load"]["cylinder"]["valve"])
     for block, key in (
         (content["control"], "dead_band_jump"),
         (content["control"], "feed_forward"),
         (content, "cycle"),
+        (content, "unset"),
     ):
         if block and not block[key]:  # unset fields are left out: hashes of older runs stay valid
             del block[key]

@@ -277,7 +277,7 @@ def plant(subject: PreparedDesign) -> Plant:
 def _plant(subject: PreparedDesign) -> Plant:
     stated = subject.design.ideal
     if stated is not None:  # the parts that complete the file are never shown
-        design = subject.design.model_copy(update={"ideal": None})
+        design = subject.design.model_copy(update={"ideal": None, "linkage": None})
         return _idealised(plant(replace(subject, design=design)), subject.design, stated)
     v = subject.values()
     done = compute(subject, v)
@@ -350,6 +350,7 @@ def _idealised(whole: Plant, design: Design, stated: Ideal) -> Plant:
                 travel=design.cylinder.stop_travel,
             )
         ),
+        closed_length=stated.closed_length or 0.0,
     )
 
 

@@ -194,6 +194,42 @@ def test_a_unit_needs_a_scenario(tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+def test_a_scenario_alone_brings_its_design(tmp_path):
+    """The unit equals that of `--scenario` with the same design; `--set` changes either file."""
+    (tmp_path / "one").mkdir()
+    own = exported(SERVO, tmp_path / "one")
+    result = run("export", SERVO, "--format", "fmu", "--out", tmp_path / "two")
+    assert result.code == 0
+    assert (tmp_path / "two" / own.name).read_bytes() == own.read_bytes()
+    (again,) = ao.export(ao.read_scenario(SERVO), formats=["fmu"], folder=tmp_path / "three")
+    assert again.path.read_bytes() == own.read_bytes()
+    sets = ("--set", "load.mass=90 kg", "--set", "duration=3 s")
+    assert run("export", SERVO, "--format", "c", *sets, "--out", tmp_path / "four").code == 0
+    (changed,) = (tmp_path / "four").glob("*.c")
+    files = ao.export(SERVO, formats=["c"], folder=tmp_path / "five")
+    assert changed.read_bytes() != next(f.path for f in files if f.path.suffix == ".c").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("text", "words", "code", "message"),
+    [
+        ("name: x\nduration: 1 s\n", (), 3, 'design: missing; add e.g. "design: knee.yaml"'),
+        (f"name: x\nduration: 1 s\ndesign: {COURSE}\n", ("--format", "step"), 2,
+         "the equations of a scenario have no STEP file; use --format c or fmu"),
+        (f"name: x\nduration: 1 s\ndesign: {COURSE}\n", ("--plugin", __file__), 2,
+         "--plugin: not with a scenario alone; give the design, and the scenario by --scenario"),
+    ],
+)  # fmt: skip
+def test_a_scenario_alone_that_cannot_be_written(text, words, code, message, tmp_path):
+    """One line with what to write, no file."""
+    file = tmp_path / "run.yaml"
+    file.write_text(text, "utf-8")
+    result = run("export", file, "--format", "fmu", *words, "--out", tmp_path / "out")
+    assert result.code == code
+    assert message in result.err
+    assert not (tmp_path / "out").exists()
+
+
 # ---- against the simulation ----
 
 

@@ -11,7 +11,8 @@ import numpy.typing as npt
 from ...base.dataclass import dataclass
 from ...design.cycle_record import CycleRecord
 from ..values import plain
-from .results import CycleModels, Place, Track
+from .results import CycleModels, Place
+from .samples import Track
 
 Trace = npt.NDArray[np.float64]
 
