@@ -22,7 +22,7 @@ from ..rendering import text
 from ..rendering.blocks import Block, Cell, Column, Notes, Pair, Row, Status, Table
 from ..rendering.terminal import PAINTS
 from ..rendering.text import DASH, sentence
-from . import limits, optimum, report
+from . import duty, limits, optimum, report
 
 MOST_LIMITS = 11
 """Largest number of limits in a table: misses first, then the smallest margins."""
@@ -74,7 +74,7 @@ def blocks(
             [*_dimensions(optimisation), *_bounds(optimisation)],
         ]
     foot = [*_outcomes(subject), *_doubts(subject), *_next(subject, again, written=written)]
-    groups = [[*_head(subject)], *body, foot]
+    groups = [[*_head(subject)], *body, duty.card_blocks(evaluation), foot]
     return [Pair([group], tight=True) for group in groups if group]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,6 +12,8 @@ import numpy.typing as npt
 from ...base.dataclass import dataclass
 from ...design.cycle_record import CycleRecord
 from ..values import plain
+from .force_speed import ForceLimit, force_limits
+from .numbers import CYCLE
 from .results import CycleModels, Place, Track
 
 Trace = npt.NDArray[np.float64]
@@ -26,7 +29,14 @@ ENERGIES: Mapping[str, str] = {
 """Parts of the energy from the supply; it is their sum, with the work of the load subtracted."""
 
 
-class WorstSample(NamedTuple):
+STATE = (
+    "position", "arm", "force", "speed", "supply", "pressure_a", "pressure_b", "opening", "flow",
+)  # fmt: skip
+"""Traces that describe the actuator at a sample."""
+
+
+@dataclass(frozen=True, slots=True)
+class WorstSample:
     """The sample of a cycle at which a result is worst."""
 
     index: int
@@ -49,6 +59,12 @@ class CycleStudy:
     traces: Mapping[str, Trace]
     energies: Mapping[str, float]
     """Energy per cycle [J] by the names in `ENERGIES`, and "supply_energy"."""
+    flow_mean: float
+    """Mean flow from the supply [m^3/s]."""
+    way: float
+    """Distance that the piston moves per cycle [m]."""
+    limits: tuple[ForceLimit, ...]
+    """Limits in the plane of force and speed, at the least supply pressure of the cycle."""
     worst: Mapping[str, WorstSample]
     damage: Mapping[str, float]
     """Fatigue damage of every part by this cycle in a life; empty without repeats."""
@@ -56,8 +72,25 @@ class CycleStudy:
     """Contact pressure times way of every seal per cycle [N/m]."""
     repeats: float | None
 
+    @property
+    def efficiency(self) -> float | None:
+        """Work on the load divided by the energy from the supply; None if nothing moves."""
+        supplied = self.energies["supply_energy"]
+        return self.energies["work_out"] / supplied if self.way > 0 and supplied > 0 else None
+
+    def state(self, index: int) -> dict[str, float]:
+        """Angle and torque of the joint if there is one, and traces at a sample, by name."""
+        values: dict[str, float] = {}
+        if self.record.joint:
+            torque = self.traces["force"][index] * self.traces["arm"][index]
+            angle = float(self.record.motion[index])
+            values = {"joint_angle": angle, "joint_torque": float(torque)}
+        return values | {
+            name: float(self.traces[name][index]) for name in STATE if name in self.traces
+        }
+
     def to_dict(self) -> dict[str, Any]:
-        """JSON data: sums and worst samples, without traces."""
+        """JSON data: sums, worst samples with the state there, and limits; without traces."""
         data: dict[str, Any] = plain(
             {
                 "name": self.name,
@@ -65,13 +98,33 @@ class CycleStudy:
                 "samples": len(self.time),
                 "reversals": self.record.reversals,
                 "energies": self.energies,
-                "worst": {key: sample._asdict() for key, sample in self.worst.items()},
+                "efficiency": self.efficiency,
+                "flow_mean": self.flow_mean,
+                "way": self.way,
+                "worst": {
+                    key: asdict(sample) | {"state": self.state(sample.index)}
+                    for key, sample in self.worst.items()
+                },
+                "force_limits": [limit.to_dict() for limit in self.limits],
                 "damage": self.damage,
                 "severity": self.severity,
                 "warnings": [*self.record.notes, *self.record.warnings],
             }
         )
         return data
+
+
+class LinkageSize(NamedTuple):
+    """Lengths and angle of a linkage, as in `models.linkage`, and of the actuator in it."""
+
+    base_radius: float
+    """Joint axis to the fixed pivot [m]."""
+    crank_radius: float
+    """Joint axis to the crank pin [m]."""
+    angle_offset: float
+    """Angle between both radii at joint angle zero [rad]."""
+    closed_length: float
+    """Retracted actuator, pin to pin [m]."""
 
 
 @dataclass(frozen=True)
@@ -83,11 +136,21 @@ class DutyStudy:
     """Parts that are not assessed for fatigue, with the reason."""
     notes: tuple[str, ...]
     """What the results assume."""
+    return_pressure: float
+    """Gauge pressure of the return line [Pa]."""
+    stroke: float
+    """Stroke of the cylinder [m]."""
+    opening_limit: float | None
+    """Largest opening of the valve that a cycle may need; None without a valve."""
+    linkage: LinkageSize | None
+    """Lengths of the linkage; None without one."""
 
     def to_dict(self) -> dict[str, Any]:
         """JSON data."""
         return {
             "cycles": [cycle.to_dict() for cycle in self.cycles],
+            "opening_limit": self.opening_limit,
+            "linkage": None if self.linkage is None else self.linkage._asdict(),
             "not_assessed_for_fatigue": dict(self.unknown),
             "notes": list(self.notes),
         }
@@ -117,7 +180,9 @@ _WORST: Mapping[str, tuple[str, float]] = {
 """Worst samples by name: the trace, and 1 for its least or -1 for its largest value."""
 
 
-def study(models: CycleModels, numbers: npt.NDArray[np.float64], notes: tuple[str, ...]) -> DutyStudy:
+def study(
+    models: CycleModels, numbers: npt.NDArray[np.float64], notes: tuple[str, ...]
+) -> DutyStudy:
     """The duty cycles of one design at its numbers (numbers,)."""
     results = dict(zip(models.places, models(numbers[:, None])[:, 0].tolist(), strict=True))
     named = dict(zip(models.names, numbers.tolist(), strict=True))
@@ -125,8 +190,24 @@ def study(models: CycleModels, numbers: npt.NDArray[np.float64], notes: tuple[st
     for name, track in models.tracks(numbers).items():
         record = models.records[name]
         time = record.time * named[f"{name}|time_scale"]
-        cycles.append(_cycle(name, record, time, track, results, named.get(f"{name}|repeats")))
-    return DutyStudy(tuple(cycles), dict(models.plan.unknown), (*NOTES, *notes))
+        u = {key: named[key] for key in models.common}
+        u |= {key: named[f"{name}|{key}"] for key in CYCLE}
+        u["level"] = float(track.real("supply").min())
+        limits = force_limits(models.plan, u, track.real("speed"))
+        repeats = named.get(f"{name}|repeats")
+        cycles.append(_cycle(name, record, time, track, results, limits, repeats))
+    linkage = None
+    if models.plan.linkage:
+        linkage = LinkageSize(**{key: named[key] for key in LinkageSize._fields})
+    return DutyStudy(
+        cycles=tuple(cycles),
+        unknown=dict(models.plan.unknown),
+        notes=(*NOTES, *notes),
+        return_pressure=named["drain"],
+        stroke=named["stroke"],
+        opening_limit=named["opening_limit"] if models.plan.valve else None,
+        linkage=linkage,
+    )
 
 
 def _cycle(
@@ -135,6 +216,7 @@ def _cycle(
     time: Trace,
     track: Track,
     results: Mapping[Place, float],
+    limits: tuple[ForceLimit, ...],
     repeats: float | None,
 ) -> CycleStudy:
     own = {place: value for place, value in results.items() if place.cycle == name}
@@ -154,6 +236,9 @@ def _cycle(
         time=time,
         traces=traces,
         energies={key: own[Place(name, key)] for key in ("supply_energy", *ENERGIES)},
+        flow_mean=own[Place(name, "volume")] / own[Place(name, "duration")],
+        way=own[Place(name, "way")],
+        limits=limits,
         worst=worst,
         damage=by_place("damage"),
         severity=by_place("severity"),
