@@ -46,13 +46,15 @@ from .duty_figures import (
     efficiency_of,
     figure,
     time_of,
+    trace_of,
     value_of,
 )
 
 MOST_SHEETS = 6
 """Largest number of cycles with a figure of their own: those that need most of their supply."""
-MOST_PARTS = 10
-"""Largest number of parts in the table of fatigue."""
+FEWEST_PARTS, MOST_PARTS = 3, 10
+"""Least and largest number of parts in the table of fatigue; between them, only parts whose bar is
+not empty are listed."""
 MOST_ON_CARD = 3
 """Largest number of cycles on the card."""
 LEAST_DAMAGE = 1e-9
@@ -105,7 +107,7 @@ def series(evaluation: Evaluation) -> list[Series]:
     for i, seal in enumerate(next((c.severity for c in cycles), {})):
         named.append((f"contact_pressure of the {seal}", f"contact{i}", PRESSURE))
     for name, trace, quantity in named:
-        parts = [_trace(cycle, trace) for cycle in cycles]
+        parts = [trace_of(cycle, trace) for cycle in cycles]
         if all(part is None for part in parts):
             continue
         values = np.concatenate(
@@ -126,7 +128,7 @@ def card_blocks(evaluation: Evaluation) -> list[Block]:
         return []
     shown = _shown(study, MOST_ON_CARD)
     lines: list[Block] = [replace(_overview(study, shown), title="", note="")]
-    words = [f"{clean(cycle.name)}: {_split_words(cycle)}" for cycle in shown]
+    words = [f"energy of {clean(cycle.name)}: {_split_words(cycle)}" for cycle in shown]
     if hidden := len(study.cycles) - len(shown):
         words.append(f"{hidden} more cycle{'' if hidden == 1 else 's'} (-v)")
     worst = _worst_part(evaluation)
@@ -175,18 +177,20 @@ def _overview(study: DutyStudy, cycles: Sequence[CycleStudy] | None = None) -> T
         Column("duty cycle", "left", 1.3, least=12),
         Column("duration", "right", drop=8),
         Column("repeats", "right", drop=9),
-        Column("force reserve", "right", style="state"),
-        Column("at", "right", drop=3),
-        Column("opening", "right", drop=2),
-        Column("peak flow", "right", drop=4),
-        Column("mean flow", "right", drop=6),
+        Column("reserve", "right", style="state"),
+        Column("at", "right", drop=2),
+        Column("opening", "right", drop=3),
+        Column("peak, mean flow", "right", drop=4),
         Column("supply", "right", drop=5),
-        Column("efficiency", "right", drop=7),
+        Column("efficiency", "right", drop=6),
     ]
-    note = ""
+    note = "Reserve: least force left to the supply. Supply: energy per cycle."
+    if study.opening_limit is not None:
+        share = limit_text(OPENING, "max", study.opening_limit)[2:]
+        note = note.replace("supply.", f"supply with the valve at most {share} open.", 1)
     if (figures := len(_shown(study))) < len(study.cycles):
-        note = (
-            f"Figures follow for the {figures} cycles that need the largest share of their supply "
+        note += (
+            f" Figures follow for the {figures} cycles that need the largest share of their supply "
             "pressure."
         )
     return Table("Duty cycles", columns, rows, note=note)
@@ -194,6 +198,7 @@ def _overview(study: DutyStudy, cycles: Sequence[CycleStudy] | None = None) -> T
 
 def _overview_row(cycle: CycleStudy) -> Row:
     reserve = cycle.worst["reserve"]
+    peak = FLOW.to_display(cycle.worst["flow"].value)
     cells: list[Cell] = [
         soft(cycle.name),
         f"{number(float(np.ptp(cycle.time)), 3)} s",
@@ -201,8 +206,7 @@ def _overview_row(cycle: CycleStudy) -> Row:
         value_of(FORCE, reserve.value),
         time_of(cycle, reserve.index),
         _opening(cycle),
-        value_of(FLOW, cycle.worst["flow"].value),
-        value_of(FLOW, cycle.flow_mean),
+        f"{number(peak, 3)}, {value_of(FLOW, cycle.flow_mean)}",
         value_of(ENERGY, cycle.energies["supply_energy"]),
         efficiency_of(cycle),
     ]
@@ -264,7 +268,7 @@ def _extremes(study: DutyStudy, cycle: CycleStudy) -> Iterator[_Extreme]:
         yield _Extreme("peak power on the load", "duty_power_peak", power.value, power.index)
     if absorbed.value < 0:
         yield _Extreme(
-            "peak power of the load", "duty_power_absorbed", -absorbed.value, absorbed.index
+            "peak absorbed power", "duty_power_absorbed", -absorbed.value, absorbed.index
         )
 
 
@@ -297,7 +301,7 @@ def _margins(evaluation: Evaluation, study: DutyStudy, cycle: CycleStudy) -> Tab
         ]
         rows.append(Row(cells if joint else [*cells[:4], *cells[5:]], state))
     columns = [
-        Column("worst along the cycle", "left", 1.6, least=18),
+        Column("worst along the cycle", "left", 1.6, least=27),
         Column("result", "right", style="state"),
         Column("limit", "right", drop=2),
         Column("at", "right", drop=1),
@@ -316,11 +320,11 @@ def _split_words(cycle: CycleStudy) -> str:
     parts = balance_of(cycle)
     total = sum(value for _, value in parts if value > 0)
     if total <= 0:
-        return "no energy is used"
-    names = {"work on the load": "work", "return line": "return", "supply": "from the supply"}
+        return "none"
+    names = {"work on the load": "work", "return line": "return"}
     sinks = sorted((part for part in parts if part[1] <= 0), key=lambda part: part[1])
     words = [f"{names.get(name, name)} {per_cent(-value / total)}" for name, value in sinks]
-    return f"energy to {', '.join(words)}"
+    return ", ".join(words)
 
 
 def _energies(cycle: CycleStudy) -> Table:
@@ -356,7 +360,9 @@ def _fatigue(evaluation: Evaluation, study: DutyStudy) -> Iterator[Table]:
     lives = [cycle for cycle in study.cycles if cycle.damage]
     apart = 1 < len(lives) <= 3
     rows: list[Sequence[Cell]] = []
-    for part, damage in ranked[:MOST_PARTS]:
+    listed = sum(damage >= LEAST_DAMAGE for _, damage in ranked)
+    listed = min(max(listed, FEWEST_PARTS), MOST_PARTS)
+    for part, damage in ranked[:listed]:
         cells: list[Cell] = [soft(part), number(damage, 3)]
         if apart:
             cells += [number(cycle.damage.get(part), 3) for cycle in lives]
@@ -368,12 +374,13 @@ def _fatigue(evaluation: Evaluation, study: DutyStudy) -> Iterator[Table]:
         *(Column(clean(cycle.name), "right", drop=2) for cycle in lives if apart),
         Column("", "left", "40mm", drop=1),
     ]
-    notes = ["Miner's sum: 1 is the end of the life. Bar: logarithmic, from 10⁻⁹ to 1."]
+    low = number(LEAST_DAMAGE, 1)
+    notes = [f"Miner's sum: 1 is the end of the life. Bar: logarithmic, from {low} to 1."]
     required = [row for row in evaluation.requirements if row.metric == "duty_fatigue"]
     notes += [f"Required: {limit_text(DAMAGE, row.sense, row.limit)}." for row in required]
-    if len(ranked) > MOST_PARTS:
-        largest = number(ranked[MOST_PARTS][1], 3)
-        notes.append(f"{len(ranked) - MOST_PARTS} more parts have at most {largest}.")
+    if len(ranked) > listed:
+        largest = number(ranked[listed][1], 3)
+        notes.append(f"{len(ranked) - listed} more parts have at most {largest}.")
     notes += [f"Not assessed: {clean(part)}, {why}." for part, why in study.unknown.items()]
     if unstated := [cycle for cycle in study.cycles if cycle.repeats is None]:
         named = ", ".join(clean(cycle.name) for cycle in unstated)

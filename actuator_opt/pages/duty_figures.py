@@ -16,7 +16,7 @@ from ..metrics import METRICS
 from ..rendering.axes import even_range, time_words
 from ..rendering.blocks import Chart, TerminalFigure, clean
 from ..rendering.chart import Axis, Curve, Level, Panel, Points
-from ..rendering.ink import BLACK, BLUE, GREY, PALE, WHITE, Ink, Point
+from ..rendering.ink import BLACK, BLUE, GREY, WHITE, Ink, Point
 from ..rendering.text import DASH, limit_text, number, unit_text, value_text
 from ..rendering.waterfall import Step, waterfall
 from .section import choose_scale, scale_bar
@@ -25,6 +25,8 @@ WIDTHS = (96.0, 78.0)
 """Widths of the traces over time, and of what is beside them [mm]."""
 STRIP, FOOT = 18.6, 8.4
 """Height of a trace over time, and of the time axis below the last [mm]."""
+FAINT = "#a9b4bc"
+"""Colour of the linkage at both ends of a cycle."""
 POSE = 46.0
 """Largest height of the linkage [mm]."""
 BEYOND = 1.15
@@ -77,10 +79,12 @@ def time_of(cycle: CycleStudy, index: int) -> str:
 
 
 def value_of(quantity: Quantity, value: float | None) -> str:
+    """A value with three digits and its unit."""
     return value_text(quantity, value, 3)
 
 
 def efficiency_of(cycle: CycleStudy) -> str:
+    """Efficiency of a cycle, or why it has none."""
     if cycle.way == 0:
         return "nothing moves"
     return DASH if cycle.efficiency is None else value_of(EFFICIENCY, cycle.efficiency)
@@ -125,10 +129,11 @@ def _profile(title: str, cycle: CycleStudy, values: Array) -> TerminalFigure:
 def _note(study: DutyStudy, cycle: CycleStudy) -> str:
     reserve = cycle.worst["reserve"]
     state = cycle.state(reserve.index)
+    time, piston = time_of(cycle, reserve.index), value_of(LENGTH, state["position"])
     joint = f"joint at {value_of(ANGLE, state['joint_angle'])}, " if cycle.record.joint else ""
     words = [
-        f"Vertical line: least force reserve, {value_of(FORCE, reserve.value)} at "
-        f"{time_of(cycle, reserve.index)} ({joint}piston at {value_of(LENGTH, state['position'])}).",
+        f"Vertical line: least force reserve, {value_of(FORCE, reserve.value)} at {time} "
+        f"({joint}piston at {piston}).",
         "Force is that on the load; positive pushes out.",
     ]
     if study.opening_limit is None:
@@ -286,9 +291,9 @@ def _planes(study: DutyStudy, cycle: CycleStudy) -> list[Panel]:
         points=[mark],
     )
     shares = np.ptp(force) / (high - low), np.ptp(speed) / (span[1] - span[0] or 1.0)
-    if min(shares) > ENLARGED or not cycle.limits:
+    if min(shares) > ENLARGED or cycle.way == 0 or not cycle.limits:
         return [whole]
-    marks = [mark]
+    marks = []
     for key, words in (
         ("power", "peak power"),
         ("absorbed", "peak absorbed"),
@@ -303,7 +308,7 @@ def _planes(study: DutyStudy, cycle: CycleStudy) -> list[Panel]:
         Axis(label, range=even_range(ends[:2], zero=True)),
         Axis(range=even_range([float(force.min()), float(force.max())], zero=True)),
         curves=[replace(own, words="", weight="normal")],
-        points=marks,
+        points=[*marks, mark],
         share=0.7,
     )
     return [whole, enlarged]
@@ -391,9 +396,9 @@ def _pose(lengths: Mapping[str, float], linkage: LinkageSize, cycle: CycleStudy)
     words = f"lever arm {arm} (dashed)"
     ink.text(ink.width, 4.0, words, anchor="right", color=GREY)
     sweep = np.linspace(float(angle.min()), float(angle.max()), 33)
-    ink.line(*(place(_pose_at(linkage, float(x)).crank) for x in sweep), stroke=PALE, pen=0.25)
+    ink.line(*(place(_pose_at(linkage, float(x)).crank) for x in sweep), stroke=FAINT, pen=0.25)
     for pose in poses:
-        ink.line(place(pose.pivot), place(pose.crank), place((0.0, 0.0)), stroke=PALE, pen=0.25)
+        ink.line(place(pose.pivot), place(pose.crank), place((0.0, 0.0)), stroke=FAINT, pen=0.25)
     _draw_pose(ink, worst, lengths, linkage, place, factor)
     scale_bar(ink, factor, ink.height - 2.4)
     ink.text(ink.width, ink.height - 2.4, f"SCALE {paper}:{real}", anchor="right", bold=True)
