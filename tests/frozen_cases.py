@@ -324,6 +324,16 @@ def _others() -> Iterator[Case]:
             step("init --out other.yaml", json=True, looks=0),
         ),
     )
+    joints = (f"init --cycle designs/cycles/{name}_knee.csv --yes" for name in ("gait", "run"))
+    yield Case(
+        "init/cycle",
+        (
+            *(step(joint, "--lever-arm", "50 mm", looks=1) for joint in joints),
+            step("init --cycle designs/cycles/flight_control_synthetic.csv --yes", looks=1),
+        ),
+        SEARCHED,
+        6.0,
+    )
     recorded = "--out out --date 2026-01-31"
     yield Case(
         "runs/optimise",

@@ -134,11 +134,18 @@ def read(
         if not isinstance(source, Actuator):
             remedy = "for new values, save it, and read the file with set"
         raise UsageError(Diagnostic(message, remedy))
+    return _read(source, set, plugins)
+
+
+def _read(
+    source: str | Path,
+    set: SetValues,
+    plugins: Plugins,
+    files: Mapping[str, str] | None = None,
+) -> Actuator:
     loaded_plugins = plugins_of(plugins)
     loaded: LoadedDesign = read_design(
-        source,
-        overrides=pairs(set),
-        metrics=with_own(loaded_plugins),
+        source, overrides=pairs(set), metrics=with_own(loaded_plugins), files=files
     )
     return Actuator(loaded.design, loaded.source, loaded_plugins)
 
@@ -149,10 +156,14 @@ def read_as(
     *,
     set: Sequence[Change] = (),
     plugins: Plugins = (),
+    files: Mapping[str, str] | None = None,
 ) -> Actuator:
-    """The design in a text, as if read from a file with that name; parameters as for `read`."""
+    """The design in a text, as if read from a file with that name; parameters as for `read`.
+
+    `files` are the texts of the cycle files that the design names, by name.
+    """
     try:
-        actuator = read(f"{text}\n", set=set, plugins=plugins)
+        actuator = _read(f"{text}\n", set, plugins, files)
     except InputError as error:
         raise InputError(
             [replace(x, file=name if x.file == TEXT else x.file) for x in error.diagnostics]

@@ -66,6 +66,8 @@ def examine(
     faults = _of_models(actuator, without_films(subject), remarks)
     if faults and actuator.plugins:  # a plugin may reject the NaN of a film that is not solved
         faults = _of_models(actuator, subject, remarks)
+    duty = actuator.design.duty
+    remarks += [] if duty is None else duty.warnings
     return Examined(faults, [] if faults else [*remarks, *_out_of_proportion(subject)])
 
 

@@ -194,7 +194,8 @@ def _moved_by(name: str, actuator: Actuator) -> dict[str, float]:
 
 
 def _of_metric(entry: Entry, actuator: Actuator | None) -> Explanation:
-    from ..metrics.table import CRITERION, ROWS
+    from ..metrics.metric_row import CRITERION
+    from ..metrics.table import ROWS
 
     row = ROWS.get(entry.name)
     value, now, movers, extreme = None, "", {}, ""

@@ -25,7 +25,8 @@ requirement | A smallest (min) or largest (max) value of a metric that the desig
 check | A line of the professional check list: a metric with a usual limit and its source. `optimise` meets all checks except advice and waived ones. | our choice | requirement, waiver
 advice | A line of the check list that is shown and gives a warning, but does not bind the optimiser. A requirement on the same metric binds it; a waiver accepts it. | our choice | check, waiver, requirement
 waiver | A check that does not apply, with the reason, under `waivers` in the design file. Reports print it. | our choice | check
-load case | A duty of the actuator: direction, force or joint torque, speed, position, temperature, side load. Every requirement holds in every load case. | our choice | load_cases, requirement
+load case | A single state that the actuator must carry: direction, force or joint torque, speed, position, temperature, side load. Every requirement holds in every load case. | our choice | load_cases, requirement
+duty cycle | A course of motion and load over time from a CSV file, with its repeats in a life, under `duty.cycles` in the design file. A load case is one state; a cycle has thousands. | our choice | load case, duty
 bound / bounds | Smallest or largest value that a variable may have, under `variables` in the design file. An optimum at a bound may improve if the bound is wider. | our choice | variable, optimum
 variable | A number that the optimiser may move between two bounds, under `variables` in the design file. All other numbers are fixed. | our choice | objective, choices
 objective | The metric that `optimise` makes as small or as large as possible, or a weighted sum of metrics, each divided by its value in the file. | our choice | variable, optimum

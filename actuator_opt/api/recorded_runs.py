@@ -72,6 +72,7 @@ _BODY: Form = {
         "text": str,
         "set": [[str]],
         "unset?": [str],
+        "files?": {"*": str},
         "plugins": [{"file": str, "sha256": str}],
     },
     "versions": {"*": str},
@@ -133,6 +134,7 @@ _RUN: Form = {
     "source_name": str,
     "date?": (str, None),
     "spec_hash?": str,
+    "files?": {"*": str},
     "result?": (
         {
             "status?": (str, None),
@@ -320,6 +322,7 @@ def record_run(
             "name": file_name(actuator.design, source),
             "text": to_yaml(actuator.design) if source is None else source.text,
             **_changes(source),
+            **_files(actuator),
             "plugins": _plugins(actuator.plugins),
         },
         "versions": _versions(),
@@ -327,6 +330,14 @@ def record_run(
     head, body = common_head | dict(head), common_body | dict(body)
     path = run_store.write(place, f"{started:%Y%m%d-%H%M%S}", head, body)
     return Run(path.stem, path, head, body)
+
+
+def _files(actuator: Actuator) -> dict[str, dict[str, str]]:
+    """Texts of the cycle files that a design names, if it names any."""
+    from ..design.cycle_reader import texts_of
+
+    files = texts_of(actuator.design)
+    return {"files": files} if files else {}
 
 
 def _changes(source: FileSource | None) -> dict[str, Any]:

@@ -137,7 +137,8 @@ def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
             [replace(x, file=x.file or str(path)) for x in error.diagnostics]
         ) from None
     loaded_plugins = plugins_of(plugins)
-    actuator = read_as(attachment.source, name, set=pairs, plugins=loaded_plugins)
+    files = run.get("files")
+    actuator = read_as(attachment.source, name, set=pairs, plugins=loaded_plugins, files=files)
     subject, tables = _again(verb, options, actuator)
     recorded = run.get("result")
     differences: dict[str, tuple[Any, Any]] | None

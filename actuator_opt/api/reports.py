@@ -185,6 +185,7 @@ def origin(
     design: Design, source: FileSource | None, *, command: str = "", date: str | None = None
 ) -> Origin:
     """The origin stated on a page: the file as read, or else the design's text."""
+    from ..design.cycle_reader import texts_of
     from ..design.writer import to_yaml
     from ..evaluation.build import spec_hash
     from ..rendering.blocks import Origin
@@ -195,6 +196,7 @@ def origin(
         command=command,
         spec_hash=spec_hash(prepare(design)),
         date=date or date_from_environment(),
+        files=texts_of(design),
     )
 
 
@@ -246,17 +248,20 @@ def save(
 ) -> Path:
     """Write a design file with full precision; comments and order are kept if possible.
 
+    Names of cycle files become relative to the folder of the new file.
+
     For an optimisation, the design to build is written, and the first line marks the file as an
     optimum. This mark is omitted for a design with custom metrics, which may change independently
     of the file.
     """
     from ..base.files import write_text
+    from ..design.cycle_reader import moved
     from ..design.writer import to_yaml
     from ..optimisation.result import Optimisation
 
-    metrics = None if source is None else source.metrics
+    metrics, folder = None if source is None else source.metrics, Path(path).parent
     if isinstance(design, Optimisation):
-        text = to_yaml(design.best, source, metrics=metrics)
+        text = to_yaml(moved(design.best, folder), source, metrics=metrics)
         if design.optimum and design.best_evaluation.metrics.keys() <= METRICS.keys():
             text = stamped(text, design.best_evaluation.spec_hash)
         return write_text(Path(path), text)
@@ -268,4 +273,4 @@ def save(
         source = source or design.source
         metrics = with_own(design.plugins)
         design = design.design
-    return write_text(Path(path), to_yaml(design, source, metrics=metrics))
+    return write_text(Path(path), to_yaml(moved(design, folder), source, metrics=metrics))

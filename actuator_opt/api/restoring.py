@@ -84,7 +84,13 @@ def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
                 *((path, None) for path in source.get("unset", ())),
                 *((path, value) for path, value in source["set"]),
             ]
-            actuator = read_as(source["text"], source["name"], set=sets, plugins=loaded_plugins)
+            actuator = read_as(
+                source["text"],
+                source["name"],
+                set=sets,
+                plugins=loaded_plugins,
+                files=source.get("files"),
+            )
             if kind == "sweep":
                 doubts = tuple(changed_plugins(run, loaded_plugins))
                 return Restored(run, kept_sweep(run, actuator), actuator, doubts)

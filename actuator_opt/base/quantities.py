@@ -166,8 +166,8 @@ INPUTS = _table("""
  precharge            | p_0    | pressure    | bar  | 0.1   | 1000  | gas precharge, gauge
  polytropic_index     | n      | ratio       | -    | 1     | 3     | polytropic index of the gas
  repeats              | N      | ratio       | -    | 0     | 1e12  | number of repeats
- scale                | k      | ratio       | -    | 0.001 | 1000  | factor
- phase                | phi    | ratio       | %    | 0     | 100   | delay, as a share of the period
+ scale_factor         | k      | ratio       | -    | 0.001 | 1000  | factor
+ cycle_phase          | phi    | ratio       | %    | 0     | 100   | delay, as a share of the period
  sample_count         | n      | count       | -    | 4     | 20000 | number of samples
  opening_limit        | y_lim  | ratio       | %    | 1     | 100   | largest opening of the valve
  service_time         | t      | time        | h    | 0     | 1e6   | time in service
@@ -210,6 +210,9 @@ MATERIAL_PROPERTIES = _table("""
  thermal_expansion    | alpha  | per_temperature | ppm/K | -20 | 500  | thermal expansion
  thermal_expansion_1  | alpha_1| per_temperature | ppm/K | -20 | 500  | thermal expansion along the fibre
  thermal_expansion_2  | alpha_2| per_temperature | ppm/K | -20 | 500  | thermal expansion across the fibre
+ thermal_conductivity | lambda | thermal_conductivity | W/(m*K) | 0.01 | 2500 | thermal conductivity; of a ply along the fibre (warp)
+ thermal_conductivity_through | lambda_t | thermal_conductivity | W/(m*K) | 0.01 | 2500 | thermal conductivity through the ply
+ specific_heat        | c_p    | specific_heat | J/(kg*K) | 50 | 10000 | specific heat
  minimum_thickness    | t_min  | length      | mm     | 0     | 50    | minimum thickness that can be made
  minimum_angle        | theta_min | angle    | deg    | 0     | 90    | smallest winding angle that can be made
  temperature_knockdown| k_T    | ratio       | -      | 0.05  | 1     | strength at the knock-down temperature, as a share of that at 23 degC

@@ -162,7 +162,7 @@ def _batch(sheet: Sheet, lines: Sequence[str], at: Array, places: Sequence[int])
             out[:, k] = np.fromiter(map(float, column), float, len(column))
         except ValueError:
             out[:, k] = [
-                _number(cell, sheet.name, line)
+                _number(cell, sheet, place, line)
                 for cell, line in zip(column, at.tolist(), strict=True)
             ]
     return out
@@ -199,7 +199,7 @@ def _even(sheet: Sheet, lines: Sequence[str], at: Array) -> Iterator[str]:
         yield from (cell.replace(",", ".") for cell in cells[:named])
 
 
-def _number(cell: str, name: str, line: int) -> float:
+def _number(cell: str, sheet: Sheet, place: int, line: int) -> float:
     cell = cell.strip()
     try:
         if "_" not in cell:
@@ -207,11 +207,13 @@ def _number(cell: str, name: str, line: int) -> float:
     except ValueError:
         if cell.lower() in ABSENT:
             return float("nan")
-    message, remedy = f'"{shown(cell)}" is not a number', "write a number, or leave the cell empty"
+    column = f'in column "{shown(named_cell(sheet.header[place])[0])}"'
+    message = f'"{shown(cell)}" {column} is not a number'
+    remedy = "write a number, or leave the cell empty"
     if re.match(r"\d+[:/-]\d+", cell):
-        message = f'"{shown(cell)}" is a clock time or a date'
+        message = f'"{shown(cell)}" {column} is a clock time or a date'
         remedy = "write the time as a number, counted from the start of the record, e.g. in s"
-    raise InputError(Diagnostic(message, remedy, file=name, line=line))
+    raise InputError(Diagnostic(message, remedy, file=sheet.name, line=line))
 
 
 def _skipped(line: str, separator: str = ",") -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from os.path import relpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -37,7 +38,8 @@ from .options import (
 
 if TYPE_CHECKING:
     from ..api import Restored
-    from ..api.starting import Duty
+    from ..api.starting import Duty, Start
+    from ..api.starting_cycle import CycleStart
 
 
 def _named_file(name: str) -> tuple[str, Path]:
@@ -117,6 +119,15 @@ TypeWord = Annotated[
         "--type", metavar="TYPE", help="Cylinder: differential, or double_rod (two rods)."
     ),
 ]
+CycleOf = Annotated[
+    str | None,
+    typer.Option(
+        "--cycle",
+        metavar="FILE.csv",
+        help="Duty cycle that gives forces, speed and stroke: time with position and force, or "
+        "with joint_angle and joint_torque (add --lever-arm).",
+    ),
+]
 Yes = Annotated[bool, typer.Option("--yes", help="Use the defaults instead of asking questions.")]
 NewFile = Annotated[
     Path | None,
@@ -138,6 +149,7 @@ def init(
     speed: Speed = None,
     stiffness: Stiffness = None,
     type_: TypeWord = None,
+    cycle: CycleOf = None,
     yes: Yes = False,
     out: NewFile = None,
     as_json: Json = False,
@@ -154,7 +166,7 @@ def init(
     }  # fmt: skip
     answers = {key: text for key, text in options.items() if text is not None}
     _only_one(
-        {"--scenario": scenario, "--from": source, "--yes": yes or None}
+        {"--scenario": scenario, "--from": source, "--cycle": cycle, "--yes": yes or None}
         | {f"--{key.replace('_', '-')}": text for key, text in answers.items()}
     )
     copied = source is not None or scenario is not None
@@ -162,17 +174,17 @@ def init(
     job = Job(as_json=as_json, quiet=quiet)
     verdict: dict[str, Any] = {}
     faults, remarks = list[Diagnostic](), list[str]()
-    if answers or yes or (out is not None and not copied):
+    if answers or cycle or yes or (out is not None and not copied):
+        found = _cycle(cycle, answers, out)
         duty = _duty(answers, ask=not as_json, defaults=yes)
-        from ..api.starting import solved_start
-
-        start = job.run(solved_start, duty, **title)
+        start = _solved(job, duty, found, title)
         text, verdict = start.text, {"met": start.met}
         if start.met:
             remarks = [f"{duty.words}, solved: {start.solved}; edit it, or optimise it"]
         else:
             faults = [Diagnostic("nothing fits yet", start.sentence, str(out or ""))]
             verdict["remedy"] = start.sentence
+        remarks += [f"warning: {text}" for text in ([] if found is None else found.warnings)]
     else:
         text = _start_text(source, scenario, out, title)
     if out is None:
@@ -205,6 +217,29 @@ def _target(name: str | None, out: Path | None) -> tuple[dict[str, str], Path | 
         raise UsageError(Diagnostic("exists already", "choose another name", str(out)))
     store.require_writable(out)
     return title, out
+
+
+def _solved(job: Job, duty: Duty, cycle: CycleStart | None, title: dict[str, str]) -> Start:
+    """The solved start design named by `title`, with its cycle."""
+    from ..api.starting import solved_start
+
+    start: Start = job.run(solved_start, duty, **title)
+    return start if cycle is None else cycle.added_to(start)
+
+
+def _cycle(file: str | None, answers: dict[str, str], out: Path | None) -> CycleStart | None:
+    """The cycle in a file, if one is named; its forces, speed and stroke become answers."""
+    if file is None:
+        return None
+    from ..api.starting import duty_answers
+    from ..api.starting_cycle import cycle_start
+
+    stated = {"lever_arm": answers["lever_arm"]} if "lever_arm" in answers else {}
+    arm = duty_answers(stated, "--").get("lever_arm")
+    assert not isinstance(arm, str)
+    found = cycle_start(file, lever_arm=arm, folder=Path() if out is None else out.parent)
+    answers.update(found.answers | answers)
+    return found
 
 
 _QUESTIONS = (
@@ -265,13 +300,18 @@ def _start_text(
 ) -> str:
     """Text of a start file named by `title`: a design, or a scenario that `out` will contain."""
     from ..design import read_design
+    from ..design.cycle_reader import moved
     from ..design.kinds import ValueFault
     from ..design.scenario.reader import scenario_text
     from ..design.writer import init_text
 
     try:
         if scenario is None:
-            return init_text(from_design=None if source is None else read_design(source), **title)
+            folder = Path() if out is None else out.parent
+            loaded = None if source is None else read_design(source)
+            if loaded is not None:
+                loaded = replace(loaded, design=moved(loaded.design, folder))
+            return init_text(from_design=loaded, **title)
         file = relpath(scenario, Path() if out is None else out.parent)
         return scenario_text(read_design(scenario).design, file, **title)
     except ValueFault as fault:

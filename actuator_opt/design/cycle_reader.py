@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +10,7 @@ from ..base.errors import Diagnostic, Fault, InputError, shown
 from .cycle_files import CycleFile, CycleFileName
 from .cycle_record import cycle_text
 from .kinds import ValueFault
+from .model import Design
 from .structure import Loc, child_at
 
 CYCLES: Loc = ("duty", "cycles")
@@ -64,19 +65,47 @@ def _ignored(cycle: Mapping[str, Any]) -> tuple[str, ...]:
 def _read(written: str, folder: Path, known: dict[str, CycleFile]) -> CycleFile:
     if isinstance(written, CycleFile):
         return written
+    written = written if "\n" in written else written.strip()
     if written not in known:
         CycleFileName("", "walk.csv").validate(written)
-        inside = "\n" in written
-        name = written if inside else written.strip()
-        known[written] = CycleFile(name, name if inside else cycle_text(folder / name), str(folder))
+        text = written if "\n" in written else cycle_text(folder / written)
+        known[written] = CycleFile(written, text, str(folder))
     return known[written]
 
 
 def files_of(tree: Any) -> dict[str, CycleFile]:
-    """The cycle files of a tree or a design, by name as written."""
+    """The cycle files that a tree or a design names, by name."""
     cycles = child_at(tree, CYCLES) or ()
     values = (child_at(cycle, ("file",)) for cycle in cycles)
-    return {str(value): value for value in values if isinstance(value, CycleFile)}
+    files = (value for value in values if isinstance(value, CycleFile))
+    return {str(file): file for file in files if not file.inside}
+
+
+def texts_of(design: Design) -> dict[str, str]:
+    """Contents of the cycle files that a design names, by name; see `reader.read_design`."""
+    return {name: file.text for name, file in files_of(design).items()}
+
+
+def moved(design: Design, folder: Path) -> Design:
+    """The design with names of cycle files relative to another folder, where it will be written."""
+    return _with_files(design, lambda file: file.moved(folder))
+
+
+def portable(design: Design) -> Design:
+    """The design with the texts of its cycles in place of files, so that its file is complete."""
+    return _with_files(design, lambda file: file.portable())
+
+
+def _with_files(design: Design, change: Callable[[CycleFile], CycleFile]) -> Design:
+    if design.duty is None:
+        return design
+    cycles = tuple(
+        cycle.model_copy(update={"file": change(cycle.file)})
+        if isinstance(cycle.file, CycleFile)
+        else cycle
+        for cycle in design.duty.cycles
+    )
+    return design.model_copy(update={"duty": design.duty.model_copy(update={"cycles": cycles})})
 
 
 def folder_of(tree: Any) -> Path:

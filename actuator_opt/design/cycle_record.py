@@ -378,8 +378,10 @@ def _check(sheet: Sheet, columns: Mapping[str, Array], lines: Array, *, complete
         line = None if sample is None else int(lines[sample])
         return InputError(Diagnostic(message, remedy, file=sheet.name, line=line))
 
-    if lines.size > MOST or (len(sheet.lines) >= MOST + OTHER_LINES):
+    if lines.size > MOST:
         raise refuse(f"more than {MOST} samples", "resample the cycle to fewer samples")
+    if len(sheet.lines) >= MOST + OTHER_LINES:
+        raise refuse(f"more than {MOST + OTHER_LINES - 1} lines", "remove comments and empty lines")
     if not complete:
         remedy = "leave out unneeded columns and digits"
         raise refuse(f"the file is larger than {MOST_BYTES / 1e6:.0f} MB", remedy)
@@ -421,9 +423,7 @@ def _record(
             values[name] = _closed(sheet, name, values[name], lines, notes, warnings)
         notes.sort()
         warnings += _lacks_last(columns[motion], motion)
-    with np.errstate(all="ignore"):
-        curve = spline(time, values[motion], closed=closed)
-        slope = curve(time, 1)
+    slope = _slope(time, values[motion], closed=closed)
     stated = next((name for name in _SPEEDS if name in values), None)
     speed = slope if stated is None else values[stated]
     if not np.all(np.isfinite(speed)):
@@ -455,6 +455,15 @@ def _record(
     )
 
 
+def _slope(time: Array, values: Array, *, closed: bool) -> Array:
+    """Slope of the spline at the samples; NaN where numbers are too large or too small for it."""
+    with np.errstate(all="ignore"):
+        try:
+            return np.asarray(spline(time, values, closed=closed)(time, 1))
+        except (ValueError, np.linalg.LinAlgError):
+            return np.full_like(values, np.nan)
+
+
 def _digest(columns: Mapping[str, Array]) -> str:
     """SHA-256 of names and numbers of all columns, whatever their order and units in the file."""
     content = hashlib.sha256()
@@ -479,7 +488,7 @@ def _closed(
     notes: list[str],
     warnings: list[str],
 ) -> Array:
-    """The column with its last sample set to its first; told in notes, or in warnings if far."""
+    """The column with its last sample set to its first; notes or, if far, warnings state it."""
     first, last = float(values[0]), float(values[-1])
     if first == last:
         return values
@@ -489,8 +498,8 @@ def _closed(
         message = f'column "{name}" does not close: {ends}'
         remedy = "repeat the first sample at the end, one period later, or write closed: false"
         raise InputError(Diagnostic(message, remedy, file=sheet.name, line=int(lines[-1])))
-    told = f'column "{name}": last sample set to the first ({ends})'
-    (warnings if far else notes).append(told)
+    sentence = f'column "{name}": last sample set to the first ({ends})'
+    (warnings if far else notes).append(sentence)
     return np.append(values[:-1], first)
 
 
@@ -570,9 +579,13 @@ def _overshoot(name: str, time: Array, values: Array, *, closed: bool) -> Iterat
     if span == 0:
         return
     with np.errstate(all="ignore"):
-        curve = spline(time, values, closed=closed)
+        try:
+            curve = spline(time, values, closed=closed)
+        except (ValueError, np.linalg.LinAlgError):  # the load's numbers are too large
+            return
         places = curve.derivative().roots(extrapolate=False)
         extremes = curve(places[np.isfinite(places)])
+    extremes = extremes[np.isfinite(extremes)]
     if not extremes.size:
         return
     for end, sample in ((extremes.max(), values.max()), (extremes.min(), values.min())):

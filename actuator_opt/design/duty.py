@@ -30,7 +30,7 @@ ThermalBasis: TypeAlias = Annotated[
 class SharingActuator(Section):
     """A further actuator on the same supply, which runs the same cycle with another phase."""
 
-    phase: Annotated[float, Of("phase", "delay of its cycle, as a share of the period")]
+    phase: Annotated[float, Of("cycle_phase", "delay of its cycle, as a share of the period")]
 
 
 class DutyCycle(Section):
@@ -56,9 +56,11 @@ class DutyCycle(Section):
     starts: Annotated[
         float, Of("repeats", "times in a life that the pressure is raised from zero for this cycle")
     ] = 0.0
-    torque_scale: Annotated[float, Of("scale", "factor of the file's torques")] = 1.0
-    force_scale: Annotated[float, Of("scale", "factor of the file's forces")] = 1.0
-    time_scale: Annotated[float, Of("scale", "factor of the file's times; 2: half as fast")] = 1.0
+    torque_scale: Annotated[float, Of("scale_factor", "factor of the file's torques")] = 1.0
+    force_scale: Annotated[float, Of("scale_factor", "factor of the file's forces")] = 1.0
+    time_scale: Annotated[
+        float, Of("scale_factor", "factor of the file's times; 2: half as fast")
+    ] = 1.0
     lever_arm: Annotated[
         float | None,
         Of(
@@ -75,7 +77,7 @@ class DutyCycle(Section):
         bool, Boolean("whether the cycle repeats, so that its last sample is its first")
     ] = True
     phase: Annotated[
-        float, Of("phase", "delay of this actuator's cycle, as a share of the period")
+        float, Of("cycle_phase", "delay of this actuator's cycle, as a share of the period")
     ] = 0.0
     also: Annotated[tuple[SharingActuator, ...], Field(max_length=20)] = ()
     ignore: Annotated[
@@ -205,6 +207,15 @@ class DutySection(Section):
     thermal: ThermalBasis = "worst"
     wear: Wear | None = None
     supply: DutySupply | None = None
+
+    @property
+    def warnings(self) -> list[str]:
+        """Sentences on doubtful data of all cycles, each with the cycle's PATH."""
+        return [
+            f"duty.cycles[{cycle.name}]: {text}"
+            for cycle in self.cycles
+            for text in cycle.record.warnings
+        ]
 
     def record(self, cycle: DutyCycle) -> CycleRecord:
         """The record of a cycle, with at least `samples` samples."""

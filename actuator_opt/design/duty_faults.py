@@ -12,7 +12,8 @@ from ..models import linkage as crank
 from .cycle_files import CycleFile
 from .cycle_reader import CYCLES
 from .cycle_record import CycleRecord
-from .structure import FileView, Loc, child, without_effect
+from .duty import DutyCycle
+from .structure import FileView, Loc, child, entries, without_effect
 
 DEAD = 1e-3
 """Lever arm at a dead point, divided by the crank radius (our choice: force and speed are then off
@@ -48,6 +49,15 @@ def names(view: FileView) -> Iterator[Fault]:
         seen.setdefault(name, f"also the name of entry {index}")
 
 
+def _without_effect(
+    view: FileView, loc: Loc, keys: tuple[str, ...], where: str, remedy: str = "remove the line"
+) -> Iterator[Fault]:
+    """Faults of keys that have no effect; a key that equals its default is none."""
+    defaults = {key: entries(DutyCycle)[key].default for key in keys}
+    changed = [key for key in keys if view.value(*loc, key) not in (defaults[key], [])]
+    yield from without_effect(view, loc, changed, where, remedy)
+
+
 def columns(view: FileView) -> Iterator[Fault]:
     """Check that keys of each cycle suit its columns, and that a joint has a lever arm."""
     for index in range(len(view.items(*CYCLES))):
@@ -56,11 +66,11 @@ def columns(view: FileView) -> Iterator[Fault]:
             continue
         if not record.joint:
             where = "with the columns position and force"
-            yield from without_effect(view, loc, ("lever_arm", "torque_scale"), where)
+            yield from _without_effect(view, loc, ("lever_arm", "torque_scale"), where)
             continue
         where = "with the columns joint_angle and joint_torque"
         remedy = "write torque_scale instead"
-        yield from without_effect(view, loc, ("force_scale",), where, remedy)
+        yield from _without_effect(view, loc, ("force_scale",), where, remedy)
         if not view.has(*loc, "lever_arm") and not view.has("linkage"):
             message = "the file states a joint's angle and torque, but there is no linkage"
             remedy = 'add a block "linkage:", or e.g. "lever_arm: 40 mm" to the cycle'
@@ -73,7 +83,7 @@ def phases(view: FileView) -> Iterator[Fault]:
         loc = (*CYCLES, index)
         if view.flag(*loc, "closed") is False:
             where = "with closed: false, as the cycle has no period"
-            yield from without_effect(view, loc, ("phase", "also"), where)
+            yield from _without_effect(view, loc, ("phase", "also"), where)
 
 
 def pressures(view: FileView) -> Iterator[Fault]:

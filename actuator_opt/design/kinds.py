@@ -55,7 +55,7 @@ EXAMPLES = {
     "pump_gain": "2 l/min/bar", "coulomb_force": "80 N", "static_force": "120 N",
     "part_factor": "0.5", "oil_volume": "80 ml", "inertia": "0.013 kg*m^2",
     "stribeck_exponent": "2", "margin": "2", "cycles_per_window": "5",
-    "repeats": "5e6", "scale": "1.2", "phase": "50 %", "sample_count": "400",
+    "repeats": "5e6", "scale_factor": "1.2", "cycle_phase": "50 %", "sample_count": "400",
     "opening_limit": "90 %", "service_time": "2000 h", "thermal_conductance": "30 W/K",
     "emissivity": "0.9", "wear_rate": "2e-17 m^2/N", "wear_depth": "0.1 mm",
     "machine_efficiency": "85 %", "precharge_ratio": "0.9", "specific_energy": "0.6 MJ/kg",

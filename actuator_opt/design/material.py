@@ -63,6 +63,9 @@ PLY_CONSTANTS: Final = (
     "poissons_ratio_12", "poissons_ratio_13", "poissons_ratio_23",
 )  # fmt: skip
 
+HEAT: Final = ("thermal_conductivity", "thermal_conductivity_through", "specific_heat")
+"""Properties of heat flow, which no model of strength, stiffness or friction reads."""
+
 _ROOM_TEMPERATURE = 296.15
 _MATRIX = ("strength_2_tension", "strength_2_compression", "strength_12", "strength_23")
 _FIBRE = ("strength_1_tension", "strength_1_compression")
@@ -176,6 +179,16 @@ class Material:
     def isotropic(self) -> bool:
         """Whether a single modulus describes the material, as for metals and polymers."""
         return "youngs_modulus" in self.properties and "youngs_modulus_1" not in self.properties
+
+    @property
+    def through_wall(self) -> tuple[str, ...]:
+        """Properties that give the thermal conductivity through a wall; the first stated counts.
+
+        A ply conducts far better along its fibres than through its thickness, so that only its own
+        value through the ply counts.
+        """
+        along, through, _ = HEAT
+        return (through, along) if self.isotropic or self.kind == "fluid" else (through,)
 
     @property
     def unverified(self) -> tuple[str, ...]:

@@ -26,7 +26,6 @@ from . import (
     barrel as barrel_module,
     circuit,
     cushion,
-    service,
     film,
     film_tables,
     geometry as geometry_module,
@@ -40,6 +39,7 @@ from . import (
     rods,
     sealing,
     sensor,
+    service,
     springs,
     state,
     strength,
@@ -396,7 +396,9 @@ def statics(
     strength.compute(v, design, stock, g, case_state, barrel, sections, beams, loaded_joints, out)
     stop = joint.at_stop(case_state.demands, case_state.push)
     stop = replace(stop, mass=weight.moving(parts, stop.mass))
-    service.compute(v, design, stock, g, case_state, barrel, sections, loaded_joints, stop, net, out)
+    service.compute(
+        v, design, stock, g, case_state, barrel, sections, loaded_joints, stop, net, out
+    )
     _lands(v, design, g, rod, out)
     strength.joint_metrics(loaded_joints, out)
     _manufacture(v, subject, g, out)
@@ -516,7 +518,10 @@ def _cycle_models(subject: PreparedDesign, plan: Plan, numbers: Numbers) -> Cycl
     names = tuple(numbers)
     if names not in subject.cycles:
         records = {cycle.name: duty.record(cycle) for cycle in duty.cycles}
-        subject.cycles[names] = CycleModels(plan, records, names)
+        phases = {
+            cycle.name: [other.phase - cycle.phase for other in cycle.also] for cycle in duty.cycles
+        }
+        subject.cycles[names] = CycleModels(plan, records, names, phases)
     return subject.cycles[names]
 
 
@@ -531,7 +536,14 @@ def _duty(subject: PreparedDesign, v: Values, s: Statics, out: MetricArrays) -> 
         models = _cycle_models(subject, plan, numbers)
         results = dict(zip(models.places, models(stacked_numbers(numbers)), strict=True))
     duty_metrics.compute(
-        v, subject.design, results, s.base.geometry.stroke, windows=subject.windows, out=out
+        v,
+        subject.design,
+        s.base.stock,
+        s.base.geometry,
+        results,
+        actuator_mass=out.metrics["mass"][""] + out.metrics["mass_oil"][""],
+        windows=subject.windows,
+        out=out,
     )
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, array_of, real, where
 from ..base.quantities import Sense
-from ..design.material import Material, allowable_factor, ply_constants
+from ..design.material import HEAT, Material, allowable_factor, ply_constants
 from ..design.model import Design, LoadCase
 from ..metrics import METRICS
 from ..metrics.table import CHECKS, ROWS
@@ -349,8 +349,11 @@ class MaterialValues:
         return list(self.materials)
 
     def numbers(self, name: str) -> dict[str, Array]:
-        """All stated properties of the material, SI."""
-        return {key: self._v[f"materials.{name}.{key}"] for key in self.materials[name].numbers}
+        """Stated properties of the material, SI; without those of heat flow, which `get` reads."""
+        return {key: self._v[f"materials.{name}.{key}"] for key in self._mechanical(name)}
+
+    def _mechanical(self, name: str) -> list[str]:
+        return [key for key in self.materials[name].numbers if key not in HEAT]
 
     def ply_constants(self, name: str) -> dict[str, Array]:
         """Elastic constants and thermal expansions of a material as a ply; cached unless varied."""
@@ -359,7 +362,7 @@ class MaterialValues:
             return ply_constants(self.numbers(name))
         if name not in self._constants:
             self._constants[name] = ply_constants(self.numbers(name))
-        self._v.read.update(prefix + key for key in self.materials[name].numbers)
+        self._v.read.update(prefix + key for key in self._mechanical(name))
         return self._constants[name]
 
     def get(self, name: str, *properties: str, default: Array = None) -> Array:

@@ -16,11 +16,12 @@ import numpy as np
 
 from ..base.numeric import Array, namespace
 from ..base.symbolic.program import Program
+from ..base.symbolic.program_store import Recording
 from ..base.symbolic.recorded import RecordedFunction
 from ..design.structure import leaves, number_of
-from .build import Many, many, names_of_metrics, rows_of_many
 from . import kernel
-from .duty_cycles.results import CycleModels
+from .build import Many, many, names_of_metrics, rows_of_many
+from .duty_cycles.results import CycleModels, width_of
 from .kernel import PreparedDesign
 from .limits import LimitRow
 
@@ -110,9 +111,13 @@ def recorded_models(
         return RecordedFunction(rows, names, present, structure)
     models = kernel.duty_numbers(subject, subject.values())[0]
     return RecordedWithDuty(
-        rows, names, present, structure, count, models, RecordedFunction(
-            duty_numbers, names, present, [*structure, "duty numbers"]
-        )
+        rows,
+        names,
+        present,
+        structure,
+        count,
+        models,
+        RecordedFunction(duty_numbers, names, present, [*structure, "duty numbers"]),
     )
 
 
@@ -139,6 +144,7 @@ class RecordedWithDuty(RecordedFunction):
         paths = [place.path for place in models.places]
         self._count, self._width = count, len(paths)
         self._models, self._numbers = models, numbers
+        self._known: Recording | None = None
         last = count + len(paths)
 
         def function(inputs: Array) -> Array:
@@ -154,7 +160,13 @@ class RecordedWithDuty(RecordedFunction):
 
     def __call__(self, points: Array) -> Array:
         """Results (rows, k) at points (inputs, k); results of the duty cycles are computed here."""
-        return super().__call__(self._with_results(points))
+        rows = super().__call__(self._with_results(points))
+        if self.recording is not self._known:
+            self._known = self.recording
+            if self._known is not None:
+                used = self._known.program.used_inputs()
+                self._models.need(used[self._count : self._count + self._width])
+        return rows
 
     def confirmed(
         self, points: Array, expected: Array | None = None, floor: float | Array = 1.0
@@ -166,7 +178,8 @@ class RecordedWithDuty(RecordedFunction):
         count, last = self._count, self._count + self._width
         variables, others = points[:count], points[last:]
         known = variables if len(points) <= last else np.concatenate([variables, others])
-        results = self._models(self._numbers(known))
+        width = width_of(known) if np.iscomplexobj(known) else 1
+        results = self._models(self._numbers(known), width)
         return np.concatenate([variables, results, others])
 
 

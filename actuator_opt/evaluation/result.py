@@ -25,8 +25,8 @@ from ..design.paths import numbers, value_at
 from ..metrics import METRICS
 from ..metrics.table import ROWS
 from ..rendering.tables import DataColumn, DataTable, coded
-from .dynamics_study import DynamicsStudy
 from .duty_cycles.study import DutyStudy
+from .dynamics_study import DynamicsStudy
 from .valve_study import ValveStudy
 from .wall_study import WallStudy
 

@@ -17,7 +17,8 @@ from ..joints.cone import LAYER_EDGE
 from ..joints.winding import WINDING_EDGE
 from ..metrics import METRICS
 from ..metrics.documentation import ModelDocumentation, describe, function_of
-from ..metrics.table import CRITERION, OWN, ROWS, WALL_FED
+from ..metrics.metric_row import CRITERION
+from ..metrics.table import OWN, ROWS, WALL_FED
 from ..models import contact_profile, gland, laminate, rough_surface, seals
 from ..models.strength import CRITERIA
 from ..models.winding_path import SLIPPAGE

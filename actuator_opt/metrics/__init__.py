@@ -1,5 +1,6 @@
 """Metrics: all results that an evaluation computes, declared in one table."""
 
-from .table import METRICS, MetricRow, is_safety, of_metric, term_of
+from .metric_row import MetricRow
+from .table import METRICS, is_safety, of_metric, term_of
 
 __all__ = ["METRICS", "MetricRow", "is_safety", "of_metric", "term_of"]

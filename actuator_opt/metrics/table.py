@@ -11,13 +11,14 @@ from collections.abc import Iterable, Iterator, Mapping
 from math import pi
 from types import MappingProxyType
 
-from ..base.quantities import INFINITY, Quantity
+from ..base.quantities import Quantity
 from ..joints.cone import LEAST_CREST, LEAST_GRIP
 from ..joints.joint import LEAST_METAL, judged_on, models_at
 from ..joints.kinds import JOINTS, SLEEVED
 from ..models.thread import LEAST_OVERLAP
 from .duty_rows import DUTY_ROWS
 from .metric_row import AT_ENDS, CRITERION, CheckLine, Feed, Least, MetricRow
+
 
 def table(rows: Iterable[MetricRow]) -> Mapping[str, MetricRow]:
     """The rows by name, in their order.

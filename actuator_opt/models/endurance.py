@@ -12,6 +12,8 @@ from ..base.numeric import Array, geometry, histories, maximum, namespace, real,
 
 _LOW_CYCLES = 1e3
 _LOW_SHARE = 0.9
+_ENDLESS = 690.0
+"""Natural logarithm of a number of cycles that counts as infinite, near the largest number."""
 
 
 def cycles_to_failure(
@@ -62,17 +64,18 @@ def cycles_to_failure(
     reversed_stress = where(idle | lost, low + 0 * amplitude, amplitude) / where(
         lost, 0 * left + 1, left
     )
-    life = _basquin(xp, reversed_stress, low, fatigue_limit, limit_cycles)
+    exponent = _basquin_exponent(xp, reversed_stress, low, fatigue_limit, limit_cycles)
+    life = _LOW_CYCLES * xp.exp(exponent)
     life = where(idle, 0 * life + float("inf"), life)
     return where(lost, 0 * amplitude, life)
 
 
-def _basquin(
+def _basquin_exponent(
     xp: Any, stress: Array, low: Array, fatigue_limit: Array, limit_cycles: Array
 ) -> Array:
-    """Cycles on the line from the stress `low` at 1e3 cycles through the fatigue limit."""
+    """ln(N/1e3) on the line from the stress `low` at 1e3 cycles through the fatigue limit."""
     slope = xp.log(limit_cycles / _LOW_CYCLES) / xp.log(fatigue_limit / low)
-    return _LOW_CYCLES * xp.exp(slope * xp.log(stress / low))
+    return slope * xp.log(stress / low)
 
 
 def reversed_amplitude(*, amplitude: Array, mean: Array, ultimate_strength: Array) -> Array:
@@ -148,9 +151,11 @@ def basquin_cycles(
     idle, lost = real(amplitude) <= 0, real(amplitude) >= float("inf")
     low = _LOW_SHARE * ultimate_strength
     stress = where(idle | lost, low, amplitude)
-    life = _basquin(xp, stress, low, fatigue_limit, limit_cycles)
-    life = where(idle, 0 * life + float("inf"), life)
-    return where(lost, 0 * life, life)
+    exponent = _basquin_exponent(xp, stress, low, fatigue_limit, limit_cycles)
+    endless = idle | (real(exponent) > _ENDLESS)
+    life = _LOW_CYCLES * xp.exp(where(endless, 0.0, exponent))
+    life = where(endless, float("inf"), life)
+    return where(lost, 0.0, life)
 
 
 def miner_damage(
@@ -185,8 +190,8 @@ def miner_damage(
     """
     endured, number = histories(cycles, counts)
     failed = real(endured) <= 0
-    share = number / where(failed, 0 * endured + 1, endured)
-    share = where(failed & (real(number) > 0), 0 * share + float("inf"), share)
+    share = number / where(failed, 1.0, endured)
+    share = where(failed & (real(number) > 0), float("inf"), share)
     return repeats * namespace(share).sum(share, axis=0)
 
 

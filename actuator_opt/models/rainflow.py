@@ -100,7 +100,7 @@ def _pairs(history: Any) -> list[tuple[int, int]]:
     if unknown.any():
         sample = int(np.argmax(unknown))
         return [(sample, sample)]
-    # Ranks instead of values: differences of values that are nearly equal lose their order.
+    # Ranks instead of values: products of small differences would underflow.
     ranks = np.searchsorted(sorted_unique(history), history)
     size, start = len(ranks), int(np.argmax(ranks))
     if ranks.min() == ranks.max():

@@ -34,6 +34,9 @@ def mean_flow(*, time: Array | Sequence[Array], flow: Array | Sequence[Array]) -
     -----
     Valid: samples resolve the flow; its peaks and zeros are samples.
 
+    Where positions are known, area times travel divided by the period is exact; at 100 samples per
+    stride the two differ by 0.1 %.
+
     References
     ----------
     [derived] trapezoid rule
@@ -80,6 +83,8 @@ def ripple_volume(*, time: Array | Sequence[Array], flow: Array | Sequence[Array
     Notes
     -----
     Valid: closed cycles; the extremes of the integral between samples are left out.
+
+    The volume of a sine is too small by up to 8/n^2 for n samples: 2 % for 20, 0.1 % for 100.
 
     References
     ----------

@@ -399,3 +399,4 @@ def _kkt(solution: Solution) -> Kkt | None:
 
 
 _DESIGN, _EVALUATION, _FRACTION, _NUMBER = "$design", "$evaluation", "$fraction", "$number"
+_FILE = "$file"

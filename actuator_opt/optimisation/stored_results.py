@@ -21,13 +21,14 @@ from ..base.errors import InputError
 from ..base.quantities import Sense
 from ..design import Design
 from ..design.build import build as build_design, to_tree
+from ..design.cycle_files import CycleFile
 from ..design.kinds import Fraction
 from ..evaluation import Evaluation, evaluate, prepare
 from ..evaluation.plugin import Plugin, with_own
 from ..evaluation.result import YieldEstimate
 from .pareto import ParetoFront
 from .result import Optimisation
-from .run import _DESIGN, _EVALUATION, _FRACTION, _NUMBER
+from .run import _DESIGN, _EVALUATION, _FILE, _FRACTION, _NUMBER
 
 Found = TypeVar("Found", Optimisation, ParetoFront)
 
@@ -37,8 +38,17 @@ _PLAIN: dict[Any, Any] = {float: (int, float), int: int, str: str, bool: bool}
 
 
 def to_plain(result: Optimisation | ParetoFront) -> dict[str, Any]:
-    """A result as JSON data: `designs`, and `result`, which refers to the designs."""
+    """A result as JSON data: `designs`, and `result`, which refers to the designs.
+
+    If the designs have cycle files, `files` are the texts to which the designs refer.
+    """
     designs: list[dict[str, Any]] = []
+    files: list[str] = []
+
+    def file(text: str) -> int:
+        if text not in files:
+            files.append(text)
+        return files.index(text)
 
     def place(design: Design) -> int:
         tree = plain(to_tree(design))
@@ -49,6 +59,8 @@ def to_plain(result: Optimisation | ParetoFront) -> dict[str, Any]:
     def plain(value: Any) -> Any:
         if isinstance(value, np.generic):
             value = value.item()
+        if isinstance(value, CycleFile) and not value.inside:
+            return {_FILE: [str(value), file(value.text)]}
         if value is None or isinstance(value, (str, bool, int)):
             return value
         if isinstance(value, float):
@@ -68,7 +80,8 @@ def to_plain(result: Optimisation | ParetoFront) -> dict[str, Any]:
         )
         return [plain(item) for item in value]
 
-    return {"result": plain(result), "designs": designs}
+    data = {"result": plain(result), "designs": designs}
+    return data | ({"files": files} if files else {})
 
 
 def from_plain(
@@ -121,6 +134,7 @@ def from_plain(
     readers: dict[str, Callable[[Any], Any]] = {
         _DESIGN: design,
         _EVALUATION: evaluation,
+        _FILE: lambda entry: CycleFile(str(entry[0]), str(data["files"][entry[1]])),
         _FRACTION: Fraction,
         _NUMBER: float,
     }

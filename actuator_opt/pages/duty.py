@@ -204,7 +204,7 @@ def _overview_row(cycle: CycleStudy) -> Row:
         f"{number(float(np.ptp(cycle.time)), 3)} s",
         DASH if cycle.repeats is None else trimmed(cycle.repeats, 3),
         value_of(FORCE, reserve.value),
-        time_of(cycle, reserve.index),
+        time_of(cycle, reserve.sample),
         _opening(cycle),
         f"{number(peak, 3)}, {value_of(FLOW, cycle.flow_mean)}",
         value_of(ENERGY, cycle.energies["supply_energy"]),
@@ -234,19 +234,19 @@ def _extremes(study: DutyStudy, cycle: CycleStudy) -> Iterator[_Extreme]:
     reserve, needed = worst["reserve"], worst["share"]
     least: Limit = "min", 0.0
     name = "least force reserve"
-    yield _Extreme(name, "duty_force_margin", reserve.value, reserve.index, least)
-    supply = float(traces["supply"][needed.index])
+    yield _Extreme(name, "duty_force_margin", reserve.value, reserve.sample, least)
+    supply = float(traces["supply"][needed.sample])
     yield _Extreme(
         "largest supply needed",
         "duty_supply_needed",
-        float(traces["needed"][needed.index]),
-        needed.index,
+        float(traces["needed"][needed.sample]),
+        needed.sample,
         ("max", supply),
     )
     if study.opening_limit is not None:
         opening = worst["opening"]
         most: Limit = "max", study.opening_limit
-        yield _Extreme("largest opening", "duty_opening", opening.value, opening.index, most)
+        yield _Extreme("largest opening", "duty_opening", opening.value, opening.sample, most)
     chambers = {"A": traces["pressure_a"], "B": traces["pressure_b"]}
     low = min(chambers, key=lambda name: float(np.min(chambers[name])))
     high = max(chambers, key=lambda name: float(np.max(chambers[name])))
@@ -263,12 +263,12 @@ def _extremes(study: DutyStudy, cycle: CycleStudy) -> Iterator[_Extreme]:
     name = f"least travel left, {stop}"
     yield _Extreme(name, "duty_stroke_margin", float(left[at]), at, least)
     flow, power, absorbed = (worst[key] for key in ("flow", "power", "absorbed"))
-    yield _Extreme("peak flow", "duty_flow_peak", flow.value, flow.index)
+    yield _Extreme("peak flow", "duty_flow_peak", flow.value, flow.sample)
     if power.value > 0:
-        yield _Extreme("peak power on the load", "duty_power_peak", power.value, power.index)
+        yield _Extreme("peak power on the load", "duty_power_peak", power.value, power.sample)
     if absorbed.value < 0:
         yield _Extreme(
-            "peak absorbed power", "duty_power_absorbed", -absorbed.value, absorbed.index
+            "peak absorbed power", "duty_power_absorbed", -absorbed.value, absorbed.sample
         )
 
 

@@ -128,8 +128,8 @@ def _profile(title: str, cycle: CycleStudy, values: Array) -> TerminalFigure:
 
 def _note(study: DutyStudy, cycle: CycleStudy) -> str:
     reserve = cycle.worst["reserve"]
-    state = cycle.state(reserve.index)
-    time, piston = time_of(cycle, reserve.index), value_of(LENGTH, state["position"])
+    state = cycle.state(reserve.sample)
+    time, piston = time_of(cycle, reserve.sample), value_of(LENGTH, state["position"])
     joint = f"joint at {value_of(ANGLE, state['joint_angle'])}, " if cycle.record.joint else ""
     words = [
         f"Vertical line: least force reserve, {value_of(FORCE, reserve.value)} at {time} "
@@ -167,7 +167,7 @@ def _strips(study: DutyStudy, cycle: CycleStudy) -> list[Panel]:
     label, factor = time_words(float(np.ptp(cycle.time)))
     time = factor * cycle.time
     ends = float(time[0]), float(time[-1])
-    line = Level(float(time[cycle.worst["reserve"].index]), "", style=RESERVE, upright=True)
+    line = Level(float(time[cycle.worst["reserve"].sample]), "", style=RESERVE, upright=True)
     panels = []
     for strip in made:
         scale = strip.quantity.to_display(1.0)
@@ -245,22 +245,22 @@ def _hydraulics(study: DutyStudy, cycle: CycleStudy) -> Iterator[_Strip]:
         constant.append(Level(level, "", style=CONSTANT))
         limits = [Level(level, limit_text(PRESSURE, "max", float(supply[0])), "max")]
     words = f"least {value_of(PRESSURE, lowest.value)}"
-    yield _Strip("Pressures", PRESSURE, chambers, constant, True, (words, lowest.index))
+    yield _Strip("Pressures", PRESSURE, chambers, constant, True, (words, lowest.sample))
     most = worst["share"]
     words = f"{value_of(OPENING, most.value)} of the supply"
-    yield _Strip("Supply pressure needed", PRESSURE, needed, limits, True, (words, most.index))
+    yield _Strip("Supply pressure needed", PRESSURE, needed, limits, True, (words, most.sample))
     if study.opening_limit is not None:
         limit = limit_text(OPENING, "max", study.opening_limit)
         most_open = Level(OPENING.to_display(study.opening_limit), limit, "max")
         opening = worst["opening"]
         known = math.isfinite(opening.value)
-        marked = (value_of(OPENING, opening.value), opening.index) if known else None
+        marked = (value_of(OPENING, opening.value), opening.sample) if known else None
         curve = {"": traces["opening"]}
         title = "Valve opening" if known else "Valve opening (gaps: stall)"
         yield _Strip(title, OPENING, curve, [most_open], True, marked)
     flow = worst["flow"]
     mean = Level(FLOW.to_display(cycle.flow_mean), "mean", style=MEAN)
-    peak = value_of(FLOW, flow.value), flow.index
+    peak = value_of(FLOW, flow.value), flow.sample
     yield _Strip("Flow from the supply", FLOW, {"": traces["flow"]}, [mean], True, peak)
 
 
@@ -279,7 +279,7 @@ def _planes(study: DutyStudy, cycle: CycleStudy) -> list[Panel]:
     span = min(ends) - room, max(ends) + room
     own = Curve("cycle", speed, force, style=CYCLE, weight="thin")
     reserve = cycle.worst["reserve"]
-    at = float(speed[reserve.index]), float(force[reserve.index])
+    at = float(speed[reserve.sample]), float(force[reserve.sample])
     mark = Points("", [at[0]], [at[1]], style=OPEN, labels=["least reserve"])
     title = f"Force on the load, {unit_text(FORCE.unit)}, over speed"
     label = f"speed, {unit_text(SPEED.unit)}"
@@ -299,8 +299,8 @@ def _planes(study: DutyStudy, cycle: CycleStudy) -> list[Panel]:
         ("absorbed", "peak absorbed"),
         ("flow", "peak flow"),
     ):
-        spot = cycle.worst[key].index
-        if spot != reserve.index:
+        spot = cycle.worst[key].sample
+        if spot != reserve.sample:
             spots = [float(speed[spot])], [float(force[spot])]
             marks.append(Points("", *spots, style=FILLED, labels=[words]))
     enlarged = Panel(
@@ -378,7 +378,7 @@ def _pose(lengths: Mapping[str, float], linkage: LinkageSize, cycle: CycleStudy)
     reserve = cycle.worst["reserve"]
     angle = cycle.record.motion
     poses = [_pose_at(linkage, float(x)) for x in (angle.min(), angle.max())]
-    worst = _pose_at(linkage, float(angle[reserve.index]))
+    worst = _pose_at(linkage, float(angle[reserve.sample]))
     half = lengths["barrel_outer_diameter"] / 2
     spots = [(0.0, 0.0), *(spot for pose in [*poses, worst] for spot in pose)]
     left, right = min(x for x, _ in spots) - half, max(x for x, _ in spots) + half
@@ -391,8 +391,8 @@ def _pose(lengths: Mapping[str, float], linkage: LinkageSize, cycle: CycleStudy)
     def place(point: Point) -> Point:
         return shift + (point[0] - left) * factor, 9.0 + (high - point[1]) * factor
 
-    ink.text(0.0, 4.0, f"Linkage at {time_of(cycle, reserve.index)}", size=6.8, bold=True)
-    arm = value_of(ARM, abs(float(cycle.traces["arm"][reserve.index])))
+    ink.text(0.0, 4.0, f"Linkage at {time_of(cycle, reserve.sample)}", size=6.8, bold=True)
+    arm = value_of(ARM, abs(float(cycle.traces["arm"][reserve.sample])))
     words = f"lever arm {arm} (dashed)"
     ink.text(ink.width, 4.0, words, anchor="right", color=GREY)
     sweep = np.linspace(float(angle.min()), float(angle.max()), 33)

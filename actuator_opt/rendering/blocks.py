@@ -7,10 +7,10 @@ its medium: paper, terminal or both; HTML shows the same blocks as paper.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from ..base.dataclass import dataclass
 from ..base.errors import CONTROLS
@@ -422,6 +422,7 @@ class Origin:
     command : the command line, printed on the page and attached to the PDF
     spec_hash : hash of the design
     date : ISO date to print, or None
+    files : texts of the cycle files that the design names, by name, attached to the PDF
     """
 
     source_text: str
@@ -429,15 +430,18 @@ class Origin:
     command: str
     spec_hash: str
     date: str | None = None
+    files: Mapping[str, str] = field(default_factory=dict)
 
-    def run(self) -> dict[str, str]:
-        """Program version, command, file name, hash and date, as data to attach to the PDF."""
-        return {
+    def run(self) -> dict[str, Any]:
+        """Program version, command, file name, hash, date, files, as data to attach to the PDF."""
+        run: dict[str, Any] = {
             "actuator_opt": VERSION,
             "command": self.command,
             "source_name": self.source_name,
             "spec_hash": self.spec_hash,
-        } | ({} if self.date is None else {"date": self.date})
+        }
+        run |= {} if self.date is None else {"date": self.date}
+        return run | ({"files": dict(self.files)} if self.files else {})
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,6 +33,7 @@ _PRETTY = tuple(
         (r"\^2\b", "²"),
         (r"\^3\b", "³"),
         (r"\b(k?N)\*(?=[ms])", r"\1·"),
+        (r"\((m|kg)\*K\)", r"(\1·K)"),
     )
 )
 _POWER_E = re.compile(r"(?<=\d)e([+-]?\d+)\b")
@@ -147,8 +148,8 @@ def unit_text(unit: str) -> str:
 def pretty(words: str) -> str:
     """Text with its numbers and units as printed: true minus, °C, µm, squares and cubes.
 
-    >>> pretty("-20 degC, 30 um, 1570 kg/m^3, 38 N*s/m, 4e-05")
-    '−20 °C, 30 µm, 1570 kg/m³, 38 N·s/m, 4×10⁻⁵'
+    >>> pretty("-20 degC, 30 um, 1570 kg/m^3, 38 N*s/m, 6.9 W/(m*K), 4e-05")
+    '−20 °C, 30 µm, 1570 kg/m³, 38 N·s/m, 6.9 W/(m·K), 4×10⁻⁵'
     """
     for pattern, replacement in _PRETTY:
         words = pattern.sub(replacement, words)

@@ -19,6 +19,7 @@ from ..base.quantities import Quantity
 from ..base.symbolic import gpu
 from ..base.symbolic.program import Program
 from ..design import Design
+from ..design.cycle_reader import portable
 from ..design.paths import quantity_of
 from ..design.writer import to_yaml
 from ..evaluation import PreparedDesign
@@ -317,8 +318,8 @@ class Study:
 
     @property
     def text(self) -> str:
-        """Return the design as the text of its file."""
-        return to_yaml(self.design, metrics=self._quantities)
+        """Return the design as the text of its file, which contains the texts of its cycles."""
+        return to_yaml(portable(self.design), metrics=self._quantities)
 
     def values(self, number: int) -> dict[str, float | str]:
         """Return the varied values of a point, by PATH (SI)."""

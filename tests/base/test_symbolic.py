@@ -18,6 +18,7 @@ from actuator_opt.base.symbolic import Graph, Namespace, Symbol, function, jacob
 NOT_TRACED = {
     "autofrettage.autofrettage": "chooses by its numbers",
     "barrel.wall_ratio_for_strain": "chooses by its numbers",
+    "endurance.miner_damage": "a history of samples",
     "layered_tube.ply_stresses_at_faces": "a matrix of layers",
     "layered_tube.tube_state": "a matrix of layers",
     "layered_tube.tube_stresses": "a matrix of layers",
@@ -31,6 +32,10 @@ NOT_TRACED = {
     "loop.margins": "eigenvalues",
     "loop.ultimate_gain": "eigenvalues",
     "one_way_valve.one_way_pressure_drop": "iterates",
+    "rainflow.change_cycle": "a history of samples",
+    "rainflow.cycle_stress": "a history of samples",
+    "rainflow.repeating_cycles": "a history of samples",
+    "rainflow.start_stress": "a history of samples",
     "burst_ladder.burst_by_ply_discount": "a matrix of layers",
     "shrink_fit.bore_stress": "a matrix of layers",
     "shrink_fit.outer_growth": "a matrix of layers",
@@ -38,8 +43,13 @@ NOT_TRACED = {
     "rough_surface.asperity_pressure": "a table",
     "rough_surface.film_ratio_under_contact": "a table",
     "rough_surface.mean_gap_ratio": "a table",
+    "supply_sizing.mean_flow": "a history of samples",
+    "supply_sizing.ripple_volume": "a history of samples",
+    "supply_sizing.total_flow": "a history of samples",
     "tube_burst.burst_of_tube": "a matrix of layers",
     "tube_elements.layered_tube": "a matrix of layers",
+    "wear.cycle_severity": "a history of samples",
+    "wear.sliding_distance": "a history of samples",
 }
 """Models beyond what symbols are for: formulas of the elementary functions."""
 CASES = [

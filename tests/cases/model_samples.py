@@ -27,6 +27,7 @@ import samples_machines
 import samples_motion
 import samples_rods
 import samples_servo
+import samples_thermal
 import samples_tube
 import samples_valve
 
@@ -39,6 +40,7 @@ SCALAR_ONLY = {
     **dict.fromkeys(samples_lines.FREQUENCY_RESPONSES, "complex-valued, laws of their own"),
     **samples_dynamics.COMPLEX,
     **samples_duty.COUNTS,
+    **samples_thermal.REPORTS,
 }
 """Public functions outside the array laws, with the reason."""
 
@@ -558,6 +560,7 @@ for _group in (
     samples_rods,
     samples_servo,
     samples_valve,
+    samples_thermal,
     samples_tube,
 ):
     SAMPLES |= _group.SAMPLES

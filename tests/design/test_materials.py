@@ -483,3 +483,103 @@ def test_text_tables_can_be_ascii_and_show_everything(library):
     (modulus,) = [line for line in compared if line.startswith("youngs_modulus ")]
     assert "206 GPa" in modulus
     assert "(x0.334)" in modulus  # 68.9/206
+
+
+# ---- heat ----
+
+
+def through_wall(material):
+    """Conductivity through a wall of the material, None if it states none."""
+    stated = [material.numbers[key] for key in material.through_wall if key in material.numbers]
+    return stated[0] if stated else None
+
+
+def test_every_wall_and_fluid_conducts_and_stores_heat(library):
+    """Metals, plies and fluids state conductivity and specific heat; plies also through the ply."""
+    for material in library:
+        if material.kind in ("metal", "ply", "fluid"):
+            assert through_wall(material) is not None, material.name
+            assert "specific_heat" in material.numbers, material.name
+        if material.kind == "ply":
+            assert "thermal_conductivity_through" in material.numbers, material.name
+
+
+@pytest.mark.parametrize(
+    ("name", "along", "through", "heat"),
+    # dealers' pages of 7075-T6 and 6061-T6; maker's page of 42CrMo4; Rabie, section 2.2.12
+    [
+        ("al_7075_t6", 130.0, 130.0, 960.0),
+        ("al_6061_t6", 167.0, 167.0, 896.0),
+        ("steel_42crmo4", 42.6, 42.6, 470.0),
+        ("iso_vg_32", 0.12, 0.12, 2060.0),
+        ("t700_epoxy", 5.5, 0.65, 950.0),
+    ],
+)
+def test_published_heat_values(library, name, along, through, heat):
+    """Values of the named pages, in SI; through a ply, the conductivity is that across fibres."""
+    material = library.get(name)
+    numbers = material.numbers
+    assert numbers["thermal_conductivity"] == pytest.approx(along, rel=1e-12)
+    assert through_wall(material) == pytest.approx(through, rel=1e-12)
+    assert numbers["specific_heat"] == pytest.approx(heat, rel=1e-12)
+
+
+def test_heat_values_follow_wiedemann_and_franz_and_dulong_and_petit(library):
+    """Metals: k near L T/resistivity; the heat of a mole is near 3 R. Two laws, no table."""
+    # electrical resistivity at 20 degC [Ohm m] and mean molar mass [kg/mol]
+    for name, resistivity, molar in (
+        ("al_6061_t6", 3.99e-8, 27.0e-3),
+        ("al_7075_t6", 5.15e-8, 28.4e-3),
+        ("steel_42crmo4", 0.19e-6, 55.6e-3),
+    ):
+        numbers = library.get(name).numbers
+        electrons = 2.44e-8 * 293.0 / resistivity
+        assert numbers["thermal_conductivity"] == pytest.approx(electrons, rel=0.25), name
+        assert numbers["specific_heat"] * molar == pytest.approx(3 * 8.314, rel=0.12), name
+
+
+def test_a_ply_without_its_own_value_through_has_none(tmp_path):
+    """The conductivity along the fibre never serves for that through the ply; a metal's does."""
+    elastic = (
+        "    youngs_modulus_1: 135 GPa\n    youngs_modulus_2: 8 GPa\n"
+        "    shear_modulus_12: 4 GPa\n    poissons_ratio_12: 0.3\n"
+    )
+    ply = (
+        "bar:\n  kind: ply\n  label: Bar\n" + META + "  properties:\n    density: 1570 kg/m^3\n"
+        + elastic + "    thermal_conductivity: 5 W/(m*K)\n"
+    )  # fmt: skip
+    path = own(tmp_path, METAL + "    thermal_conductivity: 40 W/m/K\n" + ply)
+    mine = load_library([path])
+    assert through_wall(mine.get("bar")) is None
+    assert through_wall(mine.get("foo")) == 40.0
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("thermal_conductivity: 130 W/K", "W/K"),
+        ("thermal_conductivity: 0 W/(m*K)", "0.01 W/(m*K) to 2500 W/(m*K)"),
+        ("specific_heat: 960", "unit"),
+        ("specific_heat: 0.96 J/(kg*K)", "50 J/(kg*K) to"),
+    ],
+)
+def test_faulty_heat_values_are_refused(tmp_path, text, fault):
+    """A wrong unit, no unit and a value out of range each get one line with place and remedy."""
+    messages = faults_of(own(tmp_path, METAL + f"    {text}\n"))
+    assert len(messages) == 1
+    assert fault in messages[0]
+    assert text.partition(":")[0] in messages[0]
+
+
+def test_heat_values_are_printed(library):
+    """The page of a material shows the three properties with unit and confidence."""
+    page = material_page.blocks(library.get("t700_epoxy"))
+    lines = blocks_text(page, colour=False, unicode=False, width=100).split("\n")
+    for name, value in (
+        ("thermal_conductivity ", "5.5 W/(m*K)"),
+        ("thermal_conductivity_through", "0.65 W/(m*K)"),
+        ("specific_heat", "950 J/(kg*K)"),
+    ):
+        (line,) = (line for line in lines if line.strip().startswith(name))
+        assert value in line
+        assert "unverified" in line

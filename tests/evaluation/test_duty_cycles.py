@@ -48,7 +48,9 @@ def of(results: dict[Place, float], name: str) -> list[float]:
     return [value for place, value in results.items() if place.name == name]
 
 
-STEPS = "time [s],position [mm],force [N]\n0,20,500\n0.3,60,800\n0.5,90,-200\n0.8,50,-600\n1,20,500\n"
+STEPS = (
+    "time [s],position [mm],force [N]\n0,20,500\n0.3,60,800\n0.5,90,-200\n0.8,50,-600\n1,20,500\n"
+)
 LEAK = {
     f"{name}.leak_root": 0.2 / 60000 / math.sqrt(50 * BAR)
     for name in ("feed_a", "feed_b", "drain_a", "drain_b")
@@ -56,6 +58,7 @@ LEAK = {
 
 
 def test_the_energies_of_five_samples_are_those_of_the_source():
+    """The energies of five samples, by hand-sized numbers of the source."""
     found = results(STEPS, other_friction=100.0)
     expected = {
         "way": 0.14, "volume": 4.88753e-5, "supply_energy": 1026.38, "work_out": 52.5,
@@ -67,6 +70,7 @@ def test_the_energies_of_five_samples_are_those_of_the_source():
 
 
 def test_the_gait_of_a_knee_is_that_of_the_source():
+    """All results of the walking knee."""
     text = (CYCLES / "gait_knee.csv").read_text()
     found = results(text, linkage=True, other_friction=250.0, **LEAK)
     expected = {
@@ -95,6 +99,7 @@ def test_the_gait_of_a_knee_is_that_of_the_source():
 
 
 def test_the_energy_of_the_supply_is_that_of_all_parts_of_the_split():
+    """The split of the energy adds up, and throttling is what both edges lose."""
     text = (CYCLES / "gait_knee.csv").read_text()
     found = results(text, linkage=True, other_friction=250.0, **LEAK)
     at = {place.name: value for place, value in found.items()}
@@ -106,17 +111,18 @@ def test_the_energy_of_the_supply_is_that_of_all_parts_of_the_split():
     plan = Plan(True, True, (), (), (), {})
     values = numbers(other_friction=250.0, **LEAK)
     models = CycleModels(plan, {"walk": read_cycle(text)}, tuple(values))
-    track = models.tracks(np.array([*values.values()]))["walk"]
-    x = track.real("position")
-    a, b = track.real("pressure_a"), track.real("pressure_b")
+    track = models.tracks(np.array([*values.values()])[:, None])["walk"]
+    x, a, b, speed, force, rubbed = (
+        track.real(name)[:, 0]
+        for name in ("position", "pressure_a", "pressure_b", "speed", "force", "friction")
+    )
     dx = np.diff(x)
     mean_a, mean_b = (a[1:] + a[:-1]) / 2, (b[1:] + b[:-1]) / 2
     out = (210 * BAR - mean_a) * AREA_A + (mean_b - 5 * BAR) * AREA_B
     back = (210 * BAR - mean_b) * AREA_B + (mean_a - 5 * BAR) * AREA_A
-    away = track.real("speed") >= 0
+    away = speed >= 0
     same = (away[1:] == away[:-1]) & (away[1:] == (dx > 0))  # no reversal within the interval
     edges = np.where(dx > 0, out, back) * np.abs(dx)
-    force, rubbed = track.real("force"), track.real("friction")
     work = (force[1:] + force[:-1]) / 2 * dx
     loss = (rubbed[1:] + rubbed[:-1]) / 2 * np.abs(dx)
     given = np.where(dx > 0, AREA_A, AREA_B) * 210 * BAR * np.abs(dx)
@@ -128,6 +134,7 @@ def test_the_energy_of_the_supply_is_that_of_all_parts_of_the_split():
 
 @pytest.mark.parametrize("name", ["area_a", "drain", "feed_b", "crank_radius", "walk|load_scale"])
 def test_slopes_of_all_results_are_those_of_differences(name: str):
+    """Exact slopes against central differences."""
     text = (CYCLES / "gait_knee.csv").read_text()
     values = numbers(other_friction=250.0, **LEAK)
     plan = Plan(True, True, (), (), (), {})

@@ -10,7 +10,8 @@ from actuator_opt.evaluation.limits import MetricArrays, all_limits, default_lim
 from actuator_opt.evaluation.validity import model_of
 from actuator_opt.metrics import METRICS, table
 from actuator_opt.metrics.documentation import function_of
-from actuator_opt.metrics.table import CRITERION, ROWS, CheckLine, Least, MetricRow
+from actuator_opt.metrics.metric_row import CRITERION, CheckLine, Least, MetricRow
+from actuator_opt.metrics.table import ROWS
 
 DESIGNS = sorted((Path(__file__).parents[2] / "designs").glob("*.yaml"))
 MASS = ROWS["mass"]

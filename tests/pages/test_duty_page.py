@@ -133,7 +133,7 @@ def test_torques_and_times_are_scaled():
     torque = duty_figures.trace_of(study, "torque")
     assert torque == pytest.approx(1.2 * study.record.load)
     worst = study.worst["reserve"]
-    assert study.state(worst.index)["joint_torque"] == pytest.approx(torque[worst.index])
+    assert study.state(worst.sample)["joint_torque"] == pytest.approx(torque[worst.sample])
     strips = charts(case("two"))[1].columns[0]
     assert strips[0].curves[0].xs[-1] == pytest.approx(0.9 * study.record.time[-1])
 
@@ -151,7 +151,7 @@ def test_sources_of_energy_equal_its_sinks():
 def test_the_linkage_is_drawn_to_scale():
     """Distances of the three joints on paper are the lengths at the least reserve."""
     study = case("walk").duty
-    worst = study.cycles[0].worst["reserve"].index
+    worst = study.cycles[0].worst["reserve"].sample
     picture = next(
         part
         for part in charts(case("walk"))[0].columns[1]
@@ -216,7 +216,7 @@ def test_the_plane_marks_the_least_reserve_between_cycle_and_limit():
     plane = charts(case("walk"))[0].columns[1][0]
     worst = study.worst["reserve"]
     line = next(curve for curve in plane.curves if len(curve.xs) == 2)
-    assert line.xs[0] == line.xs[1] == pytest.approx(study.traces["speed"][worst.index])
+    assert line.xs[0] == line.xs[1] == pytest.approx(study.traces["speed"][worst.sample])
     # friction depends on the force a little, so the distance is that reserve but for a few per cent
     assert abs(line.ys[1] - line.ys[0]) == pytest.approx(worst.value, rel=0.05)
 

@@ -15,7 +15,8 @@ import yaml
 from model_samples import public_functions
 
 from actuator_opt.metrics.documentation import describe, function_of
-from actuator_opt.metrics.table import CRITERION, ROWS
+from actuator_opt.metrics.metric_row import CRITERION
+from actuator_opt.metrics.table import ROWS
 from actuator_opt.models import elastomer, seals
 
 ROOT = Path(__file__).parents[2]

@@ -416,7 +416,7 @@ def _clip(values: Any, low: Any = None, high: Any = None, **_: Any) -> Any:
     return values if high is None else np.minimum(values, high)
 
 
-@_implements(np.cumsum)
+@_implements(np.cumsum, np.cumulative_sum)
 def _cumsum(values: Any, axis: int = 0, **_: Any) -> Any:
     return wrapped(_UFUNCS[np.add].accumulate(_plain(values), axis=axis))
 

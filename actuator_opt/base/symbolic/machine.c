@@ -112,10 +112,11 @@ static void follow(const Program *p, uint16_t *code, uint8_t *active) {
     }
 }
 
-/* values: (points, inputs); seeds: (points, inputs, T); results: (points, outputs, 1 + T) */
+/* values: (points, inputs); seeds: (points/sharing, inputs, T), each for `sharing` successive points;
+   results: (points, outputs, 1 + T) */
 static int run_slopes(
-    const Program *p, const double *values, const double *seeds, Py_ssize_t points, int T,
-    const int32_t *varies, double *results
+    const Program *p, const double *values, const double *seeds, Py_ssize_t points,
+    Py_ssize_t sharing, int T, const int32_t *varies, double *results
 ) {
     double *V = calloc(p->slots + p->constant_count, sizeof(double));
     double *D = calloc(p->slots * T, sizeof(double));
@@ -123,7 +124,7 @@ static int run_slopes(
     constants_to(p, V, 1);
     for (Py_ssize_t at = 0; at < points; at++) {
         memcpy(V, values + at * p->inputs, sizeof(double) * p->inputs);
-        memcpy(D, seeds + at * p->inputs * T, sizeof(double) * p->inputs * T);
+        memcpy(D, seeds + at / sharing * p->inputs * T, sizeof(double) * p->inputs * T);
         (T == 4 ? run_dual_4 : T == 8 ? run_dual_8 : run_dual_16)(
             p->code, p->count, p->extra, V, D);
         for (Py_ssize_t k = 0; k < p->results; k++) {
@@ -219,12 +220,12 @@ PyDoc_STRVAR(run_doc,
     "run(program, values, seeds, width, results)\n\n"
     "Run a checked program for points (points, inputs). Without seeds (width 0), `results` is\n"
     "(points, outputs). With seeds (points, inputs, width), it is (points, outputs, 1 + width);\n"
-    "width is 4, 8 or 16.");
+    "width is 4, 8 or 16. Fewer seeds are each for the same number of successive points.");
 
 static PyObject *run(PyObject *self, PyObject *args) {
     Py_buffer view[3];
     int width;
-    Py_ssize_t size[3], points = 0;
+    Py_ssize_t size[3], points = 0, sharing = 1;
     Checked *program;
     (void)self;
     if (!PyArg_ParseTuple(args, "O!y*y*iw*", checked_type, &program, &view[0], &view[1], &width,
@@ -237,15 +238,21 @@ static PyObject *run(PyObject *self, PyObject *args) {
     if (valid) {
         points = size[0] / p->inputs;
         if (width == 0) valid = size[2] == points * p->results;
-        else valid = (width == 4 || width == 8 || width == 16)
-                  && size[1] == points * p->inputs * width
-                  && size[2] == points * p->results * (1 + width);
+        else {
+            const Py_ssize_t seeds = size[1] / (p->inputs * (width > 0 ? width : 1));
+            valid = (width == 4 || width == 8 || width == 16)
+                 && size[1] == seeds * p->inputs * width && (seeds > 0 || points == 0)
+                 && (points == 0 || points % seeds == 0)
+                 && size[2] == points * p->results * (1 + width);
+            if (valid && points > 0) sharing = points / seeds;
+        }
     }
     if (valid) {
         Py_BEGIN_ALLOW_THREADS
         failed = width == 0
             ? run_values(p, view[0].buf, points, view[2].buf)
-            : run_slopes(p, view[0].buf, view[1].buf, points, width, program->varies, view[2].buf);
+            : run_slopes(p, view[0].buf, view[1].buf, points, sharing, width, program->varies,
+                         view[2].buf);
         Py_END_ALLOW_THREADS
     }
     for (int k = 0; k < 3; k++) PyBuffer_Release(&view[k]);

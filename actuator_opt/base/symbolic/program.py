@@ -106,13 +106,22 @@ class Program:
             self.frozen, constants, self.slots - len(values), count,
         )  # fmt: skip
 
+    def used_inputs(self) -> Array:
+        """Whether each input is read (inputs,)."""
+        read = np.zeros(self.slots + len(self.constants), dtype=bool)
+        plain = self.code[:, 0] & 255 != OPERATIONS.index("roots")  # it reads its slots from extra
+        for slots in (self.code[plain, 2:], self.extra, self.outputs):
+            read[slots.ravel()] = True
+        return read[: self.inputs]
+
     def slopes(self, points: Array, seeds: Array) -> tuple[Array, Array]:
         """Outputs (points, outputs) and their slopes (points, outputs, directions).
 
         Parameters
         ----------
         points : inputs of every point, (points, inputs)
-        seeds : change of every input in every direction, (points, inputs, directions)
+        seeds : change of every input in every direction, (points, inputs, directions); fewer seeds
+            are each for the same number of successive points
         """
         runnable = self._runnable(seeds.any(axis=(0, 2)))
         points = np.ascontiguousarray(points, dtype=float)
@@ -124,7 +133,7 @@ class Program:
             width = next(width for width in WIDTHS if width >= used)
             padded = np.zeros((count, inputs, width))
             padded[:, :, :used] = part
-            results = np.empty((count, len(self.outputs), 1 + width))
+            results = np.empty((len(points), len(self.outputs), 1 + width))
             _MACHINE.run(runnable, points, padded, width, results)
             values = results[:, :, 0]
             parts.append(results[:, :, 1 : 1 + used])

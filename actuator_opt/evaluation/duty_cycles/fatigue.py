@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ...base.numeric import Array
+from ...base.numeric import STEP, Array
 from ...models import endurance, rainflow
 from .numbers import LIFE, STRESS, History, Plan
 
@@ -21,22 +21,17 @@ if TYPE_CHECKING:
     from .results import Track
 
 
+MOST_KNOWN = 1000
+"""Orders of reversals whose pairs are kept."""
+
+
 class _Counted(NamedTuple):
-    """Shares of the full pulse at the ends of counted cycles, (cycles, directions)."""
+    """Shares of the full pulse at the ends of counted cycles, (loads, cycles, columns)."""
 
     largest: Array
     smallest: Array
     count: Array
-    """How often each occurs in a life."""
-
-
-class _Group(NamedTuple):
-    """Parts under the same load, with the same kind of life."""
-
-    load: History
-    bolted: bool
-    only_tension: bool
-    parts: npt.NDArray[np.intp]
+    """Number of times each occurs in a life; 0 fills up the cycles of a load."""
 
 
 class Fatigue:
@@ -55,103 +50,172 @@ class Fatigue:
 
     def __init__(self, plan: Plan, cycles: Sequence[str], rows: Mapping[str, int]) -> None:
         self.cycles, self._rows = tuple(cycles), rows
-        kinds: dict[tuple[History, bool, bool], list[int]] = {}
-        for i, part in enumerate(plan.parts if cycles else ()):
-            kinds.setdefault((part.load, part.bolted, part.only_tension), []).append(i)
-        self._groups = [_Group(*kind, np.array(parts)) for kind, parts in kinds.items()]
-        places = [plan.parts[i].place for group in self._groups for i in group.parts]
-        words = (*self.cycles, "") if places else ()
-        self.keys = [(cycle, "damage", place) for cycle in words for place in places]
+        self.needed = True
+        self._known: dict[bytes, tuple[Array, Array]] = {}
+        parts = sorted(enumerate(plan.parts if cycles else ()), key=lambda pair: pair[1].bolted)
+        self._loads: tuple[History, ...] = tuple(dict.fromkeys(part.load for _, part in parts))
+        self._load = np.array([self._loads.index(part.load) for _, part in parts], dtype=np.intp)
+        self._tension = np.array([part.only_tension for _, part in parts], dtype=bool)
+        self._metal = sum(not part.bolted for _, part in parts)
+        self._stress = {
+            key: [rows[f"part{i}.{key}"] for i, _ in parts[: self._metal]] for key in STRESS
+        }
+        self._life = [rows[f"part{i}.life"] for i, _ in parts[self._metal :]]
+        words = (*self.cycles, "") if parts else ()
+        self.keys = [(cycle, "damage", part.place) for cycle in words for _, part in parts]
 
     def damages(self, numbers: Array, tracks: Mapping[str, Track]) -> Array:
-        """Miner's sums (keys, directions) at numbers (numbers, directions)."""
-        histories: dict[History, dict[str, _Counted]] = {}
-        by_cycle: dict[str, list[Array]] = {cycle: [] for cycle in (*self.cycles, "")}
-        for group in self._groups:
-            if group.load not in histories:
-                histories[group.load] = self._counted(group.load, numbers, tracks)
-            damages = {
-                cycle: self._damage(group, numbers, counted)
-                for cycle, counted in histories[group.load].items()
-            }
-            for cycle in self.cycles:
-                by_cycle[cycle].append(damages[cycle])
-            by_cycle[""].append(sum(damages.values()))
-        blocks = [block for parts in by_cycle.values() for block in parts]
-        return np.concatenate(blocks) if blocks else np.empty((0, numbers.shape[1]))
+        """Miner's sums (keys, columns) at numbers (numbers, columns)."""
+        if not self.needed or not self.keys:
+            return np.zeros((len(self.keys), numbers.shape[1]))
+        loads = {
+            name: [self._history(load, numbers, tracks[name]) for load in self._loads]
+            for name in self.cycles
+        }
+        blocks = [
+            self._damage(numbers, self._counted(name, loads[name], numbers, tracks[name]))
+            for name in self.cycles
+        ]
+        total = sum(blocks)
+        if len(self.cycles) > 1:
+            total = total + self._damage(numbers, self._changes(loads, numbers))
+        return np.concatenate([*blocks, total])
 
     def _counted(
-        self, load: History, numbers: Array, tracks: Mapping[str, Track]
-    ) -> dict[str, _Counted]:
-        """Counted cycles of one load by duty cycle, and under "" those between duty cycles."""
-        counted, ends = {}, []
-        for name in self.cycles:
-            share = self._history(load, numbers, tracks[name])
-            repeats, starts = (numbers[self._rows[f"{name}|{key}"]] for key in LIFE)
-            level = share[:, 0].real
-            at = reversals(level)
-            found = rainflow.repeating_cycles(history=level[at])
-            largest, smallest = share[at][found.largest], share[at][found.smallest]
-            high, low = share[np.argmax(level)], share[np.argmin(level)]
-            peak = high if abs(high[0].real) >= abs(low[0].real) else low
-            up = np.where(peak.real > 0, peak, 0.0)
-            counted[name] = _Counted(
-                np.concatenate([largest, up[None]]),
-                np.concatenate([smallest, (peak - up)[None]]),
-                np.concatenate([np.ones((len(largest), 1)) * repeats, starts[None]]),
-            )
-            ends.append((high, low, starts))
-        if len(ends) > 1:
-            high = max((end[0] for end in ends), key=lambda x: x[0].real)
-            low = min((end[1] for end in ends), key=lambda x: x[0].real)
-            starts = max((end[2] for end in ends), key=lambda x: x[0].real)
-            counted[""] = _Counted(high[None], low[None], starts[None])
-        return counted
+        self, name: str, shares: Sequence[Array], numbers: Array, track: Track
+    ) -> _Counted:
+        """Counted cycles of a duty cycle, and those of its starts, for each load."""
+        repeats, starts = (numbers[self._rows[f"{name}|{key}"]] for key in LIFE)
+        share = np.stack(shares)  # (loads, samples, columns)
+        loads, columns, width = len(shares), share.shape[2], track.shape[1]
+        levels = share.real[:, :, ::width].transpose(1, 0, 2)
+        pairs = self._pairs(levels.reshape(len(levels), -1))
+
+        def spread(values: Array) -> Array:
+            """Values (cycles, loads x designs) as (loads, cycles, columns)."""
+            wide = values.reshape(len(values), loads, -1).transpose(1, 0, 2)
+            return np.repeat(wide, width, axis=2) if width > 1 else wide
+
+        largest, smallest = (
+            np.take_along_axis(share, spread(at), axis=1) for at in (pairs.largest, pairs.smallest)
+        )
+        high, low = _ends(share)
+        peak: Array = np.where(np.abs(high.real) >= np.abs(low.real), high, low)
+        up = np.where(peak.real > 0, peak, 0.0)
+        begun = np.broadcast_to(starts, (loads, 1, columns))
+        return _Counted(
+            np.concatenate([largest, up], axis=1),
+            np.concatenate([smallest, peak - up], axis=1),
+            np.concatenate([spread(pairs.count) * repeats, begun], axis=1),
+        )
+
+    def _changes(self, loads: Mapping[str, Sequence[Array]], numbers: Array) -> _Counted:
+        """Cycles from the smallest to the largest load of all duty cycles, one for every start."""
+        starts = numbers[[self._rows[f"{name}|starts"] for name in self.cycles]]
+        starts = np.take_along_axis(starts, np.argmax(starts.real, axis=0)[None], axis=0)
+        high, low = _ends(np.concatenate([np.stack(shares) for shares in loads.values()], axis=1))
+        return _Counted(high, low, np.broadcast_to(starts, high.shape))
+
+    def _pairs(self, levels: npt.NDArray[np.float64]) -> rainflow.Cycles:
+        """Rainflow cycles of histories (samples, designs).
+
+        The pairs depend on the order of the reversals alone, and are kept for equal orders.
+        """
+        turns = _turns(levels)
+        found = []
+        for k in range(levels.shape[1]):
+            at = np.flatnonzero(turns[:, k])
+            values = levels[at, k]
+            key = at.tobytes() + np.argsort(values, kind="stable").tobytes()
+            if key not in self._known or (values[1:] == values[:-1]).any():
+                if len(self._known) >= MOST_KNOWN:
+                    self._known.clear()
+                pairs = rainflow.repeating_cycles(history=values)
+                self._known[key] = (at[pairs.largest], at[pairs.smallest])
+            found.append(self._known[key])
+        rows = max((len(pair[0]) for pair in found), default=0)
+        index = np.zeros((2, rows, len(found)), dtype=np.intp)
+        count = np.zeros((rows, len(found)))
+        for k, pair in enumerate(found):
+            index[:, : len(pair[0]), k] = pair
+            count[: len(pair[0]), k] = 1.0
+        return rainflow.Cycles(index[0], index[1], count)
 
     def _history(self, load: History, numbers: Array, track: Track) -> Array:
-        """The load at all samples as a share of its full pulse (samples, directions)."""
+        """The load at all samples as a share of its full pulse (samples, columns)."""
         if load == "rod":
             return -track.array("force") / numbers[self._rows["rod_pulse"]]
         a, b = track.array("pressure_a"), track.array("pressure_b")
         pressure = a if load == "a" else b
         if load == "middle":
             x = track.real("position")
-            pressure = np.where((x > (x.max() + x.min()) / 2)[:, None], a, b)
+            behind = x > (x.max(axis=0) + x.min(axis=0)) / 2
+            pressure = np.where(np.repeat(behind, track.shape[1], axis=1), a, b)
         return pressure / numbers[self._rows["supply"]]
 
-    def _damage(self, group: _Group, numbers: Array, counted: _Counted) -> Array:
-        """Miner's sums of the parts of a group (parts, directions)."""
-        largest, smallest, count = (x[:, None] for x in counted)
-        if group.only_tension:
-            largest = np.where(largest.real > 0, largest, 0.0)
-            smallest = np.where(smallest.real > 0, smallest, 0.0)
-        span = largest - smallest
-
-        def stated(key: str) -> Array:
-            return numbers[[self._rows[f"part{i}.{key}"] for i in group.parts]]
-
-        if group.bolted:  # life falls with the third power of the load (`endurance.bolt_cycles`)
-            return (count * span * span * span).sum(axis=0) / stated("life")
-        part = {key: stated(key) for key in STRESS}
-        endured = endurance.basquin_cycles(
-            amplitude=endurance.reversed_amplitude(
-                amplitude=part["span"] * span / 2,
-                mean=part["offset"] + part["slope"] * (largest + smallest) / 2,
-                ultimate_strength=part["ultimate"],
-            ),
-            ultimate_strength=part["ultimate"],
-            fatigue_limit=part["limit"],
+    def _damage(self, numbers: Array, counted: _Counted) -> Array:
+        """Miner's sums of all parts (parts, columns)."""
+        largest, smallest, count = (values[self._load] for values in counted)
+        tension = self._tension[:, None, None]
+        largest, smallest = (np.where(tension & (x.real < 0), 0.0, x) for x in (largest, smallest))
+        span, metal = largest - smallest, slice(self._metal)
+        part = {key: numbers[rows][:, None] for key, rows in self._stress.items()}
+        damage = _summed(
+            count[metal],
+            amplitude=part["span"] * span[metal] / 2,
+            mean=part["offset"] + part["slope"] * (largest + smallest)[metal] / 2,
+            ultimate=part["ultimate"],
+            limit=part["limit"],
             limit_cycles=part["limit_cycles"],
         )
-        counts = np.broadcast_to(count, endured.shape)
-        return endurance.miner_damage(cycles=endured, counts=counts, repeats=1.0)
+        bolts = slice(self._metal, None)
+        # the life of a bolt falls with the third power of the load (`endurance.bolt_cycles`)
+        cubes = (count[bolts] * span[bolts] ** 3).sum(axis=1)
+        return np.concatenate([damage, cubes / numbers[self._life]])
 
 
-def reversals(values: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
-    """Indices of the local extremes of a repeating history, and of its first sample."""
-    keep = np.flatnonzero(np.append(True, values[1:] != values[:-1]))
-    rest = values[keep]
-    before, after = np.roll(rest, 1), np.roll(rest, -1)
-    turns = (rest - before) * (after - rest) <= 0
-    turns[0] = True
-    return keep[turns]
+def _ends(share: Array) -> tuple[Array, Array]:
+    """Largest and smallest values of histories (loads, samples, columns), (loads, 1, columns)."""
+    high, low = (
+        np.take_along_axis(share, at(share.real, axis=1)[:, None], axis=1)
+        for at in (np.argmax, np.argmin)
+    )
+    return high, low
+
+
+def _damage_of(values: dict[str, Array]) -> Array:
+    """Damage of single cycles of stress."""
+    ultimate = values["ultimate"]
+    return 1 / endurance.basquin_cycles(
+        amplitude=endurance.reversed_amplitude(
+            amplitude=values["amplitude"], mean=values["mean"], ultimate_strength=ultimate
+        ),
+        ultimate_strength=ultimate,
+        fatigue_limit=values["limit"],
+        limit_cycles=values["limit_cycles"],
+    )
+
+
+def _summed(count: Array, **stress: Array) -> Array:
+    """Miner's sum over the cycles (parts, cycles, columns).
+
+    Each cycle has few inputs and many directions: its slope by each input is computed once.
+    """
+    plain = {key: np.real(value) for key, value in stress.items()}
+    each = _damage_of(plain)
+    total: Array = (np.real(count) * each).sum(axis=1)
+    if not np.iscomplexobj(count) and not any(map(np.iscomplexobj, stress.values())):
+        return total
+    change = np.imag(count) * each
+    for key, value in stress.items():
+        if np.any(np.imag(value)):
+            slope = _damage_of({**plain, key: plain[key] + 1j * STEP}).imag / STEP
+            change = change + np.real(count) * slope * np.imag(value)
+    return total + 1j * change.sum(axis=1)
+
+
+def _turns(values: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    """Whether samples are local extremes of repeating histories (samples, designs)."""
+    before, after = np.roll(values, 1, axis=0), np.roll(values, -1, axis=0)
+    turns: npt.NDArray[np.bool_] = ~((values - before) * (after - values) > 0)
+    return turns

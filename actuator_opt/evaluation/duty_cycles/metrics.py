@@ -7,8 +7,10 @@ from collections.abc import Callable, Iterator, Mapping
 from ...base.numeric import Array, maximum, minimum, real, where
 from ...design.model import Design
 from ...models import fluid
-from ..limits import MetricArrays
+from ..geometry import Geometry
+from ..limits import MaterialValues, MetricArrays
 from ..values import Values
+from . import supply, thermal
 from .results import Place
 
 NO_DUTY = "no duty cycles stated: add duty"
@@ -38,6 +40,10 @@ NAMES = (
     "duty_wear",
     "duty_pv",
     "duty_ripple_volume",
+    "duty_gas_volume",
+    "duty_tank_temperature",
+    "system_mass",
+    *thermal.METRICS,
 )
 """All metrics of duty cycles."""
 
@@ -53,9 +59,11 @@ def skip(out: MetricArrays) -> None:
 def compute(
     v: Values,
     design: Design,
+    stock: MaterialValues,
+    g: Geometry,
     results: Mapping[Place, Array],
-    stroke: Array,
     *,
+    actuator_mass: Array,
     windows: bool,
     out: MetricArrays,
 ) -> None:
@@ -87,9 +95,12 @@ def compute(
     _put(out, "duty_suction_ratio", {place: (p + air) / air for place, p in low.items()})
     least = extremes.of("position_min", minimum, "retracted")
     most = extremes.of("position_max", maximum, "extended")
-    _put(out, "duty_stroke_margin", least | {place: stroke - x for place, x in most.items()})
+    _put(out, "duty_stroke_margin", least | {place: g.stroke - x for place, x in most.items()})
     _sums(v, design, results, out)
     _life(v, design, results, out)
+    supply.compute(v, design, results, actuator_mass, out)
+    tank = out.metrics.get("duty_tank_temperature", {}).get("")
+    thermal.compute(v, design, stock, g, results, tank, out)
 
 
 def _put(out: MetricArrays, metric: str, values: dict[str, Array]) -> None:

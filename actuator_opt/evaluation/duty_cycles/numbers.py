@@ -17,6 +17,7 @@ from ...base.numeric import Array, array_of, maximum, namespace, sqrt
 from ...design.cycle_record import CycleRecord
 from ...design.duty import DutyCycle
 from ...design.model import Design
+from ...joints.joint import Life
 from ...models import friction, lines, rod
 from ...models.lapped_spool import LappedSpool, lapped_flows
 from .. import circuit, piston_nut, rings as rings_module, rod_strength, sealing, spool
@@ -71,7 +72,7 @@ class FatiguePart:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What the model of the samples needs to know of a design besides numbers."""
+    """Structure of a design, for the model of the samples."""
 
     linkage: bool
     valve: bool
@@ -133,9 +134,7 @@ def collect(
     seals = _seals(v, design, stock, g, resting, wall, supply, numbers)
     parts, unknown = _fatigue(v, design, stock, g, wall, sections, loaded_joints, supply, numbers)
     lines = tuple((line.chamber, i) for i, line in enumerate(design.lines))
-    plan = Plan(
-        design.linkage is not None, design.valve is not None, lines, seals, parts, unknown
-    )
+    plan = Plan(design.linkage is not None, design.valve is not None, lines, seals, parts, unknown)
     return plan, numbers
 
 
@@ -268,7 +267,8 @@ def _seals(
     growth = wall.growths.get("", next(iter(wall.growths.values())))
     growth = _largest(growth)
     for i, ring in enumerate(seals):
-        sealing_ring = ring.groove.path == f"seals.{BLOCKS[ring.name]}."
+        assert ring.name != "static"
+        sealing_ring = ring.groove.path == f"seals.{BLOCKS[ring.name]}."  # others are not pressed
         for share in SHARES:
             pressed = ring.at(pressure=(share if sealing_ring else 0.0) * supply)
             if ring.name == "piston":
@@ -334,8 +334,10 @@ def _fatigue(
         numbers |= {f"{at}ultimate": ultimate, f"{at}limit": limit}
         numbers[f"{at}limit_cycles"] = stock.get(material, "fatigue_cycles", default=1e6)
         parts.append(part)
-    lives = {name: ("rod", life) for name, life in piston_nut.lives(
-        v, design, stock, g, push, pull).items()}
+    lives: dict[str, tuple[History, Life]] = {
+        name: ("rod", life)
+        for name, life in piston_nut.lives(v, design, stock, g, push, pull).items()
+    }
     for end in loaded_joints:
         for place, life in end.placed(end.joint.fatigue(end.loaded).lives).items():
             if end.joint.name == "tie_rods":
@@ -375,7 +377,9 @@ def _wall_stresses(wall: Wall, loaded_joints: Sequence[LoadedJoint]) -> Iterator
 
 def _chambers(end: LoadedJoint) -> tuple[History, ...]:
     """Chambers whose pressure loads a joint; both if cap and head are alike."""
-    return {"cap": ("a",), "head": ("b",)}.get(end.end_joint.name, ("a", "b"))
+    if end.end_joint.name:
+        return ("a",) if end.end_joint.name == "cap" else ("b",)
+    return ("a", "b")
 
 
 def _rod_stresses(

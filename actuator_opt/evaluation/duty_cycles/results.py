@@ -8,7 +8,8 @@ windows of time, and the worst two samples of each window are separate results.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -25,8 +26,10 @@ from .numbers import CYCLE, Numbers, Plan
 from .samples import SampleModel, leakage_at_rest
 
 WINDOWS = 8
-"""Windows of time of all cycles together, in which extremes are separate limits of the optimiser (our choice).
-"""
+"""Windows of time of all cycles together (our choice). The extremes in each window are separate
+limits of the optimiser."""
+MOST = 200
+"""Designs that are computed together, to bound memory."""
 LEAST_WINDOWS = 2
 """Windows of each cycle if there are many cycles."""
 RANKS = 2
@@ -83,22 +86,28 @@ def results_in(v: Values) -> dict[Place, Array]:
 class Track:
     """Results of all samples of a cycle, with slopes in every direction.
 
-    Arrays are (samples, 1) without directions; otherwise complex (samples, directions), whose
-    imaginary parts are the slopes times the complex step.
+    Arrays are (samples, columns): a column for each design, or for each direction of each design;
+    their imaginary parts are then the slopes times the complex step.
     """
 
     values: npt.NDArray[np.float64]
-    """(samples, outputs, 1 + directions)"""
+    """(samples, outputs, designs, 1 + directions)"""
     outputs: tuple[str, ...]
 
-    def array(self, name: str, rows: Array | slice = slice(None)) -> Array:
-        """A result at samples."""
-        part = self.values[rows, self.outputs.index(name)]
-        return complexed(part)
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of designs, and of columns of each."""
+        designs, width = self.values.shape[2:]
+        return designs, max(width - 1, 1)
+
+    def array(self, name: str) -> Array:
+        """A result at all samples (samples, columns)."""
+        part = complexed(self.values[:, self.outputs.index(name)])
+        return part.reshape(len(part), -1)
 
     def real(self, name: str) -> npt.NDArray[np.float64]:
-        """A result at all samples, without slopes (samples,)."""
-        return self.values[:, self.outputs.index(name), 0]
+        """A result at all samples, without slopes (samples, designs)."""
+        return self.values[:, self.outputs.index(name), :, 0]
 
 
 def complexed(part: Array) -> Array:
@@ -111,6 +120,18 @@ def complexed(part: Array) -> Array:
     return result
 
 
+def _firsts(points: Array) -> npt.NDArray[np.intp]:
+    """First columns of the groups with equal real parts."""
+    new = np.append(True, (points.real[:, 1:] != points.real[:, :-1]).any(axis=0))
+    return np.flatnonzero(new)
+
+
+def width_of(points: Array) -> int | None:
+    """Size of the groups of columns with equal real parts; None if they differ in size."""
+    sizes = np.diff(np.append(_firsts(points), points.shape[1]))
+    return int(sizes[0]) if (sizes == sizes[0]).all() else None
+
+
 class CycleModels:
     """Results of all cycles of a design structure, for any numbers.
 
@@ -119,6 +140,7 @@ class CycleModels:
     plan : structure of the design
     records : records of the cycles by name
     names : names of the numbers, in order
+    phases : delays of further actuators on the same supply by cycle, as shares of the period
 
     Attributes
     ----------
@@ -126,7 +148,11 @@ class CycleModels:
     """
 
     def __init__(
-        self, plan: Plan, records: Mapping[str, CycleRecord], names: Sequence[str]
+        self,
+        plan: Plan,
+        records: Mapping[str, CycleRecord],
+        names: Sequence[str],
+        phases: Mapping[str, Sequence[float]] | None = None,
     ) -> None:
         self.plan, self.records, self.names = plan, dict(records), tuple(names)
         self._row = {name: k for k, name in enumerate(names)}
@@ -138,13 +164,13 @@ class CycleModels:
         self._cycles: dict[str, _Cycle] = {}
         places: list[Place] = []
         for name, record in records.items():
-            cycle = self._cycle(name, record, count)
+            cycle = self._cycle(name, record, count, (phases or {}).get(name, ()))
             self._cycles[name] = cycle
             places += [Place(name, *key) for key in cycle.keys]
         places += [Place(*key) for key in self._fatigue.keys]
         self.places = (*places, Place("", "rest_leakage"))
 
-    def _cycle(self, name: str, record: CycleRecord, count: int) -> _Cycle:
+    def _cycle(self, name: str, record: CycleRecord, count: int, phases: Sequence[float]) -> _Cycle:
         columns = [record.motion, record.load, record.speed]
         titles = ["=motion", "=load", "=rate"]
         if record.supply_pressure is not None:
@@ -155,28 +181,50 @@ class CycleModels:
         )
         order = [self._row[key] for key in self.common]
         order += [self._row[f"{name}|{key}"] for key in CYCLE]
-        return _Cycle(self.plan, record, model, np.stack(columns, axis=1), order, count)
+        return _Cycle(self.plan, record, model, np.stack(columns, axis=1), order, count, phases)
 
-    def __call__(self, points: Array) -> Array:
-        """Results (places, k) at numbers (numbers, k), real or complex."""
-        stepped = np.iscomplexobj(points)
-        new = np.append(True, (points.real[:, 1:] != points.real[:, :-1]).any(axis=0))
-        parts = []
-        for part in np.split(points, np.flatnonzero(new)[1:], axis=1):
-            seeds = part.imag / STEP if stepped else np.zeros((len(part), 0))
-            with np.errstate(all="ignore"):
-                rows = self._results(part.real[:, 0], seeds)
-            parts.append(np.broadcast_to(rows, (len(rows), part.shape[1])))
-        return np.concatenate(parts, axis=1)
+    def need(self, rows: Array) -> None:
+        """Compute only results that are needed from now on, (places,) of truth; others are 0."""
+        at = 0
+        for cycle in self._cycles.values():
+            cycle.need(rows[at : at + len(cycle.keys)])
+            at += len(cycle.keys)
+        self._fatigue.needed = bool(rows[at : at + len(self._fatigue.keys)].any())
+
+    def __call__(self, points: Array, width: int | None = None) -> Array:
+        """Results (places, k) at numbers (numbers, k), real or complex.
+
+        `width` is the number of neighbouring complex columns that are directions of one design;
+        None: those with equal real parts.
+        """
+        directions = 0
+        if np.iscomplexobj(points):
+            width = width or width_of(points)
+            if width is None:  # different numbers of directions
+                parts = np.split(points, _firsts(points)[1:], axis=1)
+                return np.concatenate([self(part, part.shape[1]) for part in parts], axis=1)
+            directions = width
+        values = points.real[:, :: max(directions, 1)]
+        seeds = np.zeros((*values.shape, 0))
+        if directions:
+            seeds = points.imag.reshape(*values.shape, directions) / STEP
+        with np.errstate(all="ignore"):
+            rows = [
+                self._results(values[:, at : at + MOST], seeds[:, at : at + MOST])
+                for at in range(0, values.shape[1], MOST)
+            ]
+        return rows[0] if len(rows) == 1 else np.concatenate(rows, axis=1)
 
     def tracks(self, values: Array) -> dict[str, Track]:
-        """Results of all samples of every cycle, at numbers (numbers,)."""
-        seeds = np.zeros((len(values), 0))
+        """Results of all samples of every cycle, at numbers (numbers, designs)."""
+        seeds = np.zeros((*values.shape, 0))
         return {name: cycle.track(values, seeds) for name, cycle in self._cycles.items()}
 
     def _results(self, values: Array, seeds: Array) -> Array:
-        """Results at one design, (places, 1) or complex (places, directions)."""
-        numbers = values[:, None] + 1j * STEP * seeds if seeds.shape[1] else values[:, None]
+        """Results (places, columns) at values (numbers, designs)."""
+        numbers = values
+        if seeds.shape[2]:
+            numbers = (values[:, :, None] + 1j * STEP * seeds).reshape(len(values), -1)
         blocks, tracks = [], {}
         for name, cycle in self._cycles.items():
             tracks[name] = cycle.track(values, seeds)
@@ -185,8 +233,15 @@ class CycleModels:
         u = dict(zip(self.names, numbers, strict=True))
         blocks.append(self._fatigue.damages(numbers, tracks))
         blocks.append(np.reshape(leakage_at_rest(self.plan, u), (1, -1)))
-        width = numbers.shape[1]
-        return np.concatenate([np.broadcast_to(x, (len(x), width)) for x in blocks])
+        return np.concatenate(blocks)
+
+
+class _Block(NamedTuple):
+    """Results that are computed together: names, number of rows, and their function."""
+
+    names: tuple[str, ...]
+    rows: int
+    results: Callable[[Numbers, Track], Array]
 
 
 class _Cycle:
@@ -200,20 +255,36 @@ class _Cycle:
         data: Array,
         order: Sequence[int],
         count: int,
+        phases: Sequence[float],
     ) -> None:
-        self.plan, self.record, self.model = plan, record, model
+        self.plan, self.record, self.model, self.phases = plan, record, model, tuple(phases)
         self.data, self.order = data, list(order)
         self.extremes = {k: v for k, v in EXTREMES.items() if plan.valve or k != "opening"}
         self.windows, self.whole = windows_of(record, count), windows_of(record, 1)
         labels = [ring.label for ring in plan.rings]
-        self.keys: list[tuple[str, str]] = [(name, "") for name in SUMS]
-        self.keys += [(name, label) for name in SEAL_SUMS for label in labels]
-        for name in self.extremes:
-            self.keys += [(name, place) for place in _ranked(self.windows)]
-        for name in ENDS:
-            self.keys += [(name, place) for place in _ranked(self.whole)]
-        for label in labels:
-            self.keys += [("pv", f"{label}|{place}") for place in _ranked(self.windows)]
+        sums = [(name, "") for name in SUMS]
+        seals = [(name, label) for name in SEAL_SUMS for label in labels]
+        extremes = [(name, place) for name in self.extremes for place in _ranked(self.windows)]
+        ends = [(name, place) for name in ENDS for place in _ranked(self.whole)]
+        pv = [("pv", f"{label}|{place}") for label in labels for place in _ranked(self.windows)]
+        self.keys: list[tuple[str, str]] = [*sums, *seals, *extremes, *ends, *pv]
+        self._blocks = (
+            _Block(SUMS, len(sums), self._sums),
+            _Block(tuple(SEAL_SUMS), len(seals), self._seal_sums),
+            _Block(
+                tuple(self.extremes),
+                len(extremes),
+                lambda u, track: self._worst(self.extremes, self.windows, track),
+            ),
+            _Block(tuple(ENDS), len(ends), lambda u, track: self._worst(ENDS, self.whole, track)),
+            _Block(("pv",), len(pv), self._pressure_times_speed),
+        )
+        self._needed = [True] * len(self._blocks)
+
+    def need(self, rows: Array) -> None:
+        """Compute only the blocks of results with needed rows, (keys,) of truth."""
+        names = {name for (name, _), needed in zip(self.keys, rows, strict=True) if needed}
+        self._needed = [any(name in names for name in block.names) for block in self._blocks]
 
     def track(self, values: Array, seeds: Array) -> Track:
         """Results of all samples."""
@@ -221,58 +292,82 @@ class _Cycle:
         return Track(rows, self.model.outputs)
 
     def results(self, u: Numbers, track: Track) -> Array:
-        """All results, (keys, 1) or complex (keys, directions)."""
-        sums = _sums(u, self.record.time[:, None] * u["time_scale"], track)
-        blocks = [np.stack(np.broadcast_arrays(*(sums[name] for name in SUMS)))]
-        blocks += self._seal_sums(track)
-        blocks.append(self._worst(self.extremes, self.windows, track))
-        blocks.append(self._worst(ENDS, self.whole, track))
-        blocks += self._pressure_times_speed(track)
+        """All results (keys, columns)."""
+        columns = track.shape[0] * track.shape[1]
+        blocks = [
+            block.results(u, track) if needed else np.zeros((block.rows, columns))
+            for block, needed in zip(self._blocks, self._needed, strict=True)
+        ]
         return np.concatenate(blocks)
 
-    def _seal_sums(self, track: Track) -> list[Array]:
+    def _sums(self, u: Numbers, track: Track) -> Array:
+        time = self.record.time[:, None] * u["time_scale"]
+        total = self._total_flow(track.array("flow"))
+        most = np.argmax(total.real, axis=0)[None]
+        sums = sums_of(u, time, track) | {
+            "ripple_volume": supply_sizing.ripple_volume(time=time, flow=total).volume,
+            "flow_total": np.take_along_axis(total, most, axis=0)[0],
+        }
+        return np.stack(np.broadcast_arrays(*(sums[name] for name in SUMS)))
+
+    def _total_flow(self, flow: Array) -> Array:
+        """Flow of all actuators on the supply; the others run the same cycle later or earlier."""
+        total, time = flow, self.record.time
+        period = time[-1] - time[0]
+        for phase in self.phases:
+            moved = (time - time[0] - phase * period) % period + time[0]
+            left = np.clip(np.searchsorted(time, moved, side="right") - 1, 0, len(time) - 2)
+            share = ((moved - time[left]) / (time[left + 1] - time[left]))[:, None]
+            total = total + (1 - share) * flow[left] + share * flow[left + 1]
+        return total
+
+    def _seal_sums(self, u: Numbers, track: Track) -> Array:
         """Severity and friction energy of every seal."""
         x = track.array("position")
         dx = x[1:] - x[:-1]
         way = np.where(dx.real > 0, dx, -dx)
-        return [
-            (mean(track.array(f"{name}{i}")) * way).sum(axis=0, keepdims=True)
+        rows = [
+            (mean(track.array(f"{name}{i}")) * way).sum(axis=0)
             for name in SEAL_SUMS.values()
             for i in range(len(self.plan.rings))
         ]
+        return np.stack(rows) if rows else np.empty((0, x.shape[1]))
 
     def _worst(
         self, extremes: Mapping[str, tuple[str, Sense]], windows: Windows, track: Track
     ) -> Array:
         """Extremes in windows, name by name."""
-        columns = [track.outputs.index(output) for output, _ in extremes.values()]
+        outputs = np.array([track.outputs.index(output) for output, _ in extremes.values()])
         signs = np.array([1.0 if sense == "min" else -1.0 for _, sense in extremes.values()])
-        rows = windows.least(track.values[:, columns, 0] * signs)
-        picked = complexed(track.values[rows, np.array(columns)[:, None]])
-        return picked.reshape(-1, picked.shape[-1])
+        rows = windows.least(track.values[..., 0][:, outputs] * signs[:, None])
+        designs = np.arange(track.shape[0])
+        picked = complexed(track.values[rows, outputs[:, None, None], designs])
+        return picked.reshape(rows.shape[0] * rows.shape[1], -1)
 
-    def _pressure_times_speed(self, track: Track) -> list[Array]:
+    def _pressure_times_speed(self, u: Numbers, track: Track) -> Array:
         """Largest contact pressure times speed of every seal, in windows."""
         blocks = []
         for i in range(len(self.plan.rings)):
             value = np.abs(track.real("speed") * track.real(f"contact{i}"))
             rows = self.windows.least(-value[:, None])[0]
-            product = track.array("speed", rows) * track.array(f"contact{i}", rows)
+            rows = np.repeat(rows, track.shape[1], axis=1)
+            speed = np.take_along_axis(track.array("speed"), rows, axis=0)
+            product = speed * np.take_along_axis(track.array(f"contact{i}"), rows, axis=0)
             blocks.append(np.where(product.real < 0, -product, product))
-        return blocks
+        return np.concatenate(blocks) if blocks else np.empty((0, track.array("speed").shape[1]))
 
 
 SUMS = (
     "duration", "way", "volume", "supply_energy", "leakage_energy", "work_out", "work_in",
     "friction_energy", "return_energy", "throttling_energy", "oil_volume", "position_mean",
-    "inlet_heat", "inlet_volume", "ripple_volume", "exchange_a", "exchange_b",
+    "inlet_heat", "inlet_volume", "ripple_volume", "flow_total", "exchange_a", "exchange_b",
 )  # fmt: skip
 """Sums over a cycle."""
 SEAL_SUMS = {"severity": "contact", "seal_friction_energy": "friction"}
 """Sums over a cycle for each seal, with the result of the samples that is summed over the way."""
 
 
-def _sums(u: Numbers, time: Array, track: Track) -> dict[str, Array]:
+def sums_of(u: Numbers, time: Array, track: Track) -> dict[str, Array]:
     """Sums over the motion and over time."""
     dt = time[1:] - time[:-1]
     x = track.array("position")
@@ -309,9 +404,8 @@ def _sums(u: Numbers, time: Array, track: Track) -> dict[str, Array]:
         "position_mean": (mean(x) * dt).sum(axis=0) / duration,
         "inlet_heat": (mean(track.array("inlet_drop")) * volume).sum(axis=0),
         "inlet_volume": volume.sum(axis=0),
-        "ripple_volume": supply_sizing.ripple_volume(time=time, flow=track.array("flow")).volume,
     }
-    return sums | _exchange(u, x, duration)
+    return sums | _exchange(u, x, duration, turning_points(track.real("position")[:, 0]))
 
 
 def mean(values: Array) -> Array:
@@ -327,10 +421,14 @@ def turning_points(position: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
     return np.concatenate([[0], turns, [len(position) - 1]])
 
 
-def _exchange(u: Numbers, x: Array, duration: Array) -> dict[str, Array]:
-    """Flow of fresh oil into each chamber: of every stroke, what the line does not hold back."""
-    ends = x[turning_points(x[:, 0].real)]
-    strokes = ends[1:] - ends[:-1]
+def _exchange(
+    u: Numbers, x: Array, duration: Array, turns: npt.NDArray[np.intp]
+) -> dict[str, Array]:
+    """Flow of fresh oil into each chamber: of every stroke, what the line does not hold back.
+
+    All designs turn at the same samples: a lever arm does not change its sign.
+    """
+    strokes = x[turns[1:]] - x[turns[:-1]]
     flows = {}
     for chamber, sign in (("a", 1.0), ("b", -1.0)):
         fresh = sign * u[f"area_{chamber}"] * strokes - u[f"line_volume_{chamber}"]
@@ -350,8 +448,8 @@ class Windows(NamedTuple):
     def least(self, values: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
         """Samples of the `RANKS` least values of every window, in order.
 
-        Values (samples, columns) give samples (columns, windows * RANKS). An unknown value (NaN)
-        is the least.
+        Values (samples, outputs, designs) give samples (outputs, windows * RANKS, designs). An
+        unknown value (NaN) is the least.
         """
         keys = np.where(np.isnan(values), -np.inf, values)[self.rows]
         keys[self.repeated] = np.inf
@@ -359,9 +457,10 @@ class Windows(NamedTuple):
         picked = np.argpartition(keys, last, axis=1)[:, : last + 1]
         order = np.argsort(np.take_along_axis(keys, picked, axis=1), axis=1, kind="stable")
         picked = np.take_along_axis(picked, order, axis=1)
-        picked = picked[:, np.minimum(np.arange(RANKS), last)]
-        windows = np.arange(len(self.rows))[:, None, None]
-        return self.rows[windows, picked].transpose(2, 0, 1).reshape(keys.shape[2], -1)
+        picked = picked[:, np.minimum(np.arange(RANKS), last)]  # (windows, ranks, outputs, designs)
+        windows = np.arange(len(self.rows))[:, None, None, None]
+        found = self.rows[windows, picked].transpose(2, 0, 1, 3)
+        return found.reshape(keys.shape[2], -1, keys.shape[3])
 
 
 def windows_of(record: CycleRecord, windows: int) -> Windows:
@@ -372,10 +471,7 @@ def windows_of(record: CycleRecord, windows: int) -> Windows:
     steps = np.arange(longest)
     first, last = edges[:-1, None], edges[1:, None]
     return Windows(
-        tuple(
-            f"{record.time[a]:.3g} s to {record.time[b - 1]:.3g} s"
-            for a, b in zip(edges[:-1], edges[1:], strict=True)
-        ),
+        tuple(f"{record.time[a]:.3g} s to {record.time[b - 1]:.3g} s" for a, b in pairwise(edges)),
         np.minimum(first + steps, last - 1),
         first + steps >= last,
     )

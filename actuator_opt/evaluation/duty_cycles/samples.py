@@ -7,7 +7,6 @@ together; where the machine is missing, NumPy runs it with a complex step.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ from ...base.dataclass import dataclass
 from ...base.numeric import STEP, Array, absolute, maximum, real, sqrt, where
 from ...base.symbolic.recorded import RecordedFunction
 from ...models import lines, linkage, quasi_static
-from .numbers import SHARES, Numbers, Plan
+from .numbers import SHARES, Plan
 
 PASSES = 2
 """Passes for friction, which depends on the pressures, and pressures, which depend on friction."""
@@ -102,9 +101,7 @@ def sample(plan: Plan, u: Mapping[str, Array], s: Mapping[str, Array]) -> dict[s
     return results
 
 
-def _kinematics(
-    plan: Plan, u: Mapping[str, Array], s: Mapping[str, Array]
-) -> tuple[Array, Array]:
+def _kinematics(plan: Plan, u: Mapping[str, Array], s: Mapping[str, Array]) -> tuple[Array, Array]:
     """Piston position and lever arm; the arm is 1 for a cycle of position and force."""
     if plan.linkage:
         at = linkage.linkage(
@@ -240,49 +237,48 @@ class SampleModel:
         return xp.stack(rows)
 
     def run(self, numbers: Array, seeds: Array, data: Array) -> Array:
-        """Results (samples, outputs, 1 + directions): values, then slopes.
+        """Results (samples, outputs, designs, 1 + directions): values, then slopes.
 
         Parameters
         ----------
-        numbers : values of the numbers (numbers,)
-        seeds : their changes in every direction (numbers, directions)
+        numbers : values of the numbers (numbers, designs)
+        seeds : their changes in every direction (numbers, designs, directions)
         data : columns of the record (samples, columns)
         """
-        count, directions = len(data), seeds.shape[1]
+        (count, columns), (width, designs, directions) = data.shape, seeds.shape
+        points = np.empty((designs, count, width + columns))
+        points[:, :, :width] = numbers.T[:, None]
+        points[:, :, width:] = data
+        points = points.reshape(designs * count, -1)
         if self._recorded is None:
-            present = np.concatenate([numbers, data[0]])
             names = (*self.names, *self.columns)
-            self._recorded = RecordedFunction(self._function, names, present)
-        points = np.empty((count, len(numbers) + data.shape[1]))
-        points[:, : len(numbers)] = numbers
-        points[:, len(numbers) :] = data
-        if self._recorded.recording is None and not self._recorded.reason:
+            self._recorded = RecordedFunction(self._function, names, points[0].copy())
             self._recorded(points[:1].T)
         recording = self._recorded.recording
+        changes = np.zeros((designs, width + columns, directions))
+        changes[:, :width] = seeds.transpose(1, 0, 2)
         if recording is None:
-            return self._by_numpy(points, seeds)
-        if not directions:
-            values = recording.program.values(points)
-            holds = recording.holds(values)
-            results = values[:, : recording.rows, None]
+            results = self._by_numpy(points, changes)
+        elif directions:
+            values, slopes = recording.program.slopes(points, changes)
+            results = np.concatenate([values[:, :, None], slopes], axis=2)
         else:
-            padded = np.zeros((1, points.shape[1], directions))
-            padded[0, : len(seeds)] = seeds
-            shared = np.broadcast_to(padded, (count, *padded.shape[1:]))
-            values, slopes = recording.program.slopes(points, shared)
-            holds = recording.holds(values)
-            results = np.concatenate([values[:, :, None], slopes], axis=2)[:, : recording.rows]
-        if not holds.all():
-            results[~holds] = self._by_numpy(points[~holds], seeds)
-        return results
+            results = recording.program.values(points)[:, :, None]
+        if recording is not None:
+            outside = ~recording.holds(results[:, :, 0])
+            results = results[:, : recording.rows]
+            for k in np.flatnonzero(outside):
+                results[k] = self._by_numpy(points[k : k + 1], changes[k // count, None])[0]
+        return results.reshape(designs, count, -1, 1 + directions).transpose(1, 2, 0, 3)
 
-    def _by_numpy(self, points: Array, seeds: Array) -> Array:
-        directions = seeds.shape[1]
+    def _by_numpy(self, points: Array, changes: Array) -> Array:
+        """Results (points, outputs, 1 + directions); changes (designs, inputs, directions)."""
+        directions = changes.shape[2]
         with np.errstate(all="ignore"):
             if not directions:
                 return self._function(points.T).T[:, :, None]
-            stepped = np.repeat(points.T[:, :, None].astype(complex), directions, axis=2)
-            stepped[: len(seeds)] += 1j * STEP * seeds[:, None, :]
+            steps = np.repeat(changes, len(points) // len(changes), axis=0)
+            stepped = (points[:, :, None] + 1j * STEP * steps).transpose(1, 0, 2)
             rows = self._function(stepped.reshape(len(stepped), -1))
         rows = rows.reshape(len(rows), len(points), directions).transpose(1, 0, 2)
         return np.concatenate([rows.real[:, :, :1], rows.imag / STEP], axis=2)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,11 +34,10 @@ STATE = (
 """Traces that describe the actuator at a sample."""
 
 
-@dataclass(frozen=True, slots=True)
-class WorstSample:
+class WorstSample(NamedTuple):
     """The sample of a cycle at which a result is worst."""
 
-    index: int
+    sample: int
     time: float
     """Time of the file [s]."""
     value: float
@@ -102,8 +100,8 @@ class CycleStudy:
                 "flow_mean": self.flow_mean,
                 "way": self.way,
                 "worst": {
-                    key: asdict(sample) | {"state": self.state(sample.index)}
-                    for key, sample in self.worst.items()
+                    key: worst._asdict() | {"state": self.state(worst.sample)}
+                    for key, worst in self.worst.items()
                 },
                 "force_limits": [limit.to_dict() for limit in self.limits],
                 "damage": self.damage,
@@ -135,7 +133,7 @@ class DutyStudy:
     unknown: Mapping[str, str]
     """Parts that are not assessed for fatigue, with the reason."""
     notes: tuple[str, ...]
-    """What the results assume."""
+    """Assumptions behind the results."""
     return_pressure: float
     """Gauge pressure of the return line [Pa]."""
     stroke: float
@@ -162,7 +160,7 @@ NOTES = (
     "the torques or forces of a cycle contain the inertia of the load: load.mass and load.inertia "
     "are not added",
 )
-"""What all duty cycles assume."""
+"""Assumptions of all duty cycles."""
 
 _WORST: Mapping[str, tuple[str, float]] = {
     "share": ("share", -1.0),
@@ -187,13 +185,13 @@ def study(
     results = dict(zip(models.places, models(numbers[:, None])[:, 0].tolist(), strict=True))
     named = dict(zip(models.names, numbers.tolist(), strict=True))
     cycles = []
-    for name, track in models.tracks(numbers).items():
+    for name, track in models.tracks(numbers[:, None]).items():
         record = models.records[name]
         time = record.time * named[f"{name}|time_scale"]
         u = {key: named[key] for key in models.common}
         u |= {key: named[f"{name}|{key}"] for key in CYCLE}
         u["level"] = float(track.real("supply").min())
-        limits = force_limits(models.plan, u, track.real("speed"))
+        limits = force_limits(models.plan, u, track.real("speed")[:, 0])
         repeats = named.get(f"{name}|repeats")
         cycles.append(_cycle(name, record, time, track, results, limits, repeats))
     linkage = None
@@ -224,7 +222,7 @@ def _cycle(
     def by_place(result: str) -> dict[str, float]:
         return {place.place: value for place, value in own.items() if place.name == result}
 
-    traces = {output: track.real(output) for output in track.outputs}
+    traces = {output: track.real(output)[:, 0] for output in track.outputs}
     worst = {}
     for key, (output, sign) in _WORST.items():
         if output in traces:

@@ -1,0 +1,119 @@
+"""Start designs for a duty cycle: forces, speed and stroke from the motion in a CSV file."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import replace
+from math import ceil, floor, log10
+from pathlib import Path
+
+from ..base.dataclass import dataclass
+from ..base.errors import Diagnostic, UsageError
+from ..base.quantities import INPUTS
+from ..design.cycle_files import CycleFile
+from ..design.cycle_peaks import CyclePeaks, peaks
+from ..design.cycle_record import cycle_text
+from ..design.duty import DutyCycle
+from ..design.writer import exact_text, scalar
+from .actuator import read_as
+from .starting import SPEED, Start
+
+_DIGITS = 3
+"""Significant digits to which forces and speeds are rounded up (our choice)."""
+
+_BLOCK = """
+# Motion and load over time. Further keys, such as repeats: actuator-opt explain duty.cycles
+duty:
+  cycles:
+    - name: @NAME@
+      file: @FILE@
+@ARM@"""
+
+
+@dataclass(frozen=True, slots=True)
+class CycleStart:
+    """A cycle for which a start design is made, with its extreme values."""
+
+    cycle: DutyCycle
+    peaks: CyclePeaks
+
+    @property
+    def answers(self) -> dict[str, str]:
+        """Push, pull, stroke and speed that the cycle needs, rounded up, as texts with units."""
+        most = self.peaks
+        travel = most.travel if most.position_high is None else most.position_high
+        return {
+            "push": f"{_up(most.push)!r} N",
+            "pull": f"{_up(most.pull)!r} N",
+            "stroke": f"{max(ceil(1e3 * travel - 1e-6), 1)} mm",
+            "speed": f"{_up(most.speed) or SPEED!r} m/s",
+        }
+
+    @property
+    def warnings(self) -> list[str]:
+        """Sentences on doubtful data of the file."""
+        file = self.cycle.record.name
+        return [f"{file}: {text}" for text in self.cycle.record.warnings]
+
+    def added_to(self, start: Start) -> Start:
+        """The start design with the block `duty`, and the cycle's file."""
+        source = start.actuator.source
+        assert source is not None
+        assert isinstance(self.cycle.file, CycleFile)
+        arm = self.cycle.lever_arm
+        line = "" if arm is None else f"      lever_arm: {exact_text(arm, INPUTS['lever_arm'])}\n"
+        block = _BLOCK.replace("@NAME@", scalar(self.cycle.name)).replace("@ARM@", line)
+        text = source.text.rstrip("\n") + "\n" + block.replace("@FILE@", scalar(self.cycle.file))
+        files = {str(self.cycle.file): self.cycle.file.text}
+        return replace(start, actuator=read_as(text, source.file, files=files))
+
+
+def cycle_start(
+    file: str | Path, *, lever_arm: float | None = None, folder: str | Path = ""
+) -> CycleStart:
+    """Read the cycle for which a start design is made.
+
+    Parameters
+    ----------
+    file : CSV file as for `design.cycle_record.read_cycle`; it must close
+    lever_arm : constant lever arm of the joint [m]; required if the file states a joint
+    folder : folder in which the design will be written, to which it names the file relatively
+
+    Raises
+    ------
+    InputError : the file is not usable
+    UsageError : the file states a joint, but there is no lever arm; or positions below 0
+    """
+    path = Path(file)
+    relative = Path(os.path.relpath(path, folder or ".")).as_posix()
+    if path.is_absolute():
+        relative = str(path)
+    own = CycleFile(relative, cycle_text(path), str(folder))
+    record = own.record(closed=True)
+    if record.joint and lever_arm is None:
+        message = f"{file}: states the motion of a joint"
+        raise UsageError(Diagnostic(message, 'add e.g. --lever-arm "40 mm"'))
+    cycle = DutyCycle(name=_name(path), file=own, lever_arm=lever_arm if record.joint else None)
+    most = peaks(cycle)
+    if most.position_low is not None and most.position_low < 0:
+        text = INPUTS["length"].text(most.position_low)
+        message = f"{file}: positions begin at {text}, but count from fully retracted"
+        raise UsageError(Diagnostic(message, "shift them, so that none is below 0"))
+    return CycleStart(cycle, most)
+
+
+def _name(path: Path) -> str:
+    """The file's name as the name of a cycle, which differs from those of the load cases."""
+    words = re.sub(r"[^\w .+-]+", "_", path.stem).strip()
+    if not words or not words[0].isalpha():
+        words = f"cycle {words}".strip()
+    return f"{words} cycle" if words in ("push", "pull") else words[:100]
+
+
+def _up(value: float) -> float:
+    """The value rounded up to three significant digits."""
+    if value <= 0:
+        return 0.0
+    step = _DIGITS - 1 - floor(log10(value))
+    return ceil(round(value * 10.0**step, 6)) / 10.0**step
