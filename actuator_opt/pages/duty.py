@@ -389,7 +389,7 @@ def _fatigue(evaluation: Evaluation, study: DutyStudy) -> Iterator[Table]:
 
 
 def _basis(study: DutyStudy) -> Notes:
-    """What the results assume, and what was changed in the records."""
+    """Assumptions of the results, and changes of the records."""
     lines = [f"{line[0].upper()}{line[1:]}." for line in study.notes]
     for cycle in study.cycles:
         lines += [f"Cycle {clean(cycle.name)}: {clean(line)}." for line in cycle.record.notes]
