@@ -15,7 +15,7 @@ from ..evaluation.duty_cycles.study import CycleStudy, DutyStudy, LinkageSize
 from ..metrics import METRICS
 from ..rendering.axes import even_range, time_words
 from ..rendering.blocks import Chart, TerminalFigure, clean
-from ..rendering.chart import Axis, Curve, Level, Panel, Points
+from ..rendering.chart import Axis, Curve, Level, Panel, Points, known
 from ..rendering.ink import BLACK, BLUE, GREY, WHITE, Ink, Point
 from ..rendering.text import DASH, limit_text, number, unit_text, value_text
 from ..rendering.waterfall import Step, waterfall
@@ -253,10 +253,10 @@ def _hydraulics(study: DutyStudy, cycle: CycleStudy) -> Iterator[_Strip]:
         limit = limit_text(OPENING, "max", study.opening_limit)
         most_open = Level(OPENING.to_display(study.opening_limit), limit, "max")
         opening = worst["opening"]
-        known = math.isfinite(opening.value)
-        marked = (value_of(OPENING, opening.value), opening.sample) if known else None
+        moves = math.isfinite(opening.value)
+        marked = (value_of(OPENING, opening.value), opening.sample) if moves else None
         curve = {"": traces["opening"]}
-        title = "Valve opening" if known else "Valve opening (gaps: stall)"
+        title = "Valve opening" if moves else "Valve opening (gaps: stall)"
         yield _Strip(title, OPENING, curve, [most_open], True, marked)
     flow = worst["flow"]
     mean = Level(FLOW.to_display(cycle.flow_mean), "mean", style=MEAN)
@@ -269,7 +269,7 @@ def _planes(study: DutyStudy, cycle: CycleStudy) -> list[Panel]:
     scale, across = FORCE.to_display(1.0), SPEED.to_display(1.0)
     speed, force = across * cycle.traces["speed"], scale * cycle.traces["force"]
     stalls = [scale * float(limit.force[0]) for limit in cycle.limits]
-    low, high = (BEYOND * end([*stalls, *force, 0.0]) for end in (min, max))
+    low, high = (BEYOND * end(known([*stalls, *force, 0.0])) for end in (min, max))
     limits = _limit_curves(cycle, low, high)
     ends = [float(speed.min()), float(speed.max())]
     for curve in limits:

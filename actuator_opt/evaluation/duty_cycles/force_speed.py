@@ -1,4 +1,4 @@
-"""Limits of a cylinder in the plane of force and speed in its four quadrants.
+"""Limits of a cylinder in the plane of force and speed, in its four quadrants.
 
 They are limits of the sample model (`samples`), so friction and lines count as they do along a
 cycle: where the force reserve is zero, and where the driven chamber falls to the pressure of the
