@@ -298,13 +298,14 @@ def record_run(
     ------
     InputError : the record cannot be written
     """
+    from ..design.flow_tables import self_contained
     from ..design.writer import to_yaml
     from ..evaluation.build import spec_hash
 
     place = _folder(folder)
     if place is None:
         return None
-    source = actuator.source
+    design, source = actuator.design, actuator.source
     started = _started()
     common_head = {
         "kind": kind,
@@ -316,11 +317,12 @@ def record_run(
         "spec_hash": spec_hash(actuator.subject()),
         "seed": seed,
     }
+    text = to_yaml(design) if source is None else self_contained(source.text, design)
     common_body = {
         "date": date or date_from_environment(),
         "input": {
             "name": file_name(actuator.design, source),
-            "text": to_yaml(actuator.design) if source is None else source.text,
+            "text": text,
             **_changes(source),
             **_files(actuator),
             "plugins": _plugins(actuator.plugins),

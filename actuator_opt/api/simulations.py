@@ -17,7 +17,7 @@ from ..design import Design, pairs
 from ..studies.plant import plant
 from .actuator import Actuator, Result, as_actuator
 from .records import Units
-from .reports import ReportArguments, ReportPlace, page_of
+from .reports import ReportArguments, ReportPlace, page_of, published
 
 if TYPE_CHECKING:
     from ..design.scenario import LoadedScenario, Scenario
@@ -88,7 +88,7 @@ def read_scenario(
 def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tuple[Array, Array]]:
     """Columns of the records that the scenario's signals use, by file and column."""
     from ..base.files import read_bytes
-    from ..base.sheet import decode_record
+    from ..base.sheets import decode_sheet
     from ..design.scenario import recorded_parts
     from ..identification import column_units, parse_column
 
@@ -102,7 +102,7 @@ def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tupl
             if file not in texts:
                 path_of = loaded.folder / file
                 data = read_bytes(path_of, most=MOST_BYTES + 1, kinds=_TABLES, what="CSV file")
-                texts[file] = decode_record(data, name, most=MOST_BYTES)
+                texts[file] = decode_sheet(data, name, most=MOST_BYTES)
             records[file, column] = parse_column(
                 texts[file], column, dimension, name=name, units=known_units
             )
@@ -138,7 +138,7 @@ def simulate(
     verify : whether to integrate again by another method and compare the results
     margins : whether to compute the margins of the control loop even if its gain is stated; they
         are always computed for a gain that is tuned by them
-    method : integration method: "lsoda" (the fastest), "cvodes" (extra ``fast``) or "radau"
+    method : integration method: "lsoda" (the faster) or "radau"
 
     Returns
     -------
@@ -277,7 +277,7 @@ def compare_measured(
         as for `read_scenario`; or record and simulation do not overlap, or a parameter is unknown
     """
     from ..base.files import read_bytes
-    from ..base.sheet import decode_record
+    from ..base.sheets import decode_sheet
     from ..identification import column_units
     from ..simulation.linear import tune
     from ..simulation.measured import overlay, parse_measured
@@ -287,7 +287,7 @@ def compare_measured(
     trial = as_trial(scenario)
     name = str(record)
     data = read_bytes(record, most=MOST_BYTES + 1, kinds=_TABLES, what="CSV file")
-    text = decode_record(data, name, most=MOST_BYTES)
+    text = decode_sheet(data, name, most=MOST_BYTES)
     measured = parse_measured(text, name=name, columns=columns, units=column_units(units))
     with placed(trial):
         if not fit:
@@ -414,7 +414,8 @@ def write_simulation(
         raise UsageError(Diagnostic(message, "give scenario=read_scenario(...)"))
     simulation = with_margins(simulation, scenario.records)
     origin, place = _page(scenario, simulation, "", paper)
-    blocks = [] if measured is None else measured.blocks()
+    blocks = published(simulation)
+    blocks += [] if measured is None else measured.blocks()
     blocks += [] if sensitivities is None else sensitivity_blocks(sensitivities)
     record = None if measured is None else drawn(measured.overlay)
     report = page(simulation, measured=record, extra=blocks)

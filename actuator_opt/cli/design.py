@@ -465,7 +465,13 @@ def compare(
 
 
 def export(
-    design: DesignFile,
+    design: Annotated[
+        str,
+        typer.Argument(
+            metavar="DESIGN",
+            help="Design file, or scenario that names its design (c or fmu), or - for stdin.",
+        ),
+    ],
     formats: Annotated[
         list[str] | None,
         typer.Option("--format", metavar="step|dxf|xlsx|c|fmu", help="File format. Repeatable."),
@@ -494,17 +500,25 @@ def export(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Export the design to CAD (STEP, DXF), Excel, C or FMI."""
+    """Export a design to CAD, Excel, C; a scenario to C, FMI."""
     from .. import api as verbs
+    from ..api.exports import is_exported_scenario
     from ..exports import require_formats
 
-    known = require_formats(formats or [], scenario=scenario is not None)
+    alone = scenario is None and is_exported_scenario(design, formats or ())
+    known = require_formats(formats or [], scenario=scenario is not None or alone)
+    if alone and plugin:
+        remedy = "give the design, and the scenario by --scenario"
+        raise UsageError(Diagnostic("--plugin: not with a scenario alone", remedy))
     job = Job(
         design, sets=sets, unset=unset, plugins=plugin, report=True, out=out, date=date,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
     options: dict[str, Any] = {"formats": known, "folder": out, "date": date}
-    if scenario is None:
+    if alone:
+        evaluation = None
+        exports = job.run(verbs.export, verbs.read_scenario(design, set=job.set), **options)
+    elif scenario is None:
         evaluation = job.run(verbs.evaluate)
         exports = verbs.export(evaluation, actuator=job.actuator, **options)
     else:

@@ -213,14 +213,6 @@ Verify = Annotated[
         help="Integrate again by the Radau method; show the largest difference of the results.",
     ),
 ]
-Fast = Annotated[
-    bool,
-    typer.Option(
-        "--fast",
-        help='Integrate by CVODES (pip install "actuator-opt[fast]"); it takes 1.8 to 3.1 times as '
-        "long as the default, whose equations are compiled.",
-    ),
-]
 SignalsFile = Annotated[
     Path | None, typer.Option("--csv", metavar="FILE", help="Save every signal over time.")
 ]
@@ -276,7 +268,6 @@ def simulate(
     csv: SignalsFile = None,
     verify: Verify = False,
     margins: Margins = False,
-    fast: Fast = False,
     measured: MeasuredFile = None,
     fit: Fitted = None,
     columns: RecordColumns = None,
@@ -310,7 +301,6 @@ def simulate(
         require_apart(csv, *map(str, trial.files))
     job.paper["scenario"] = trial
     options: dict[str, Any] = {"verify": verify, "margins": margins}
-    options |= {"method": "cvodes" if fast else "lsoda"}
     if measured is None:
         compared, simulation = None, job.run(verbs.simulate, trial, **options)
     else:

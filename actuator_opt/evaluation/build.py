@@ -228,9 +228,21 @@ def _blocks(retention: dict[str, Any] | None) -> Iterator[dict[str, Any]]:
 
 def leave_out_unset(valve: dict[str, Any] | None) -> None:
     """Drop unset keys from the dump of a valve, so that hashes of older designs stay valid."""
-    for key in ("frequency_90deg", "frequency_3db", "slew_rate", "spool"):
+    for key in (
+        "frequency_90deg",
+        "frequency_3db",
+        "slew_rate",
+        "spool",
+        "edge_coefficients",
+        "flow_curve",
+        "hysteresis",
+        "threshold",
+    ):
         if valve and valve[key] is None:
             del valve[key]
+    if valve and "flow_curve" in valve:  # its numbers count, not the name of its file
+        table = valve["flow_curve"]
+        valve["flow_curve"] = {name: table[name] for name in ("in_volts", "signal", "flows")}
 
 
 def spec_hash(subject: PreparedDesign) -> str:
@@ -306,7 +318,7 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
         lengths=outline.lengths(design, run.geometry),
         wall=wall_study(subject, v, run),
         dynamics=dynamics.study(subject, v, run, metrics["stiffness_min"].case),
-        valve=valve_study.study(design, v, run.state),
+        valve=valve_study.study(design, v, run.state, metrics["position_gain"].value),
         duty=_duty(subject, v),
         friction_parts=_friction_parts(computed, v, metrics["friction_running"].case),
     )

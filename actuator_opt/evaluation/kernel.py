@@ -372,11 +372,13 @@ def statics(
     drive_films, return_films = (
         sealing.films_of(tables, rings, stroke, len(v.cases)) for stroke in STROKES
     )
-    friction = sealing.compute(v, design, stock, g, case_state, barrel, rings, drive_films, out)
+    sections = rods.derive(v, design, stock, g)
+    friction = sealing.compute(
+        v, design, stock, g, case_state, barrel, rings, drive_films, sections, out
+    )
     sealing.compute_film(g, case_state, drive_films, return_films, out)
     net = _forces(g, case_state, friction, out)
     joint.compute(design, case_state.joint, case_state.positions, net, out)
-    sections = rods.derive(v, design, stock, g)
     rod = sections[0]
     parts = weight.parts(v, design, stock, g, sections)
     out.put("mass", sum(parts.values()))

@@ -263,7 +263,6 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
     yield from _rod_warnings(subject, run)
     yield from _winding_warnings(subject.design, run)
     yield from _head_warnings(subject.design)
-    yield from _double_rod_warnings(subject.design)
     yield from (("", text) for text in assembly.warnings(subject.design))
     yield from _skirt_oil_warnings(subject.design, run)
     yield from _port_warnings(subject, g)
@@ -366,16 +365,6 @@ def _head_warnings(design: Design) -> Iterable[tuple[str, str]]:
             "",
             f"the rod has no bushing and runs on {design.head.material}: add seals.rod.guide or "
             "head.bearing",
-        )
-
-
-def _double_rod_warnings(design: Design) -> Iterable[tuple[str, str]]:
-    """State what the models leave out beside a second rod."""
-    if design.double_rod and any(case.side_load > 0 for case in design.load_cases):
-        yield (
-            "bearing_pressure",
-            "the second gland, which relieves head and piston under a side load, is left out: "
-            "their pressures and friction are upper estimates",
         )
 
 

@@ -87,8 +87,10 @@ def driven_pressures(
 
     Notes
     -----
-    Valid: incompressible oil, spool without dynamics, critical centre. A negative drop marks a load
-    that stalls the cylinder; a negative chamber pressure marks a load that overruns it.
+    Valid: incompressible oil, no spool dynamics, critical centre of the valve.
+
+    A negative drop marks a load that stalls the cylinder; a negative chamber pressure marks a load
+    that overruns it.
 
     References
     ----------

@@ -103,7 +103,7 @@ def figure(lengths: Mapping[str, float], study: DutyStudy, cycle: CycleStudy) ->
     beside: list[Panel | Ink] = [*_planes(study, cycle)]
     if (picture := _energy_picture(cycle)) is not None:
         beside.append(picture)
-    if study.linkage is not None and cycle.record.joint:
+    if study.linkage is not None and cycle.linked:
         beside.append(_pose(lengths, study.linkage, cycle))
     percent = 100 * cycle.traces["share"]
     label = f"Cycle {clean(cycle.name)}: supply pressure needed, % of the supply"

@@ -32,7 +32,7 @@ from .linear import CAUSES, UNHELD, Tuned, tune
 from .result import Second, SignalLabel, Simulation
 from .system import Compiled
 
-SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "cvodes": "radau", "radau": "lsoda"}
+SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "radau": "lsoda"}
 """For each integration method, the second method that checks it."""
 COMPARED = (
     "position", "speed", "pressure_a", "pressure_b", "shaft_speed", "shaft_angle", "spool",
@@ -362,10 +362,12 @@ def _reference_outside_stroke(actuator: Plant, signals: Mapping[str, Array]) -> 
 
 def spec_of(subject: PreparedDesign, scenario: Scenario) -> str:
     """Hash of all inputs that affect the result."""
-    content = scenario.model_dump(mode="json")
+    content = scenario.model_dump(mode="json", exclude={"reproduces"})
     if content["load"]["cylinder"]:
         leave_out_unset(content["load"]["cylinder"]["valve"])
     if content["control"] and content["control"]["dead_band_jump"] is None:
         del content["control"]["dead_band_jump"]
+    if not content["unset"]:
+        del content["unset"]
     text = spec_hash(subject) + json.dumps(content, sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:16]

@@ -221,6 +221,15 @@ def test_the_plane_marks_the_least_reserve_between_cycle_and_limit():
     assert abs(line.ys[1] - line.ys[0]) == pytest.approx(worst.value, rel=0.05)
 
 
+def test_only_a_cycle_that_moves_the_linkage_has_its_picture():
+    """A design with a linkage may have a cycle of position and force, too."""
+    mixed = evaluated(WALK, HARD)
+    assert [len(chart.columns[1]) for chart in charts(mixed)] == [4, 2]
+    assert mixed.duty.cycles[1].traces["position"] == pytest.approx([0.02, 0.06, 0.09, 0.05, 0.02])
+    columns = {column.head: column.values for column in duty.series(mixed)}
+    assert np.isnan(columns["joint_angle [deg]"][-5:]).all()
+
+
 def test_a_load_that_does_not_move_has_no_efficiency():
     """Leakage alone costs energy."""
     still = case("still")

@@ -164,7 +164,7 @@ class SupplyLine(Section):
     """A pipe between supply and valve."""
 
     length: Annotated[float, Of("part_length", "length of the pipe")]
-    inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
+    inner_diameter: Annotated[float, Of("line_diameter", "inner diameter")]
 
 
 class ValveSupply(Section):
@@ -376,9 +376,21 @@ class Scenario(Section):
 
     name: Annotated[str, Label("title of the scenario", "step response")]
     notes: Annotated[str, Text("free text for the report", 20000, multiline=True)] = ""
+    reproduces: kinds.PublishedCase = None
     design: Annotated[str, FileName("the design file, in the folder of the scenario", "knee.yaml")]
     set: dict[str, str] = {}  # noqa: RUF012 (pydantic copies it)
     """Values of the design that the scenario changes, by PATH."""
+    unset: Annotated[
+        tuple[
+            Annotated[
+                str,
+                Label("key or block of the design to remove, before any is set", "cushion"),
+            ],
+            ...,
+        ],
+        Field(max_length=100),
+    ] = ()
+    """PATHs of keys and blocks of the design; a removed key takes its default."""
     duration: Annotated[float, Of("duration", "simulated time")]
     sample_time: Annotated[
         float | None, Of("sample_time", "sample time of the signals; default: duration / 2000")

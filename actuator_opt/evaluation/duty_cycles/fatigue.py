@@ -18,7 +18,7 @@ from ...models import endurance, rainflow
 from .numbers import LIFE, STRESS, History, Plan
 
 if TYPE_CHECKING:
-    from .results import Track
+    from .samples import Track
 
 
 MOST_KNOWN = 1000

@@ -8,7 +8,6 @@ air (0 gauge).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -77,7 +76,6 @@ def force_limits(
     [derived] `quasi_static.needed_supply` solved for the load; the fixed point holds friction
     """
     u = {**u, "arm": 1.0, "shift": 0.0, "load_scale": 1.0, "time_scale": 1.0}
-    plan = replace(plan, linkage=False)
     limits = []
     openings = dict.fromkeys((float(u["opening_limit"]), 1.0)) if plan.valve else (None,)
     for opening in openings:
@@ -117,7 +115,8 @@ def _limit(
         """Results at the force that the fixed point reaches."""
         force = np.full(speed.shape, float(stall))
         for _ in range(ROUNDS):
-            found = sample(plan, u, {"motion": 0.0 * speed, "load": force, "rate": speed})
+            data = {"motion": 0.0 * speed, "load": force, "rate": speed}
+            found = sample(plan, u, data, linked=False)
             step = change(found)
             if np.max(np.abs(step)) < SETTLED * abs(stall):
                 break

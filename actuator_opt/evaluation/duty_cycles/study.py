@@ -13,7 +13,8 @@ from ...design.cycle_record import CycleRecord
 from ..values import plain
 from .force_speed import ForceLimit, force_limits
 from .numbers import CYCLE
-from .results import CycleModels, Place, Track
+from .results import CycleModels, Place
+from .samples import Track
 
 Trace = npt.NDArray[np.float64]
 
@@ -69,6 +70,8 @@ class CycleStudy:
     severity: Mapping[str, float]
     """Contact pressure times way of every seal per cycle [N/m]."""
     repeats: float | None
+    linked: bool
+    """Whether the linkage gives position and lever arm."""
 
     @property
     def efficiency(self) -> float | None:
@@ -141,7 +144,7 @@ class DutyStudy:
     opening_limit: float | None
     """Largest opening of the valve that a cycle may need; None without a valve."""
     linkage: LinkageSize | None
-    """Lengths of the linkage; None without one."""
+    """Lengths of the linkage; None if no cycle moves it."""
 
     def to_dict(self) -> dict[str, Any]:
         """JSON data."""
@@ -193,9 +196,11 @@ def study(
         u["level"] = float(track.real("supply").min())
         limits = force_limits(models.plan, u, track.real("speed")[:, 0])
         repeats = named.get(f"{name}|repeats")
-        cycles.append(_cycle(name, record, time, track, results, limits, repeats))
+        cycles.append(
+            _cycle(name, record, time, track, results, limits, repeats, name in models.plan.linked)
+        )
     linkage = None
-    if models.plan.linkage:
+    if models.plan.linked:
         linkage = LinkageSize(**{key: named[key] for key in LinkageSize._fields})
     return DutyStudy(
         cycles=tuple(cycles),
@@ -216,6 +221,7 @@ def _cycle(
     results: Mapping[Place, float],
     limits: tuple[ForceLimit, ...],
     repeats: float | None,
+    linked: bool,
 ) -> CycleStudy:
     own = {place: value for place, value in results.items() if place.cycle == name}
 
@@ -241,4 +247,5 @@ def _cycle(
         damage=by_place("damage"),
         severity=by_place("severity"),
         repeats=repeats,
+        linked=linked,
     )
