@@ -74,6 +74,7 @@ if TYPE_CHECKING:
         Compared as Compared,
         Trial as Trial,
         compare_measured as compare_measured,
+        cycle_scenario as cycle_scenario,
         fitting as fitting,
         read_scenario as read_scenario,
         servo_sensitivities as servo_sensitivities,
@@ -125,7 +126,7 @@ _PUBLIC = {
     "results": "exit_code report",
     "sessions": "OptimumCurve Prediction Price Session session",
     "simulations": """
-        Compared Trial compare_measured fitting read_scenario servo_sensitivities
+        Compared Trial compare_measured cycle_scenario fitting read_scenario servo_sensitivities
         simulate verify_dynamics write_comparison write_signals write_simulation
     """,
     "starting": "start",

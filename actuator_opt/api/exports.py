@@ -130,8 +130,9 @@ def _export_scenario(
 
     file = trial.loaded.source.file
     with placed(trial):
+        inputs, records = trial.inputs(actuator)
         return scenario_exports(
-            trial.scenario, actuator.subject(), trial.records,
+            inputs, actuator.subject(), records,
             formats=formats, folder=folder,
             stem=stem or ("scenario" if file.startswith("<") else Path(file).stem),
             program=f"actuator-opt {VERSION}", date=date,

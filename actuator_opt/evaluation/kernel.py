@@ -499,6 +499,14 @@ def duty_numbers(subject: PreparedDesign, v: Values) -> tuple[CycleModels, Array
     return _cycle_models(subject, plan, numbers), stacked_numbers(numbers)
 
 
+def duty_results(subject: PreparedDesign, v: Values) -> MetricArrays:
+    """Metrics of the duty cycles only, for all designs in `v`; other models run without search."""
+    out = MetricArrays()
+    with np.errstate(all="ignore"):
+        _duty(subject, v, statics(subject, v, out), out)
+    return out
+
+
 def _duty_numbers(subject: PreparedDesign, v: Values, s: Statics) -> tuple[Plan, Numbers]:
     basis = s.base
     return numbers_module.collect(

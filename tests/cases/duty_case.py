@@ -1,42 +1,45 @@
-"""The knee with duty cycles: from shipped records, or from a few samples written in a test."""
+"""The servo knee with a linkage and duty cycles, for tests of what follows from them."""
 
 from __future__ import annotations
 
-from functools import cache
+import textwrap
 from pathlib import Path
 
+import numpy as np
+
 import actuator_opt as ao
-from actuator_opt.evaluation.result import Evaluation
 
 DESIGNS = Path(__file__).parents[2] / "designs"
-GAIT, RUN, FLIGHT = (
-    (DESIGNS / "cycles" / f"{name}.csv").read_text(encoding="utf-8")
-    for name in ("gait_knee", "run_knee", "flight_control_synthetic")
-)
-LINKAGE = "linkage: {base_radius: 240 mm, crank_radius: 62 mm, angle_offset: 120 deg}\n"
-VALVE = (
-    "valve: {rated_flow: 10 l/min, leakage_flow: 0.2 l/min, leakage_drop: 50 bar, "
-    "natural_frequency: 100 Hz}\n"
-)
+GAIT = DESIGNS / "cycles" / "gait_knee.csv"
+LINKAGE = """\
+linkage:
+  base_radius: 250 mm
+  crank_radius: 62 mm
+  angle_offset: 120 deg
+"""
 
 
-def cycle(name: str, record: str, **keys: object) -> str:
-    """A cycle of the block `duty`, with the text of its record."""
-    rows = "".join(f"        {line}\n" for line in record.strip().splitlines())
-    more = "".join(f"      {key}: {value}\n" for key, value in keys.items())
-    return f"    - name: {name}\n{more}      file: |\n{rows}"
+def wave(amplitude: float = 20.0, frequency: float = 2.0, force: float = 500.0) -> str:
+    """A sine of the piston about mid-stroke [mm, Hz] under a constant force [N], as a file."""
+    time = np.linspace(0.0, 1 / frequency, 81)
+    x = 55 + amplitude * np.sin(2 * np.pi * frequency * time)
+    x[-1] = x[0]
+    rows = [f"{t:.9f},{p:.9f},{force}" for t, p in zip(time, x, strict=True)]
+    return "\n".join(["time [s],position [mm],force [N]", *rows]) + "\n"
 
 
-def design(*cycles: str, linkage: bool = True, valve: bool = True, limit: str = "90 %") -> str:
-    """The text of the knee with these cycles."""
-    text = (DESIGNS / "knee.yaml").read_text(encoding="utf-8")
-    text += (LINKAGE if linkage else "") + (VALVE if valve else "")
-    return f"{text}duty:\n  opening_limit: {limit}\n  cycles:\n{''.join(cycles)}"
+def text(cycle: str | None = None, *, stated: str = "") -> str:
+    """The design's file: walking with a linkage, or a cycle of position and force from a text.
+
+    `stated` are further lines of the cycle.
+    """
+    base = (DESIGNS / "servo_knee.yaml").read_text("utf-8")
+    file = f"file: {GAIT}" if cycle is None else f"file: |\n{textwrap.indent(cycle, ' ' * 8)}"
+    duty = f"duty:\n  cycles:\n    - name: walk\n      {file}\n" + textwrap.indent(stated, " " * 6)
+    return base.replace("load_cases:", f"{LINKAGE if cycle is None else ''}{duty}\nload_cases:", 1)
 
 
-@cache
-def evaluated(
-    *cycles: str, linkage: bool = True, valve: bool = True, limit: str = "90 %"
-) -> Evaluation:
-    """The evaluation of `design`."""
-    return ao.evaluate(ao.read(design(*cycles, linkage=linkage, valve=valve, limit=limit)))
+def knee(cycle: str | None = None, *, stated: str = "", **changed: str | None) -> ao.Actuator:
+    """The design, with values changed by PATH."""
+    values = {path.replace("__", "."): value for path, value in changed.items()}
+    return ao.read(text(cycle, stated=stated), set=values)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from duty_case import cycle, evaluated
+from duty_page_case import cycle, evaluated
 
 from actuator_opt.evaluation.duty_cycles.force_speed import force_limits
 from actuator_opt.evaluation.duty_cycles.numbers import Plan

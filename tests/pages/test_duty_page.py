@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 import pytest
 from cli_runner import DESIGNS, run
-from duty_case import FLIGHT, GAIT, RUN, cycle, design, evaluated
+from duty_page_case import FLIGHT, GAIT, RUN, cycle, design, evaluated
 
 import actuator_opt as ao
 from actuator_opt.models.linkage import linkage

@@ -495,6 +495,7 @@ def test_every_signal_is_checked():
         "motor.torque", "load.force", "load.torque", "load.drive.position", "load.cylinder.signal",
         "signal",
         "control.position", "control.speed", "control.shaft_speed", "control.shaft_angle",
+        "control.feed_forward",
     ]  # fmt: skip
     for loc in part_lists():
         tree = leaf = {}

@@ -9,7 +9,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from ..kinds import Boolean, FileName, Label, Of, Position, Section, Text
+from ..kinds import Boolean, CaseName, FileName, Label, Of, Position, Section, Text
 from ..model import Cushion, Limit
 from ..valve import Valve
 from . import kinds
@@ -348,6 +348,9 @@ class Controller(Section):
     pressure_time: Annotated[
         float, Of("time_constant", "time constant of the high-pass filter for pressure changes")
     ] = 0.05
+    feed_forward: Annotated[tuple[ValveSignal, ...], Field(max_length=100)] = ()
+    """Signal that is added to that of the controller; default with a duty cycle: the opening of the
+    valve that the cycle needs."""
     rate_limit: Annotated[float | None, Of("signal_rate", "rate limit of the signal")] = None
     dead_band_jump: Annotated[
         float | None,
@@ -391,6 +394,13 @@ class Scenario(Section):
         Field(max_length=100),
     ] = ()
     """PATHs of keys and blocks of the design; a removed key takes its default."""
+    cycle: Annotated[
+        str | None,
+        CaseName(
+            "duty cycle of the design that is simulated: its position over time is the reference, "
+            "its force the load, in place of load.mass and load.inertia",
+        ),
+    ] = None
     duration: Annotated[float, Of("duration", "simulated time")]
     sample_time: Annotated[
         float | None, Of("sample_time", "sample time of the signals; default: duration / 2000")

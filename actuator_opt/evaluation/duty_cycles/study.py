@@ -58,19 +58,19 @@ class CycleStudy:
     traces: Mapping[str, Trace]
     energies: Mapping[str, float]
     """Energy per cycle [J] by the names in `ENERGIES`, and "supply_energy"."""
-    flow_mean: float
-    """Mean flow from the supply [m^3/s]."""
-    way: float
-    """Distance that the piston moves per cycle [m]."""
-    limits: tuple[ForceLimit, ...]
-    """Limits in the plane of force and speed, at the least supply pressure of the cycle."""
     worst: Mapping[str, WorstSample]
     damage: Mapping[str, float]
     """Fatigue damage of every part by this cycle in a life; empty without repeats."""
     severity: Mapping[str, float]
     """Contact pressure times way of every seal per cycle [N/m]."""
     repeats: float | None
-    linked: bool
+    flow_mean: float = 0.0
+    """Mean flow from the supply [m^3/s]."""
+    way: float = 0.0
+    """Distance that the piston moves per cycle [m]."""
+    limits: tuple[ForceLimit, ...] = ()
+    """Limits in the plane of force and speed, at the least supply pressure of the cycle."""
+    linked: bool = False
     """Whether the linkage gives position and lever arm."""
 
     @property

@@ -204,6 +204,8 @@ def command(
         factor = control.derivative_factor * proportional_gain
         derivative_time = circuit.value("control.derivative_time", gains.derivative_time)
         valve_signal = valve_signal + factor * derivative_time * change
+    if control.feed_forward:
+        valve_signal = valve_signal + circuit.scenario_signal(control.feed_forward)
     valve_signal = inner(circuit, valve_signal, measured)
     if gains.integral_time < inf:
         integral = system.state("integral part", 0.0, tolerance=1e-7 * full_signal)
