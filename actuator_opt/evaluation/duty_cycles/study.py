@@ -137,13 +137,13 @@ class DutyStudy:
     """Parts that are not assessed for fatigue, with the reason."""
     notes: tuple[str, ...]
     """Assumptions behind the results."""
-    return_pressure: float
+    return_pressure: float = 0.0
     """Gauge pressure of the return line [Pa]."""
-    stroke: float
+    stroke: float = 0.0
     """Stroke of the cylinder [m]."""
-    opening_limit: float | None
+    opening_limit: float | None = None
     """Largest opening of the valve that a cycle may need; None without a valve."""
-    linkage: LinkageSize | None
+    linkage: LinkageSize | None = None
     """Lengths of the linkage; None if no cycle moves it."""
 
     def to_dict(self) -> dict[str, Any]:
