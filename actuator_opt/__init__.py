@@ -88,6 +88,7 @@ if TYPE_CHECKING:
         write_calibration as write_calibration,
         write_comparison as write_comparison,
         write_draws as write_draws,
+        write_duty as write_duty,
         write_front as write_front,
         write_front_csv as write_front_csv,
         write_identification as write_identification,
@@ -153,9 +154,9 @@ _PUBLIC = {
         identify optimise pareto prune_runs read read_record read_run read_scenario record
         record_front record_run record_sweep report report_run rerun restore runs save seal
         sensitivity servo_sensitivities session simulate start sweep uncertainty verify_dynamics
-        write_calibration write_comparison write_draws write_front write_front_csv
-        write_identification write_seal write_series write_signals write_simulation
-        write_uncertainty
+        write_calibration write_comparison write_draws write_duty write_front
+        write_front_csv write_identification write_seal write_series write_signals
+        write_simulation write_uncertainty
     """,
 }
 """The public names of each module; a module loads when one of its names is first used."""

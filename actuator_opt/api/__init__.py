@@ -28,6 +28,7 @@ if TYPE_CHECKING:
         pareto as pareto,
         sensitivity as sensitivity,
         with_yield as with_yield,
+        write_duty as write_duty,
         write_front as write_front,
         write_front_csv as write_front_csv,
     )
@@ -107,7 +108,7 @@ _PUBLIC = {
     "exports": "explore export",
     "installation": "Installation doctor",
     "optimum": """
-        Prices evaluate optimise pareto sensitivity with_yield write_front
+        Prices evaluate optimise pareto sensitivity with_yield write_duty write_front
         write_front_csv
     """,
     "recorded_runs": """

@@ -349,11 +349,18 @@ def check(
     return ExitCode.BAD_INPUT if faults else ExitCode.MET
 
 
+TracesFile = Annotated[
+    Path | None,
+    typer.Option("--csv", metavar="FILE", help="Save the traces of all duty cycles."),
+]
+
+
 def evaluate(
     design: DesignFile,
     sets: Set = None,
     unset: Unset = None,
     plugin: PluginFile = None,
+    csv: TracesFile = None,
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
@@ -368,7 +375,7 @@ def evaluate(
     from .. import api as verbs
 
     job = Job(
-        design, sets=sets, unset=unset, plugins=plugin, report=report, out=out, date=date,
+        design, sets=sets, unset=unset, plugins=plugin, csv=csv, report=report, out=out, date=date,
         all_pages=all_pages, format=format,
         as_json=as_json, quiet=quiet, verbose=verbose,
     )  # fmt: skip
