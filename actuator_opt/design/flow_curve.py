@@ -226,10 +226,7 @@ def _column(
 ) -> tuple[tuple[float, ...], list[int]]:
     """Values of a column in SI, and the line of every row."""
     title = sheet.header[place]
-    try:
-        values, lines = sheets.numbers(sheet, [place])
-    except InputError as error:
-        raise _fault(sheet.name, error.diagnostics[0], title) from None
+    values, lines = sheets.numbers(sheet, [place])
     numbers = [unit.to_si(value) for value in values[:, 0].tolist()]
     for value, line in zip(numbers, lines.tolist(), strict=True):
         if not isfinite(value):

@@ -118,7 +118,7 @@ DUTY_ROWS = (
               term="sliding distance", worst="max", model="wear.sliding_distance", feeds=(),
               check=None),
     MetricRow("duty_wear", "w", "length", "um", "worn depth of a seal in a life",
-              term="seal wear", worst="max", model="wear.worn_depth", feeds=(), check=None),
+              term="worn depth", worst="max", model="wear.worn_depth", feeds=(), check=None),
     MetricRow("duty_wear_share", "w/w_a", "ratio", "%",
               "worn depth of a seal in a life, as a share of the permitted depth",
               term="share of the wear", worst="max", model="wear.wear_share", feeds=(),

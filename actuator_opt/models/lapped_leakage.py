@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..base.numeric import Array, geometry, real, sqrt, where
+from ..base.numeric import Array, geometry, positive, real, sqrt, where
 from .lapped_edge import lapped_edge_flow
 from .orifice import TURBULENT_COEFFICIENT
 
@@ -81,7 +81,7 @@ def clearance_of_leakage(
         flow = lapped_edge_flow(
             uncovered=-overlap,
             pressure_drop=leakage_drop,
-            area_gradient=rated_flow / per_width,
+            area_gradient=rated_flow / positive(per_width),
             **gap,
         )
         return flow / leakage - 1.0

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from math import pi
 
-from ..base.numeric import Array, maximum, minimum, positive
+from ..base.numeric import Array, geometry, maximum, minimum, positive
 
 FASTER = 100.0
 """Corner frequency of a play over the natural frequency of the spool. Our choice: it adds 0.6
@@ -53,6 +53,7 @@ def play_half_widths(*, hysteresis: Array, threshold: Array) -> tuple[Array, Arr
     return 0.5 * threshold, hysteresis - 0.5 * threshold
 
 
+@geometry
 def play_rate(
     *, command: Array, output: Array, half_width: Array, natural_frequency: Array
 ) -> Array:

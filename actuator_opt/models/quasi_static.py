@@ -23,6 +23,7 @@ class DrivenPressures(NamedTuple):
     """Pressure in the other chamber [Pa]."""
 
 
+@geometry
 def edge_ratio(
     *, driven_area: Array, other_area: Array, feed_coefficient: Array, drain_coefficient: Array
 ) -> Array:

@@ -148,7 +148,7 @@ REFUSED = {
     ),
     "text": (
         "signal [%],q [l/min]\n0,0\n50,many\n100,1\n",
-        'curve.csv, line 3, column "q [l/min]": "many" is not a number',
+        'curve.csv, line 3: "many" in column "q" is not a number',
     ),
     "empty cell": (
         "signal [%],q [l/min]\n0,0\n50,\n100,1\n",

@@ -203,13 +203,12 @@ def _between(u: Mapping[str, Array], name: str, pressure: Array) -> Array:
 def _friction(
     plan: Plan, u: Mapping[str, Array], i: int, a: Array, b: Array, speed: Array
 ) -> Array:
-    """Friction of a seal against the motion; at rest its Coulomb friction."""
+    """Friction of a seal against the motion; at rest it must break away."""
     coulomb = _between(u, f"seal{i}.coulomb", _sealed(plan, i, a, b))
     fast = absolute(speed)
     law = plan.rings[i].element.friction_law
     seal: Any = _Seal(u, i)
-    running = law.level(seal, coulomb, fast) + u[f"seal{i}.viscous_friction"] * fast
-    return where(real(fast) > 0, running, coulomb)
+    return law.level(seal, coulomb, fast) + u[f"seal{i}.viscous_friction"] * fast
 
 
 @dataclass(frozen=True, slots=True)
